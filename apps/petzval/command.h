@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all subcommands share: the options of the whole program, and the way a lens is named.
+#pragma once
+
+#include <petzval/lens/lens.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace petzval::app {
+
+/// Options that every subcommand takes.
+struct Shared {
+  int threads = 0;         ///< 0: as many as the machine has
+  std::uint64_t seed = 1;
+  bool quiet = false;      ///< no notes, no progress
+  bool json = false;
+};
+
+/// Adds a subcommand with --threads, --seed, --quiet (and --json if it prints numbers), an example for the help
+/// text, and the work to do once the command line has been parsed.
+CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name, const std::string& description,
+                      const std::string& example, bool prints_numbers, std::function<void()> work);
+
+/// A lens on the command line: LENS, --set, --substitute.
+struct LensChoice {
+  std::string path_or_name;
+  std::vector<std::string> settings;
+  std::vector<std::string> substitutions;
+
+  /// Adds the positional LENS (or `--lens` when `positional` is false), --set and --substitute.
+  void add_to(CLI::App& command, bool positional = true, bool required = true);
+  /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
+  Lens read(const Shared& shared) const;
+};
+
+/// Prints a note on stderr, unless --quiet: "petzval: note: …".
+void note(const Shared& shared, const std::string& message);
+
+// One function a subcommand, each in its own file.
+void add_lens_commands(CLI::App& app, Shared& shared);
+
+}  // namespace petzval::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The petzval program: parses the command line and turns exceptions into exit codes.
+#include "command.h"
+
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+
+#include <cstdio>
+#include <new>
+
+namespace {
+
+int report(const std::string& message, int code) {
+  fmt::print(stderr, "petzval: error: {}\n", message);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace petzval;
+  CLI::App program{"Petzval simulates a digital camera from the glass up.", "petzval"};
+  app::Shared shared;
+  program.set_version_flag("--version", std::string("petzval ") + version());
+  program.require_subcommand(1);
+  app::add_lens_commands(program, shared);
+  try {
+    program.parse(argc, argv);
+    // Results on stdout are results: a full disk behind a pipe is a failure too.
+    if (std::fflush(stdout) != 0) return report("standard output cannot be written", 1);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);
+    return report(fmt::format("{} (see petzval --help)", error.what()), 2);
+  } catch (const InputError& error) {
+    return report(error.what(), 2);
+  } catch (const Failure& error) {
+    return report(error.what(), 1);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory; a smaller picture or fewer bands would fit", 1);
+  } catch (const std::exception& error) {
+    return report(error.what(), 1);
+  }
+}

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# petzval_module(NAME [USES lower modules] [LIBRARIES external targets])
+# compiles src/petzval/NAME once as objects; they go into the one installed library `petzval`, and into a
+# small static archive petzval_NAME, so that a module's tests link without anything above it.
+function(petzval_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic)
+  if(PETZVAL_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+function(petzval_module name)
+  cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/petzval/${name}/*.cpp)
+  if(NOT sources)
+    add_library(petzval_${name} INTERFACE)
+    return()
+  endif()
+  add_library(petzval_${name}_objects OBJECT ${sources})
+  target_include_directories(petzval_${name}_objects PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(petzval_${name}_objects PUBLIC ${ARG_LIBRARIES})
+  petzval_warnings(petzval_${name}_objects)
+
+  add_library(petzval_${name} STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:petzval_${name}_objects>)
+  target_include_directories(petzval_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(petzval_${name} PUBLIC ${ARG_LIBRARIES})
+  foreach(lower IN LISTS ARG_USES)
+    target_link_libraries(petzval_${name} PUBLIC petzval_${lower})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY PETZVAL_MODULES ${name})
+  set_property(GLOBAL APPEND PROPERTY PETZVAL_LIBRARIES ${ARG_LIBRARIES})
+endfunction()

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <numeric>
+
+namespace petzval {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (lower(a[i]) != lower(b[j]));
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+const char* version() { return PETZVAL_VERSION; }
+
+std::string data_directory() {
+  if (const char* given = std::getenv("PETZVAL_DATA"); given && *given) {
+    if (!fs::is_directory(given)) throw InputError(given, "PETZVAL_DATA names no folder");
+    return given;
+  }
+  std::vector<std::string> candidates;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) candidates.push_back((program.parent_path().parent_path() / "share" / "petzval").string());
+  candidates.insert(candidates.end(), {PETZVAL_INSTALLED_DATA, PETZVAL_SOURCE_DATA});
+  for (const std::string& candidate : candidates)
+    if (fs::is_directory(fs::path(candidate) / "glass", error)) return candidate;
+  throw InputError(fmt::format("the bundled data is missing; set PETZVAL_DATA to the folder that has glass/ "
+                               "(looked in {})",
+                               fmt::join(candidates, ", ")));
+}
+
+std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(data_directory()) / kind, error))
+    if (entry.path().extension() == extension) names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
+                                       std::size_t count) {
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  for (const std::string& candidate : candidates) ranked.emplace_back(edit_distance(name, candidate), candidate);
+  count = std::min(count, ranked.size());
+  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
+  std::vector<std::string> nearest;
+  for (std::size_t i = 0; i < count; ++i) nearest.push_back(ranked[i].second);
+  return nearest;
+}
+
+std::string find_data_file(const std::string& kind, const std::string& extension, const std::string& path_or_name,
+                           const std::string& what) {
+  std::error_code error;
+  if (fs::is_regular_file(path_or_name, error)) return path_or_name;
+  if (path_or_name.empty()) throw InputError(fmt::format("an empty name for a {}", what));
+  if (path_or_name.find('/') == std::string::npos) {
+    const fs::path bundled = fs::path(data_directory()) / kind / (path_or_name + extension);
+    if (fs::is_regular_file(bundled, error)) return bundled.string();
+  }
+  const std::vector<std::string> near = nearest_names(path_or_name, bundled_names(kind, extension));
+  throw InputError(path_or_name, fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,
+                                             fmt::join(near, ", ")));
+}
+
+}  // namespace petzval

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parallel loops whose result does not depend on the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace petzval {
+
+/// Calls `body(i)` once for each i in [0, count), on any thread, in any order. Bodies must write to places of
+/// their own: sums over i are made afterwards, in order, so that the bytes do not depend on the schedule.
+/// An exception of a body ends the loop and is rethrown.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+
+/// While it lives, at most `threads` threads work in parallel_for (0: as many as the machine has).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The number of threads that parallel_for may use now.
+int thread_count();
+
+}  // namespace petzval

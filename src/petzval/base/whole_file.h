@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that appear whole or not at all.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace petzval {
+
+/// An output file written aside and renamed into place:
+///
+///     WholeFile file("out.png");
+///     write_somehow(file.temporary_path());
+///     file.commit();            // now out.png is there, whole
+///
+/// Without commit() nothing is left behind and a previous out.png is untouched.
+class WholeFile {
+ public:
+  /// \throws InputError if the folder does not exist or `path` is itself a folder.
+  explicit WholeFile(std::string path);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  /// Beside the final path, with the same extension, so that writers that look at extensions agree.
+  const std::string& temporary_path() const { return temporary_; }
+  const std::string& path() const { return path_; }
+
+  /// Flushes to disk and renames. \throws Failure when the disk is full or refuses.
+  void commit();
+
+ private:
+  std::string path_, temporary_;
+  bool committed_ = false;
+};
+
+/// Writes `bytes` to `path`, whole or not at all. \throws InputError, Failure as WholeFile.
+void write_whole_file(const std::string& path, std::string_view bytes);
+
+/// Reads a whole file. \throws InputError if it cannot be read or is larger than `max_bytes`.
+std::string read_whole_file(const std::string& path, std::size_t max_bytes = std::size_t{1} << 32);
+
+}  // namespace petzval

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lens + focus + stop + sensor geometry: what all three ways to the sensor are given.
+#pragma once
+
+#include <petzval/lens/lens.h>
+
+#include <optional>
+
+namespace petzval {
+
+/// A lens as it is used: where the object is, where the sensor is, how far the stop is closed. Refocusing and
+/// stopping down are written here and nowhere else.
+class Camera {
+ public:
+  /// The lens as its prescription has it.
+  explicit Camera(Lens lens);
+
+  /// The lens with object distance, last thickness and aperture as this camera uses them; everything downstream
+  /// traces this one.
+  const Lens& lens() const { return lens_; }
+
+  /// Focuses on an object at this distance from the sensor plane (absent: infinity) by moving the sensor. The
+  /// designer's offset from the paraxial focus is kept: at the prescription's own object distance nothing moves.
+  /// \throws InputError if the object would stand inside the lens or has no real image behind it.
+  void focus_at_m(std::optional<double> distance_from_sensor_m);
+  /// Keeps the sensor where the prescription has it, and puts the object at this distance from the sensor.
+  void place_object_at_m(std::optional<double> distance_from_sensor_m);
+  /// Keeps the prescription's object and sensor.
+  void focus_as_designed();
+  /// From the object to the sensor plane [m]; absent: infinity.
+  std::optional<double> object_distance_from_sensor_m() const;
+
+  /// Stops down to a paraxial f-number at infinity. \throws InputError if it is below what the lens opens to.
+  void set_f_number(double f_number);
+
+ private:
+  Lens prescription_, lens_;
+};
+
+}  // namespace petzval

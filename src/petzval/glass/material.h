@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What fills the gap behind a surface, and its refractive index.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace petzval {
+
+/// A glass of a catalogue: a dispersion formula with its coefficients, valid range and, where known, absorption.
+/// Immutable and shared. Indices are relative to air at 20 °C and 1 atm, as catalogues give them.
+struct Glass {
+  std::string catalogue;  ///< upper case: "SCHOTT"
+  std::string name;       ///< as the maker writes it: "N-BK7"
+  /// Number of the refractiveindex.info formula (1, 2: Sellmeier; 3: power series; 5: Cauchy), λ in µm;
+  /// 0: a table of n in `n_table`, interpolated.
+  int formula = 0;
+  std::vector<double> coefficients;
+  double shortest_nm = 0, longest_nm = 0;              ///< where the index is valid
+  std::vector<std::pair<double, double>> n_table;      ///< (wavelength [nm], n)
+  std::vector<std::pair<double, double>> k_table;      ///< (wavelength [nm], extinction coefficient)
+
+  /// \throws InputError outside the valid range, naming glass and range.
+  double index(double wavelength_nm) const;
+  /// Extinction coefficient k, linear in the table and held at its ends; 0 without a table.
+  double extinction(double wavelength_nm) const;
+  std::string full_name() const { return catalogue + ":" + name; }
+};
+
+/// A material of a lens: air, a catalogue glass, a model glass (nd, Vd), a constant index, or a table of indices.
+/// A value type; copies are cheap.
+class Material {
+ public:
+  struct Air {};
+  /// nd and Vd on the line of normal partial dispersion (see material.cpp for the formula and its source).
+  struct Model {
+    double nd, vd;
+  };
+  struct Constant {
+    double index;
+  };
+  /// (wavelength [nm], n), increasing; exact at the entries, monotone cubic in between, an error outside.
+  using Table = std::vector<std::pair<double, double>>;
+  using Kind = std::variant<Air, std::shared_ptr<const Glass>, Model, Constant, Table>;
+
+  Material() = default;  ///< air
+  /// \throws InputError for indices below 1, non-finite numbers, vd ≤ 0, unsorted or empty tables.
+  explicit Material(Kind kind);
+
+  const Kind& kind() const { return kind_; }
+  bool is_air() const { return std::holds_alternative<Air>(kind_); }
+  /// Refractive index relative to air. \throws InputError where it is not known.
+  double index(double wavelength_nm) const;
+  /// "air", "SCHOTT:N-BK7", "nd 1.6 Vd 60", "n 1.67", "table": for people and reports.
+  std::string description() const;
+
+ private:
+  Kind kind_ = Air{};
+};
+
+}  // namespace petzval

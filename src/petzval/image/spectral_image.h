@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The waist of the program: everything above makes a SpectralImage, everything below reads it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// What a pixel value stands for: the irradiance at the pixel's centre, or its mean over a square of one pitch.
+enum class PixelAperture { point, box };
+
+/// Spectral irradiance on the sensor [W·m⁻²·nm⁻¹]: `bands` planes of `rows` × `columns`, upright (the optical
+/// inversion is undone), row 0 on top, pixel centres at half-integers. With image-space x', y' of the real
+/// (inverted) image and pitch p: column = columns/2 − x'/p, row = rows/2 + y'/p.
+class SpectralImage {
+ public:
+  SpectralImage() = default;
+  /// All zero. \throws InputError on sizes below 1, wavelengths that do not increase, a pitch that is not
+  /// positive, or more than `max_values` values.
+  SpectralImage(int columns, int rows, std::vector<double> wavelengths_nm, double pitch_um,
+                PixelAperture aperture = PixelAperture::box);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  int bands() const { return static_cast<int>(wavelengths_nm_.size()); }
+  const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
+  double pitch_um() const { return pitch_um_; }
+  PixelAperture pixel_aperture() const { return aperture_; }
+  std::size_t band_size() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+
+  /// One plane, row-major, [W·m⁻²·nm⁻¹].
+  std::span<float> band(int index);
+  std::span<const float> band(int index) const;
+  float& at(int band_index, int row, int column);
+  float at(int band_index, int row, int column) const;
+  /// All planes, one after the other.
+  std::span<const float> values() const { return values_; }
+
+  /// How the picture came about, in one line; stored in files.
+  std::string provenance;
+
+ private:
+  int columns_ = 0, rows_ = 0;
+  std::vector<double> wavelengths_nm_;
+  double pitch_um_ = 0;
+  PixelAperture aperture_ = PixelAperture::box;
+  std::vector<float> values_;
+};
+
+}  // namespace petzval

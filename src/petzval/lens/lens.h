@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A lens prescription: surfaces front to back, and what the lens is used for.
+#pragma once
+
+#include <petzval/glass/material.h>
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// One rotationally symmetric surface and the gap behind it. Sag
+/// z(r) = c r² / (1 + √(1 − (1 + k) c² r²)) + Σ a_p r^p, positive towards the image.
+struct Surface {
+  double curvature_per_mm = 0;  ///< c = 1/radius, > 0 when the centre lies on the +z side; 0 = flat
+  double thickness_mm = 0;      ///< to the next vertex; the last one reaches the image surface
+  Material material;            ///< fills the gap behind the surface
+  bool stop = false;
+  std::optional<double> semi_diameter_mm;  ///< clear semi-aperture; absent = unbounded
+  double conic = 0;                        ///< k
+  std::map<int, double> asphere;           ///< power p of r → a_p [mm^(1−p)]
+
+  bool is_flat() const { return curvature_per_mm == 0 && asphere.empty(); }
+};
+
+/// How wide the lens is open.
+struct Aperture {
+  enum class Kind {
+    f_number,                   ///< paraxial, for an object at infinity
+    working_f_number,           ///< paraxial, 1/(2 n' |u'|), at the object distance
+    image_na,                   ///< paraxial, n' |u'| at the object distance
+    object_na,                  ///< n sin U of the paraxial marginal ray from a finite object
+    entrance_pupil_diameter_mm,
+    stop_semi_diameter_mm       ///< real height at the stop
+  };
+  Kind kind = Kind::f_number;
+  double value = 0;
+};
+
+/// The field points a designer cares about.
+struct Fields {
+  enum class Kind { angle_deg, object_height_mm, paraxial_image_height_mm, real_image_height_mm };
+  Kind kind = Kind::angle_deg;
+  std::vector<double> values{0.0};
+};
+
+struct Lens {
+  std::string name;
+  std::string source;
+  std::optional<double> object_distance_mm;  ///< from the object to vertex 1; absent = infinity
+  Aperture aperture;
+  Fields fields;
+  std::vector<double> wavelengths_nm{587.5618};
+  double reference_wavelength_nm = 587.5618;
+  std::vector<Surface> surfaces;
+
+  /// Index of the stop surface. A valid lens has exactly one.
+  std::size_t stop_index() const;
+  /// From vertex 1 to the image surface.
+  double total_track_mm() const;
+  /// \throws InputError saying which entry is wrong and what would be right: no surfaces, no stop or two,
+  /// non-finite numbers, asphere powers below 1, negative semi-diameters, non-positive aperture or wavelengths…
+  void validate() const;
+};
+
+}  // namespace petzval

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sequential ray trace through a lens at one wavelength.
+#pragma once
+
+#include <petzval/lens/lens.h>
+#include <petzval/trace/ray_batch.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace petzval {
+
+/// One ray, for code that walks a single ray. Direction is a unit vector.
+struct Ray {
+  std::array<double, 3> point_mm{};
+  std::array<double, 3> direction{0, 0, 1};
+  double opl_mm = 0;
+  RayStatus status = RayStatus::ok;
+  int failed_at = -1;
+};
+
+/// Where a ray met a surface, in lens space.
+struct Intersection {
+  std::array<double, 3> point_mm{};
+  std::array<double, 3> direction_after{};
+  std::array<double, 3> normal{};  ///< unit, on the +z side at the vertex
+};
+
+/// A lens made ready for tracing at one wavelength. Immutable; cheap to build.
+///
+/// Forward: a ray from anywhere in object space is refracted at all surfaces in turn and carried to the image
+/// surface (a plane). Backward: a ray from image space is refracted at all surfaces in reverse order and left
+/// just in front of surface 0. Optical path is signed, so surfaces that cross beyond their rims are no harm.
+/// Method: closed form for spheres and conics, Newton to 1e-12 mm for aspheres; refraction by vector Snell
+/// (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
+class Tracer {
+ public:
+  enum class Clip { apertures, stop_only, none };
+
+  /// \throws InputError if an index is not known at the wavelength.
+  Tracer(const Lens& lens, double wavelength_nm);
+
+  double wavelength_nm() const { return wavelength_nm_; }
+  std::size_t surface_count() const { return surfaces_.size(); }
+  std::size_t stop_index() const { return stop_index_; }
+  double object_index() const { return 1.0; }
+  double image_index() const { return surfaces_.back().index_after; }
+  double image_z_mm() const { return image_z_mm_; }
+  double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
+  /// Radius that the stop clips at [mm]; see stop_radius_mm() in pupil.h for how it is found.
+  double stop_radius_mm() const { return stop_radius_mm_; }
+  void set_stop_radius_mm(double radius) { stop_radius_mm_ = radius; }
+
+  /// Traces a batch in place, from object space to the image surface.
+  void trace(RayBatch& rays, Clip clip = Clip::apertures) const;
+  void trace_backward(RayBatch& rays, Clip clip = Clip::apertures) const;
+
+  /// One ray; `path`, if given, receives an Intersection for each surface passed (and the image point last,
+  /// forward only).
+  Ray trace(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
+  Ray trace_backward(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
+
+  /// As trace(), never clipped, and says by how much the ray clears the apertures: the largest over all clipping
+  /// surfaces of (r/r_clear)² − 1: negative inside, positive outside, +infinity if the ray was missed or totally
+  /// reflected; and where it crossed the stop surface.
+  struct Clearance {
+    double worst = 0;
+    int surface = -1;  ///< which one clips first
+    double stop_x_mm = 0, stop_y_mm = 0;
+    bool reached_stop = false;
+    Ray ray;
+  };
+  Clearance clearance(Ray ray, bool backward, Clip clip = Clip::apertures) const;
+
+  /// What one surface needs to be traced; public for the kernels in tracer_kernel.h.
+  struct PreparedSurface {
+    double curvature, conic, vertex_z_mm, index_before, index_after;
+    double clear_radius_sq;            ///< infinity when unbounded
+    std::vector<double> polynomial;    ///< [p] coefficient of r^p; empty for spheres and conics
+  };
+  const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
+
+ private:
+  double wavelength_nm_ = 0;
+  std::vector<PreparedSurface> surfaces_;
+  std::size_t stop_index_ = 0;
+  double image_z_mm_ = 0, stop_radius_mm_ = 0;
+};
+
+}  // namespace petzval
