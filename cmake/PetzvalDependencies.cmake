@@ -1,26 +1,39 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Every library that Petzval uses, as an imported target. All come from Debian 12 packages.
-find_package(Threads REQUIRED)
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(TBB CONFIG REQUIRED COMPONENTS tbb)
-find_package(Boost 1.74 REQUIRED)
-find_package(OpenEXR 3 CONFIG REQUIRED)
-find_package(PNG REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(fmt REQUIRED)
+# Read twice: by the project itself, which requires them all, and by the installed petzvalConfig.cmake, because a
+# static library hands its own libraries on to whoever links it. Both have set CMAKE_FIND_PACKAGE_NAME to petzval.
+include(CMakeFindDependencyMacro)
 
-# Libraries without a CMake file of their own.
-function(petzval_import name header library)
-  cmake_parse_arguments(ARG "" "" "PATHS" ${ARGN})
-  string(REPLACE "::" "_" id ${name})
-  find_path(${id}_INCLUDE ${header} PATHS ${ARG_PATHS} REQUIRED)
-  find_library(${id}_LIBRARY ${library} REQUIRED)
-  mark_as_advanced(${id}_INCLUDE ${id}_LIBRARY)
-  add_library(${name} UNKNOWN IMPORTED GLOBAL)
-  set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${${id}_LIBRARY}
-    INTERFACE_INCLUDE_DIRECTORIES ${${id}_INCLUDE})
-endfunction()
+# petzval_import(NAME HEADER LIBRARY [PATHS ...]): a library without a CMake file of its own.
+macro(petzval_import name header library)
+  cmake_parse_arguments(petzval_import "" "" "PATHS" ${ARGN})
+  string(REPLACE "::" "_" petzval_id ${name})
+  find_path(${petzval_id}_INCLUDE ${header} PATHS ${petzval_import_PATHS})
+  find_library(${petzval_id}_LIBRARY ${library})
+  mark_as_advanced(${petzval_id}_INCLUDE ${petzval_id}_LIBRARY)
+  if(NOT ${petzval_id}_INCLUDE OR NOT ${petzval_id}_LIBRARY)
+    set(petzval_FOUND FALSE)
+    set(petzval_NOT_FOUND_MESSAGE "${header} or the library ${library} is missing")
+    if(petzval_FIND_REQUIRED)
+      message(FATAL_ERROR "${petzval_NOT_FOUND_MESSAGE}; tools/install_packages.sh installs what Petzval needs")
+    endif()
+    return()
+  endif()
+  if(NOT TARGET ${name})
+    add_library(${name} UNKNOWN IMPORTED GLOBAL)
+    set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${${petzval_id}_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${${petzval_id}_INCLUDE})
+  endif()
+endmacro()
 
+find_dependency(Threads)
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(TBB CONFIG COMPONENTS tbb)
+find_dependency(Boost 1.74)
+find_dependency(OpenEXR 3 CONFIG)
+find_dependency(PNG)
+find_dependency(nlohmann_json)
+find_dependency(fmt)
 petzval_import(petzval_fftw::double fftw3.h fftw3)
 petzval_import(petzval_fftw::float fftw3.h fftw3f)
 petzval_import(petzval_matio::matio matio.h matio)

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian 12 packages that Petzval needs; those that are there already are left alone, and when all
+# are, apt is not called. Usage: tools/install_packages.sh [--with-tests]
+set -euo pipefail
+
+packages=(
+  # compiler and build
+  g++ cmake ninja-build
+  # libraries
+  libboost-dev libcli11-dev libeigen3-dev libfftw3-dev libfmt-dev libhdf5-dev libmatio-dev libopenexr-dev
+  libpng-dev libtbb-dev nlohmann-json3-dev
+)
+test_packages=(libbenchmark-dev libgtest-dev python3 python3-h5py python3-numpy)
+
+case "${1-}" in
+  '') ;;
+  --with-tests) packages+=("${test_packages[@]}") ;;
+  *)
+    echo "usage: $0 [--with-tests]" >&2
+    exit 2
+    ;;
+esac
+
+is_installed() {
+  [[ $(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
+}
+
+if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+  echo "This is no Debian system, so nothing is installed; Petzval needs what Debian calls:" >&2
+  printf '  %s\n' "${packages[@]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then
+  exit 0
+fi
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null; then
+    echo "These packages are missing, and only root or a user with sudo can install them:" >&2
+    printf '  %s\n' "${missing[@]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+echo "Installing ${missing[*]}"
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get --quiet)
+"${apt[@]}" update
+"${apt[@]}" install --yes --no-install-recommends "${missing[@]}"
