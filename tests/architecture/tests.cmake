@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Rules that the compiler does not know: directions of includes, licence lines, nothing left unfinished.
+set(here ${CMAKE_CURRENT_LIST_DIR})
+add_test(NAME architecture.include_directions
+  COMMAND Python3::Interpreter ${here}/include_directions.py ${PROJECT_SOURCE_DIR}/src/petzval)
+add_test(NAME architecture.source_rules COMMAND Python3::Interpreter ${here}/source_rules.py ${PROJECT_SOURCE_DIR})
+foreach(checker include_directions source_rules)
+  add_test(NAME architecture.${checker}_finds_faults COMMAND Python3::Interpreter ${here}/test_${checker}.py)
+  set_tests_properties(architecture.${checker} architecture.${checker}_finds_faults PROPERTIES
+    ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+endforeach()

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# cmake -D BUILD=… -D SOURCE=… -D SCRATCH=… -D COMPILER=… -D FLAGS=… -D CONFIGURATION=… -P build_and_run.cmake
+# Installs the build into SCRATCH, moves the installed tree, and then uses it as a stranger would: a project that
+# calls find_package, and the program, which must find its data beside itself.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/first)
+file(RENAME ${SCRATCH}/first ${SCRATCH}/moved)
+
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -D CMAKE_PREFIX_PATH=${SCRATCH}/moved
+    -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" -D CMAKE_BUILD_TYPE=${CONFIGURATION})
+run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run(${SCRATCH}/build/consumer)
+
+if(EXISTS ${SCRATCH}/moved/bin/petzval)
+  # A lens that is nowhere but in the moved tree: found there or not at all.
+  unset(ENV{PETZVAL_DATA})
+  set(lenses ${SCRATCH}/moved/share/petzval/lenses)
+  file(COPY_FILE ${lenses}/edmund-54852.json ${lenses}/only-installed.json)
+  run(${SCRATCH}/moved/bin/petzval lens info only-installed)
+endif()
+file(REMOVE_RECURSE ${SCRATCH})
