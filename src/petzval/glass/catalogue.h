@@ -22,12 +22,15 @@ class GlassCatalogue {
   std::size_t size() const;
   /// "CATALOGUE:NAME" of every glass, sorted.
   std::vector<std::string> full_names() const;
+  /// "CDGM", "HIKARI", … of every glass, sorted.
+  std::vector<std::string> catalogues() const;
 
-  /// Finds "CATALOGUE:NAME" or a bare "NAME" (searched in `preferred` catalogues first, then in all; a bare name
-  /// that several catalogues hold with different coefficients and no preference decides is an error that lists
-  /// them). Case does not matter, nothing else is forgiven.
-  /// \throws InputError for an unknown glass, naming the nearest known ones.
-  std::shared_ptr<const Glass> find(const std::string& name, const std::vector<std::string>& preferred = {}) const;
+  /// Finds "CATALOGUE:NAME" or a bare "NAME" (searched in `preferred` catalogues first, then in all; a bare
+  /// name that several catalogues hold with different coefficients and no preference decides is an error that
+  /// lists them). Case does not matter, nothing else is forgiven. \throws InputError for an unknown glass,
+  /// naming the nearest known ones.
+  std::shared_ptr<const Glass> find(const std::string& name,
+                                    const std::vector<std::string>& preferred = {}) const;
   bool contains(const std::string& full_name) const;
 
  private:

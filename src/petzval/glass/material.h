@@ -2,7 +2,10 @@
 // What fills the gap behind a surface, and its refractive index.
 #pragma once
 
+#include <petzval/glass/dispersion.h>
+
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -10,8 +13,8 @@
 
 namespace petzval {
 
-/// A glass of a catalogue: a dispersion formula with its coefficients, valid range and, where known, absorption.
-/// Immutable and shared. Indices are relative to air at 20 °C and 1 atm, as catalogues give them.
+/// A glass of a catalogue: a dispersion formula with its coefficients, valid range and, where known,
+/// absorption. Immutable and shared. Indices are relative to air at 20 °C and 1 atm, as catalogues give them.
 struct Glass {
   std::string catalogue;  ///< upper case: "SCHOTT"
   std::string name;       ///< as the maker writes it: "N-BK7"
@@ -19,23 +22,30 @@ struct Glass {
   /// 0: a table of n in `n_table`, interpolated.
   int formula = 0;
   std::vector<double> coefficients;
-  double shortest_nm = 0, longest_nm = 0;              ///< where the index is valid
-  std::vector<std::pair<double, double>> n_table;      ///< (wavelength [nm], n)
-  std::vector<std::pair<double, double>> k_table;      ///< (wavelength [nm], extinction coefficient)
+  double shortest_nm = 0, longest_nm = 0;          ///< where the index is valid
+  std::vector<std::pair<double, double>> n_table;  ///< (wavelength [nm], n)
+  std::vector<std::pair<double, double>> k_table;  ///< (wavelength [nm], extinction coefficient)
+  std::optional<double> stated_nd, stated_vd;      ///< as the maker prints them
+  std::string status;                              ///< "preferred", "standard", "special" or unknown: ""
 
-  /// \throws InputError outside the valid range, naming glass and range.
+  /// By the formula (dispersion.h) or the table. \throws InputError outside the valid range, naming glass and
+  /// range.
   double index(double wavelength_nm) const;
   /// Extinction coefficient k, linear in the table and held at its ends; 0 without a table.
   double extinction(double wavelength_nm) const;
+  /// Share of the light that 10 mm of the glass let through, without reflections: exp(−4πk·10 mm/λ).
+  double transmittance_10mm(double wavelength_nm) const;
+  /// nd and Vd by the formula; absent where the valid range does not hold the lines F, d and C.
+  std::optional<AbbeNumbers> abbe() const;
   std::string full_name() const { return catalogue + ":" + name; }
 };
 
-/// A material of a lens: air, a catalogue glass, a model glass (nd, Vd), a constant index, or a table of indices.
-/// A value type; copies are cheap.
+/// A material of a lens: air, a catalogue glass, a model glass (nd, Vd), a constant index, or a table of
+/// indices. A value type; copies are cheap.
 class Material {
  public:
   struct Air {};
-  /// nd and Vd on the line of normal partial dispersion (see material.cpp for the formula and its source).
+  /// nd and Vd on the line of normal partial dispersion (model_glass_index in dispersion.h).
   struct Model {
     double nd, vd;
   };
