@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program as a whole: version, help, wrong usage."""
+
+import subprocess
+import unittest
+
+from petzval_cli import PROGRAM, ProgramTest, leaf_commands, main_commands
+
+
+class Program(ProgramTest):
+    def test_version(self):
+        self.assertRegex(self.assert_succeeds("--version"), r"^petzval \d+\.\d+\.\d+\n$")
+
+    def test_help_names_the_commands(self):
+        commands = main_commands()
+        self.assertIn("lens", commands)
+        for command in commands:
+            self.assertIn(command, self.assert_succeeds("--help"))
+
+    def test_wrong_usage(self):
+        self.assert_refused(words=["subcommand"])
+        self.assert_refused("lenz", words=["lenz"])
+        self.assert_refused("--frobnicate")
+        self.assert_refused("lens")
+        self.assert_refused("lens", "info")
+        self.assert_refused("lens", "info", "edmund-54852", "--frobnicate", words=["--frobnicate"])
+        self.assert_refused("lens", "info", "edmund-54852", "surplus", words=["surplus"])
+
+    def test_wrong_values_of_the_options_of_all_commands(self):
+        for option, value in (("--threads", "-1"), ("--threads", "two"), ("--seed", "1.5"), ("--seed", "-1")):
+            self.assert_refused("lens", "info", "edmund-54852", option, value, words=[option])
+
+    def test_a_full_disk_behind_stdout(self):
+        with open("/dev/full", "w") as full:
+            for arguments in (("lens", "info", "edmund-54852"), ("lens", "info", "edmund-54852", "--json")):
+                done = self.petzval(*arguments, stdout=full)
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertRegex(done.stderr, r"^petzval: error: [^\n]*\n$")
+
+    def test_a_reader_that_goes_away(self):
+        """`petzval lens list | head -1` must not end in a backtrace or a report of an error."""
+        done = subprocess.run(["bash", "-c", '"$0" lens list | true; exit ${PIPESTATUS[0]}', PROGRAM],
+                              capture_output=True, text=True)
+        self.assertNotIn("terminate", done.stderr)
+        self.assertIn(done.returncode, (0, 1, 141), done.stderr)
+
+
+class Help(ProgramTest):
+    def test_every_command_explains_itself_and_shows_an_example(self):
+        for command in leaf_commands():
+            with self.subTest(command=" ".join(command)):
+                text = self.assert_succeeds(*command, "--help")
+                self.assertIn("Example:\n  petzval " + " ".join(command), text)
+
+    def test_options_are_in_kebab_case(self):
+        for command in leaf_commands():
+            text = self.assert_succeeds(*command, "--help")
+            with self.subTest(command=" ".join(command)):
+                self.assertNotRegex(text, r"\s--\w*[A-Z_]\w*")
+
+
+if __name__ == "__main__":
+    unittest.main()
