@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/report/lens_drawing.h>
+#include <petzval/report/surface_profile.h>
+#include <petzval/report/ticks.h>
+#include <petzval/report/xml.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+std::vector<double> vertices_z_mm(const Lens& lens) {
+  std::vector<double> z{0};
+  for (const Surface& surface : lens.surfaces) z.push_back(z.back() + surface.thickness_mm);
+  return z;  // the last one is the image surface
+}
+
+/// The largest height at which a ray meets a surface, 0 if none does. Rays usually have a point on each
+/// surface; the crossings of straight stretches are asked only when no point is on it.
+double ray_height_mm(const Surface& surface, double vertex_z_mm, const std::vector<DrawnRay>& rays) {
+  constexpr double on_surface_mm = 1e-6;
+  double on_it = 0, crossing = 0;
+  for (const DrawnRay& ray : rays) {
+    double before = std::nan("");
+    for (std::size_t i = 0; i < ray.zy_mm.size(); ++i) {
+      const auto [z, y] = ray.zy_mm[i];
+      const double ahead = z - vertex_z_mm - profile_sag_mm(surface, y);
+      if (std::abs(ahead) < on_surface_mm) on_it = std::max(on_it, std::abs(y));
+      if (before * ahead < 0) {
+        const double last_y = ray.zy_mm[i - 1][1];
+        crossing = std::max(crossing, std::abs(last_y + (y - last_y) * before / (before - ahead)));
+      }
+      before = ahead;
+    }
+  }
+  return on_it > 0 ? on_it : crossing;
+}
+
+/// Heights still at 0 take that of the nearest surface that has one.
+void fill_from_neighbours(std::vector<double>& heights, double fallback) {
+  const std::vector<double> known = heights;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    for (std::size_t step = 1; heights[i] == 0 && step < heights.size(); ++step) {
+      if (i >= step) heights[i] = known[i - step];
+      if (i + step < known.size()) heights[i] = std::max(heights[i], known[i + step]);
+    }
+    if (heights[i] == 0) heights[i] = fallback;
+  }
+}
+
+struct View {
+  double z_left, y_half, px_per_mm;    ///< what is seen [mm], and the scale
+  double width_px, height_px, top_px;  ///< of the window on the lens
+  double x(double z_mm) const { return (z_mm - z_left) * px_per_mm; }
+  double y(double y_mm) const { return (y_half - y_mm) * px_per_mm; }
+};
+
+std::string path_of(const View& view, const std::vector<PlanePoint>& points, bool closed) {
+  std::string path;
+  bool pen_down = false;
+  for (const auto& [z, y] : points) {
+    const bool finite = std::isfinite(z) && std::isfinite(y);
+    if (finite)
+      path += fmt::format("{}{} {}", pen_down ? 'L' : 'M', svg_number(view.x(z)), svg_number(view.y(y)));
+    pen_down = finite;
+  }
+  return closed ? path + "Z" : path;
+}
+
+/// What is drawn, in mm; all sizes finite.
+struct Scene {
+  const Lens& lens;
+  const std::vector<DrawnRay>& rays;
+  std::vector<double> vertex_z, semi_diameter;
+  std::vector<std::vector<PlanePoint>> profiles;  ///< of the surfaces, then of the image
+  double image_half_height = 0;
+};
+
+double default_image_half_height_mm(const std::vector<DrawnRay>& rays, double image_z_mm, double fallback) {
+  double height = 0;
+  for (const DrawnRay& ray : rays) {
+    if (ray.zy_mm.empty()) continue;
+    const auto [z, y] = ray.zy_mm.back();
+    if (std::abs(z - image_z_mm) < 1e-6 * (1 + std::abs(image_z_mm)) && std::isfinite(y))
+      height = std::max(height, std::abs(y));
+  }
+  return height > 0 ? height : fallback;
+}
+
+Scene make_scene(const Lens& lens, const std::vector<DrawnRay>& rays, const LensDrawingOptions& options) {
+  Scene scene{lens, rays, vertices_z_mm(lens), drawn_semi_diameters_mm(lens, rays, options), {}, 0};
+  const double largest = *std::max_element(scene.semi_diameter.begin(), scene.semi_diameter.end());
+  scene.image_half_height = options.image_half_height_mm.value_or(
+      default_image_half_height_mm(rays, scene.vertex_z.back(), 0.5 * largest));
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    scene.profiles.push_back(profile(lens.surfaces[i], scene.vertex_z[i], scene.semi_diameter[i]));
+  scene.profiles.push_back(profile(Surface{}, scene.vertex_z.back(), scene.image_half_height));
+  return scene;
+}
+
+View make_view(const Scene& scene, const LensDrawingOptions& options, double top_px) {
+  constexpr double smallest_mm = 1e-9, side_px = 24;
+  double z_front = scene.vertex_z.back(), z_back = scene.vertex_z.back(), y_most = scene.image_half_height;
+  for (const auto& points : scene.profiles) {
+    for (const auto& [z, y] : points) {
+      if (!std::isfinite(z)) continue;
+      z_front = std::min(z_front, z);
+      z_back = std::max(z_back, z);
+      y_most = std::max(y_most, y);
+    }
+  }
+  const double length = std::max(z_back - z_front, smallest_mm);
+  View view{};
+  view.top_px = top_px;
+  view.y_half = std::max(1.12 * y_most, smallest_mm);
+  const double lead = std::max(options.lead_mm.value_or(0.2 * length), 0.0);
+  const double seen = length + lead;
+  view.px_per_mm = std::min((options.width_px - side_px) / seen, options.tallest_px / (2 * view.y_half));
+  view.z_left = z_front - lead;
+  view.width_px = seen * view.px_per_mm + side_px;
+  view.height_px = 2 * view.y_half * view.px_per_mm;
+  return view;
+}
+
+void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
+  const auto& surfaces = scene.lens.surfaces;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!surfaces[i].material.is_air()) {
+      const auto outline = element_outline(scene.profiles[i], scene.profiles[i + 1]);
+      xml.leaf("path", {{"class", "pz-glass"},
+                        {"d", path_of(view, outline, true)},
+                        {"stroke-width", 1.2},
+                        {"stroke-linejoin", "round"}});
+    }
+    const bool dummy =
+        surfaces[i].material.is_air() && (i == 0 || surfaces[i - 1].material.is_air()) && !surfaces[i].stop;
+    if (dummy)
+      xml.leaf("path", {{"class", "pz-frame"},
+                        {"d", path_of(view, scene.profiles[i], false)},
+                        {"stroke-width", 0.8},
+                        {"stroke-dasharray", "3 3"}});
+  }
+}
+
+void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
+  constexpr double foot_px = 5;
+  for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
+    if (!scene.lens.surfaces[i].stop) continue;
+    const auto [z, y] = scene.profiles[i].back();
+    const double x = view.x(z), inner = y, outer = std::max(1.25 * y, 0.9 * view.y_half);
+    for (const double side : {1.0, -1.0})
+      xml.leaf("path", {{"class", "pz-line"},
+                        {"stroke-width", 2.4},
+                        {"d", fmt::format("M{0} {2}V{3}M{1} {3}h{4}", svg_number(x), svg_number(x - foot_px),
+                                          svg_number(view.y(side * outer)), svg_number(view.y(side * inner)),
+                                          svg_number(2 * foot_px))}});
+  }
+}
+
+void draw_rays(XmlWriter& xml, const Scene& scene, const View& view) {
+  for (const DrawnRay& ray : scene.rays)
+    xml.leaf("path", {{"class", ray.colour.empty() ? "pz-line" : ""},
+                      {"d", path_of(view, ray.zy_mm, false)},
+                      {"fill", "none"},
+                      {"stroke", ray.colour},
+                      {"stroke-width", 1.0},
+                      {"stroke-linejoin", "round"},
+                      {"stroke-opacity", "0.9"}});
+}
+
+void draw_axis_and_image(XmlWriter& xml, const Scene& scene, const View& view) {
+  xml.leaf("line", {{"class", "pz-frame"},
+                    {"x1", 0.0},
+                    {"y1", view.y(0)},
+                    {"x2", view.width_px},
+                    {"y2", view.y(0)},
+                    {"stroke-width", 0.8},
+                    {"stroke-dasharray", "12 3 2 3"}});
+  xml.leaf("path",
+           {{"class", "pz-line"}, {"d", path_of(view, scene.profiles.back(), false)}, {"stroke-width", 2.2}});
+}
+
+/// Numbers above the surfaces, in as many rows as they need not to touch.
+void draw_surface_numbers(XmlWriter& xml, const Scene& scene, const View& view, int rows) {
+  constexpr double row_px = 14, digit_px = 7;
+  std::vector<double> row_ends(static_cast<std::size_t>(rows), -1e9);
+  for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
+    const auto [z, y] = scene.profiles[i].back();
+    const std::string number = std::to_string(i);
+    const double x = view.x(z), half = digit_px * static_cast<double>(number.size()) / 2;
+    std::size_t row = 0;
+    while (row + 1 < row_ends.size() && x - half < row_ends[row]) ++row;
+    row_ends[row] = std::max(row_ends[row], x + half + 3);
+    const double text_y = view.top_px - 6 - row_px * static_cast<double>(row);
+    xml.leaf(
+        "line",
+        {{"class", "pz-grid"}, {"x1", x}, {"y1", text_y + 3}, {"x2", x}, {"y2", view.top_px + view.y(y)}});
+    xml.text("text",
+             {{"class", "pz-soft"}, {"x", x}, {"y", text_y}, {"text-anchor", "middle"}, {"font-size", 11.0}},
+             number);
+  }
+}
+
+void draw_scale_bar(XmlWriter& xml, const View& view) {
+  const double length = nice_length(view.width_px / view.px_per_mm / 6), length_px = length * view.px_per_mm;
+  const double y = view.top_px + view.height_px + 16;
+  xml.leaf("path",
+           {{"class", "pz-line"},
+            {"stroke-width", 1.4},
+            {"d", fmt::format("M12 {0}v6m0 -3h{1}m0 -3v6", svg_number(y - 3), svg_number(length_px))}});
+  xml.text("text", {{"class", "pz-ink"}, {"x", 12 + length_px + 8}, {"y", y + 4}},
+           short_number(length) + " mm");
+}
+
+void draw_title_and_legend(XmlWriter& xml, const LensDrawingOptions& options) {
+  if (!options.title.empty())
+    xml.text("text",
+             {{"class", "pz-ink"}, {"x", 12.0}, {"y", 24.0}, {"font-size", 15.0}, {"font-weight", "600"}},
+             options.title);
+  double x = 12;
+  const double y = options.title.empty() ? 18 : 44;
+  for (const LegendLabel& label : options.legend) {
+    xml.leaf("line", {{"x1", x},
+                      {"y1", y - 4},
+                      {"x2", x + 18},
+                      {"y2", y - 4},
+                      {"stroke", label.colour},
+                      {"stroke-width", 2.0}});
+    xml.text("text", {{"class", "pz-ink"}, {"x", x + 24}, {"y", y}}, label.text);
+    x += 24 + 6.7 * static_cast<double>(character_count(label.text)) + 18;
+  }
+}
+
+}  // namespace
+
+std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<DrawnRay>& rays,
+                                            const LensDrawingOptions& options) {
+  constexpr double margin = 1.04, just_inside_rim = 0.9999;
+  const std::vector<double> z = vertices_z_mm(lens);
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const Surface& surface = lens.surfaces[i];
+    const bool asked = i < options.semi_diameters_mm.size() && options.semi_diameters_mm[i] > 0;
+    double height = surface.semi_diameter_mm.value_or(asked ? options.semi_diameters_mm[i] : 0);
+    if (height <= 0) height = ray_height_mm(surface, z[i], rays) * (surface.stop ? 1 : margin);
+    heights.push_back(std::isfinite(height) ? height : 0);
+  }
+  fill_from_neighbours(heights, std::max(std::abs(z.back()) / 6, 1e-9));
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = std::min(heights[i], just_inside_rim * profile_rim_mm(lens.surfaces[i]));
+  return heights;
+}
+
+std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
+                      const LensDrawingOptions& options) {
+  if (lens.surfaces.empty()) throw InputError("a lens without surfaces cannot be drawn");
+  constexpr int number_rows = 3;
+  constexpr double scale_bar_px = 34;
+  double top_px = 8 + (options.title.empty() ? 0 : 24) + (options.legend.empty() ? 0 : 20);
+  if (options.surface_numbers) top_px += 14 * number_rows + 4;
+  const Scene scene = make_scene(lens, rays, options);
+  const View view = make_view(scene, options, top_px);
+
+  XmlWriter xml;
+  open_svg(xml, view.width_px, top_px + view.height_px + scale_bar_px,
+           "Layout of " + (lens.name.empty() ? "a lens" : lens.name));
+  draw_title_and_legend(xml, options);
+  if (options.surface_numbers) draw_surface_numbers(xml, scene, view, number_rows);
+  xml.open("svg",
+           {{"y", top_px}, {"width", view.width_px}, {"height", view.height_px}, {"overflow", "hidden"}});
+  draw_axis_and_image(xml, scene, view);
+  draw_elements(xml, scene, view);
+  draw_rays(xml, scene, view);
+  draw_stop(xml, scene, view);
+  xml.close();
+  draw_scale_bar(xml, view);
+  return std::move(xml).finish();
+}
+
+}  // namespace petzval

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces and elements as outlines in the y-z plane; used by lens_drawing.cpp.
+#pragma once
+
+#include <petzval/lens/lens.h>
+
+#include <array>
+#include <vector>
+
+namespace petzval {
+
+using PlanePoint = std::array<double, 2>;  ///< z, y [mm]
+
+/// Sag [mm] at a height y; NaN beyond the rim of the conic.
+double profile_sag_mm(const Surface& surface, double y_mm);
+
+/// The largest height at which the surface can be drawn [mm]: its rim, or infinity.
+double profile_rim_mm(const Surface& surface);
+
+/// The surface from y = −semi_diameter to +semi_diameter.
+std::vector<PlanePoint> profile(const Surface& surface, double vertex_z_mm, double semi_diameter_mm);
+
+/// The closed outline of the glass between two profiles that run upwards. The smaller one is carried on as a
+/// flat annulus to the height of the larger one, and a cylinder joins them there; where that would cross the
+/// other surface, the rims are joined by a cone.
+std::vector<PlanePoint> element_outline(const std::vector<PlanePoint>& front,
+                                        const std::vector<PlanePoint>& back);
+
+}  // namespace petzval
