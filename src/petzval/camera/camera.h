@@ -10,17 +10,28 @@ namespace petzval {
 
 /// A lens as it is used: where the object is, where the sensor is, how far the stop is closed. Refocusing and
 /// stopping down are written here and nowhere else.
+///
+///     Camera camera(read_lens("dgauss-50mm").lens);
+///     camera.set_f_number(4);
+///     camera.focus_at_m(1.5);
+///     Tracer tracer(camera.lens(), 550);
+///
+/// A change of object distance leaves the rest of the lens as it was: an aperture that is stated at the
+/// object (working f-number, numerical aperture) becomes the entrance pupil diameter that it stood for, and
+/// field points stated as object heights keep their angle from the entrance pupil.
 class Camera {
  public:
   /// The lens as its prescription has it.
   explicit Camera(Lens lens);
 
-  /// The lens with object distance, last thickness and aperture as this camera uses them; everything downstream
-  /// traces this one.
+  /// The lens with object distance, last thickness and aperture as this camera uses them; everything
+  /// downstream traces this one.
   const Lens& lens() const { return lens_; }
 
   /// Focuses on an object at this distance from the sensor plane (absent: infinity) by moving the sensor. The
-  /// designer's offset from the paraxial focus is kept: at the prescription's own object distance nothing moves.
+  /// designer's offset from the paraxial focus is kept: at the prescription's own object distance nothing
+  /// moves. Of the two positions of the object that share one distance to the sensor, it takes the one on the
+  /// prescription's side of unit magnification.
   /// \throws InputError if the object would stand inside the lens or has no real image behind it.
   void focus_at_m(std::optional<double> distance_from_sensor_m);
   /// Keeps the sensor where the prescription has it, and puts the object at this distance from the sensor.
@@ -34,7 +45,10 @@ class Camera {
   void set_f_number(double f_number);
 
  private:
+  void use(std::optional<double> object_distance_mm, double last_thickness_mm);
+
   Lens prescription_, lens_;
+  std::optional<double> f_number_;  ///< absent: as the prescription has it
 };
 
 }  // namespace petzval

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/camera/camera.h>
+#include <petzval/lens/first_order.h>
+
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+/// Rounding allowed when an f-number is compared with the one that the lens opens to.
+constexpr double f_number_rounding = 1e-9;
+/// An object this near (relative) to the prescription's own is the prescription's own: nothing moves.
+constexpr double same_object = 1e-12;
+
+/// Paraxial transfer from vertex 1 to the last vertex: y' = a·y + b·u, u' = c·y + d·u. An object s in front
+/// of vertex 1 has its image i = −(a·s + b)/(c·s + d) behind the last vertex.
+struct LensMatrix {
+  double a, b, c, d;
+
+  explicit LensMatrix(const Lens& lens) {
+    const std::size_t last = lens.surfaces.size() - 1;
+    const ParaxialRay parallel = trace_paraxial(lens, 1, 0, lens.reference_wavelength_nm);
+    const ParaxialRay central = trace_paraxial(lens, 0, 1, lens.reference_wavelength_nm);
+    a = parallel.height_mm[last], c = parallel.slope[last];
+    b = central.height_mm[last], d = central.slope[last];
+  }
+  double determinant() const { return a * d - b * c; }
+  double image_mm(std::optional<double> object_mm) const {
+    return object_mm ? -(a * *object_mm + b) / (c * *object_mm + d) : -a / c;
+  }
+  /// Beyond unit magnification the distance from object to image grows with that of the object.
+  bool beyond_unit_magnification(std::optional<double> object_mm) const {
+    if (!object_mm) return true;
+    const double slope = c * *object_mm + d;
+    return slope * slope >= determinant();
+  }
+};
+
+/// "infinity", or the distance in m.
+std::string named_distance(std::optional<double> distance_m) {
+  return distance_m ? fmt::format("{} m", *distance_m) : "infinity";
+}
+
+/// An infinite number means no number; anything else must be a distance.
+std::optional<double> checked_distance(std::optional<double> distance_m) {
+  if (!distance_m || (std::isinf(*distance_m) && *distance_m > 0)) return {};
+  if (!(std::isfinite(*distance_m) && *distance_m > 0))
+    throw InputError(fmt::format(
+        "the object distance is {} m; it is measured from the sensor and must be positive", *distance_m));
+  return distance_m;
+}
+
+[[noreturn]] void throw_too_near(const Lens& lens, double distance_m, double nearest_mm) {
+  throw InputError(
+      fmt::format("lens {} cannot be focused on {} m: its sharp image of any object is at least {:.6g} m "
+                  "from the object",
+                  lens.name, distance_m, nearest_mm / mm_per_m));
+}
+
+/// The object distance s with s + fixed + image_mm(s) = 0, i.e. the root of
+/// c·s² + (d + fixed·c − a)·s + (fixed·d − b) on the wanted side of unit magnification.
+double conjugate_object_mm(const Lens& lens, const LensMatrix& m, double fixed_mm, bool far_side,
+                           double distance_m) {
+  const double half_linear = 0.5 * (m.d + fixed_mm * m.c - m.a), constant = fixed_mm * m.d - m.b;
+  const double discriminant = half_linear * half_linear - m.c * constant;
+  if (discriminant < 0) {
+    const double unit_object_mm = (std::copysign(std::sqrt(m.determinant()), m.c) - m.d) / m.c;
+    const double offset_mm = fixed_mm + distance_m * mm_per_m;
+    throw_too_near(lens, distance_m, unit_object_mm + m.image_mm(unit_object_mm) + offset_mm);
+  }
+  // Both roots without cancellation: one from the larger sum, the other from the product.
+  const double sum = -(half_linear + std::copysign(std::sqrt(discriminant), half_linear));
+  const double one = sum / m.c, other = constant / sum;
+  return far_side ? std::max(one, other) : std::min(one, other);
+}
+
+/// Restates what `moved`, a copy of `lens` with another object distance, says in terms of the object.
+void keep_aperture_and_angles(const Lens& lens, Lens& moved) {
+  const Aperture::Kind kind = moved.aperture.kind;
+  const bool aperture = kind == Aperture::Kind::working_f_number || kind == Aperture::Kind::image_na ||
+                        kind == Aperture::Kind::object_na;
+  const bool heights = moved.fields.kind == Fields::Kind::object_height_mm && lens.object_distance_mm;
+  if (!aperture && !heights) return;
+  const PupilData pupil = first_order(lens).entrance_pupil;
+  if (aperture) moved.aperture = {Aperture::Kind::entrance_pupil_diameter_mm, pupil.diameter_mm};
+  if (!heights || !std::isfinite(pupil.position_mm)) return;
+  for (double& field : moved.fields.values) {
+    const double tangent = field / (*lens.object_distance_mm + pupil.position_mm);
+    field = moved.object_distance_mm ? tangent * (*moved.object_distance_mm + pupil.position_mm)
+                                     : degrees(std::atan(tangent));
+  }
+  if (!moved.object_distance_mm) moved.fields.kind = Fields::Kind::angle_deg;
+}
+
+}  // namespace
+
+Camera::Camera(Lens lens) : prescription_(std::move(lens)) {
+  prescription_.validate();
+  lens_ = prescription_;
+}
+
+/// Rebuilds the lens in use from the prescription.
+void Camera::use(std::optional<double> object_distance_mm, double last_thickness_mm) {
+  Lens lens = prescription_;
+  lens.object_distance_mm = object_distance_mm;
+  lens.surfaces.back().thickness_mm = last_thickness_mm;
+  if (f_number_) lens.aperture = {Aperture::Kind::f_number, *f_number_};
+  if (object_distance_mm != prescription_.object_distance_mm) keep_aperture_and_angles(prescription_, lens);
+  lens_ = std::move(lens);
+}
+
+void Camera::focus_at_m(std::optional<double> distance_from_sensor_m) {
+  const std::optional<double> distance_m = checked_distance(distance_from_sensor_m);
+  const LensMatrix matrix(prescription_);
+  const double design_mm = prescription_.surfaces.back().thickness_mm;
+  const double offset_mm = design_mm - matrix.image_mm(prescription_.object_distance_mm);
+  if (matrix.c == 0 || !std::isfinite(offset_mm))
+    throw InputError(
+        fmt::format("lens {} is afocal or has its object in its focus, and cannot be focused by moving "
+                    "the sensor; keep the focus of the design",
+                    prescription_.name));
+  std::optional<double> object_mm;
+  if (distance_m) {
+    const double glass_mm = prescription_.total_track_mm() - design_mm;
+    object_mm =
+        conjugate_object_mm(prescription_, matrix, glass_mm + offset_mm - *distance_m * mm_per_m,
+                            matrix.beyond_unit_magnification(prescription_.object_distance_mm), *distance_m);
+    if (!(*object_mm > 0))
+      throw InputError(
+          fmt::format("an object {} m from the sensor would stand inside lens {}, which ends {:.6g} m from "
+                      "the sensor",
+                      *distance_m, prescription_.name, prescription_.total_track_mm() / mm_per_m));
+  }
+  const double image_mm = matrix.image_mm(object_mm);
+  if (!(image_mm > 0 && image_mm + offset_mm > 0))
+    throw InputError(fmt::format("lens {} forms no real image behind its last surface of an object at {}",
+                                 prescription_.name, named_distance(distance_m)));
+  const std::optional<double> design_object_mm = prescription_.object_distance_mm;
+  if (object_mm.has_value() == design_object_mm.has_value() &&
+      (!object_mm || std::abs(*object_mm - *design_object_mm) <= same_object * *object_mm))
+    return focus_as_designed();
+  use(object_mm, image_mm + offset_mm);
+}
+
+void Camera::place_object_at_m(std::optional<double> distance_from_sensor_m) {
+  const std::optional<double> distance_m = checked_distance(distance_from_sensor_m);
+  const double track_mm = prescription_.total_track_mm();
+  if (distance_m && *distance_m * mm_per_m <= track_mm)
+    throw InputError(
+        fmt::format("an object {} m from the sensor would stand inside lens {}, which ends {:.6g} m from "
+                    "the sensor",
+                    *distance_m, prescription_.name, track_mm / mm_per_m));
+  std::optional<double> object_mm;
+  if (distance_m) object_mm = *distance_m * mm_per_m - track_mm;
+  use(object_mm, prescription_.surfaces.back().thickness_mm);
+}
+
+void Camera::focus_as_designed() {
+  use(prescription_.object_distance_mm, prescription_.surfaces.back().thickness_mm);
+}
+
+std::optional<double> Camera::object_distance_from_sensor_m() const {
+  if (!lens_.object_distance_mm) return {};
+  return (*lens_.object_distance_mm + lens_.total_track_mm()) / mm_per_m;
+}
+
+void Camera::set_f_number(double f_number) {
+  if (!(std::isfinite(f_number) && f_number > 0))
+    throw InputError(fmt::format("f/{} is no f-number; give a positive one", f_number));
+  const double open = first_order(prescription_).f_number;
+  if (!std::isfinite(open))
+    throw InputError(fmt::format("lens {} is afocal and has no f-number", prescription_.name));
+  if (f_number < open * (1 - f_number_rounding))
+    throw InputError(fmt::format("lens {} opens to f/{:.4g} only; f/{} asks for more", prescription_.name,
+                                 open, f_number));
+  f_number_ = f_number;
+  use(lens_.object_distance_mm, lens_.surfaces.back().thickness_mm);
+}
+
+}  // namespace petzval

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/camera/camera.h>
+#include <petzval/lens/first_order.h>
+
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+namespace {
+
+Surface surface(double curvature, double thickness, double index) {
+  Surface s;
+  s.curvature_per_mm = curvature;
+  s.thickness_mm = thickness;
+  if (index != 1) s.material = Material(Material::Constant{index});
+  return s;
+}
+
+/// Equiconvex lens of index 1.5 without thickness and focal length 50 mm (1/f = (n − 1)(c1 − c2)), stop at
+/// the lens, open to f/2, focused on infinity.
+Lens thin_lens() {
+  Lens lens;
+  lens.name = "thin";
+  lens.aperture = {Aperture::Kind::f_number, 2};
+  lens.fields.values = {0, 10};
+  lens.surfaces = {surface(0.02, 0, 1.5), surface(-0.02, 50, 1)};
+  lens.surfaces[0].stop = true;
+  return lens;
+}
+
+/// A thick doublet behind a stop, with its object at a finite distance and its sensor 0.2 mm off the
+/// paraxial image: nothing about it is symmetric.
+Lens thick_lens() {
+  Lens lens;
+  lens.name = "thick";
+  lens.object_distance_mm = 250;
+  lens.aperture = {Aperture::Kind::working_f_number, 4};
+  lens.fields = {Fields::Kind::object_height_mm, {0, 40}};
+  lens.surfaces = {surface(0, 1.5, 1), surface(0.01, 4, 1.6), surface(-0.03, 2, 1.7), surface(-0.02, 30, 1)};
+  lens.surfaces[0].stop = true;
+  lens.surfaces.back().thickness_mm =
+      paraxial_image_distance_mm(lens, 250.0, lens.reference_wavelength_nm) + 0.2;
+  return lens;
+}
+
+double last_thickness(const Camera& camera) {
+  return camera.lens().surfaces.back().thickness_mm;
+}
+
+/// From the paraxial image of the camera's object to its sensor.
+double defocus_mm(const Camera& camera) {
+  const Lens& lens = camera.lens();
+  return last_thickness(camera) -
+         paraxial_image_distance_mm(lens, lens.object_distance_mm, lens.reference_wavelength_nm);
+}
+
+// Thin lens: 1/s + 1/i = 1/f and s + i = D, so s = D/2 + √(D²/4 − fD). 1e-10 mm is rounding of a root of
+// numbers of order 1e3.
+TEST(Camera, FocusesAThinLensByTheLensEquation) {
+  for (const double distance_m : {0.2001, 0.3, 1.0, 7.0}) {
+    Camera camera(thin_lens());
+    camera.focus_at_m(distance_m);
+    const double d = distance_m * 1000, s = d / 2 + std::sqrt(d * d / 4 - 50 * d);
+    ASSERT_TRUE(camera.lens().object_distance_mm.has_value());
+    EXPECT_NEAR(*camera.lens().object_distance_mm, s, 1e-10);
+    EXPECT_NEAR(last_thickness(camera), d - s, 1e-10);
+    EXPECT_NEAR(1 / s + 1 / last_thickness(camera), 1 / 50.0, 1e-12);
+  }
+}
+
+TEST(Camera, StatesTheShortestDistance) {
+  Camera camera(thin_lens());
+  try {
+    camera.focus_at_m(0.19);
+    FAIL() << "an image nearer than four focal lengths";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("at least 0.2 m"), std::string::npos) << error.what();
+  }
+  EXPECT_NO_THROW(camera.focus_at_m(0.2000001));
+}
+
+TEST(Camera, MovesNothingAtTheDesignsOwnDistance) {
+  for (const Lens& lens : {thin_lens(), thick_lens()}) {
+    Camera camera(lens);
+    const std::optional<double> designed = camera.object_distance_from_sensor_m();
+    camera.focus_at_m(1.7);
+    camera.focus_at_m(designed);
+    EXPECT_EQ(camera.lens().object_distance_mm, lens.object_distance_mm);
+    EXPECT_EQ(last_thickness(camera), lens.surfaces.back().thickness_mm);
+    EXPECT_EQ(camera.lens().aperture.kind, lens.aperture.kind);
+    EXPECT_EQ(camera.lens().fields.values, lens.fields.values);
+  }
+}
+
+TEST(Camera, KeepsTheDesignersDefocusAndHitsTheDistanceAskedFor) {
+  for (const double distance_m : {0.3, 0.5, 2.0, 50.0}) {
+    Camera camera(thick_lens());
+    camera.focus_at_m(distance_m);
+    EXPECT_NEAR(defocus_mm(camera), 0.2, 1e-10) << distance_m;
+    EXPECT_NEAR(*camera.object_distance_from_sensor_m(), distance_m, 1e-13 * distance_m) << distance_m;
+  }
+  Camera at_infinity(thick_lens());
+  at_infinity.focus_at_m({});
+  EXPECT_FALSE(at_infinity.object_distance_from_sensor_m().has_value());
+  EXPECT_NEAR(defocus_mm(at_infinity), 0.2, 1e-10);
+  Camera infinite_number(thick_lens());
+  infinite_number.focus_at_m(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(last_thickness(infinite_number), last_thickness(at_infinity));
+}
+
+TEST(Camera, FocusDoesNotDependOnWhatCameBefore) {
+  Camera straight(thick_lens()), wandering(thick_lens());
+  straight.focus_at_m(0.6);
+  wandering.focus_at_m({});
+  wandering.set_f_number(8);
+  wandering.place_object_at_m(3.0);
+  wandering.focus_at_m(0.6);
+  EXPECT_EQ(last_thickness(straight), last_thickness(wandering));
+  EXPECT_EQ(*straight.lens().object_distance_mm, *wandering.lens().object_distance_mm);
+  wandering.focus_as_designed();
+  EXPECT_EQ(last_thickness(wandering), thick_lens().surfaces.back().thickness_mm);
+  EXPECT_EQ(*wandering.lens().object_distance_mm, 250);
+}
+
+// A lens designed to magnify keeps magnifying: of the two conjugates with D = 250 mm it takes the near one.
+TEST(Camera, StaysOnItsSideOfUnitMagnification) {
+  Lens macro = thin_lens();
+  macro.object_distance_mm = 60;  // i = 300 mm, five times magnified
+  macro.surfaces.back().thickness_mm = 300;
+  Camera camera(macro);
+  camera.focus_at_m(0.25);
+  EXPECT_NEAR(*camera.lens().object_distance_mm, 125 - std::sqrt(125.0 * 125 - 50 * 250), 1e-10);
+}
+
+TEST(Camera, PlacesTheObjectWithoutMovingTheSensor) {
+  Camera camera(thick_lens());
+  camera.place_object_at_m(2.0);
+  EXPECT_EQ(last_thickness(camera), thick_lens().surfaces.back().thickness_mm);
+  EXPECT_NEAR(*camera.object_distance_from_sensor_m(), 2.0, 1e-13);
+  EXPECT_NEAR(*camera.lens().object_distance_mm, 2000 - thick_lens().total_track_mm(), 1e-10);
+  camera.place_object_at_m({});
+  EXPECT_FALSE(camera.lens().object_distance_mm.has_value());
+}
+
+TEST(Camera, RefusesObjectsInsideTheLens) {
+  Camera camera(thick_lens());
+  EXPECT_THROW(camera.place_object_at_m(0.03), InputError);
+  EXPECT_THROW(camera.place_object_at_m(0), InputError);
+  EXPECT_THROW(camera.focus_at_m(-1), InputError);
+  EXPECT_THROW(camera.focus_at_m(std::nan("")), InputError);
+  EXPECT_THROW(camera.focus_at_m(0.001), InputError);
+}
+
+TEST(Camera, RefusesLensesWithoutARealImage) {
+  Lens negative = thin_lens();
+  for (Surface& s : negative.surfaces) s.curvature_per_mm *= -1;
+  Camera camera(negative);
+  EXPECT_THROW(camera.focus_at_m({}), InputError);
+  EXPECT_THROW(camera.focus_at_m(1), InputError);
+}
+
+TEST(Camera, StopsDownButNotUp) {
+  Camera camera(thin_lens());
+  camera.set_f_number(5.6);
+  EXPECT_NEAR(first_order(camera.lens()).f_number, 5.6, 1e-12);
+  EXPECT_NEAR(first_order(camera.lens()).entrance_pupil.diameter_mm, 50 / 5.6, 1e-11);
+  camera.set_f_number(2);  // and open again: what counts is the prescription's own f-number
+  try {
+    camera.set_f_number(1.9);
+    FAIL() << "opened wider than it can";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("opens to f/2 only"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(camera.lens().aperture.value, 2);
+  EXPECT_THROW(camera.set_f_number(0), InputError);
+  EXPECT_THROW(camera.set_f_number(std::nan("")), InputError);
+}
+
+// Working f-number 4 at 250 mm is a certain hole; refocusing must not open or close it.
+TEST(Camera, RefocusingKeepsTheEntrancePupil) {
+  Camera camera(thick_lens());
+  const double diameter = first_order(camera.lens()).entrance_pupil.diameter_mm;
+  camera.focus_at_m(1.0);
+  EXPECT_NEAR(first_order(camera.lens()).entrance_pupil.diameter_mm, diameter, 1e-12);
+  camera.set_f_number(16);
+  EXPECT_EQ(camera.lens().aperture.kind, Aperture::Kind::f_number);
+  camera.focus_as_designed();
+  EXPECT_EQ(camera.lens().aperture.value, 16);
+}
+
+// The stop stands at vertex 1, so the angle from the entrance pupil is atan(40/250) whatever the distance.
+TEST(Camera, RefocusingKeepsFieldAngles) {
+  Camera camera(thick_lens());
+  camera.focus_at_m(2.0);
+  EXPECT_NEAR(camera.lens().fields.values[1] / *camera.lens().object_distance_mm, 0.16, 1e-12);
+  camera.focus_at_m({});
+  EXPECT_EQ(camera.lens().fields.kind, Fields::Kind::angle_deg);
+  EXPECT_NEAR(camera.lens().fields.values[1], 9.0902769208223, 1e-9);  // atan 0.16
+}
+
+}  // namespace
+}  // namespace petzval
