@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/optics/lens_data_table.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace petzval {
+
+namespace {
+
+/// The chief ray of the axial field may miss the axis by rounding only [mm].
+constexpr double on_axis_mm = 1e-6;
+/// Σ of a PSF may differ from 1 by what single precision and its windowing leave.
+constexpr double psf_sum_tolerance = 1e-3;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw InputError("lens data table: " + what);
+}
+
+void require_axis(const std::vector<double>& axis, const char* name) {
+  if (axis.empty()) refuse(fmt::format("there are no {}; at least one is needed", name));
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    if (!std::isfinite(axis[i])) refuse(fmt::format("{}[{}] is {}; it must be finite", name, i, axis[i]));
+    if (i > 0 && axis[i] <= axis[i - 1])
+      refuse(fmt::format("{} must increase, but {} follows {}", name, axis[i], axis[i - 1]));
+  }
+}
+
+void require_values(const LensDataTable& table, const std::vector<double>& values, const char* name) {
+  const std::size_t expected = table.fields.size() * table.wavelengths_nm.size();
+  if (values.size() != expected)
+    refuse(fmt::format("{} has {} values; {} fields × {} wavelengths need {}", name, values.size(),
+                       table.fields.size(), table.wavelengths_nm.size(), expected));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!(std::isfinite(values[i]) && values[i] >= 0))
+      refuse(fmt::format("{} of field {} at {} nm is {}; it must be finite and not negative", name,
+                         table.fields[i / table.wavelengths_nm.size()],
+                         table.wavelengths_nm[i % table.wavelengths_nm.size()], values[i]));
+}
+
+/// The axis has an image, or there is nothing to be relative to.
+void require_light_on_axis(const LensDataTable& table) {
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+    if (table.g_source_sr[w] == 0 || table.g_sensor_sr[w] == 0)
+      refuse(fmt::format("no light of {} nm reaches the sensor on the axis", table.wavelengths_nm[w]));
+}
+
+void require_rising_heights(const LensDataTable& table) {
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    if (table.real_image_height_mm[w] > on_axis_mm)
+      refuse(fmt::format("the image of the axis stands {} mm from the axis at {} nm",
+                         table.real_image_height_mm[w], table.wavelengths_nm[w]));
+    for (std::size_t f = 1; f < table.fields.size(); ++f)
+      if (table.real_image_height_mm[table.index(f, w)] <= table.real_image_height_mm[table.index(f - 1, w)])
+        refuse(fmt::format(
+            "the image height at {} nm does not rise from field {} to {} {} ({} mm, {} mm); end the "
+            "table before",
+            table.wavelengths_nm[w], table.fields[f - 1], table.fields[f], table.field_unit(),
+            table.real_image_height_mm[table.index(f - 1, w)],
+            table.real_image_height_mm[table.index(f, w)]));
+  }
+}
+
+std::string psf_fault(const Psf& psf) {
+  if (psf.size < 1 ||
+      psf.values.size() != static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size))
+    return fmt::format("has {} values for size {}", psf.values.size(), psf.size);
+  if (!(std::isfinite(psf.spacing_um) && psf.spacing_um > 0))
+    return fmt::format("has a sample spacing of {} µm", psf.spacing_um);
+  if (!(std::isfinite(psf.captured) && psf.captured > 0))
+    return fmt::format("captured a share of {} of the light", psf.captured);
+  const double sum = std::accumulate(psf.values.begin(), psf.values.end(), 0.0);
+  if (!(std::abs(sum - 1) <= psf_sum_tolerance)) return fmt::format("sums to {}; it must sum to 1", sum);
+  for (const float value : psf.values)
+    if (!std::isfinite(value)) return "has a value that is not finite";
+  return {};
+}
+
+void require_psfs(const LensDataTable& table) {
+  const std::size_t expected = table.fields.size() * table.wavelengths_nm.size();
+  if (table.psf.size() != expected)
+    refuse(fmt::format("there are {} PSFs; {} fields × {} wavelengths need {}", table.psf.size(),
+                       table.fields.size(), table.wavelengths_nm.size(), expected));
+  for (std::size_t i = 0; i < expected; ++i)
+    if (const std::string fault = psf_fault(table.psf[i]); !fault.empty())
+      refuse(fmt::format("the PSF of field {} at {} nm {}", table.fields[i / table.wavelengths_nm.size()],
+                         table.wavelengths_nm[i % table.wavelengths_nm.size()], fault));
+}
+
+}  // namespace
+
+double LensDataTable::field_tangent(double field) const {
+  if (finite_object()) return field / *object_distance_mm;
+  if (!(std::abs(field) < 90))
+    throw InputError(
+        fmt::format("a field of {} deg has no tangent: a plane object spans less than ±90 deg", field));
+  return std::tan(radians(field));
+}
+
+void LensDataTable::validate() const {
+  if (object_distance_mm && !(std::isfinite(*object_distance_mm) && *object_distance_mm > 0))
+    refuse(fmt::format("the object distance is {} mm; it must be positive", *object_distance_mm));
+  if (!std::isfinite(vertex_to_sensor_mm))
+    refuse(fmt::format("the sensor stands at {} mm from vertex 1", vertex_to_sensor_mm));
+  require_axis(fields, "fields");
+  require_axis(wavelengths_nm, "wavelengths");
+  if (fields.front() != 0)
+    refuse(fmt::format("the first field is {}; it must be 0, the axis", fields.front()));
+  if (wavelengths_nm.front() <= 0) refuse(fmt::format("{} nm is no wavelength", wavelengths_nm.front()));
+  require_values(*this, real_image_height_mm, "real_image_height_mm");
+  require_values(*this, g_source_sr, "g_source_sr");
+  require_values(*this, g_sensor_sr, "g_sensor_sr");
+  require_light_on_axis(*this);
+  require_rising_heights(*this);
+  require_psfs(*this);
+}
+
+}  // namespace petzval
