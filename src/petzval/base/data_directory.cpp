@@ -34,7 +34,9 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-const char* version() { return PETZVAL_VERSION; }
+const char* version() {
+  return PETZVAL_VERSION;
+}
 
 std::string data_directory() {
   if (const char* given = std::getenv("PETZVAL_DATA"); given && *given) {
@@ -48,9 +50,10 @@ std::string data_directory() {
   candidates.insert(candidates.end(), {PETZVAL_INSTALLED_DATA, PETZVAL_SOURCE_DATA});
   for (const std::string& candidate : candidates)
     if (fs::is_directory(fs::path(candidate) / "glass", error)) return candidate;
-  throw InputError(fmt::format("the bundled data is missing; set PETZVAL_DATA to the folder that has glass/ "
-                               "(looked in {})",
-                               fmt::join(candidates, ", ")));
+  throw InputError(
+      fmt::format("the bundled data is missing; set PETZVAL_DATA to the folder that has glass/ "
+                  "(looked in {})",
+                  fmt::join(candidates, ", ")));
 }
 
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension) {
@@ -65,7 +68,8 @@ std::vector<std::string> bundled_names(const std::string& kind, const std::strin
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
                                        std::size_t count) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
-  for (const std::string& candidate : candidates) ranked.emplace_back(edit_distance(name, candidate), candidate);
+  for (const std::string& candidate : candidates)
+    ranked.emplace_back(edit_distance(name, candidate), candidate);
   count = std::min(count, ranked.size());
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
   std::vector<std::string> nearest;
@@ -73,8 +77,8 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
   return nearest;
 }
 
-std::string find_data_file(const std::string& kind, const std::string& extension, const std::string& path_or_name,
-                           const std::string& what) {
+std::string find_data_file(const std::string& kind, const std::string& extension,
+                           const std::string& path_or_name, const std::string& what) {
   std::error_code error;
   if (fs::is_regular_file(path_or_name, error)) return path_or_name;
   if (path_or_name.empty()) throw InputError(fmt::format("an empty name for a {}", what));
@@ -83,8 +87,9 @@ std::string find_data_file(const std::string& kind, const std::string& extension
     if (fs::is_regular_file(bundled, error)) return bundled.string();
   }
   const std::vector<std::string> near = nearest_names(path_or_name, bundled_names(kind, extension));
-  throw InputError(path_or_name, fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,
-                                             fmt::join(near, ", ")));
+  throw InputError(path_or_name,
+                   fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,
+                               fmt::join(near, ", ")));
 }
 
 }  // namespace petzval

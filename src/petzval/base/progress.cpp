@@ -26,8 +26,8 @@ void ProgressBar::update(double fraction, const std::string& what) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const int filled = static_cast<int>(fraction * 30);
-  std::string line = fmt::format("\r\033[K[{:<30}] {:3.0f} % {} {:.0f} s", std::string(filled, '='), 100 * fraction,
-                                 what, elapsed);
+  std::string line = fmt::format("\r\033[K[{:<30}] {:3.0f} % {} {:.0f} s", std::string(filled, '='),
+                                 100 * fraction, what, elapsed);
   if (fraction > 0.02) line += fmt::format(", about {:.0f} s left", elapsed * (1 - fraction) / fraction);
   std::fputs(line.c_str(), stderr);
   std::fflush(stderr);

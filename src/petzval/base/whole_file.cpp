@@ -21,9 +21,8 @@ namespace {
 std::string temporary_name(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   const fs::path final_path(path);
-  fs::path aside = final_path.parent_path() /
-                   fmt::format(".{}.{}-{}{}", final_path.stem().string(), getpid(), counter++,
-                               final_path.extension().string());
+  fs::path aside = final_path.parent_path() / fmt::format(".{}.{}-{}{}", final_path.stem().string(), getpid(),
+                                                          counter++, final_path.extension().string());
   return aside.string();
 }
 
@@ -86,7 +85,8 @@ std::string read_whole_file(const std::string& path, std::size_t max_bytes) {
     bytes.append(block, got);
     if (bytes.size() > max_bytes) throw InputError(path, fmt::format("is larger than {} bytes", max_bytes));
   }
-  if (std::ferror(handle.get())) throw InputError(path, fmt::format("cannot be read: {}", std::strerror(errno)));
+  if (std::ferror(handle.get()))
+    throw InputError(path, fmt::format("cannot be read: {}", std::strerror(errno)));
   return bytes;
 }
 

@@ -13,7 +13,8 @@ enum class RayStatus : std::uint8_t { ok, missed, vignetted, tir };
 /// "ok", "missed", "vignetted", "tir".
 const char* to_string(RayStatus status);
 
-/// Rays of one wavelength in lens space: a point, a unit direction, and the optical path travelled so far [mm].
+/// Rays of one wavelength in lens space: a point, a unit direction, and the optical path travelled so far
+/// [mm].
 struct RayBatch {
   std::vector<double> x_mm, y_mm, z_mm;
   std::vector<double> l, m, n;  ///< direction cosines

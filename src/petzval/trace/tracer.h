@@ -38,8 +38,11 @@ class Tracer {
  public:
   enum class Clip { apertures, stop_only, none };
 
-  /// \throws InputError if an index is not known at the wavelength.
+  /// Clips at the lens's own stop radius, stop_radius_mm(lens).
+  /// \throws InputError if an index is not known at the wavelength, or as stop_radius_mm.
   Tracer(const Lens& lens, double wavelength_nm);
+  /// Clips at a stop radius that the caller gives (infinity: the stop is no aperture).
+  Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm);
 
   double wavelength_nm() const { return wavelength_nm_; }
   std::size_t surface_count() const { return surfaces_.size(); }
@@ -48,9 +51,8 @@ class Tracer {
   double image_index() const { return surfaces_.back().index_after; }
   double image_z_mm() const { return image_z_mm_; }
   double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
-  /// Radius that the stop clips at [mm]; see stop_radius_mm() in pupil.h for how it is found.
+  /// Radius that the stop clips at [mm]; a clear semi-diameter of the stop surface clips in addition.
   double stop_radius_mm() const { return stop_radius_mm_; }
-  void set_stop_radius_mm(double radius) { stop_radius_mm_ = radius; }
 
   /// Traces a batch in place, from object space to the image surface.
   void trace(RayBatch& rays, Clip clip = Clip::apertures) const;
@@ -61,9 +63,9 @@ class Tracer {
   Ray trace(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
   Ray trace_backward(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
 
-  /// As trace(), never clipped, and says by how much the ray clears the apertures: the largest over all clipping
-  /// surfaces of (r/r_clear)² − 1: negative inside, positive outside, +infinity if the ray was missed or totally
-  /// reflected; and where it crossed the stop surface.
+  /// As trace(), never clipped, and says by how much the ray clears the apertures: the largest over all
+  /// clipping surfaces of (r/r_clear)² − 1: negative inside, positive outside, +infinity if the ray was
+  /// missed or totally reflected; and where it crossed the stop surface.
   struct Clearance {
     double worst = 0;
     int surface = -1;  ///< which one clips first
@@ -71,13 +73,13 @@ class Tracer {
     bool reached_stop = false;
     Ray ray;
   };
-  Clearance clearance(Ray ray, bool backward, Clip clip = Clip::apertures) const;
+  Clearance clearance(const Ray& ray, bool backward, Clip clip = Clip::apertures) const;
 
-  /// What one surface needs to be traced; public for the kernels in tracer_kernel.h.
+  /// What one surface needs to be traced; public for surface_step.h.
   struct PreparedSurface {
     double curvature, conic, vertex_z_mm, index_before, index_after;
-    double clear_radius_sq;            ///< infinity when unbounded
-    std::vector<double> polynomial;    ///< [p] coefficient of r^p; empty for spheres and conics
+    double clear_radius_sq;          ///< infinity when unbounded
+    std::vector<double> polynomial;  ///< [p] coefficient of r^p; empty for spheres and conics
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
 
@@ -87,5 +89,11 @@ class Tracer {
   std::size_t stop_index_ = 0;
   double image_z_mm_ = 0, stop_radius_mm_ = 0;
 };
+
+/// The radius of the aperture stop [mm]: `aperture.value` when the file gives it (stop_semi_diameter_mm),
+/// else the height at the stop surface of the real on-axis ray at the reference wavelength that is launched
+/// at the edge of the paraxial entrance pupil. \throws InputError if that ray does not reach the stop, saying
+/// which surface ends it.
+double stop_radius_mm(const Lens& lens);
 
 }  // namespace petzval

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distortion and illumination, row by row of field and wavelength.
+#pragma once
+
+#include <petzval/lens/lens.h>
+#include <petzval/trace/tracer.h>
+
+#include <optional>
+#include <vector>
+
+namespace petzval {
+
+/// Which fields and wavelengths to tabulate; empty lists mean the lens's own.
+struct FieldTableRequest {
+  Fields::Kind field_kind = Fields::Kind::angle_deg;
+  std::vector<double> fields;
+  std::vector<double> wavelengths_nm;
+  Tracer::Clip clip = Tracer::Clip::apertures;
+
+  /// The lens's own field kind, fields and wavelengths.
+  static FieldTableRequest of(const Lens& lens);
+};
+
+struct DistortionRow {
+  double field = 0, wavelength_nm = 0;
+  double object_field = 0;              ///< degrees or mm
+  double image_height_mm = 0;           ///< real chief ray
+  double paraxial_image_height_mm = 0;  ///< f tan θ or m h at this wavelength
+  /// (real − paraxial)/paraxial; at zero field its limit, zero.
+  double distortion_percent = 0;
+  /// Against f θ; only for objects at infinity.
+  std::optional<double> distortion_ftheta_percent;
+};
+
+struct IlluminationRow {
+  double field = 0, wavelength_nm = 0;
+  double object_field = 0;
+  double real_image_height_mm = 0;
+  double g_sensor_sr = 0, g_source_sr = 0;
+  double relative_illumination = 0;  ///< g_sensor / g_sensor on axis at the same wavelength
+};
+
+/// Rows in the order fields × wavelengths. \throws InputError naming the field whose chief ray does not pass.
+std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request);
+std::vector<IlluminationRow> illumination_table(const Lens& lens, const FieldTableRequest& request);
+
+}  // namespace petzval

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chief rays, pupils and illumination of a lens at one wavelength.
+#pragma once
+
+#include <petzval/lens/lens.h>
+#include <petzval/trace/pencil.h>
+#include <petzval/trace/pupil.h>
+#include <petzval/trace/tracer.h>
+
+#include <optional>
+
+namespace petzval {
+
+/// The real chief ray of one object field.
+struct ChiefRay {
+  double object_field = 0;     ///< degrees (object at infinity) or object height in mm
+  double v = 0;                ///< its label in Pencil
+  double image_height_mm = 0;  ///< y' on the image surface, signed
+  Ray at_image;
+};
+
+/// A lens at one wavelength, asked field by field. Object fields are degrees when the object is at infinity,
+/// else object heights in mm. Not for use from several threads at once (it remembers the last chief ray).
+class FieldTracer {
+ public:
+  /// \param clip  apertures: every clear aperture counts; stop_only: --ignore-apertures.
+  /// \throws InputError as Tracer.
+  FieldTracer(const Lens& lens, double wavelength_nm, Tracer::Clip clip = Tracer::Clip::apertures);
+  FieldTracer(const FieldTracer&) = delete;
+  FieldTracer& operator=(const FieldTracer&) = delete;
+
+  const Lens& lens() const { return lens_; }
+  const Tracer& tracer() const { return tracer_; }
+  Tracer::Clip clip() const { return clip_; }
+
+  /// Nothing where no chief ray reaches the image surface.
+  std::optional<ChiefRay> chief_ray(double object_field);
+  /// The vignetted pupil in object space; nothing where no ray passes.
+  std::optional<PupilBoundary> object_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
+  /// The same seen from the chief ray's image point.
+  std::optional<PupilBoundary> image_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
+
+  /// n'² ∬ dα dβ over the directions that reach the object through every aperture [sr]: what a uniform wall
+  /// of unit radiance gives in irradiance at the chief ray's image point; 0 where no ray passes.
+  double g_sensor_sr(const ChiefRay& chief) const;
+  /// The flux of one object point per area of its chief-ray image, per radiance [sr]; 0 where no ray passes.
+  /// (docs/CONVENTIONS.md, "Radiometry".)
+  double g_source_sr(const ChiefRay& chief);
+
+  /// dA_object/dA_chief: solid angle [sr/mm²] (infinity) or object area [mm²/mm²] per area of chief-ray
+  /// image. \throws InputError where the chief ray's image stops moving outwards.
+  double object_area_per_image_area(const ChiefRay& chief);
+
+  /// The smallest object field whose chief ray lands at this image height (signed as object fields give it).
+  /// Nothing if no chief ray does.
+  std::optional<double> object_field_at_image_height(double image_height_mm);
+
+  static constexpr int default_azimuths = 256;
+
+ private:
+  Lens lens_;
+  Tracer tracer_;
+  Tracer::Clip clip_;
+  ChiefRayMarch march_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/point_spread.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/optics/build.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+/// Objects of the table lie on the side that images to +y', so that t of a Psf is +y'.
+double towards_positive_image(const Lens& lens) {
+  return paraxial_image_height_mm(lens, 1.0, lens.reference_wavelength_nm) < 0 ? -1.0 : 1.0;
+}
+
+/// Half-width of the on-axis PSF window [mm], the margin that light from beyond the sensor's corner may
+/// cross.
+double psf_margin_mm(FieldTracer& tracer) {
+  const std::optional<ChiefRay> axis = tracer.chief_ray(0);
+  const std::optional<PsfPlan> plan = axis ? plan_psf(tracer, *axis) : std::nullopt;
+  if (!plan)
+    throw InputError(
+        fmt::format("{}: no ray passes the stop on the axis at {:g} nm; check stop and clear apertures",
+                    tracer.lens().name, tracer.tracer().wavelength_nm()));
+  return 0.5 * plan->size * plan->spacing_um * mm_per_um;
+}
+
+/// Objects at a finite distance are looked for no farther out than this (87°).
+constexpr double widest_tangent = 20;
+
+/// One field outwards: the height it lands at, or nothing when no ray passes or the image turned back
+/// inwards.
+class FieldLimit {
+ public:
+  FieldLimit(const Lens& lens, double wavelength_nm, Tracer::Clip clip)
+      : tracer_(lens, wavelength_nm, clip), sign_(towards_positive_image(lens)) {}
+
+  std::optional<double> height(double field) {
+    const double end =
+        tracer_.lens().object_distance_mm ? widest_tangent * *tracer_.lens().object_distance_mm : 179.0;
+    if (field > end) return {};
+    const std::optional<ChiefRay> chief = tracer_.chief_ray(sign_ * field);
+    if (!chief || !tracer_.object_pupil(*chief, 16)) return {};
+    return chief->image_height_mm;
+  }
+
+  /// The field at which the image height reaches `wanted_mm`, or the last one that passes.
+  double last_field(double wanted_mm, double stride) {
+    double low = 0, low_height = 0;
+    while (true) {
+      const double next = low + stride;
+      const std::optional<double> reached = height(next);
+      if (reached && *reached > low_height && *reached < wanted_mm) {
+        low = next;
+        low_height = *reached;
+        continue;
+      }
+      return refine(low, low_height, next, wanted_mm);
+    }
+  }
+
+ private:
+  double refine(double low, double low_height, double high, double wanted_mm) {
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (low + high);
+      const std::optional<double> reached = height(middle);
+      const bool passes = reached && *reached > low_height;
+      if (passes && *reached < wanted_mm) {
+        low = middle;
+        low_height = *reached;
+      } else {
+        high = middle;
+      }
+    }
+    // Reached: the outer end, which passes; else the last field that did.
+    const std::optional<double> outer = height(high);
+    return outer && *outer >= wanted_mm ? high : low;
+  }
+
+  FieldTracer tracer_;
+  double sign_;
+};
+
+std::vector<double> choose_fields(const Lens& lens, const TableOptions& options) {
+  const double stride = lens.object_distance_mm ? *lens.object_distance_mm / 50 : 1.0;
+  double last = 0;
+  for (std::size_t w = 0; w < options.wavelengths_nm.size(); ++w) {
+    FieldTracer tracer(lens, options.wavelengths_nm[w], options.clip);
+    const double wanted = options.max_image_height_mm + psf_margin_mm(tracer);
+    FieldLimit limit(lens, options.wavelengths_nm[w], options.clip);
+    const double field = limit.last_field(wanted, stride);
+    // The fields belong to all wavelengths: far enough for each, but no farther than each can pass.
+    last = w == 0 ? field : std::max(last, field);
+  }
+  for (const double wavelength : options.wavelengths_nm) {
+    FieldLimit limit(lens, wavelength, options.clip);
+    if (limit.height(last)) continue;
+    last = std::min(last, limit.last_field(std::numeric_limits<double>::infinity(), stride));
+  }
+  if (!(last > 0)) throw InputError(fmt::format("{}: no ray passes beside the axis", lens.name));
+  std::vector<double> fields;
+  for (int i = 0; i < options.field_count; ++i) fields.push_back(last * i / (options.field_count - 1));
+  return fields;
+}
+
+TableOptions completed(const Lens& lens, TableOptions options) {
+  options.validate();
+  if (options.wavelengths_nm.empty()) options.wavelengths_nm = lens.wavelengths_nm;
+  std::sort(options.wavelengths_nm.begin(), options.wavelengths_nm.end());
+  if (options.max_image_height_mm == 0) {
+    FieldTracer tracer(lens, lens.reference_wavelength_nm, options.clip);
+    for (const double value : lens.fields.values)
+      if (const auto chief = tracer.chief_ray(object_field(lens, lens.fields.kind, value)))
+        options.max_image_height_mm = std::max(options.max_image_height_mm, std::abs(chief->image_height_mm));
+  }
+  return options;
+}
+
+/// The largest window that any field and wavelength needs.
+int common_psf_size(const Lens& lens, const LensDataTable& table, const TableOptions& options) {
+  if (options.psf_size > 0) return options.psf_size;
+  std::vector<int> sizes(table.psf.size(), 0);
+  const double sign = towards_positive_image(lens);
+  parallel_for(table.wavelengths_nm.size(), [&](std::size_t w) {
+    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
+    PsfOptions psf_options;
+    psf_options.largest_size = options.largest_psf_size;
+    for (std::size_t f = 0; f < table.fields.size(); ++f)
+      if (const auto chief = tracer.chief_ray(sign * table.fields[f]))
+        if (const auto plan = plan_psf(tracer, *chief, psf_options)) sizes[table.index(f, w)] = plan->size;
+  });
+  return *std::max_element(sizes.begin(), sizes.end());
+}
+
+void fill_entry(FieldTracer& tracer, double object_field, int psf_size, LensDataTable& table,
+                std::size_t entry) {
+  const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+  PsfOptions options;
+  options.size = psf_size;
+  const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options) : std::nullopt;
+  if (!psf)
+    throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", tracer.lens().name,
+                                 object_field, tracer.tracer().wavelength_nm()));
+  table.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
+  table.g_source_sr[entry] = tracer.g_source_sr(*chief);
+  table.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
+  table.psf[entry] = *psf;
+}
+
+}  // namespace
+
+void TableOptions::validate() const {
+  for (const double wavelength : wavelengths_nm)
+    if (!(wavelength > 0) || !std::isfinite(wavelength))
+      throw InputError(fmt::format("a wavelength of {:g} nm; it must be positive", wavelength));
+  if (!(max_image_height_mm >= 0) || !std::isfinite(max_image_height_mm))
+    throw InputError(fmt::format("an image height of {:g} mm; it must be zero or more", max_image_height_mm));
+  if (field_count < 2 || field_count > 1000)
+    throw InputError(fmt::format("{} fields; a lens data table has 2 to 1000", field_count));
+  if (psf_size != 0 && (psf_size < 8 || psf_size > 4096))
+    throw InputError(fmt::format("a PSF of {0} × {0} samples; 8 to 4096 a side, or 0 to choose", psf_size));
+}
+
+LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
+                                    const ProgressCallback& progress) {
+  const TableOptions options = completed(lens, asked);
+  LensDataTable table;
+  table.lens_name = lens.name;
+  table.lens_json = lens_to_json(lens);
+  table.provenance = fmt::format("petzval {} lens data table from the prescription", version());
+  table.object_distance_mm = lens.object_distance_mm;
+  table.vertex_to_sensor_mm = lens.total_track_mm();
+  table.first_order = first_order(lens);
+  table.wavelengths_nm = options.wavelengths_nm;
+  table.fields = choose_fields(lens, options);
+  const std::size_t fields = table.fields.size(), entries = fields * table.wavelengths_nm.size();
+  table.real_image_height_mm.resize(entries);
+  table.g_source_sr.resize(entries);
+  table.g_sensor_sr.resize(entries);
+  table.psf.resize(entries);
+
+  const int psf_size = common_psf_size(lens, table, options);
+  const double sign = towards_positive_image(lens);
+  std::atomic<std::size_t> done{0};
+  parallel_for(entries, [&](std::size_t entry) {
+    const std::size_t w = entry / fields, f = entry % fields;
+    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
+    fill_entry(tracer, sign * table.fields[f], psf_size, table, table.index(f, w));
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(entries), "lens data table");
+  });
+  table.validate();
+  return table;
+}
+
+}  // namespace petzval

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Building the lens data table from a prescription.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/optics/lens_data_table.h>
+#include <petzval/trace/tracer.h>
+
+#include <vector>
+
+namespace petzval {
+
+struct TableOptions {
+  std::vector<double> wavelengths_nm;  ///< empty: the lens's own
+  /// Real image height that the table must reach [mm]: half the sensor diagonal. The table goes on until a
+  /// PSF radius beyond it, or until no ray passes. 0: the lens's largest field.
+  double max_image_height_mm = 0;
+  int field_count = 21;  ///< evenly spaced object fields, 0 included
+  int psf_size = 0;      ///< samples a side; 0: as large as the largest PSF needs
+  int largest_psf_size = 256;
+  Tracer::Clip clip = Tracer::Clip::apertures;
+
+  /// \throws InputError saying what would be right.
+  void validate() const;
+};
+
+/// The table of a lens as it stands (Camera::lens()): chief rays aimed at the real stop, g_source, g_sensor
+/// and diffraction PSFs through the vignetted pupil, at every field and wavelength. Deterministic for any
+/// number of threads. Memory: fields × wavelengths × psf_size² × 4 bytes. \throws InputError if no ray passes
+/// on the axis, or an index is not known at a wavelength.
+LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& options,
+                                    const ProgressCallback& progress = {});
+
+}  // namespace petzval

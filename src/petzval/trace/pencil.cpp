@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/trace/pencil.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+/// The chief ray hits the stop's centre to this share of its radius.
+constexpr double aim_tolerance = 1e-13;
+/// March no farther than this between chief rays: far less than any pupil wanders between them.
+constexpr double march_step_deg = 2.0;
+constexpr double march_steps_per_tangent = 30;
+constexpr int scan_points = 2000;
+
+struct Range {
+  double low, high;
+};
+
+/// Where the labels v of a pencil can lie at all: direction cosines, or a launch plane far wider than any
+/// glass.
+Range label_range(const Tracer& tracer, const Pencil& pencil) {
+  if (!pencil.object_at_infinity()) return {-1, 1};
+  double reach = tracer.stop_radius_mm() + tracer.image_z_mm();
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces()) {
+    if (std::isfinite(surface.clear_radius_sq)) reach = std::max(reach, std::sqrt(surface.clear_radius_sq));
+    if (surface.curvature != 0)
+      reach = std::max(reach, std::min(1 / std::abs(surface.curvature), 10 * reach));
+  }
+  return {-2 * reach, 2 * reach};
+}
+
+/// Height at the stop of the meridional ray v, or NaN.
+double stop_height(const Tracer& tracer, const Pencil& pencil, double v) {
+  const Tracer::Clearance traced = pencil.clearance(tracer, 0, v, Tracer::Clip::none);
+  return traced.reached_stop ? traced.stop_y_mm : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<double> newton_on_stop(const Tracer& tracer, const Pencil& pencil, double v) {
+  const Range range = label_range(tracer, pencil);
+  const double nudge = 1e-7 * (range.high - range.low);
+  double height = stop_height(tracer, pencil, v);
+  for (int i = 0; i < 40; ++i) {
+    if (!std::isfinite(height)) return {};
+    const double slope =
+        (stop_height(tracer, pencil, v + nudge) - stop_height(tracer, pencil, v - nudge)) / (2 * nudge);
+    if (!std::isfinite(slope) || slope == 0) return {};
+    const double step = height / slope;
+    const double next_height = stop_height(tracer, pencil, v - step);
+    // Converged when the next step no longer helps: the last digits of the height are rounding.
+    const bool small = std::abs(height) < aim_tolerance * tracer.stop_radius_mm();
+    const bool stalled = std::abs(height) < 1e3 * aim_tolerance * tracer.stop_radius_mm() &&
+                         !(std::abs(next_height) < std::abs(height));
+    if (small || stalled) return v;
+    v -= step;
+    height = next_height;
+  }
+  return {};
+}
+
+/// Bisection on a bracket of the stop height's sign.
+double bisect_on_stop(const Tracer& tracer, const Pencil& pencil, double low, double high) {
+  const bool low_negative = stop_height(tracer, pencil, low) < 0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
+    (((stop_height(tracer, pencil, middle) < 0) == low_negative) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::optional<double> scan_for_chief(const Tracer& tracer, const Pencil& pencil, double guess) {
+  const Range range = label_range(tracer, pencil);
+  std::optional<double> best;
+  double previous_v = 0, previous = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i <= scan_points; ++i) {
+    const double v = range.low + (range.high - range.low) * i / scan_points;
+    const double height = stop_height(tracer, pencil, v);
+    if (std::isfinite(height) && std::isfinite(previous) && (height < 0) != (previous < 0)) {
+      const double root = bisect_on_stop(tracer, pencil, previous_v, v);
+      if (!best || std::abs(root - guess) < std::abs(*best - guess)) best = root;
+    }
+    previous_v = v;
+    previous = height;
+  }
+  return best;
+}
+
+}  // namespace
+
+Pencil Pencil::from_object(const Lens& lens, double field) {
+  if (!std::isfinite(field)) throw InputError("a field must be a finite number");
+  if (lens.object_distance_mm) return Pencil(Kind::object_point, field, -*lens.object_distance_mm);
+  if (std::abs(field) >= 180)
+    throw InputError(fmt::format("a field angle of {:g}° looks backwards; it must lie inside ±180°", field));
+  return Pencil(Kind::parallel, radians(field), 0);
+}
+
+Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm) {
+  return Pencil(Kind::image_point, image_height_mm, tracer.image_z_mm());
+}
+
+std::optional<Ray> Pencil::ray(double u, double v) const {
+  if (kind_ == Kind::parallel) {
+    const double sine = std::sin(field_), cosine = std::cos(field_);
+    return Ray{{u, v * cosine, -v * sine}, {0, sine, cosine}};
+  }
+  const double cosine_sq = 1 - u * u - v * v;
+  if (!(cosine_sq > 0)) return {};
+  const double cosine = std::sqrt(cosine_sq);
+  // A backward ray travels against the light.
+  if (kind_ == Kind::image_point) return Ray{{0, field_, z_mm_}, {-u, -v, -cosine}};
+  return Ray{{0, field_, z_mm_}, {u, v, cosine}};
+}
+
+Tracer::Clearance Pencil::clearance(const Tracer& tracer, double u, double v, Tracer::Clip clip) const {
+  if (const std::optional<Ray> launched = ray(u, v)) return tracer.clearance(*launched, backward(), clip);
+  Tracer::Clearance outside;
+  outside.worst = std::numeric_limits<double>::infinity();
+  return outside;
+}
+
+std::optional<double> aim_chief_ray(const Tracer& tracer, const Pencil& pencil, double guess) {
+  if (const std::optional<double> found = newton_on_stop(tracer, pencil, guess)) return found;
+  const std::optional<double> scanned = scan_for_chief(tracer, pencil, guess);
+  if (!scanned) return {};
+  const std::optional<double> polished = newton_on_stop(tracer, pencil, *scanned);
+  return polished ? polished : scanned;
+}
+
+ChiefRayMarch::ChiefRayMarch(const Lens& lens, const Tracer& tracer, From from)
+    : lens_(lens), tracer_(tracer), from_(from) {
+  if (from == From::object && !lens.object_distance_mm) {
+    step_ = march_step_deg;
+  } else if (from == From::object) {
+    step_ = *lens.object_distance_mm / march_steps_per_tangent;
+  } else {
+    const double exit_pupil = std::abs(first_order(lens, tracer.wavelength_nm()).exit_pupil.position_mm);
+    step_ =
+        (std::isfinite(exit_pupil) ? std::max(exit_pupil, tracer.stop_radius_mm()) : tracer.image_z_mm()) /
+        march_steps_per_tangent;
+  }
+}
+
+Pencil ChiefRayMarch::pencil_at(double field) const {
+  return from_ == From::object ? Pencil::from_object(lens_, field) : Pencil::from_image(tracer_, field);
+}
+
+std::optional<double> ChiefRayMarch::v_at(double field) {
+  if (std::abs(field) < std::abs(last_field_) || field * last_field_ < 0) last_field_ = last_v_ = slope_ = 0;
+  while (last_field_ != field) {
+    const double remaining = field - last_field_;
+    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(remaining) / step_)));
+    const double next = steps == 1 ? field : last_field_ + remaining / steps;
+    const std::optional<double> v =
+        aim_chief_ray(tracer_, pencil_at(next), last_v_ + slope_ * (next - last_field_));
+    if (!v) return {};
+    slope_ = (*v - last_v_) / (next - last_field_);
+    last_v_ = *v;
+    last_field_ = next;
+  }
+  return last_v_;
+}
+
+}  // namespace petzval

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All rays of one object point, one direction at infinity, or one image point.
+#pragma once
+
+#include <petzval/trace/tracer.h>
+
+#include <optional>
+
+namespace petzval {
+
+/// The rays of one point, labelled by two numbers (u, v) chosen so that du dv is the measure that radiometry
+/// wants:
+///
+/// | pencil | rays | (u, v) | du dv is |
+/// |---|---|---|---|
+/// | object at infinity, field angle θ | direction (0, sin θ, cos θ) | position on the plane through vertex 1
+/// perpendicular to the ray [mm] | cross-section of the beam dA⊥ [mm²] | | object point (0, h, −distance) |
+/// through the point | direction cosines (L, M) | dα_o dβ_o [sr] | | image point (0, y', image plane) |
+/// through the point, traced backwards | direction cosines (L, M) of the light, in the sensor frame | dα dβ
+/// [sr] |
+///
+/// The field lies in the y-z plane, so the pencil is mirror symmetric in u.
+class Pencil {
+ public:
+  /// `field` in degrees for a lens whose object is at infinity, else the object height in mm.
+  /// \throws InputError for an angle of 180° or more, or a non-finite field.
+  static Pencil from_object(const Lens& lens, double field);
+  static Pencil from_image(const Tracer& tracer, double image_height_mm);
+
+  /// The ray (u, v), at its object point, on its launch plane, or at its image point; nothing where u² + v² ≥
+  /// 1 for direction cosines.
+  std::optional<Ray> ray(double u, double v) const;
+  bool backward() const { return kind_ == Kind::image_point; }
+  bool object_at_infinity() const { return kind_ == Kind::parallel; }
+
+  /// The ray traced through the whole lens, and by how much it clears the apertures; a ray that does not
+  /// exist is +infinity outside.
+  Tracer::Clearance clearance(const Tracer& tracer, double u, double v, Tracer::Clip clip) const;
+
+ private:
+  enum class Kind { parallel, object_point, image_point };
+  Pencil(Kind kind, double field, double z_mm) : kind_(kind), field_(field), z_mm_(z_mm) {}
+
+  Kind kind_;
+  double field_;  ///< angle [rad] or height [mm]
+  double z_mm_;   ///< of the point
+};
+
+/// Finds the v of the chief ray of a pencil: the meridional ray through the centre of the real stop surface.
+/// Newton from `guess`, with a scan of the whole pencil when that fails; among several solutions the one
+/// nearest to the guess. Nothing when no ray of the pencil crosses the stop centre.
+std::optional<double> aim_chief_ray(const Tracer& tracer, const Pencil& pencil, double guess);
+
+/// Marches from the axis outwards to a field and returns the chief ray's v on the way; for wide-angle lenses,
+/// whose pupil wanders too far for the paraxial guess. Fields may be asked in any order; near the last one is
+/// cheapest.
+class ChiefRayMarch {
+ public:
+  enum class From { object, image };
+  ChiefRayMarch(const Lens& lens, const Tracer& tracer, From from = From::object);
+
+  /// Nothing when no chief ray passes the glass at that field.
+  std::optional<double> v_at(double field);
+
+ private:
+  Pencil pencil_at(double field) const;
+
+  const Lens& lens_;
+  const Tracer& tracer_;
+  From from_;
+  double step_, last_field_ = 0, last_v_ = 0, slope_ = 0;
+};
+
+}  // namespace petzval

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The vignetted pupil: which rays of a pencil pass every aperture.
+#pragma once
+
+#include <petzval/trace/pencil.h>
+
+#include <optional>
+#include <vector>
+
+namespace petzval {
+
+/// The region of a pencil's (u, v) that passes, as a curve around an inner point (centre_u = 0 by symmetry):
+/// `radius[i]` at azimuth φ_i = 2π(i + ½)/n, counted from +v towards +u, so that (u, v) = centre +
+/// radius·(sin φ, cos φ). Mirror symmetric: radius[i] = radius[n−1−i]. Found along azimuths by root finding
+/// on the clearance of real rays at the real apertures; nothing is counted on a grid.
+struct PupilBoundary {
+  double centre_v = 0;
+  double chief_v = 0;  ///< the chief ray's v
+  std::vector<double> radius;
+
+  double azimuth(std::size_t i) const;
+  /// ∬ du dv inside the curve, ½ ∮ radius² dφ [mm² or sr].
+  double area() const;
+};
+
+/// \param chief_v   from aim_chief_ray or ChiefRayMarch; the search for the region starts there.
+/// \param azimuths  even, ≥ 8. The corners where two apertures meet make the area converge as 1/azimuths².
+/// \returns nothing when no ray of the pencil passes.
+/// \throws InputError for an odd or small number of azimuths.
+std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& pencil, double chief_v,
+                                        int azimuths, Tracer::Clip clip = Tracer::Clip::apertures);
+
+/// Polar quadrature inside a boundary, half of it (u ≥ 0): Gauss-Legendre in radius × the boundary's
+/// azimuths. The other half follows by mirror symmetry, so the weights (du dv) sum to half of area().
+struct PupilNode {
+  double u, v, weight;
+};
+std::vector<PupilNode> half_pupil_nodes(const PupilBoundary& boundary, int radial_nodes);
+
+}  // namespace petzval

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One surface, one ray: intersection and refraction. The arithmetic that all traces share.
+#pragma once
+
+#include <petzval/trace/tracer.h>
+
+namespace petzval {
+
+/// A ray relative to the vertex of the surface that it is about to meet.
+struct SurfaceRay {
+  double x, y, z;  ///< point [mm]
+  double l, m, n;  ///< unit direction
+  double opl;      ///< signed optical path so far [mm]
+};
+
+/// Carries the ray to the surface and writes the unit normal (on the +z side at the vertex). `sense` is +1
+/// for light that travels from object to image and −1 for a backward trace: it picks the root at which the
+/// ray crosses the surface in that sense, whatever the sign of its own z cosine. The path grows by `index`
+/// times the signed distance. Returns false when there is no such point on the sheet through the vertex.
+bool intersect(const Tracer::PreparedSurface& surface, double sense, double index, SurfaceRay& ray,
+               double normal[3]);
+
+/// Vector Snell at a unit normal; false on total internal reflection. `ratio` = n_before / n_after.
+bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]);
+
+}  // namespace petzval

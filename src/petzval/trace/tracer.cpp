@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/trace/surface_step.h>
+#include <petzval/trace/tracer.h>
+
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Rays that are launched at a rim exactly are not to be lost to rounding.
+constexpr double rim_tolerance = 1e-9;
+
+SurfaceRay relative_to_vertex(const Ray& ray, double vertex_z) {
+  return {ray.point_mm[0],  ray.point_mm[1], ray.point_mm[2] - vertex_z, ray.direction[0], ray.direction[1],
+          ray.direction[2], ray.opl_mm};
+}
+
+void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
+  ray.point_mm = {from.x, from.y, from.z + vertex_z};
+  ray.direction = {from.l, from.m, from.n};
+  ray.opl_mm = from.opl;
+}
+
+/// Walks the surfaces in the sense of travel. `visit(index, ray at the surface, normal)` is called after each
+/// intersection, before refraction, and ends the walk by returning false; `after(index, ray)` after
+/// refraction.
+template <class Visit, class After>
+void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, Ray& ray, Visit&& visit,
+          After&& after) {
+  const double sense = backward ? -1.0 : 1.0;
+  const std::size_t count = surfaces.size();
+  double vertex_z = surfaces[backward ? count - 1 : 0].vertex_z_mm;
+  SurfaceRay at = relative_to_vertex(ray, vertex_z);
+  for (std::size_t step = 0; step < count; ++step) {
+    const std::size_t i = backward ? count - 1 - step : step;
+    const Tracer::PreparedSurface& surface = surfaces[i];
+    at.z += vertex_z - surface.vertex_z_mm;
+    vertex_z = surface.vertex_z_mm;
+    const double before = backward ? surface.index_after : surface.index_before;
+    const double behind = backward ? surface.index_before : surface.index_after;
+    double normal[3];
+    if (!intersect(surface, sense, before, at, normal)) {
+      ray.status = RayStatus::missed;
+    } else if (visit(i, at, normal)) {
+      if (!refract(before / behind, sense, at, normal)) ray.status = RayStatus::tir;
+    } else {
+      ray.status = RayStatus::vignetted;
+    }
+    if (ray.status != RayStatus::ok) {
+      ray.failed_at = static_cast<int>(i);
+      break;
+    }
+    after(i, at, normal);
+  }
+  store(at, vertex_z, ray);
+}
+
+/// Carries a ray that has passed all surfaces to the image plane.
+void reach_image(const Tracer& tracer, Ray& ray) {
+  if (ray.status != RayStatus::ok) return;
+  if (!(ray.direction[2] > 0)) {
+    ray.status = RayStatus::missed;
+    ray.failed_at = static_cast<int>(tracer.surface_count());
+    return;
+  }
+  const double distance = (tracer.image_z_mm() - ray.point_mm[2]) / ray.direction[2];
+  for (int axis = 0; axis < 2; ++axis) ray.point_mm[axis] += distance * ray.direction[axis];
+  ray.point_mm[2] = tracer.image_z_mm();
+  ray.opl_mm += tracer.image_index() * distance;
+}
+
+}  // namespace
+
+Tracer::Tracer(const Lens& lens, double wavelength_nm)
+    : Tracer(lens, wavelength_nm, petzval::stop_radius_mm(lens)) {}
+
+Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
+    : wavelength_nm_(wavelength_nm), stop_index_(lens.stop_index()), stop_radius_mm_(stop_radius_mm) {
+  double z = 0, index = 1;
+  for (const Surface& surface : lens.surfaces) {
+    PreparedSurface prepared;
+    prepared.curvature = surface.curvature_per_mm;
+    prepared.conic = surface.conic;
+    prepared.vertex_z_mm = z;
+    prepared.index_before = index;
+    prepared.index_after = index = surface.material.index(wavelength_nm);
+    prepared.clear_radius_sq =
+        surface.semi_diameter_mm ? *surface.semi_diameter_mm * *surface.semi_diameter_mm : infinity;
+    for (const auto& [power, coefficient] : surface.asphere) {
+      if (coefficient == 0) continue;
+      const auto p = static_cast<std::size_t>(power);
+      if (prepared.polynomial.size() <= p) prepared.polynomial.resize(p + 1, 0.0);
+      prepared.polynomial[p] = coefficient;
+    }
+    surfaces_.push_back(std::move(prepared));
+    z += surface.thickness_mm;
+  }
+  image_z_mm_ = z;
+}
+
+namespace {
+
+/// The square of the radius that clips at a surface.
+double clip_radius_sq(const Tracer& tracer, std::size_t surface, Tracer::Clip clip) {
+  double limit = infinity;
+  if (clip == Tracer::Clip::apertures) limit = tracer.surfaces()[surface].clear_radius_sq;
+  if (clip != Tracer::Clip::none && surface == tracer.stop_index())
+    limit = std::min(limit, tracer.stop_radius_mm() * tracer.stop_radius_mm());
+  return limit;
+}
+
+void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
+               std::vector<Intersection>* path) {
+  walk(
+      tracer.surfaces(), backward, ray,
+      [&](std::size_t i, const SurfaceRay& at, const double*) {
+        return at.x * at.x + at.y * at.y <= clip_radius_sq(tracer, i, clip) * (1 + rim_tolerance);
+      },
+      [&](std::size_t i, const SurfaceRay& at, const double* normal) {
+        if (path)
+          path->push_back({{at.x, at.y, at.z + tracer.vertex_z_mm(i)},
+                           {at.l, at.m, at.n},
+                           {normal[0], normal[1], normal[2]}});
+      });
+  if (!backward) {
+    reach_image(tracer, ray);
+    if (path && ray.status == RayStatus::ok) path->push_back({ray.point_mm, ray.direction, {0, 0, 1}});
+  }
+}
+
+void trace_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays) {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays.status[i] != RayStatus::ok) continue;
+    Ray ray{{rays.x_mm[i], rays.y_mm[i], rays.z_mm[i]}, {rays.l[i], rays.m[i], rays.n[i]}, rays.opl_mm[i]};
+    trace_one(tracer, backward, clip, ray, nullptr);
+    rays.x_mm[i] = ray.point_mm[0];
+    rays.y_mm[i] = ray.point_mm[1];
+    rays.z_mm[i] = ray.point_mm[2];
+    rays.l[i] = ray.direction[0];
+    rays.m[i] = ray.direction[1];
+    rays.n[i] = ray.direction[2];
+    rays.opl_mm[i] = ray.opl_mm;
+    rays.status[i] = ray.status;
+    rays.failed_at[i] = static_cast<std::int16_t>(ray.failed_at);
+  }
+}
+
+}  // namespace
+
+void Tracer::trace(RayBatch& rays, Clip clip) const {
+  trace_batch(*this, false, clip, rays);
+}
+void Tracer::trace_backward(RayBatch& rays, Clip clip) const {
+  trace_batch(*this, true, clip, rays);
+}
+
+Ray Tracer::trace(Ray ray, Clip clip, std::vector<Intersection>* path) const {
+  trace_one(*this, false, clip, ray, path);
+  return ray;
+}
+
+Ray Tracer::trace_backward(Ray ray, Clip clip, std::vector<Intersection>* path) const {
+  trace_one(*this, true, clip, ray, path);
+  return ray;
+}
+
+Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) const {
+  Clearance result;
+  result.ray = ray;
+  result.worst = -infinity;
+  walk(
+      surfaces_, backward, result.ray,
+      [&](std::size_t i, const SurfaceRay& at, const double*) {
+        const double excess = (at.x * at.x + at.y * at.y) / clip_radius_sq(*this, i, clip) - 1;
+        if (excess > result.worst) {
+          result.worst = excess;
+          result.surface = static_cast<int>(i);
+        }
+        if (i == stop_index_) {
+          result.stop_x_mm = at.x;
+          result.stop_y_mm = at.y;
+          result.reached_stop = true;
+        }
+        return true;
+      },
+      [](std::size_t, const SurfaceRay&, const double*) {});
+  if (!backward) reach_image(*this, result.ray);
+  if (result.ray.status != RayStatus::ok) {
+    result.worst = infinity;
+    result.surface = result.ray.failed_at;
+  }
+  return result;
+}
+
+}  // namespace petzval

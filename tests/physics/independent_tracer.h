@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A second ray tracer, written apart from the first: it finds a sphere by its centre and a quadratic in long
+// double, knows only spheres and planes, and shares no line with src/petzval/trace.
+#pragma once
+
+#include <petzval/lens/lens.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace petzval::independent {
+
+using Real = long double;
+using Vec = std::array<Real, 3>;
+
+inline Real dot(const Vec& a, const Vec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vec along(const Vec& p, const Vec& d, Real t) {
+  return {p[0] + t * d[0], p[1] + t * d[1], p[2] + t * d[2]};
+}
+inline Vec unit(const Vec& a) {
+  const Real norm = std::sqrt(dot(a, a));
+  return {a[0] / norm, a[1] / norm, a[2] / norm};
+}
+
+struct IndependentRay {
+  Vec point, direction;
+  Real path = 0;
+};
+
+class SphereTracer {
+ public:
+  SphereTracer(const Lens& lens, double wavelength_nm, Real stop_radius) {
+    Real z = 0;
+    for (const Surface& s : lens.surfaces) {
+      Real clear = s.semi_diameter_mm ? Real(*s.semi_diameter_mm) : Real(1e30);
+      if (s.stop) clear = std::min(clear, stop_radius);
+      surfaces_.push_back({z, s.curvature_per_mm == 0 ? Real(0) : 1 / Real(s.curvature_per_mm),
+                           Real(s.material.index(wavelength_nm)), clear});
+      z += s.thickness_mm;
+    }
+    image_z_ = z;
+  }
+
+  Real image_z() const { return image_z_; }
+
+  /// Through all surfaces in the direction of travel; nothing when it misses, is clipped or totally
+  /// reflected.
+  std::optional<IndependentRay> trace(IndependentRay ray, bool backward, bool clip = true) const {
+    const std::size_t count = surfaces_.size();
+    for (std::size_t step = 0; step < count; ++step) {
+      const std::size_t i = backward ? count - 1 - step : step;
+      const Real before_surface = i == 0 ? Real(1) : surfaces_[i - 1].index_after;
+      const Real n1 = backward ? surfaces_[i].index_after : before_surface;
+      const Real n2 = backward ? before_surface : surfaces_[i].index_after;
+      if (!meet(surfaces_[i], n1, ray)) return {};
+      if (clip &&
+          ray.point[0] * ray.point[0] + ray.point[1] * ray.point[1] > surfaces_[i].clear * surfaces_[i].clear)
+        return {};
+      if (!bend(surfaces_[i], n1, n2, ray)) return {};
+    }
+    return ray;
+  }
+
+ private:
+  struct Sphere {
+    Real z, radius, index_after, clear;
+  };
+
+  static bool meet(const Sphere& s, Real index, IndependentRay& ray) {
+    Real t;
+    if (s.radius == 0) {
+      t = (s.z - ray.point[2]) / ray.direction[2];
+    } else {
+      const Vec from_centre = {ray.point[0], ray.point[1], ray.point[2] - (s.z + s.radius)};
+      const Real b = dot(from_centre, ray.direction), c = dot(from_centre, from_centre) - s.radius * s.radius;
+      const Real under = b * b - c;
+      if (under < 0) return false;
+      const Real t1 = -b - std::sqrt(under), t2 = -b + std::sqrt(under);
+      // The crossing on the vertex's half of the sphere, on the side of the centre where the vertex is.
+      const Real z1 = ray.point[2] + t1 * ray.direction[2], z2 = ray.point[2] + t2 * ray.direction[2];
+      t = std::abs(z1 - s.z) < std::abs(z2 - s.z) ? t1 : t2;
+    }
+    ray.point = along(ray.point, ray.direction, t);
+    ray.path += index * t;
+    return true;
+  }
+
+  static bool bend(const Sphere& s, Real n1, Real n2, IndependentRay& ray) {
+    Vec normal = {0, 0, 1};
+    if (s.radius != 0) normal = unit({ray.point[0], ray.point[1], ray.point[2] - (s.z + s.radius)});
+    // Cross-product form: the tangential part of n·d is kept.
+    const Real cosine = dot(ray.direction, normal);
+    Vec tangential;
+    for (int a = 0; a < 3; ++a) tangential[a] = (ray.direction[a] - cosine * normal[a]) * n1 / n2;
+    const Real sine_sq = dot(tangential, tangential);
+    if (sine_sq > 1) return false;
+    const Real out = std::copysign(std::sqrt(1 - sine_sq), cosine);
+    for (int a = 0; a < 3; ++a) ray.direction[a] = tangential[a] + out * normal[a];
+    return true;
+  }
+
+  std::vector<Sphere> surfaces_;
+  Real image_z_ = 0;
+};
+
+}  // namespace petzval::independent
