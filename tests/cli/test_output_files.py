@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Outputs appear whole or not at all: a full disk, a folder that is not there, a name that is taken."""
+
+import os
+import resource
+import shutil
+import stat
+import subprocess
+import unittest
+
+from petzval_cli import PROGRAM, ProgramTest, leaf_commands
+from sample_files import SINGLET
+
+# Commands that write a file, by what they write; each is given `-o NAME` or its like as the last word.
+WRITERS = [
+    ["lens", "convert", "singlet.json", "out.json"],
+    ["lens", "draw", "edmund-54852", "-o", "out.svg"],
+    ["lens", "trace", "singlet.json", "--rays", "rays.csv", "-o", "out.csv"],
+]
+
+
+def one_kilobyte_at_most():
+    """In the child: writing beyond 1024 bytes fails as on a full disk (EFBIG for ENOSPC). Python has SIGXFSZ ignored
+    already, and with restore_signals off the program inherits that."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+
+
+class OutputFiles(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("singlet.json", SINGLET)
+        rays = "".join(f"0,{0.01 * i},-5,0,0,1,587.56\n" for i in range(400))
+        self.write("rays.csv", "x_mm,y_mm,z_mm,L,M,N,wavelength_nm\n" + rays)
+        self.writers = [writer for writer in WRITERS if writer[:2] in leaf_commands() or writer[:1] in leaf_commands()]
+        self.assertTrue(self.writers)
+
+    def large_writers(self):
+        """Those whose output is over a kilobyte, with that output removed again."""
+        for writer in self.writers:
+            self.assert_succeeds(*writer)
+            output = self.folder / writer[-1]
+            size = output.stat().st_size
+            output.unlink()
+            if size > 1024:
+                yield writer
+
+    def test_a_full_disk(self):
+        writers = list(self.large_writers())
+        self.assertTrue(writers)
+        for writer in writers:
+            with self.subTest(writer=writer):
+                self.assert_refused(*writer, code=1, words=[writer[-1]], preexec_fn=one_kilobyte_at_most,
+                                    restore_signals=False)
+
+    def test_a_full_disk_keeps_what_was_there(self):
+        for writer in self.large_writers():
+            self.write(writer[-1], "precious")
+            with self.subTest(writer=writer):
+                self.assert_refused(*writer, code=1, preexec_fn=one_kilobyte_at_most, restore_signals=False)
+
+    def test_a_really_full_disk(self):
+        """A file system of 16 kB of our own, where the machine lets a user make one."""
+        disk = self.folder / "disk"
+        disk.mkdir()
+        script = ('mount -t tmpfs -o size=16k tmpfs "$1" || exit 77; head -c 16384 /dev/zero > "$1/ballast"; '
+                  'shift; "$@"; code=$?; ls -A disk >&2; exit $code')
+        if shutil.which("unshare") is None:
+            self.skipTest("unshare is not installed")
+        command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script, "sh", "disk"]
+        for writer in self.writers:
+            arguments = [*writer[:-1], f"disk/{writer[-1]}"]
+            done = subprocess.run([*command, PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True)
+            if done.returncode == 77 or "unshare:" in done.stderr:
+                self.skipTest(f"this machine lets nobody mount a file system: {done.stderr.strip()}")
+            with self.subTest(writer=writer):
+                self.assertEqual(done.returncode, 1, done.stderr)
+                *message, left = done.stderr.splitlines()
+                self.assertEqual(left, "ballast", "nothing else is left on the disk")
+                self.assertRegex(message[-1], "^petzval: error: ")
+
+    def test_a_folder_that_is_not_there(self):
+        for writer in self.writers:
+            self.assert_refused(*writer[:-1], f"nowhere/{writer[-1]}", words=["nowhere"])
+
+    def test_a_name_that_is_a_folder(self):
+        for writer in self.writers:
+            (self.folder / writer[-1]).mkdir()
+            self.assert_refused(*writer, words=[writer[-1]])
+
+    def test_an_extension_that_means_nothing(self):
+        for writer in self.writers:
+            self.assert_refused(*writer[:-1], "out.nonsense", words=["out.nonsense"])
+
+    def test_pipes_and_devices_are_not_replaced(self):
+        """Renaming over /dev/null as root would take it from the whole machine; a pipe stands for it here."""
+        for writer in self.writers:
+            pipe = self.folder / writer[-1]
+            os.mkfifo(pipe)
+            reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+            try:
+                self.petzval(*writer, timeout=60)
+            finally:
+                os.close(reader)
+            with self.subTest(writer=writer):
+                self.assertTrue(stat.S_ISFIFO(os.stat(pipe).st_mode))
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
+    def test_a_folder_without_permission(self):
+        locked = self.folder / "locked"
+        locked.mkdir(mode=0o500)
+        for writer in self.writers:
+            self.assert_refused(*writer[:-1], f"locked/{writer[-1]}", code=1, words=["locked"])
+
+
+if __name__ == "__main__":
+    unittest.main()
