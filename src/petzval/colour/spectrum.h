@@ -8,8 +8,8 @@
 
 namespace petzval {
 
-/// Samples of a quantity at strictly increasing wavelengths [nm], linear in between. The unit of the values is
-/// the business of whoever holds the spectrum (and in the name of the variable).
+/// Samples of a quantity at strictly increasing wavelengths [nm], linear in between. The unit of the values
+/// is the business of whoever holds the spectrum (and in the name of the variable).
 class Spectrum {
  public:
   Spectrum() = default;

@@ -9,7 +9,8 @@
 
 namespace petzval {
 
-/// What a pixel value stands for: the irradiance at the pixel's centre, or its mean over a square of one pitch.
+/// What a pixel value stands for: the irradiance at the pixel's centre, or its mean over a square of one
+/// pitch.
 enum class PixelAperture { point, box };
 
 /// Spectral irradiance on the sensor [W·m⁻²·nm⁻¹]: `bands` planes of `rows` × `columns`, upright (the optical
@@ -17,6 +18,9 @@ enum class PixelAperture { point, box };
 /// (inverted) image and pitch p: column = columns/2 − x'/p, row = rows/2 + y'/p.
 class SpectralImage {
  public:
+  /// 8 GiB of values; more is refused before anything is allocated.
+  static constexpr std::size_t max_values = std::size_t{1} << 31;
+
   SpectralImage() = default;
   /// All zero. \throws InputError on sizes below 1, wavelengths that do not increase, a pitch that is not
   /// positive, or more than `max_values` values.
@@ -29,7 +33,9 @@ class SpectralImage {
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
   double pitch_um() const { return pitch_um_; }
   PixelAperture pixel_aperture() const { return aperture_; }
-  std::size_t band_size() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+  std::size_t band_size() const {
+    return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+  }
 
   /// One plane, row-major, [W·m⁻²·nm⁻¹].
   std::span<float> band(int index);
@@ -38,6 +44,10 @@ class SpectralImage {
   float at(int band_index, int row, int column) const;
   /// All planes, one after the other.
   std::span<const float> values() const { return values_; }
+
+  /// \throws InputError at the first value that is NaN or infinite, naming band, row and column. (A transform
+  /// may leave −1e-9 where there is no light: negative values are no fault.)
+  void validate() const;
 
   /// How the picture came about, in one line; stored in files.
   std::string provenance;

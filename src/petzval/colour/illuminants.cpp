@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/error.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/colour/observer.h>
+#include <petzval/colour/spectra_files.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+namespace petzval {
+
+namespace {
+
+constexpr double reference_nm = 560;
+constexpr double shortest_visible_nm = 360, longest_visible_nm = 830;
+
+/// The whole of `text` as a positive number.
+std::optional<double> positive_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  if (error != std::errc{} || end != text.data() + text.size() || !(value > 0) || std::isinf(value))
+    return {};
+  return value;
+}
+
+/// Chromaticity of daylight (CIE 15): the locus x_D(T), y_D(x_D).
+Chromaticity daylight_chromaticity(double temperature_k) {
+  const double t = 1e3 / temperature_k;
+  const double x = temperature_k <= 7000 ? ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
+                                         : ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.237040;
+  return {x, (-3.000 * x + 2.870) * x - 0.275};
+}
+
+Spectrum normalised(const Spectrum& spectrum) {
+  return spectrum.scaled(100.0 / spectrum.at(reference_nm));
+}
+
+Spectrum visible_blackbody(double temperature_k) {
+  std::vector<double> wavelengths;
+  for (double nm = shortest_visible_nm; nm <= longest_visible_nm; nm += 5) wavelengths.push_back(nm);
+  return normalised(blackbody(temperature_k, wavelengths));
+}
+
+/// "D55", "D7500": the nominal temperature.
+Spectrum nominal_daylight(double number) {
+  const double nominal_k = number < 1000 ? 100 * number : number;
+  return daylight(nominal_k * 1.4388 / 1.4380);
+}
+
+}  // namespace
+
+std::vector<std::string> illuminant_names() {
+  return {"A", "D50", "D65", "E", "F11"};
+}
+
+Spectrum daylight(double temperature_k) {
+  if (!(temperature_k >= 4000 && temperature_k <= 25000))
+    throw InputError(fmt::format("daylight of {} K; it is defined from 4000 to 25000 K", temperature_k));
+  const auto [x, y] = daylight_chromaticity(temperature_k);
+  const double m = 0.0241 + 0.2562 * x - 0.7341 * y;
+  const double m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / m;
+  const double m2 = (0.0300 - 31.4424 * x + 30.0717 * y) / m;
+  const SpectrumSet basis = read_spectrum_set("daylight_basis");
+  const Spectrum &s0 = basis.find("s0"), &s1 = basis.find("s1"), &s2 = basis.find("s2");
+  std::vector<double> values = s0.values();
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] += m1 * s1.values()[i] + m2 * s2.values()[i];
+  return Spectrum(s0.wavelengths_nm(), std::move(values));
+}
+
+double blackbody_radiance(double wavelength_nm, double temperature_k) {
+  constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
+  constexpr double per_nm = 1e-9;
+  const double lambda_m = wavelength_nm * 1e-9;
+  const double per_m =
+      2 * h * c * c / (std::pow(lambda_m, 5) * std::expm1(h * c / (lambda_m * k * temperature_k)));
+  return per_m * per_nm;
+}
+
+Spectrum blackbody(double temperature_k, std::span<const double> wavelengths_nm) {
+  if (!(temperature_k > 0) || std::isinf(temperature_k))
+    throw InputError(fmt::format("a black body of {} K; its temperature must be positive", temperature_k));
+  std::vector<double> values;
+  for (const double nm : wavelengths_nm) values.push_back(blackbody_radiance(nm, temperature_k));
+  return Spectrum({wavelengths_nm.begin(), wavelengths_nm.end()}, std::move(values));
+}
+
+Spectrum illuminant(const std::string& name) {
+  if (name == "A") return read_spectrum_set("illuminant_a").spectra[0].spectrum;
+  if (name == "D50") return read_spectrum_set("illuminant_d50").spectra[0].spectrum;
+  if (name == "D65") return read_spectrum_set("illuminant_d65").spectra[0].spectrum;
+  if (name == "F11") return read_spectrum_set("illuminant_f11").spectra[0].spectrum;
+  if (name == "E") return Spectrum({shortest_visible_nm, longest_visible_nm}, {1, 1});
+  const std::string_view text = name;
+  if (text.starts_with('D'))
+    if (const auto number = positive_number(text.substr(1))) return nominal_daylight(*number);
+  if (text.ends_with('K'))
+    if (const auto kelvins = positive_number(text.substr(0, text.size() - 1)))
+      return visible_blackbody(*kelvins);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(name, ignored)) return read_spectrum_set(name).spectra[0].spectrum;
+  throw InputError(
+      fmt::format("no illuminant '{}'; known are {}, daylight such as D55, black bodies such as 3200K, "
+                  "and files of spectra",
+                  name, fmt::join(illuminant_names(), ", ")));
+}
+
+}  // namespace petzval

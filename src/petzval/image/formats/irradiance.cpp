@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/image/formats/irradiance.h>
+#include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/spectral_exr.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace petzval {
+
+namespace {
+
+constexpr const char* pitch_attribute = "pixelPitch_um";
+constexpr const char* aperture_attribute = "pixelAperture";
+constexpr const char* provenance_attribute = "comments";  // OpenEXR's own name for it: viewers show it
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
+
+/// All but the values.
+SpectralExr description_of(const SpectralImage& image) {
+  SpectralExr exr;
+  exr.width = image.columns();
+  exr.height = image.rows();
+  exr.wavelengths_nm = image.wavelengths_nm();
+  exr.units = spectral_irradiance_units;
+  exr.numbers[pitch_attribute] = image.pitch_um();
+  exr.strings[aperture_attribute] = image.pixel_aperture() == PixelAperture::box ? "box" : "point";
+  if (!image.provenance.empty()) exr.strings[provenance_attribute] = image.provenance;
+  return exr;
+}
+
+PixelAperture aperture_of(const SpectralExr& exr, const std::string& path) {
+  const auto found = exr.strings.find(aperture_attribute);
+  if (found != exr.strings.end() && found->second == "box") return PixelAperture::box;
+  if (found != exr.strings.end() && found->second == "point") return PixelAperture::point;
+  throw InputError(path, fmt::format("needs the attribute {} = \"box\" or \"point\"", aperture_attribute));
+}
+
+}  // namespace
+
+void write_irradiance(const std::string& path, const SpectralImage& image) {
+  const std::string extension = extension_of(path);
+  if (extension == ".exr") return write_spectral_exr(path, description_of(image), image.values());
+  if (extension == ".npy") return write_npy(path, image);
+  throw InputError(path, "irradiance is written as .exr or .npy");
+}
+
+SpectralImage read_irradiance(const std::string& path) {
+  if (extension_of(path) == ".npy")
+    throw InputError(path,
+                     "a .npy file carries neither wavelengths nor pixel pitch; give the irradiance as .exr");
+  SpectralExr exr = read_spectral_exr(path);
+  if (exr.kind != SpectralExr::Kind::emissive || exr.units != spectral_irradiance_units)
+    throw InputError(path, fmt::format("holds {}, not irradiance [{}]",
+                                       exr.kind == SpectralExr::Kind::reflective ? "reflectance"
+                                       : exr.units.empty()                       ? "values without units"
+                                                                                 : "values in " + exr.units,
+                                       spectral_irradiance_units));
+  const auto pitch = exr.numbers.find(pitch_attribute);
+  if (pitch == exr.numbers.end())
+    throw InputError(path, fmt::format("has no pixel pitch; the attribute {} must give it", pitch_attribute));
+  exr.validate(path);
+  const PixelAperture aperture = aperture_of(exr, path);
+  if (!(pitch->second > 0) || std::isinf(pitch->second))
+    throw InputError(path, fmt::format("{} is {}; it must be positive", pitch_attribute, pitch->second));
+  SpectralImage image(exr.width, exr.height, exr.wavelengths_nm, pitch->second, aperture);
+  for (int band = 0; band < image.bands(); ++band) {
+    const std::span<const float> plane = exr.plane(static_cast<std::size_t>(band));
+    std::copy(plane.begin(), plane.end(), image.band(band).begin());
+  }
+  image.provenance = exr.strings[provenance_attribute];
+  return image;
+}
+
+}  // namespace petzval

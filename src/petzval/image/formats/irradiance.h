@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Irradiance pictures in files, the format chosen by the extension.
+#pragma once
+
+#include <petzval/image/spectral_image.h>
+
+#include <string>
+
+namespace petzval {
+
+/// Writes an image as spectral OpenEXR (.exr) or NumPy array (.npy).
+///
+/// .exr carries everything: channels S0.…nm, emissiveUnits "W.m^-2.nm^-1", and the attributes pixelPitch_um
+/// (double), pixelAperture ("box" or "point") and comments (the provenance). .npy is float32 of shape (rows,
+/// columns, bands) and carries neither wavelengths nor pitch nor units. \throws InputError for another
+/// extension, and as the writers; Failure.
+void write_irradiance(const std::string& path, const SpectralImage& image);
+
+/// Reads what write_irradiance wrote as .exr.
+/// \throws InputError for a file that is damaged or holds something else (radiance, no pitch, NaN), and for
+/// .npy.
+SpectralImage read_irradiance(const std::string& path);
+
+}  // namespace petzval

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NumPy's array files (.npy, NEP 1: versions 1.0 to 3.0).
+#pragma once
+
+#include <petzval/image/spectral_image.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace petzval {
+
+/// An array in C order (the last index runs fastest). A .npy file carries no units and no wavelengths:
+/// whoever writes one says them elsewhere.
+struct NpyArray {
+  std::vector<std::size_t> shape;
+  std::variant<std::vector<float>, std::vector<double>> values;
+};
+
+/// Writes float32 or float64, little-endian, version 1.0: `numpy.load(path)` opens it.
+/// \throws InputError if `values` does not fill `shape`, and as WholeFile; Failure.
+void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values);
+void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const double> values);
+/// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹].
+void write_npy(const std::string& path, const SpectralImage& image);
+
+/// Reads float32 and float64 of either byte order, in C order.
+/// \throws InputError for another type or order, a damaged header, or a file shorter or longer than its shape
+/// says.
+NpyArray read_npy(const std::string& path);
+
+}  // namespace petzval

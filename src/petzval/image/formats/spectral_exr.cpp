@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/image/formats/exr_header.h>
+#include <petzval/image/formats/output_file.h>
+#include <petzval/image/formats/spectral_exr.h>
+#include <petzval/image/spectral_image.h>
+
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+
+namespace petzval {
+
+namespace {
+
+constexpr const char* version_attribute = "spectralLayoutVersion";
+constexpr const char* units_attribute = "emissiveUnits";
+constexpr double same_band_nm = 1e-6;  // closer bands are one band written in two units
+
+struct Band {
+  double wavelength_nm;
+  std::string channel;
+};
+
+// ---- reading
+
+/// The bands of the file, sorted, and their kind.
+std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr::Kind& kind,
+                           const std::string& path) {
+  std::vector<Band> light, reflectance;
+  std::string others;
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    const std::optional<SpectralChannel> parsed = parse_spectral_channel(channel.name());
+    if (!parsed)
+      others += (others.empty() ? "" : ", ") + std::string(channel.name());
+    else if (parsed->stokes == 0)
+      (parsed->kind == SpectralExr::Kind::emissive ? light : reflectance)
+          .push_back({parsed->wavelength_nm, channel.name()});
+    if (parsed && (channel.channel().xSampling != 1 || channel.channel().ySampling != 1))
+      throw InputError(path,
+                       fmt::format("channel {} is subsampled; every pixel needs a value", channel.name()));
+  }
+  kind = light.empty() ? SpectralExr::Kind::reflective : SpectralExr::Kind::emissive;
+  std::vector<Band> bands = light.empty() ? reflectance : light;
+  if (bands.empty())
+    throw InputError(path,
+                     fmt::format("has no spectral channels such as S0.550,0nm or T.550,0nm, only {:.200}",
+                                 others.empty() ? "polarised ones" : others));
+  std::sort(bands.begin(), bands.end(),
+            [](const Band& a, const Band& b) { return a.wavelength_nm < b.wavelength_nm; });
+  for (std::size_t i = 1; i < bands.size(); ++i)
+    if (bands[i].wavelength_nm - bands[i - 1].wavelength_nm < same_band_nm)
+      throw InputError(path, fmt::format("has the wavelength {} nm twice: {} and {}", bands[i].wavelength_nm,
+                                         bands[i - 1].channel, bands[i].channel));
+  return bands;
+}
+
+void take_attributes(const Imf::Header& header, SpectralExr& exr) {
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute()))
+      (name == units_attribute ? exr.units : exr.strings[name]) = text->value();
+    else if (const auto* real = dynamic_cast<const Imf::DoubleAttribute*>(&it.attribute()))
+      exr.numbers[name] = real->value();
+    else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&it.attribute()))
+      exr.numbers[name] = static_cast<double>(single->value());
+    else if (const auto* integer = dynamic_cast<const Imf::IntAttribute*>(&it.attribute()))
+      exr.numbers[name] = integer->value();
+  }
+  // These belong to the container, or are written anew.
+  for (const char* name : {"pixelAspectRatio", "screenWindowWidth", "chunkCount"}) exr.numbers.erase(name);
+  for (const char* name : {"name", "type", version_attribute}) exr.strings.erase(name);
+}
+
+void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralExr& exr) {
+  const Imath::Box2i window = file.header().dataWindow();
+  Imf::FrameBuffer buffer;
+  for (std::size_t i = 0; i < bands.size(); ++i)
+    buffer.insert(bands[i].channel, Imf::Slice::Make(Imf::FLOAT, exr.plane(i).data(), window, sizeof(float),
+                                                     sizeof(float) * static_cast<std::size_t>(exr.width)));
+  file.setFrameBuffer(buffer);
+  file.readPixels(window.min.y, window.max.y);
+}
+
+SpectralExr read(const std::string& path) {
+  Imf::InputFile file(path.c_str());
+  SpectralExr exr;
+  const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
+  for (const Band& band : bands) exr.wavelengths_nm.push_back(band.wavelength_nm);
+  const Imath::Box2i window = file.header().dataWindow();
+  exr.width = window.max.x - window.min.x + 1;
+  exr.height = window.max.y - window.min.y + 1;
+  if (bands.size() > SpectralImage::max_values / exr.band_size())
+    throw InputError(path, fmt::format("{} x {} pixels in {} bands are more than can be held", exr.width,
+                                       exr.height, bands.size()));
+  exr.values.resize(exr.band_size() * bands.size());
+  take_attributes(file.header(), exr);
+  read_pixels(file, bands, exr);
+  return exr;
+}
+
+// ---- writing
+
+/// OpenEXR's own file stream loses the errors of its last bytes; this one loses none.
+class ExrStream : public Imf::OStream {
+ public:
+  explicit ExrStream(OutputFile& file) : Imf::OStream(file.path().c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    guarded([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
+  }
+  uint64_t tellp() override { return file_.position(); }
+  void seekp(uint64_t position) override {
+    guarded([&] { file_.seek(position); });
+  }
+  /// Throws what a write threw, even one from OpenEXR's destructor, which swallows exceptions.
+  void rethrow() const {
+    if (reason_) std::rethrow_exception(reason_);
+  }
+
+ private:
+  template <class Work>
+  void guarded(const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      if (!reason_) reason_ = std::current_exception();
+      throw;
+    }
+  }
+
+  OutputFile& file_;
+  std::exception_ptr reason_;
+};
+
+void check(const std::string& path, const SpectralExr& exr, std::span<const float> values) {
+  if (exr.width < 1 || exr.height < 1 || exr.wavelengths_nm.empty())
+    throw InputError(path, "an image needs at least one pixel and one wavelength");
+  if (values.size() != exr.band_size() * exr.wavelengths_nm.size())
+    throw InputError(path, fmt::format("{} values for {} x {} pixels in {} bands", values.size(), exr.width,
+                                       exr.height, exr.wavelengths_nm.size()));
+  for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i)
+    if (!(exr.wavelengths_nm[i] > 0) || std::isinf(exr.wavelengths_nm[i]) ||
+        (i > 0 && exr.wavelengths_nm[i] - exr.wavelengths_nm[i - 1] < same_band_nm))
+      throw InputError(
+          path, fmt::format("the wavelengths of an image must be positive and increase; {} nm does not",
+                            exr.wavelengths_nm[i]));
+}
+
+Imf::Header header_of(const SpectralExr& exr) {
+  Imf::Header header(exr.width, exr.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.insert(version_attribute, Imf::StringAttribute("1.0"));
+  if (!exr.units.empty()) header.insert(units_attribute, Imf::StringAttribute(exr.units));
+  for (const auto& [name, text] : exr.strings) header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, number] : exr.numbers) header.insert(name, Imf::DoubleAttribute(number));
+  return header;
+}
+
+void write(OutputFile& output, const SpectralExr& exr, std::span<const float> values) {
+  Imf::Header header = header_of(exr);
+  Imf::FrameBuffer buffer;
+  for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i) {
+    const std::string channel = spectral_channel_name({exr.kind, 0, exr.wavelengths_nm[i]});
+    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    // The library takes non-const memory for reading and for writing alike; a writer only reads it.
+    auto* plane = reinterpret_cast<char*>(const_cast<float*>(values.data() + i * exr.band_size()));
+    buffer.insert(channel, Imf::Slice(Imf::FLOAT, plane, sizeof(float),
+                                      sizeof(float) * static_cast<std::size_t>(exr.width)));
+  }
+  ExrStream stream(output);
+  try {
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(exr.height);
+  } catch (...) {
+    stream.rethrow();
+    throw;
+  }
+  stream.rethrow();
+}
+
+}  // namespace
+
+void SpectralExr::validate(const std::string& file) const {
+  const auto bad =
+      std::find_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); });
+  if (bad == values.end()) return;
+  const auto index = static_cast<std::size_t>(bad - values.begin());
+  const std::size_t in_band = index % band_size(), columns = static_cast<std::size_t>(width);
+  throw InputError(
+      file, fmt::format("the value at {} nm, row {}, column {} is {}; it must be finite",
+                        wavelengths_nm[index / band_size()], in_band / columns, in_band % columns, *bad));
+}
+
+SpectralExr read_spectral_exr(const std::string& path) {
+  check_exr_header(path);
+  try {
+    return read(path);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Failure(path + ": not enough memory to read it");
+  } catch (const std::exception& error) {
+    throw InputError(path, fmt::format("is damaged: {}", error.what()));
+  }
+}
+
+void write_spectral_exr(const std::string& path, const SpectralExr& exr) {
+  write_spectral_exr(path, exr, exr.values);
+}
+
+void write_spectral_exr(const std::string& path, const SpectralExr& exr, std::span<const float> values) {
+  check(path, exr, values);
+  OutputFile output(path);
+  try {
+    write(output, exr, values);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Failure(fmt::format("{}: cannot be written: {}", path, error.what()));
+  }
+  output.commit();
+}
+
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spectral OpenEXR files.
+#pragma once
+
+#include <petzval/image/formats/spectral_channel.h>
+
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// Units that Petzval writes in the attribute `emissiveUnits`.
+inline constexpr const char* spectral_radiance_units = "W.m^-2.sr^-1.nm^-1";
+inline constexpr const char* spectral_irradiance_units = "W.m^-2.nm^-1";
+
+/// A spectral image as a file holds it: a scene's radiance, a sensor's irradiance, a texture's reflectance.
+///
+///     SpectralExr exr;
+///     exr.width = 640, exr.height = 480;
+///     exr.wavelengths_nm = {450, 550, 650};
+///     exr.units = spectral_radiance_units;
+///     exr.values.resize(exr.band_size() * exr.wavelengths_nm.size());
+///     write_spectral_exr("scene.exr", exr);
+struct SpectralExr {
+  using Kind = SpectralChannel::Kind;
+
+  int width = 0, height = 0;
+  Kind kind = Kind::emissive;
+  std::vector<double> wavelengths_nm;  ///< strictly increasing
+  std::string units;          ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
+  std::vector<float> values;  ///< a plane a wavelength, rows from the top
+  std::map<std::string, std::string> strings;  ///< other attributes of the file that are text
+  std::map<std::string, double> numbers;       ///< other attributes that are one number
+
+  std::size_t band_size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::span<float> plane(std::size_t band) {
+    return std::span<float>(values).subspan(band * band_size(), band_size());
+  }
+  std::span<const float> plane(std::size_t band) const {
+    return std::span<const float>(values).subspan(band * band_size(), band_size());
+  }
+  /// \throws InputError at the first value that is NaN or infinite, naming wavelength, row and column.
+  /// \param file  for the message.
+  void validate(const std::string& file) const;
+};
+
+/// Reads the layout of Fichet, Pacanowski & Wilkie 2021: half, float or integer channels, scan lines or
+/// tiles, any compression, any data window. If the file has light (S0) and reflectance (T), the light is
+/// read; polarisation (S1…S3), colour previews (R, G, B) and bi-spectral channels are left aside. Bands are
+/// sorted. \throws InputError if the file is missing, damaged, truncated or not spectral, or has a band
+/// twice. Values are not looked at: see SpectralExr::validate.
+SpectralExr read_spectral_exr(const std::string& path);
+
+/// Writes 32-bit floats, scan lines, ZIP compression; the same bytes for the same image.
+/// \throws InputError unless the sizes agree and the wavelengths increase, and as WholeFile; Failure.
+void write_spectral_exr(const std::string& path, const SpectralExr& exr);
+/// The same with the values taken from elsewhere, without a copy; `description.values` is not looked at.
+void write_spectral_exr(const std::string& path, const SpectralExr& description,
+                        std::span<const float> values);
+
+}  // namespace petzval

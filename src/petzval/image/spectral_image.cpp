@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/image/spectral_image.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+void check_wavelengths(const std::vector<double>& wavelengths_nm) {
+  if (wavelengths_nm.empty()) throw InputError("an image needs at least one wavelength");
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
+    if (!(wavelengths_nm[i] > 0) || std::isinf(wavelengths_nm[i]))
+      throw InputError(
+          fmt::format("a wavelength of {} nm; it must be positive and finite", wavelengths_nm[i]));
+    if (i > 0 && wavelengths_nm[i] <= wavelengths_nm[i - 1])
+      throw InputError(fmt::format("the wavelengths of an image must increase, but {} nm comes after {} nm",
+                                   wavelengths_nm[i], wavelengths_nm[i - 1]));
+  }
+}
+
+}  // namespace
+
+SpectralImage::SpectralImage(int columns, int rows, std::vector<double> wavelengths_nm, double pitch_um,
+                             PixelAperture aperture)
+    : columns_(columns),
+      rows_(rows),
+      wavelengths_nm_(std::move(wavelengths_nm)),
+      pitch_um_(pitch_um),
+      aperture_(aperture) {
+  if (columns < 1 || rows < 1)
+    throw InputError(fmt::format("an image of {} x {} pixels; both sizes must be at least 1", columns, rows));
+  check_wavelengths(wavelengths_nm_);
+  if (!(pitch_um > 0) || std::isinf(pitch_um))
+    throw InputError(fmt::format("a pixel pitch of {} um; it must be positive", pitch_um));
+  if (wavelengths_nm_.size() > max_values / band_size())
+    throw InputError(fmt::format("an image of {} x {} pixels and {} bands is more than {} values", columns,
+                                 rows, wavelengths_nm_.size(), max_values));
+  values_.assign(band_size() * wavelengths_nm_.size(), 0.0f);
+}
+
+std::span<float> SpectralImage::band(int index) {
+  return std::span<float>(values_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+}
+
+std::span<const float> SpectralImage::band(int index) const {
+  return std::span<const float>(values_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+}
+
+float& SpectralImage::at(int band_index, int row, int column) {
+  return band(band_index)[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                          static_cast<std::size_t>(column)];
+}
+
+float SpectralImage::at(int band_index, int row, int column) const {
+  return band(band_index)[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                          static_cast<std::size_t>(column)];
+}
+
+void SpectralImage::validate() const {
+  const auto bad =
+      std::find_if(values_.begin(), values_.end(), [](float value) { return !std::isfinite(value); });
+  if (bad == values_.end()) return;
+  const auto index = static_cast<std::size_t>(bad - values_.begin());
+  const std::size_t in_band = index % band_size(), columns = static_cast<std::size_t>(columns_);
+  throw InputError(fmt::format("the irradiance at {} nm, row {}, column {} is {}; it must be finite",
+                               wavelengths_nm_[index / band_size()], in_band / columns, in_band % columns,
+                               *bad));
+}
+
+}  // namespace petzval
