@@ -151,7 +151,7 @@ def signed(value):
 
 def mantissa(value, exponent):
     scaled = value.scaleb(-exponent)
-    # Within these bounds mantissa / 10^-exponent is one correctly rounded division: the double nearest to the decimal.
+    # Within these bounds one division by a power of ten gives the reader the double nearest to the decimal.
     if scaled != int(scaled) or abs(scaled) >= 2**53 or not -22 <= exponent <= 22:
         raise ValueError(f"{value} does not fit the format")
     return int(scaled)
@@ -197,7 +197,10 @@ def pack(glasses):
         text = name.encode("ascii")
         body += varint(len(text)) + text + varint(glass_number)
     for glass in glasses:
-        data = record(glass, number_of[glass.names[0]])
+        try:
+            data = record(glass, number_of[glass.names[0]])
+        except ValueError as error:
+            raise ValueError(f"{glass.names[0]}: {error}") from error
         body += varint(len(data)) + data
     return MAGIC + struct.pack("<I", zlib.crc32(body)) + body
 
@@ -215,7 +218,10 @@ def main():
             glasses.append(read_glass(path))
         except (ValueError, KeyError, ArithmeticError) as error:
             sys.exit(f"pack_glass: error: {path}: {error}")
-    data = pack(glasses)
+    try:
+        data = pack(glasses)
+    except ValueError as error:
+        sys.exit(f"pack_glass: error: {error}")
     aside = arguments.output.with_name(arguments.output.name + ".part")
     aside.write_bytes(data)
     os.replace(aside, arguments.output)

