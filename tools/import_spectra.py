@@ -37,10 +37,10 @@ TABLES = {
         "illuminant_a", "CIE standard illuminant A (tungsten, 2856 K)",
         "CIE 15, as distributed with ISETCam (MIT), illuminantA", RELATIVE, ["power"], None),
     "illuminant_d50": (
-        "illuminant_d50", "CIE illuminant D50", "CIE 15, as distributed with ISETCam (MIT), D50", RELATIVE,
+        "illuminant_d50", "daylight of 5000 K (CIE D50 is 5003 K)", "ISETCam (MIT), D50", RELATIVE,
         ["power"], None),
     "illuminant_d65": (
-        "illuminant_d65", "CIE standard illuminant D65", "CIE 15, as distributed with ISETCam (MIT), D65", RELATIVE,
+        "illuminant_d65", "daylight of 6500 K (CIE D65 is 6504 K)", "ISETCam (MIT), D65", RELATIVE,
         ["power"], None),
     "illuminant_f11": (
         "illuminant_f11", "CIE illuminant F11 (three-band fluorescent), every 10 nm",

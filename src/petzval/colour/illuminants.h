@@ -11,8 +11,8 @@
 namespace petzval {
 
 /// Relative spectral power of an illuminant by name:
-///   "A", "D50", "D65", "F11"   the CIE tables (data/spectra/illuminant_*.csv)
-///   "D55", "D75", "D4000" …    CIE daylight of that nominal temperature (two digits: hundreds of kelvins)
+///   "A", "F11"                 the CIE tables (data/spectra/illuminant_*.csv)
+///   "D50", "D65", "D5500" …    CIE daylight of that nominal temperature (below 1000: hundreds of kelvins)
 ///   "E"                        equal energy, 360 to 830 nm
 ///   "3200K"                    a black body
 /// or the first spectrum of a file given by its path. Case matters. The scale is that of the table; D series
