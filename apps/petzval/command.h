@@ -14,16 +14,17 @@ namespace petzval::app {
 
 /// Options that every subcommand takes.
 struct Shared {
-  int threads = 0;         ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;
-  bool quiet = false;      ///< no notes, no progress
+  bool quiet = false;  ///< no notes, no progress
   bool json = false;
 };
 
-/// Adds a subcommand with --threads, --seed, --quiet (and --json if it prints numbers), an example for the help
-/// text, and the work to do once the command line has been parsed.
-CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name, const std::string& description,
-                      const std::string& example, bool prints_numbers, std::function<void()> work);
+/// Adds a subcommand with --threads, --seed, --quiet (and --json if it prints numbers), an example for the
+/// help text, and the work to do once the command line has been parsed.
+CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
+                      const std::string& description, const std::string& example, bool prints_numbers,
+                      std::function<void()> work);
 
 /// A lens on the command line: LENS, --set, --substitute.
 struct LensChoice {
@@ -42,5 +43,7 @@ void note(const Shared& shared, const std::string& message);
 
 // One function a subcommand, each in its own file.
 void add_lens_commands(CLI::App& app, Shared& shared);
+void add_glass_commands(CLI::App& app, Shared& shared);
+void add_scene_commands(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -25,6 +25,8 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", std::string("petzval ") + version());
   program.require_subcommand(1);
   app::add_lens_commands(program, shared);
+  app::add_glass_commands(program, shared);
+  app::add_scene_commands(program, shared);
   try {
     program.parse(argc, argv);
     // Results on stdout are results: a full disk behind a pipe is a failure too.

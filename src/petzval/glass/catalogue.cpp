@@ -8,6 +8,7 @@
 #include <petzval/glass/packed_catalogue.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace petzval {
@@ -22,6 +23,13 @@ constexpr std::size_t largest_file = std::size_t{64} << 20;
 bool same_dispersion(const Glass& a, const Glass& b) {
   return a.formula == b.formula && a.coefficients == b.coefficients && a.n_table == b.n_table &&
          a.shortest_nm == b.shortest_nm && a.longest_nm == b.longest_nm;
+}
+
+/// "BK7" of "N-BK7", "LAK10" of "H-LAK10": makers put a letter or two for the kind in front.
+std::string_view without_prefix(std::string_view bare) {
+  constexpr std::size_t longest_prefix = 2;
+  const std::size_t dash = bare.find('-');
+  return dash <= longest_prefix ? bare.substr(dash + 1) : bare;
 }
 
 }  // namespace
@@ -65,18 +73,27 @@ const Name* GlassCatalogue::Impl::the_one(const std::string& name,
   return found.front();
 }
 
-/// Full names of the glasses whose bare names are nearest, within one catalogue or ("") in all.
+/// Full names of the glasses whose bare names, with or without the maker's prefix, are nearest, within one
+/// catalogue or ("") in all.
 std::vector<std::string> GlassCatalogue::Impl::nearest(const std::string& bare,
                                                        const std::string& folded_catalogue) const {
-  std::set<std::string> bare_names;
-  for (const Name& name : packed.names())
-    if (folded_catalogue.empty() || name.folded_catalogue() == folded_catalogue)
-      bare_names.emplace(name.folded_bare());
-  std::vector<std::string> full;
-  for (const std::string& near : nearest_names(bare, {bare_names.begin(), bare_names.end()}))
-    for (const Name* name : find_bare(near))
-      if (folded_catalogue.empty() || name->folded_catalogue() == folded_catalogue)
-        full.push_back(name->full);
+  constexpr std::size_t most = 6;
+  std::multimap<std::string, const Name*> by_name;
+  for (const Name& name : packed.names()) {
+    if (!folded_catalogue.empty() && name.folded_catalogue() != folded_catalogue) continue;
+    by_name.emplace(name.folded_bare(), &name);
+    if (const auto core = without_prefix(name.folded_bare()); core != name.folded_bare())
+      by_name.emplace(core, &name);
+  }
+  std::vector<std::string> candidates, full;
+  for (const auto& [name, glass] : by_name)
+    if (candidates.empty() || candidates.back() != name) candidates.push_back(name);
+  for (const std::string& near : nearest_names(bare, candidates)) {
+    const auto [first, last] = by_name.equal_range(near);
+    for (auto entry = first; entry != last && full.size() < most; ++entry)
+      if (std::find(full.begin(), full.end(), entry->second->full) == full.end())
+        full.push_back(entry->second->full);
+  }
   return full;
 }
 
