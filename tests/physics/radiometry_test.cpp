@@ -42,8 +42,8 @@ TEST_P(EdmundHeights, SensorGEqualsPublishedFiguresAndARayCount) {
   const Lens lens = read_lens("edmund-54852").lens;
   FieldTracer tracer(lens, 587.5618);
   const double g = tracer.g_sensor_sr(chief_at_height(tracer, height));
-  // Figures to five digits, from the method's notes (an independent prototype).
-  EXPECT_NEAR(g, expected, 1.5e-5);
+  // Figures of an independent prototype, at heights that it gives to 0.01 mm; g changes by up to 0.03 sr/mm.
+  EXPECT_NEAR(g, expected, 0.03 * 0.005);
   // A square grid of N² points counts an area A with perimeter P to about P·(2/N)^1.5/√P ≈ 2e-4 A here.
   EXPECT_NEAR(counted_solid_angle(lens, 587.5618, height, 1600) / g, 1, 1e-3);
 }

@@ -59,7 +59,7 @@ std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRe
     const double wavelength = tracer.tracer().wavelength_nm();
     DistortionRow row;
     row.image_height_mm = chief_or_error(tracer, field, object_field).image_height_mm;
-    row.paraxial_image_height_mm = paraxial_image_height_mm(lens, object_field, wavelength);
+    row.paraxial_image_height_mm = ideal_image_height_mm(lens, object_field, wavelength);
     const auto percent = [&](double ideal) {
       return ideal == 0 ? 0.0 : 100 * (row.image_height_mm - ideal) / ideal;
     };

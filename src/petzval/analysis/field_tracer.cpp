@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
@@ -82,7 +83,7 @@ double FieldTracer::object_area_per_image_area(const ChiefRay& chief) {
 
 std::optional<double> FieldTracer::object_field_at_image_height(double image_height_mm) {
   if (image_height_mm == 0) return 0.0;
-  const double paraxial = paraxial_image_height_mm(lens_, difference_step(lens_), tracer_.wavelength_nm());
+  const double paraxial = ideal_image_height_mm(lens_, difference_step(lens_), tracer_.wavelength_nm());
   const double direction = std::copysign(1.0, paraxial * image_height_mm);
   const double wanted = std::abs(image_height_mm);
   const double stride = lens_.object_distance_mm ? *lens_.object_distance_mm / 50 : 1.0;

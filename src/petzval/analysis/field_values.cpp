@@ -51,4 +51,10 @@ double object_field(const Lens& lens, Fields::Kind kind, double value) {
   return value;
 }
 
+double ideal_image_height_mm(const Lens& lens, double object_field, double wavelength_nm) {
+  const FirstOrder paraxial = first_order(lens, wavelength_nm);
+  return lens.object_distance_mm ? paraxial.magnification * object_field
+                                 : paraxial.efl_mm * std::tan(radians(object_field));
+}
+
 }  // namespace petzval

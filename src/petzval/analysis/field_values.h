@@ -15,4 +15,7 @@ const char* to_string(Fields::Kind kind);
 /// cannot have such a field, or no chief ray reaches that real height.
 double object_field(const Lens& lens, Fields::Kind kind, double value);
 
+/// Where a perfect lens would image an object field [mm, signed]: f tan θ, or m h.
+double ideal_image_height_mm(const Lens& lens, double object_field, double wavelength_nm);
+
 }  // namespace petzval

@@ -21,7 +21,7 @@ namespace {
 
 /// Objects of the table lie on the side that images to +y', so that t of a Psf is +y'.
 double towards_positive_image(const Lens& lens) {
-  return paraxial_image_height_mm(lens, 1.0, lens.reference_wavelength_nm) < 0 ? -1.0 : 1.0;
+  return ideal_image_height_mm(lens, 1.0, lens.reference_wavelength_nm) < 0 ? -1.0 : 1.0;
 }
 
 /// Half-width of the on-axis PSF window [mm], the margin that light from beyond the sensor's corner may
@@ -127,22 +127,6 @@ TableOptions completed(const Lens& lens, TableOptions options) {
   return options;
 }
 
-/// The largest window that any field and wavelength needs.
-int common_psf_size(const Lens& lens, const LensDataTable& table, const TableOptions& options) {
-  if (options.psf_size > 0) return options.psf_size;
-  std::vector<int> sizes(table.psf.size(), 0);
-  const double sign = towards_positive_image(lens);
-  parallel_for(table.wavelengths_nm.size(), [&](std::size_t w) {
-    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    PsfOptions psf_options;
-    psf_options.largest_size = options.largest_psf_size;
-    for (std::size_t f = 0; f < table.fields.size(); ++f)
-      if (const auto chief = tracer.chief_ray(sign * table.fields[f]))
-        if (const auto plan = plan_psf(tracer, *chief, psf_options)) sizes[table.index(f, w)] = plan->size;
-  });
-  return *std::max_element(sizes.begin(), sizes.end());
-}
-
 void fill_entry(FieldTracer& tracer, double object_field, int psf_size, LensDataTable& table,
                 std::size_t entry) {
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
@@ -190,13 +174,15 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
   table.g_sensor_sr.resize(entries);
   table.psf.resize(entries);
 
-  const int psf_size = common_psf_size(lens, table, options);
+  PsfOptions psf_options;
+  psf_options.size = options.psf_size;
+  psf_options.largest_size = options.largest_psf_size;
   const double sign = towards_positive_image(lens);
   std::atomic<std::size_t> done{0};
   parallel_for(entries, [&](std::size_t entry) {
     const std::size_t w = entry / fields, f = entry % fields;
     FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    fill_entry(tracer, sign * table.fields[f], psf_size, table, table.index(f, w));
+    fill_entry(tracer, sign * table.fields[f], psf_options, table, table.index(f, w));
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(entries), "lens data table");
   });
   table.validate();

@@ -4,6 +4,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/trace/tracer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,9 +26,8 @@ Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
   return {{0, 0, -*lens.object_distance_mm}, {0, edge / length, to_pupil / length}};
 }
 
-}  // namespace
-
-double stop_radius_mm(const Lens& lens) {
+/// The radius that the lens's `aperture` asks for, whatever the stop's own rim.
+double asked_radius_mm(const Lens& lens) {
   if (lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm) return lens.aperture.value;
   const FirstOrder paraxial = first_order(lens, lens.reference_wavelength_nm);
   const Tracer tracer(lens, lens.reference_wavelength_nm, std::numeric_limits<double>::infinity());
@@ -40,6 +40,13 @@ double stop_radius_mm(const Lens& lens) {
                     "surfaces[{}]; a smaller aperture, or aperture.stop_semi_diameter_mm, would be right",
                     lens.name, paraxial.entrance_pupil.diameter_mm, traced.ray.failed_at));
   return std::hypot(traced.stop_x_mm, traced.stop_y_mm);
+}
+
+}  // namespace
+
+double stop_radius_mm(const Lens& lens) {
+  const std::optional<double>& rim = lens.surfaces[lens.stop_index()].semi_diameter_mm;
+  return rim ? std::min(*rim, asked_radius_mm(lens)) : asked_radius_mm(lens);
 }
 
 }  // namespace petzval

@@ -51,7 +51,7 @@ class Tracer {
   double image_index() const { return surfaces_.back().index_after; }
   double image_z_mm() const { return image_z_mm_; }
   double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
-  /// Radius that the stop clips at [mm]; a clear semi-diameter of the stop surface clips in addition.
+  /// Radius that the stop clips at [mm].
   double stop_radius_mm() const { return stop_radius_mm_; }
 
   /// Traces a batch in place, from object space to the image surface.

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fields and wavelengths on the command line, for every analysis of a lens.
+#pragma once
+
+#include <petzval/analysis/field_tables.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.h"
+
+namespace petzval::app {
+
+struct FieldChoice {
+  std::vector<double> fields, wavelengths_nm;
+  std::string field_type;  ///< empty: the lens's own
+  bool ignore_apertures = false;
+  bool from_fields = false;
+
+  /// Adds --fields, --field-type, --wavelengths, --ignore-apertures and --apertures.
+  void add_to(CLI::App& command);
+  /// The lens with --apertures applied, and a note when clear apertures are missing.
+  Lens prepare(Lens lens, const Shared& shared) const;
+  /// The lens's own fields and wavelengths where none were given.
+  FieldTableRequest request(const Lens& lens) const;
+};
+
+/// What the numbers in `field` are: {"type": "angle_deg", "meaning": "…"}.
+nlohmann::ordered_json field_definition(Fields::Kind kind);
+/// "deg" or "mm".
+const char* field_unit(Fields::Kind kind);
+/// "field [deg]" and the like, for table headings.
+std::string field_heading(Fields::Kind kind);
+
+/// NaN and infinities become null, as JSON wants.
+nlohmann::ordered_json number_or_null(double value);
+/// Prints JSON on stdout, indented.
+void print_json(const nlohmann::ordered_json& json);
+
+}  // namespace petzval::app

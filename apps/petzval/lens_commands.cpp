@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+void add_lens_commands(CLI::App& app, Shared& shared) {
+  CLI::App* lens = app.add_subcommand("lens", "Look at a lens: data, drawings, rays, what it does to light");
+  lens->require_subcommand(1);
+  add_lens_list(*lens, shared);
+  add_lens_info(*lens, shared);
+  add_lens_draw(*lens, shared);
+  add_lens_trace(*lens, shared);
+  add_lens_distortion(*lens, shared);
+  add_lens_illumination(*lens, shared);
+  add_lens_psf(*lens, shared);
+  add_lens_convert(*lens, shared);
+}
+
+}  // namespace petzval::app

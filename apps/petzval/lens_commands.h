@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subcommands of `petzval lens`, each in its own file.
+#pragma once
+
+#include "command.h"
+
+namespace petzval::app {
+
+void add_lens_list(CLI::App& lens, Shared& shared);
+void add_lens_info(CLI::App& lens, Shared& shared);
+void add_lens_convert(CLI::App& lens, Shared& shared);
+void add_lens_draw(CLI::App& lens, Shared& shared);
+void add_lens_trace(CLI::App& lens, Shared& shared);
+void add_lens_distortion(CLI::App& lens, Shared& shared);
+void add_lens_illumination(CLI::App& lens, Shared& shared);
+void add_lens_psf(CLI::App& lens, Shared& shared);
+
+}  // namespace petzval::app

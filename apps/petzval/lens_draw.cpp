@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens draw.
+#include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/ray_fan.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/report/colours.h>
+#include <petzval/report/lens_drawing.h>
+
+#include <memory>
+
+#include "field_option.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct DrawCommand {
+  LensChoice lens;
+  FieldChoice fields;
+  int rays = 5;
+  std::string output;
+};
+
+void draw(const DrawCommand& options, const Shared& shared) {
+  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const FieldTableRequest request = options.fields.request(lens);
+  FieldTracer tracer(
+      lens,
+      options.fields.wavelengths_nm.empty() ? lens.reference_wavelength_nm : request.wavelengths_nm.front(),
+      request.clip);
+  LensDrawingOptions drawing;
+  drawing.title = fmt::format("{} — rays at {:g} nm", lens.name, tracer.tracer().wavelength_nm());
+  std::vector<DrawnRay> rays;
+  for (std::size_t i = 0; i < request.fields.size(); ++i) {
+    const double field = object_field(lens, request.field_kind, request.fields[i]);
+    const std::string colour = series_colour(i).hex();
+    const auto fan = meridional_fan(tracer, field, options.rays, 0.25 * lens.total_track_mm());
+    if (fan.empty()) note(shared, fmt::format("no ray passes at field {:g}", request.fields[i]));
+    for (const MeridionalPath& path : fan) rays.push_back({path, colour});
+    drawing.legend.push_back(
+        {fmt::format("{:g} {}", request.fields[i], field_unit(request.field_kind)), colour});
+  }
+  write_whole_file(options.output, draw_lens(lens, rays, drawing));
+  if (!shared.quiet)
+    fmt::print("{}: {} rays through {} surfaces\n", options.output, rays.size(), lens.surfaces.size());
+}
+
+}  // namespace
+
+void add_lens_draw(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<DrawCommand>();
+  CLI::App* command = add_command(lens, shared, "draw", "Draw the layout with rays of several fields as SVG",
+                                  "petzval lens draw dgauss-50mm -o layout.svg", false,
+                                  [=, &shared] { draw(*options, shared); });
+  options->lens.add_to(*command);
+  options->fields.add_to(*command);
+  command->add_option("--rays", options->rays, "Rays a field")->check(CLI::Range(1, 1001));
+  command->add_option("-o,--output", options->output, "SVG file to write")->required();
+}
+
+}  // namespace petzval::app

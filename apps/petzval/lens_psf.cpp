@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens psf: diffraction point-spread functions.
+#include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/point_spread.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/image/formats/npy.h>
+#include <petzval/report/heat_map.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "field_option.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct PsfCommand {
+  LensChoice lens;
+  FieldChoice fields;
+  PsfOptions psf;
+  std::string output;
+};
+
+struct PsfRow {
+  double field, wavelength_nm;
+  ChiefRay chief;
+  Psf psf;
+};
+
+std::vector<PsfRow> psf_rows(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request) {
+  std::vector<PsfRow> rows;
+  for (const double field : request.fields) {
+    const double object = object_field(lens, request.field_kind, field);
+    for (const double wavelength : request.wavelengths_nm) {
+      FieldTracer tracer(lens, wavelength, request.clip);
+      const std::optional<ChiefRay> chief = tracer.chief_ray(object);
+      const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options.psf) : std::nullopt;
+      if (!psf)
+        throw InputError(
+            fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens.name, field, wavelength));
+      rows.push_back({field, wavelength, *chief, *psf});
+    }
+  }
+  return rows;
+}
+
+struct PsfMoments {
+  double centroid_t_um = 0, rms_radius_um = 0, peak_per_um2 = 0;
+};
+
+PsfMoments moments(const Psf& psf) {
+  PsfMoments result;
+  const auto t_of = [&](int i) { return (i - psf.size / 2) * psf.spacing_um; };
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j) {
+      result.centroid_t_um += psf.at(i, j) * t_of(i);
+      result.peak_per_um2 = std::max(result.peak_per_um2, psf.at(i, j) / (psf.spacing_um * psf.spacing_um));
+    }
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j) {
+      const double s = t_of(j), t = t_of(i) - result.centroid_t_um;
+      result.rms_radius_um += psf.at(i, j) * (s * s + t * t);
+    }
+  result.rms_radius_um = std::sqrt(result.rms_radius_um);
+  return result;
+}
+
+void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields::Kind kind) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  const Psf& first = rows.front().psf;
+  if (extension == ".svg") {
+    std::vector<StripFrame> frames;
+    for (const PsfRow& row : rows) {
+      HeatMapOptions map;
+      map.gamma = 2;
+      map.first_row_on_top = false;  // t points up, away from the axis
+      frames.push_back({heat_map_png(row.psf.values, row.psf.size, row.psf.size, map),
+                        fmt::format("{:g} {}, {:g} nm\n{:.1f} µm wide", row.field, field_unit(kind),
+                                    row.wavelength_nm, 2 * row.psf.half_width_um())});
+    }
+    return write_whole_file(path, image_strip_svg(frames, {}, "Point-spread functions, square-root scale"));
+  }
+  if (rows.size() > 1)
+    throw InputError(fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, or an .svg",
+                                 path, rows.size()));
+  const auto size = static_cast<std::size_t>(first.size);
+  if (extension == ".npy") {
+    const std::size_t shape[] = {size, size};
+    return write_npy(path, shape, std::span<const float>(first.values));
+  }
+  if (extension == ".png") {
+    HeatMapOptions map;
+    map.first_row_on_top = false;
+    return write_whole_file(path, heat_map_png(first.values, first.size, first.size, map));
+  }
+  throw InputError(path, "a PSF can be written as .svg, .png or .npy");
+}
+
+void psf(const PsfCommand& options, const Shared& shared) {
+  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const FieldTableRequest request = options.fields.request(lens);
+  const std::vector<PsfRow> rows = psf_rows(options, lens, request);
+  if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);
+  if (shared.json) {
+    nlohmann::ordered_json json = {{"lens", lens.name},
+                                   {"field_definition", field_definition(request.field_kind)}};
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const PsfRow& row : rows) {
+      const PsfMoments m = moments(row.psf);
+      json["rows"].push_back({{"field", row.field},
+                              {"wavelength_nm", row.wavelength_nm},
+                              {"real_image_height_mm", row.chief.image_height_mm},
+                              {"size", row.psf.size},
+                              {"spacing_um", row.psf.spacing_um},
+                              {"captured", row.psf.captured},
+                              {"peak_per_um2", m.peak_per_um2},
+                              {"centroid_tangential_um", m.centroid_t_um},
+                              {"rms_radius_um", m.rms_radius_um}});
+    }
+    return print_json(json);
+  }
+  fmt::print("{}: diffraction PSFs, centred on the chief ray\n", lens.name);
+  fmt::print("{:>28} {:>15} {:>18} {:>9} {:>13} {:>11} {:>14} {:>15} {:>16}\n",
+             field_heading(request.field_kind), "wavelength [nm]", "image height [mm]", "samples",
+             "spacing [um]", "captured", "peak [1/um2]", "centroid t [um]", "rms radius [um]");
+  for (const PsfRow& row : rows) {
+    const PsfMoments m = moments(row.psf);
+    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>9} {:>13.4f} {:>11.4f} {:>14.5f} {:>15.3f} {:>16.3f}\n",
+               row.field, row.wavelength_nm, row.chief.image_height_mm, fmt::format("{0}x{0}", row.psf.size),
+               row.psf.spacing_um, row.psf.captured, m.peak_per_um2, m.centroid_t_um, m.rms_radius_um);
+  }
+}
+
+}  // namespace
+
+void add_lens_psf(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<PsfCommand>();
+  CLI::App* command =
+      add_command(lens, shared, "psf", "Diffraction point-spread functions by field and wavelength",
+                  "petzval lens psf edmund-54852 --fields 0,2.1,3 --wavelengths 587.56 -o psf.svg", true,
+                  [=, &shared] { psf(*options, shared); });
+  options->lens.add_to(*command);
+  options->fields.add_to(*command);
+  command->add_option("--size", options->psf.size, "Samples a side; default: as many as the spot needs")
+      ->check(CLI::Range(8, 4096));
+  command
+      ->add_option("--spacing", options->psf.spacing_um,
+                   "Spacing of the samples [um]; default: 0.45 lambda N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy");
+}
+
+}  // namespace petzval::app

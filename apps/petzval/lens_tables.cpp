@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens distortion, petzval lens illumination.
+#include <fmt/format.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/report/colours.h>
+#include <petzval/report/svg_plot.h>
+
+#include <memory>
+
+#include "field_option.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct TableCommand {
+  LensChoice lens;
+  FieldChoice fields;
+  std::string plot;
+};
+
+std::shared_ptr<TableCommand> add_table_command(CLI::App& parent, Shared& shared, const std::string& name,
+                                                const std::string& description, const std::string& example,
+                                                void (*work)(const TableCommand&, const Shared&)) {
+  auto options = std::make_shared<TableCommand>();
+  CLI::App* command =
+      add_command(parent, shared, name, description, example, true, [=, &shared] { work(*options, shared); });
+  options->lens.add_to(*command);
+  options->fields.add_to(*command);
+  command->add_option("--plot", options->plot, "Also draw the table into this SVG file");
+  return options;
+}
+
+nlohmann::ordered_json table_json(const Lens& lens, const FieldTableRequest& request) {
+  return {{"lens", lens.name},
+          {"field_definition", field_definition(request.field_kind)},
+          {"reference_wavelength_nm", lens.reference_wavelength_nm}};
+}
+
+/// Rows [field][wavelength] as one curve a wavelength over `x`.
+template <class Row, class X, class Y>
+void write_plot(const std::string& path, Plot plot, const std::vector<Row>& rows, std::size_t wavelengths,
+                X&& x, Y&& y) {
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    std::vector<double> xs, ys;
+    for (std::size_t i = w; i < rows.size(); i += wavelengths) {
+      xs.push_back(x(rows[i]));
+      ys.push_back(y(rows[i]));
+    }
+    PlotSeries& line = plot.line(fmt::format("{:g} nm", rows[w].wavelength_nm), xs, ys);
+    line.colour = wavelength_colour(rows[w].wavelength_nm).hex();
+    line.marker = PlotMarker::dot;
+  }
+  write_whole_file(path, plot.svg());
+}
+
+void distortion(const TableCommand& options, const Shared& shared) {
+  const Lens lens = options.lens.read(shared);
+  const FieldTableRequest request = options.fields.request(lens);
+  const std::vector<DistortionRow> rows = distortion_table(lens, request);
+  if (!options.plot.empty()) {
+    Plot plot;
+    plot.title = lens.name + ": distortion";
+    plot.x = {"real image height", "mm", PlotScale::linear, {}, {}};
+    plot.y = {"distortion", "%", PlotScale::linear, {}, {}};
+    write_plot(
+        options.plot, plot, rows, request.wavelengths_nm.size(),
+        [](const DistortionRow& row) { return row.image_height_mm; },
+        [](const DistortionRow& row) { return row.distortion_percent; });
+  }
+  if (shared.json) {
+    nlohmann::ordered_json json = table_json(lens, request);
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const DistortionRow& row : rows)
+      json["rows"].push_back(
+          {{"field", row.field},
+           {"wavelength_nm", row.wavelength_nm},
+           {"image_height_mm", row.image_height_mm},
+           {"distortion_percent", row.distortion_percent},
+           {"distortion_ftheta_percent", row.distortion_ftheta_percent
+                                             ? nlohmann::ordered_json(*row.distortion_ftheta_percent)
+                                             : nlohmann::ordered_json(nullptr)},
+           {"paraxial_image_height_mm", row.paraxial_image_height_mm},
+           {lens.object_distance_mm ? "object_height_mm" : "object_angle_deg", row.object_field}});
+    return print_json(json);
+  }
+  fmt::print("{}: distortion against the paraxial image height\n", lens.name);
+  fmt::print("{:>28} {:>15} {:>18} {:>22} {:>15}\n", field_heading(request.field_kind), "wavelength [nm]",
+             "image height [mm]", "paraxial height [mm]", "distortion [%]");
+  for (const DistortionRow& row : rows)
+    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>22.6f} {:>15.4f}\n", row.field, row.wavelength_nm,
+               row.image_height_mm, row.paraxial_image_height_mm, row.distortion_percent);
+}
+
+void illumination(const TableCommand& options, const Shared& shared) {
+  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const FieldTableRequest request = options.fields.request(lens);
+  const std::vector<IlluminationRow> rows = illumination_table(lens, request);
+  if (!options.plot.empty()) {
+    Plot plot;
+    plot.title = lens.name + ": relative illumination";
+    plot.x = {"real image height", "mm", PlotScale::linear, {}, {}};
+    plot.y = {"g_sensor / g_sensor on axis", "", PlotScale::linear, 0.0, {}};
+    write_plot(
+        options.plot, plot, rows, request.wavelengths_nm.size(),
+        [](const IlluminationRow& row) { return row.real_image_height_mm; },
+        [](const IlluminationRow& row) { return row.relative_illumination; });
+  }
+  if (shared.json) {
+    nlohmann::ordered_json json = table_json(lens, request);
+    json["rows"] = nlohmann::ordered_json::array();
+    for (const IlluminationRow& row : rows)
+      json["rows"].push_back(
+          {{"field", row.field},
+           {"wavelength_nm", row.wavelength_nm},
+           {"real_image_height_mm", row.real_image_height_mm},
+           {"g_sensor_sr", row.g_sensor_sr},
+           {"g_source_sr", row.g_source_sr},
+           {"relative_illumination", row.relative_illumination},
+           {lens.object_distance_mm ? "object_height_mm" : "object_angle_deg", row.object_field}});
+    return print_json(json);
+  }
+  fmt::print("{}: irradiance per radiance at the sensor (g_sensor) and per source point (g_source)\n",
+             lens.name);
+  fmt::print("{:>28} {:>15} {:>18} {:>14} {:>14} {:>22}\n", field_heading(request.field_kind),
+             "wavelength [nm]", "image height [mm]", "g_sensor [sr]", "g_source [sr]",
+             "relative illumination");
+  for (const IlluminationRow& row : rows)
+    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>14.6f} {:>14.6f} {:>22.5f}\n", row.field, row.wavelength_nm,
+               row.real_image_height_mm, row.g_sensor_sr, row.g_source_sr, row.relative_illumination);
+}
+
+}  // namespace
+
+void add_lens_distortion(CLI::App& lens, Shared& shared) {
+  add_table_command(lens, shared, "distortion", "Real and paraxial image heights by field and wavelength",
+                    "petzval lens distortion edmund-54852 --fields 0,2.1,3 --wavelengths 587.56", distortion);
+}
+
+void add_lens_illumination(CLI::App& lens, Shared& shared) {
+  add_table_command(lens, shared, "illumination",
+                    "Absolute and relative illumination by field and wavelength",
+                    "petzval lens illumination edmund-54852 --plot illumination.svg", illumination);
+}
+
+}  // namespace petzval::app

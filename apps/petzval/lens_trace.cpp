@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens trace: explicit rays from a CSV file.
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/trace/tracer.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "field_option.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+constexpr std::array<std::string_view, 7> ray_columns = {"x_mm", "y_mm", "z_mm",         "L",
+                                                         "M",    "N",    "wavelength_nm"};
+
+struct TraceCommand {
+  LensChoice lens;
+  std::string rays, output;
+  bool ignore_apertures = false;
+};
+
+struct RayLine {
+  Ray ray;
+  double wavelength_nm;
+};
+
+std::vector<std::string_view> split(std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  std::vector<std::string_view> cells;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    std::string_view cell = line.substr(0, comma);
+    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
+    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t')) cell.remove_suffix(1);
+    cells.push_back(cell);
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// Which column holds each of ray_columns.
+std::array<std::size_t, 7> find_columns(const std::vector<std::string_view>& header, const std::string& file,
+                                        int line) {
+  std::array<std::size_t, 7> where{};
+  for (std::size_t c = 0; c < ray_columns.size(); ++c) {
+    const auto found = std::find(header.begin(), header.end(), ray_columns[c]);
+    if (found == header.end())
+      throw InputError(
+          file, line,
+          fmt::format("no column {}; the header must be x_mm,y_mm,z_mm,L,M,N,wavelength_nm", ray_columns[c]));
+    where[c] = static_cast<std::size_t>(found - header.begin());
+  }
+  return where;
+}
+
+RayLine parse_ray(const std::vector<std::string_view>& cells, const std::array<std::size_t, 7>& where,
+                  const std::string& file, int line) {
+  std::array<double, 7> value{};
+  for (std::size_t c = 0; c < where.size(); ++c) {
+    const std::string_view cell = where[c] < cells.size() ? cells[where[c]] : std::string_view();
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value[c]);
+    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value[c]))
+      throw InputError(file, line,
+                       fmt::format("{} is '{}'; a finite number would be right", ray_columns[c], cell));
+  }
+  const double length = std::hypot(value[3], value[4], value[5]);
+  if (!(length > 0))
+    throw InputError(file, line, "L, M, N are all zero; direction cosines of unit length would be right");
+  return {{{value[0], value[1], value[2]}, {value[3] / length, value[4] / length, value[5] / length}},
+          value[6]};
+}
+
+std::vector<RayLine> read_rays(const std::string& file) {
+  const std::string text = read_whole_file(file);
+  std::vector<RayLine> rays;
+  std::array<std::size_t, 7> where{};
+  bool header_seen = false;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line(text.data() + at, end - at);
+    at = end + 1;
+    ++number;
+    const std::vector<std::string_view> cells = split(line);
+    if (line.empty() || line.front() == '#' || (cells.size() == 1 && cells[0].empty())) continue;
+    if (!header_seen) {
+      where = find_columns(cells, file, number);
+      header_seen = true;
+    } else {
+      rays.push_back(parse_ray(cells, where, file, number));
+    }
+  }
+  if (!header_seen)
+    throw InputError(file, "is empty; its first line must be x_mm,y_mm,z_mm,L,M,N,wavelength_nm");
+  return rays;
+}
+
+void trace(const TraceCommand& options, const Shared& shared) {
+  const Lens lens = options.lens.read(shared);
+  const Tracer::Clip clip = options.ignore_apertures ? Tracer::Clip::none : Tracer::Clip::apertures;
+  std::map<double, Tracer> tracers;
+  std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm\n";
+  for (const RayLine& line : read_rays(options.rays)) {
+    auto tracer = tracers.find(line.wavelength_nm);
+    if (tracer == tracers.end())
+      tracer = tracers.emplace(line.wavelength_nm, Tracer(lens, line.wavelength_nm)).first;
+    const Ray ray = tracer->second.trace(line.ray, clip);
+    if (ray.status == RayStatus::ok)
+      csv += fmt::format("ok,{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", ray.point_mm[0],
+                         ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
+                         ray.direction[2], ray.opl_mm);
+    else
+      csv += fmt::format("{},nan,nan,nan,nan,nan,nan,nan\n", to_string(ray.status));
+  }
+  if (options.output.empty())
+    fmt::print("{}", csv);
+  else
+    write_whole_file(options.output, csv);
+}
+
+}  // namespace
+
+void add_lens_trace(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<TraceCommand>();
+  CLI::App* command = add_command(lens, shared, "trace", "Trace explicit rays to the image surface",
+                                  "petzval lens trace cooke-triplet --rays rays.csv -o traced.csv", false,
+                                  [=, &shared] { trace(*options, shared); });
+  options->lens.add_to(*command);
+  command->add_option("--rays", options->rays, "CSV with x_mm,y_mm,z_mm,L,M,N,wavelength_nm in lens space")
+      ->required();
+  command->add_option("-o,--output", options->output, "CSV to write; default: standard output");
+  command->add_flag("--ignore-apertures", options->ignore_apertures, "Clip no ray");
+}
+
+}  // namespace petzval::app

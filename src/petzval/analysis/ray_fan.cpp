@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/ray_fan.h>
+#include <petzval/base/error.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Rays to the very rim are drawn a hair inside it.
+constexpr double inside_rim = 1 - 1e-9;
+constexpr int rim_azimuths = 256;
+
+MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, bool from_infinity) {
+  std::vector<Intersection> hits;
+  const Ray end = tracer.trace(start, Tracer::Clip::none, &hits);
+  if (end.status != RayStatus::ok) return {};
+  MeridionalPath path;
+  // Back from the first surface along the incoming ray, to the lead plane or the object.
+  const auto& first = hits.front().point_mm;
+  const double z = from_infinity ? -lead_mm : std::max(-lead_mm, start.point_mm[2]);
+  if (start.direction[2] > 0 && z < first[2])
+    path.push_back({z, first[1] + (z - first[2]) * start.direction[1] / start.direction[2]});
+  for (const Intersection& hit : hits) path.push_back({hit.point_mm[2], hit.point_mm[1]});
+  return path;
+}
+
+}  // namespace
+
+std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_field, int count,
+                                           double lead_mm) {
+  std::vector<MeridionalPath> fan;
+  const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+  if (!chief) return fan;
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(*chief, rim_azimuths);
+  if (!pupil) return fan;
+  const Pencil pencil = Pencil::from_object(tracer.lens(), object_field);
+  const double top = pupil->radius.front() * inside_rim,
+               bottom = pupil->radius[pupil->radius.size() / 2] * inside_rim;
+  for (int i = 0; i < count; ++i) {
+    const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
+    const double v = count == 1 ? chief->v : pupil->centre_v + share * (share > 0 ? top : bottom);
+    if (const std::optional<Ray> ray = pencil.ray(0, v)) {
+      MeridionalPath path = path_of(tracer.tracer(), *ray, lead_mm, pencil.object_at_infinity());
+      if (!path.empty()) fan.push_back(std::move(path));
+    }
+  }
+  return fan;
+}
+
+Lens with_apertures_from_fields(Lens lens) {
+  std::vector<double> needed(lens.surfaces.size(), 0.0);
+  for (const double wavelength : lens.wavelengths_nm) {
+    FieldTracer tracer(lens, wavelength, Tracer::Clip::stop_only);
+    for (const double value : lens.fields.values) {
+      const double field = object_field(lens, lens.fields.kind, value);
+      const std::optional<ChiefRay> chief = tracer.chief_ray(field);
+      const std::optional<PupilBoundary> pupil = chief ? tracer.object_pupil(*chief, 64) : std::nullopt;
+      if (!pupil)
+        throw InputError(fmt::format("{}: no ray passes at field {:g}, so its apertures cannot be solved",
+                                     lens.name, value));
+      const Pencil pencil = Pencil::from_object(lens, field);
+      for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i) {
+        const double azimuth = pupil->azimuth(i), r = pupil->radius[i] * inside_rim;
+        const std::optional<Ray> ray =
+            pencil.ray(r * std::sin(azimuth), pupil->centre_v + r * std::cos(azimuth));
+        std::vector<Intersection> hits;
+        if (!ray || tracer.tracer().trace(*ray, Tracer::Clip::none, &hits).status != RayStatus::ok) continue;
+        for (std::size_t s = 0; s < needed.size(); ++s)
+          needed[s] = std::max(needed[s], std::hypot(hits[s].point_mm[0], hits[s].point_mm[1]));
+      }
+    }
+  }
+  for (std::size_t s = 0; s < needed.size(); ++s)
+    if (!lens.surfaces[s].semi_diameter_mm && needed[s] > 0) lens.surfaces[s].semi_diameter_mm = needed[s];
+  return lens;
+}
+
+}  // namespace petzval
