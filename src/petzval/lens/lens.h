@@ -29,12 +29,12 @@ struct Surface {
 /// How wide the lens is open.
 struct Aperture {
   enum class Kind {
-    f_number,                   ///< paraxial, for an object at infinity
-    working_f_number,           ///< paraxial, 1/(2 n' |u'|), at the object distance
-    image_na,                   ///< paraxial, n' |u'| at the object distance
-    object_na,                  ///< n sin U of the paraxial marginal ray from a finite object
+    f_number,          ///< paraxial, for an object at infinity
+    working_f_number,  ///< paraxial, 1/(2 n' |u'|), at the object distance
+    image_na,          ///< paraxial, n' |u'| at the object distance
+    object_na,         ///< n sin U of the paraxial marginal ray from a finite object
     entrance_pupil_diameter_mm,
-    stop_semi_diameter_mm       ///< real height at the stop
+    stop_semi_diameter_mm  ///< real height at the stop
   };
   Kind kind = Kind::f_number;
   double value = 0;
@@ -62,7 +62,8 @@ struct Lens {
   /// From vertex 1 to the image surface.
   double total_track_mm() const;
   /// \throws InputError saying which entry is wrong and what would be right: no surfaces, no stop or two,
-  /// non-finite numbers, asphere powers below 1, negative semi-diameters, non-positive aperture or wavelengths…
+  /// non-finite numbers, asphere powers below 1, negative semi-diameters, non-positive aperture or
+  /// wavelengths…
   void validate() const;
 };
 

@@ -10,20 +10,21 @@
 namespace petzval {
 
 struct LensReadOptions {
-  /// Explicit glass substitutions, "LAK10C" → "CDGM:H-LAK10". Nothing is substituted without one.
+  /// Explicit glass substitutions, "LAK10C" → "CDGM:H-LAK10", or "SK1" → "1.61025/56.71", nd and Vd of a
+  /// glass that no catalogue has. Nothing is substituted without one.
   std::map<std::string, std::string> substitutions;
 };
 
-/// A lens and what its reader has to say of it (apertures that are missing, an image distance that was solved…),
-/// one line each, for stderr.
+/// A lens and what its reader has to say of it (apertures that are missing, an image distance that was
+/// solved…), one line each, for stderr.
 struct LensFile {
   Lens lens;
   std::vector<std::string> notes;
 };
 
-/// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx) and
-/// content. The lens is valid.
-/// \throws InputError with file and line, for anything that is wrong or not modelled.
+/// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx)
+/// and content. The lens is valid. \throws InputError with file and line, for anything that is wrong or not
+/// modelled.
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options = {});
 
 /// Writes by extension (.json native, .dat, .zmx), whole or not at all.
@@ -36,7 +37,8 @@ std::string lens_to_json(const Lens& lens);
 Lens lens_from_json(const std::string& text, const std::string& file, const LensReadOptions& options = {});
 
 /// Applies "surfaces[4].thickness_mm=0.5": a path into the native JSON form, and a JSON value (a bare word is
-/// taken as a string). \throws InputError if the path names nothing in the format or the result is not a lens.
+/// taken as a string). \throws InputError if the path names nothing in the format or the result is not a
+/// lens.
 Lens with_setting(const Lens& lens, const std::string& assignment);
 
 }  // namespace petzval

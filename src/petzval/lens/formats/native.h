@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The native lens file, "petzval-lens/1" (docs/CONVENTIONS.md). lens_to_json() and lens_from_json() of
+// lens_file.h are implemented here too.
+#pragma once
+
+#include <petzval/lens/formats/json_document.h>
+#include <petzval/lens/lens_file.h>
+
+namespace petzval {
+
+inline constexpr const char* native_format = "petzval-lens/1";
+
+/// The names of the kinds in the file, in the order of the enumerations.
+inline constexpr const char* aperture_keys[] = {
+    "f_number",  "working_f_number",           "image_na",
+    "object_na", "entrance_pupil_diameter_mm", "stop_semi_diameter_mm"};
+inline constexpr const char* field_types[] = {"angle_deg", "object_height_mm", "paraxial_image_height_mm",
+                                              "real_image_height_mm"};
+
+/// \throws InputError for whatever is not exactly in the format, or not a valid lens.
+Lens read_native(const JsonDocument& document, const LensReadOptions& options);
+
+}  // namespace petzval

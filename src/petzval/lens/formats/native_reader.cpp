@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/lens/formats/glass_lookup.h>
+#include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/number_text.h>
+#include <petzval/lens/lens_fault.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace petzval {
+
+namespace {
+
+/// Calls `make` and gives its complaint the place in the file.
+template <typename Make>
+Material located(const JsonEntry& entry, Make make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    entry.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
+Material index_table(const JsonEntry& entry) {
+  Material::Table table;
+  for (const auto& [wavelength, index] : entry.members("an object of \"wavelength in nm\": index")) {
+    const auto wavelength_nm = parse_number(wavelength);
+    if (!wavelength_nm) index.fail("must have a wavelength in nm for its key");
+    table.emplace_back(*wavelength_nm, index.number("a refractive index"));
+  }
+  std::sort(table.begin(), table.end());
+  return located(entry, [&] { return Material(table); });
+}
+
+Material read_glass(const JsonEntry& entry, const LensReadOptions& options) {
+  constexpr const char* forms =
+      "a glass name, {\"nd\": …, \"vd\": …}, {\"index\": …} or {\"index_table\": {\"587.56\": …}}";
+  if (entry.is_null()) return Material();
+  if (entry.is_text()) {
+    const std::string name = entry.text(forms);
+    return located(entry, [&] { return find_glass(name, options); });
+  }
+  if (!entry.is_object()) entry.fail(fmt::format("must be {}, or be left out for air", forms));
+  if (const auto table = entry.find("index_table")) {
+    entry.allow_only({"index_table"});
+    return index_table(*table);
+  }
+  if (const auto index = entry.find("index")) {
+    entry.allow_only({"index"});
+    const double n = index->number("a refractive index");
+    return located(entry, [&] { return Material(Material::Constant{n}); });
+  }
+  if (!entry.find("nd") && !entry.find("vd")) entry.fail(fmt::format("must be {}", forms));
+  entry.allow_only({"nd", "vd"});
+  const Material::Model model{entry.at("nd").number("a refractive index"),
+                              entry.at("vd").number("an Abbe number")};
+  return located(entry, [&] { return Material(model); });
+}
+
+double read_curvature(const JsonEntry& radius) {
+  if (radius.is_null()) return 0;
+  const double value = radius.number("a radius in mm, or null for a flat surface");
+  if (value == 0) radius.fail("must not be 0; null is a flat surface");
+  return radius.long_number() ? curvature_from_radius(*radius.long_number()) : 1 / value;
+}
+
+void read_asphere(const JsonEntry& entry, Surface& surface) {
+  for (const auto& [key, coefficient] : entry.members("an object of \"power of r\": coefficient")) {
+    const auto power = parse_integer(key);
+    if (!power) coefficient.fail("must have a power of r, a whole number, for its key");
+    surface.asphere[*power] = coefficient.number("a coefficient in mm^(1-power)");
+  }
+}
+
+Surface read_surface(const JsonEntry& entry, const LensReadOptions& options) {
+  entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "stop"});
+  Surface surface;
+  surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
+  surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
+  if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, options);
+  if (const auto semi = entry.find("semi_diameter_mm"); semi && !semi->is_null())
+    surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
+  if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
+  if (const auto asphere = entry.find("asphere")) read_asphere(*asphere, surface);
+  if (const auto stop = entry.find("stop")) surface.stop = stop->truth();
+  return surface;
+}
+
+Aperture read_aperture(const JsonEntry& entry) {
+  const auto members = entry.members("an object such as {\"f_number\": 2.8}");
+  const std::string known = fmt::format("{}", fmt::join(aperture_keys, ", "));
+  if (members.size() != 1) entry.fail("must have exactly one of " + known);
+  const auto& [key, value] = members.front();
+  const auto kind = std::find(std::begin(aperture_keys), std::end(aperture_keys), key);
+  if (kind == std::end(aperture_keys)) value.fail("is not a kind of aperture; these are: " + known);
+  return {static_cast<Aperture::Kind>(kind - std::begin(aperture_keys)), value.number("a number")};
+}
+
+std::vector<double> read_numbers(const JsonEntry& entry, const char* meaning, const char* item_meaning) {
+  std::vector<double> numbers;
+  for (const JsonEntry& item : entry.items(meaning)) numbers.push_back(item.number(item_meaning));
+  return numbers;
+}
+
+Fields read_fields(const JsonEntry& entry) {
+  entry.allow_only({"type", "values"});
+  const JsonEntry type = entry.at("type");
+  const auto kind = std::find(std::begin(field_types), std::end(field_types), type.text("a type of field"));
+  if (kind == std::end(field_types))
+    type.fail(fmt::format("is not a type of field; these are: {}", fmt::join(field_types, ", ")));
+  return {static_cast<Fields::Kind>(kind - std::begin(field_types)),
+          read_numbers(entry.at("values"), "a list of fields", "a field")};
+}
+
+void read_wavelengths(const JsonEntry& top, Lens& lens) {
+  lens.wavelengths_nm =
+      read_numbers(top.at("wavelengths_nm"), "a list of wavelengths in nm", "a wavelength in nm");
+  if (const auto reference = top.find("reference_wavelength_nm"))
+    lens.reference_wavelength_nm = reference->number("a wavelength in nm");
+  else if (lens.wavelengths_nm.size() == 1)
+    lens.reference_wavelength_nm = lens.wavelengths_nm.front();
+  else
+    top.at("reference_wavelength_nm");  // says that it is missing
+}
+
+}  // namespace
+
+Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
+  const JsonEntry top(document);
+  const JsonEntry format = top.at("format");
+  if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
+  top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
+                  "reference_wavelength_nm", "surfaces"});
+  Lens lens;
+  if (const auto name = top.find("name")) lens.name = name->text("a text");
+  if (const auto source = top.find("source")) lens.source = source->text("a text");
+  if (const auto distance = top.find("object_distance_mm"); distance && !distance->is_null())
+    lens.object_distance_mm = distance->number("a distance in mm, or null for infinity");
+  lens.aperture = read_aperture(top.at("aperture"));
+  if (const auto fields = top.find("fields")) lens.fields = read_fields(*fields);
+  read_wavelengths(top, lens);
+  for (const JsonEntry& surface : top.at("surfaces").items("a list of surfaces, front to back"))
+    lens.surfaces.push_back(read_surface(surface, options));
+  if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
+  return lens;
+}
+
+Lens lens_from_json(const std::string& text, const std::string& file, const LensReadOptions& options) {
+  return read_native(JsonDocument(text, file), options);
+}
+
+}  // namespace petzval

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/number_text.h>
+
+namespace petzval {
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  // Bytes that are not UTF-8 cannot stand in JSON; they become the replacement character.
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string list(const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) texts.push_back(number_text(number));
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+struct GlassText {
+  std::string operator()(const Material::Air&) const { return ""; }
+  std::string operator()(const std::shared_ptr<const Glass>& glass) const {
+    return quoted(glass->full_name());
+  }
+  std::string operator()(const Material::Model& model) const {
+    return fmt::format(R"({{"nd": {}, "vd": {}}})", number_text(model.nd), number_text(model.vd));
+  }
+  std::string operator()(const Material::Constant& constant) const {
+    return fmt::format(R"({{"index": {}}})", number_text(constant.index));
+  }
+  std::string operator()(const Material::Table& table) const {
+    std::vector<std::string> entries;
+    for (const auto& [wavelength_nm, index] : table)
+      entries.push_back(fmt::format("\"{}\": {}", fmt::format("{}", wavelength_nm), number_text(index)));
+    return fmt::format(R"({{"index_table": {{{}}}}})", fmt::join(entries, ", "));
+  }
+};
+
+std::string surface_text(const Surface& surface) {
+  const bool flat = surface.curvature_per_mm == 0;
+  std::string text =
+      fmt::format(R"({{"radius_mm": {}, "thickness_mm": {})",
+                  flat ? "null" : radius_text(surface.curvature_per_mm), number_text(surface.thickness_mm));
+  const std::string glass = std::visit(GlassText{}, surface.material.kind());
+  if (!glass.empty()) text += ", \"glass\": " + glass;
+  if (surface.stop) text += ", \"stop\": true";
+  if (surface.semi_diameter_mm) text += ", \"semi_diameter_mm\": " + number_text(*surface.semi_diameter_mm);
+  if (surface.conic != 0) text += ", \"conic\": " + number_text(surface.conic);
+  if (!surface.asphere.empty()) {
+    std::vector<std::string> terms;
+    for (const auto& [power, coefficient] : surface.asphere)
+      terms.push_back(fmt::format("\"{}\": {}", power, number_text(coefficient)));
+    text += fmt::format(", \"asphere\": {{{}}}", fmt::join(terms, ", "));
+  }
+  return text + "}";
+}
+
+}  // namespace
+
+std::string lens_to_json(const Lens& lens) {
+  lens.validate();
+  std::string text = fmt::format("{{\n  \"format\": \"{}\",\n", native_format);
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  \"{}\": {},\n", key, value);
+  };
+  line("name", quoted(lens.name));
+  line("source", quoted(lens.source));
+  line("object_distance_mm", lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "null");
+  line("aperture", fmt::format("{{\"{}\": {}}}", aperture_keys[static_cast<std::size_t>(lens.aperture.kind)],
+                               number_text(lens.aperture.value)));
+  line("fields",
+       fmt::format("{{\"type\": \"{}\", \"values\": {}}}",
+                   field_types[static_cast<std::size_t>(lens.fields.kind)], list(lens.fields.values)));
+  line("wavelengths_nm", list(lens.wavelengths_nm));
+  line("reference_wavelength_nm", number_text(lens.reference_wavelength_nm));
+  text += "  \"surfaces\": [\n";
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    text +=
+        fmt::format("    {}{}\n", surface_text(lens.surfaces[i]), i + 1 < lens.surfaces.size() ? "," : "");
+  return text + "  ]\n}\n";
+}
+
+}  // namespace petzval

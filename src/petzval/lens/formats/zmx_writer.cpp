@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/glass/catalogue.h>
+#include <petzval/lens/formats/number_text.h>
+#include <petzval/lens/formats/zmx.h>
+
+#include <algorithm>
+
+namespace petzval {
+
+namespace {
+
+constexpr int um_per_nm_power = -3;
+
+/// Names and sources as one line.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+  return text;
+}
+
+std::vector<std::string> catalogues_of(const Lens& lens) {
+  std::vector<std::string> catalogues;
+  for (const Surface& surface : lens.surfaces) {
+    const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&surface.material.kind());
+    if (glass && std::find(catalogues.begin(), catalogues.end(), (*glass)->catalogue) == catalogues.end())
+      catalogues.push_back((*glass)->catalogue);
+  }
+  return catalogues;
+}
+
+struct GlassText {
+  std::size_t surface;
+  const std::vector<std::string>& catalogues;
+
+  std::string operator()(const Material::Air&) const { return ""; }
+  std::string operator()(const std::shared_ptr<const Glass>& glass) const {
+    const bool one_word = glass->name.find_first_of(" \t\"") == std::string::npos;
+    if (!one_word ||
+        GlassCatalogue::bundled().find(glass->name, catalogues)->full_name() != glass->full_name())
+      throw InputError(
+          fmt::format("surfaces[{}].glass: {} has no name that a .zmx file could tell from others", surface,
+                      glass->full_name()));
+    return fmt::format("  GLAS {} 0 0 1.5 40 0 0 0 0 0 0\n", glass->name);
+  }
+  std::string operator()(const Material::Model& model) const { return model_glass(model.nd, model.vd); }
+  std::string operator()(const Material::Constant& constant) const { return model_glass(constant.index, 0); }
+  std::string operator()(const Material::Table&) const {
+    throw InputError(fmt::format(
+        "surfaces[{}].glass: a .zmx file cannot hold a table of indices; name a glass first", surface));
+  }
+  static std::string model_glass(double nd, double vd) {
+    return fmt::format("  GLAS ___BLANK 1 0 {} {} 0 0 0 0 0 0\n", number_text(nd), number_text(vd));
+  }
+};
+
+/// Even powers up to 16 make an EVENASPH, powers up to 8 an ODDASPHE.
+std::string shape_text(const Surface& surface, std::size_t i) {
+  if (surface.asphere.empty()) return "  TYPE STANDARD\n";
+  constexpr int parameters = 8;
+  const bool even = std::all_of(surface.asphere.begin(), surface.asphere.end(),
+                                [](const auto& term) { return term.first % 2 == 0; });
+  const int step = even ? 2 : 1, highest = surface.asphere.rbegin()->first;
+  if (highest > parameters * step)
+    throw InputError(fmt::format(
+        "surfaces[{}].asphere: a .zmx file holds even powers up to 16 or all up to 8, not r^{}", i, highest));
+  std::string text = even ? "  TYPE EVENASPH\n" : "  TYPE ODDASPHE\n";
+  for (const auto& [power, coefficient] : surface.asphere)
+    text += fmt::format("  PARM {} {}\n", power / step, number_text(coefficient));
+  return text;
+}
+
+std::string surface_text(const Lens& lens, std::size_t i, const std::vector<std::string>& catalogues) {
+  const Surface& surface = lens.surfaces[i];
+  std::string text =
+      fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface, i));
+  text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
+  if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
+  text += fmt::format("  DISZ {}\n", number_text(surface.thickness_mm));
+  text += std::visit(GlassText{i, catalogues}, surface.material.kind());
+  // The size of the stop, where the aperture is given by it, is an automatic DIAM beside the clear aperture.
+  const bool sets_aperture = surface.stop && lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm;
+  const double semi = sets_aperture ? lens.aperture.value : surface.semi_diameter_mm.value_or(0);
+  text += fmt::format("  DIAM {} {} 0 0 1 \"\"\n", number_text(semi), surface.semi_diameter_mm ? 1 : 0);
+  if (surface.semi_diameter_mm)
+    text += fmt::format("  CLAP 0 {} 0\n", number_text(*surface.semi_diameter_mm));
+  return text;
+}
+
+std::string aperture_text(const Aperture& aperture) {
+  const std::string value = number_text(aperture.value);
+  switch (aperture.kind) {
+    case Aperture::Kind::f_number:
+      return "FNUM " + value + " 0\n";
+    case Aperture::Kind::working_f_number:
+      return "FNUM " + value + " 1\n";
+    case Aperture::Kind::image_na:
+      return "FNUM " + number_text(0.5 / aperture.value) + " 1\n";
+    case Aperture::Kind::object_na:
+      return "OBNA " + value + " 0\n";
+    case Aperture::Kind::entrance_pupil_diameter_mm:
+      return "ENPD " + value + "\n";
+    case Aperture::Kind::stop_semi_diameter_mm:
+      break;
+  }
+  return "FLOA\n";
+}
+
+std::string fields_text(const Lens& lens) {
+  const std::vector<double>& values = lens.fields.values;
+  std::string x = "XFLN", y = "YFLN", weights = "FWGN";
+  for (const double value : values) {
+    x += " 0";
+    y += fmt::format(" {}", number_text(value));
+    weights += " 1";
+  }
+  return fmt::format("FTYP {} 0 {} {} 0 0 0\n{}\n{}\n{}\n", static_cast<int>(lens.fields.kind), values.size(),
+                     lens.wavelengths_nm.size(), x, y, weights);
+}
+
+std::string wavelengths_text(const Lens& lens) {
+  const auto& wavelengths = lens.wavelengths_nm;
+  const auto reference = std::find(wavelengths.begin(), wavelengths.end(), lens.reference_wavelength_nm);
+  if (reference == wavelengths.end())
+    throw InputError("reference_wavelength_nm: in a .zmx file it must be one of wavelengths_nm");
+  std::string text;
+  for (std::size_t i = 0; i < wavelengths.size(); ++i)
+    text += fmt::format("WAVM {} {} 1\n", i + 1, scaled_number_text(wavelengths[i], um_per_nm_power));
+  return text + fmt::format("PWAV {}\n", reference - wavelengths.begin() + 1);
+}
+
+}  // namespace
+
+std::string zmx_text(const Lens& lens) {
+  lens.validate();
+  const std::vector<std::string> catalogues = catalogues_of(lens);
+  std::string text = fmt::format("MODE SEQ\nNAME {}\nNOTE 0 {}\nUNIT MM X W X CM MR CPMM\n",
+                                 one_line(lens.name), one_line(lens.source));
+  text += aperture_text(lens.aperture);
+  text += "ENVD 20 1 0\n";
+  if (!catalogues.empty()) text += fmt::format("GCAT {}\n", fmt::join(catalogues, " "));
+  text += fields_text(lens) + wavelengths_text(lens);
+  text += fmt::format("SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ {}\n",
+                      lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "INFINITY");
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) text += surface_text(lens, i, catalogues);
+  return text + fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n",
+                            lens.surfaces.size() + 1);
+}
+
+}  // namespace petzval

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/lens/lens_fault.h>
+
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+using Fault = std::optional<LensFault>;
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+Fault surface_fault(const Surface& surface, const std::string& path) {
+  const auto at = [&](const char* key) { return path + "." + key; };
+  const double c = surface.curvature_per_mm;
+  if (!std::isfinite(c) || (c != 0 && !std::isfinite(1 / c)))
+    return LensFault{at("radius_mm"), "must be a finite radius in mm, or null for a flat surface"};
+  if (!std::isfinite(surface.thickness_mm))
+    return LensFault{at("thickness_mm"), "must be a finite number in mm"};
+  if (surface.semi_diameter_mm && !positive(*surface.semi_diameter_mm))
+    return LensFault{at("semi_diameter_mm"),
+                     "must be positive, in mm; leave it out for an unbounded surface"};
+  if (!std::isfinite(surface.conic)) return LensFault{at("conic"), "must be a finite number"};
+  for (const auto& [power, coefficient] : surface.asphere) {
+    if (power < lowest_asphere_power || power > highest_asphere_power)
+      return LensFault{fmt::format("{}.asphere.{}", path, power),
+                       fmt::format("is not a power of r that a surface can have; {} to {} are",
+                                   lowest_asphere_power, highest_asphere_power)};
+    if (!std::isfinite(coefficient))
+      return LensFault{fmt::format("{}.asphere.{}", path, power),
+                       "must be a finite coefficient in mm^(1-power)"};
+  }
+  return {};
+}
+
+Fault surfaces_fault(const Lens& lens) {
+  if (lens.surfaces.empty()) return LensFault{"surfaces", "is empty; a lens has at least its stop surface"};
+  if (lens.surfaces.size() > most_surfaces)
+    return LensFault{"surfaces", fmt::format("has {} entries; at most {} can be traced", lens.surfaces.size(),
+                                             most_surfaces)};
+  std::optional<std::size_t> stop;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (Fault fault = surface_fault(lens.surfaces[i], fmt::format("surfaces[{}]", i))) return fault;
+    if (!lens.surfaces[i].stop) continue;
+    if (stop)
+      return LensFault{
+          fmt::format("surfaces[{}].stop", i),
+          fmt::format("is a second stop beside surfaces[{}]; exactly one surface is the stop", *stop)};
+    stop = i;
+  }
+  if (!stop) return LensFault{"surfaces", "has no stop; mark one surface with \"stop\": true"};
+  return {};
+}
+
+Fault aperture_fault(const Lens& lens) {
+  const char* path = "aperture";
+  if (!positive(lens.aperture.value)) return LensFault{path, "must be a positive number"};
+  if (lens.aperture.kind != Aperture::Kind::object_na) return {};
+  if (!lens.object_distance_mm)
+    return LensFault{path, "object_na needs an object at a finite distance; set object_distance_mm"};
+  if (lens.aperture.value >= 1) return LensFault{path, "object_na must be below 1: the object stands in air"};
+  return {};
+}
+
+Fault fields_fault(const Lens& lens) {
+  const Fields& fields = lens.fields;
+  if (fields.values.empty())
+    return LensFault{"fields.values", "is empty; give at least one field, [0] for the axis"};
+  if (fields.kind == Fields::Kind::object_height_mm && !lens.object_distance_mm)
+    return LensFault{
+        "fields.type",
+        "object_height_mm needs an object at a finite distance; use angle_deg or set object_distance_mm"};
+  // Beyond 90 degrees a fisheye still sees an object at infinity, but nothing that stands on a plane.
+  const double widest_deg = lens.object_distance_mm ? 90 : 180;
+  for (std::size_t i = 0; i < fields.values.size(); ++i) {
+    const std::string path = fmt::format("fields.values[{}]", i);
+    if (!std::isfinite(fields.values[i])) return LensFault{path, "must be a finite number"};
+    if (fields.kind == Fields::Kind::angle_deg && !(std::abs(fields.values[i]) < widest_deg))
+      return LensFault{path, fmt::format("must be an angle below {} degrees", widest_deg)};
+  }
+  return {};
+}
+
+Fault wavelengths_fault(const Lens& lens) {
+  const char* wanted = "must be a positive wavelength in nm";
+  if (lens.wavelengths_nm.empty())
+    return LensFault{"wavelengths_nm", "is empty; give at least one wavelength"};
+  for (std::size_t i = 0; i < lens.wavelengths_nm.size(); ++i)
+    if (!positive(lens.wavelengths_nm[i])) return LensFault{fmt::format("wavelengths_nm[{}]", i), wanted};
+  if (!positive(lens.reference_wavelength_nm)) return LensFault{"reference_wavelength_nm", wanted};
+  return {};
+}
+
+}  // namespace
+
+std::optional<LensFault> find_fault(const Lens& lens) {
+  if (Fault fault = surfaces_fault(lens)) return fault;
+  if (lens.object_distance_mm && !positive(*lens.object_distance_mm))
+    return LensFault{"object_distance_mm",
+                     "must be positive, in mm from the object to vertex 1, or null for infinity"};
+  if (Fault fault = aperture_fault(lens)) return fault;
+  if (Fault fault = fields_fault(lens)) return fault;
+  return wavelengths_fault(lens);
+}
+
+}  // namespace petzval
