@@ -80,7 +80,6 @@ TEST(ColorChecker, ColoursAreThePublishedOnesAsFarAsOneOldChartIsTheAverageChart
   // Charts differ by ΔE*ab of 2 to 4 from lot to lot and yellow with age: the white of the measured one
   // reflects 81 %, 90 % is nominal, and less in the blue. Mean 4.4, median 3. Two pigments stand out,
   // purplish blue (12.9) and yellow green (10.5); no other order or scale of the data brings them nearer.
-  // Swapped patches or a wrong illuminant (A: mean above 20) stand well outside.
   double sum = 0;
   for (const Patch& patch : published) {
     const double difference = delta_e(

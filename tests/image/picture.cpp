@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/image/picture.h>
+
+#include <array>
+#include <cmath>
+
+#include "scratch.h"
+
+namespace petzval {
+namespace {
+
+std::vector<double> bands_of_31() {
+  std::vector<double> bands;
+  for (double nm = 400; nm <= 700; nm += 10) bands.push_back(nm);
+  return bands;
+}
+
+/// A ramp in the light of an illuminant: pixel i of n has the reflectance (i + 1)/n.
+SpectralImage ramp(const Spectrum& light, int columns = 20, int rows = 5,
+                   std::vector<double> bands = bands_of_31()) {
+  SpectralImage image(columns, rows, std::move(bands), 5);
+  for (int band = 0; band < image.bands(); ++band)
+    for (std::size_t i = 0; i < image.band_size(); ++i)
+      image.band(band)[i] =
+          static_cast<float>(light.at(image.wavelengths_nm()[static_cast<std::size_t>(band)]) *
+                             static_cast<double>(i + 1) / static_cast<double>(image.band_size()));
+  return image;
+}
+
+std::array<int, 3> pixel(const PngImage& picture, std::size_t index) {
+  return {picture.samples[3 * index], picture.samples[3 * index + 1], picture.samples[3 * index + 2]};
+}
+
+TEST(Picture, WhiteIsThePercentileOfTheLevels) {
+  const SpectralImage image = ramp(illuminant("D65"));  // 100 levels, 1 % to 100 %
+  PictureOptions options;
+  options.percentile = 80;
+  const PictureRenderer renderer(image, options);
+  std::vector<LinearRgb> row(20);
+  renderer.linear_row(3, row);      // ends with the 80th pixel
+  EXPECT_NEAR(row[19].g, 1, 0.02);  // green: little moved by the bands that are cut off at 400 and 700 nm
+  const Spectrum light = illuminant("D65");
+  std::vector<double> sampled;
+  for (const double nm : image.wavelengths_nm()) sampled.push_back(light.at(nm));
+  const double lux = 0.8 * luminance(Spectrum(image.wavelengths_nm(), sampled));
+  EXPECT_NEAR(renderer.white_level(), lux, 1e-6 * lux);  // float pixels
+}
+
+TEST(Picture, WithTheSceneWhiteGreysAreNeutralUnderAnyLampOnAnyBands) {
+  for (const char* name : {"D65", "A", "F11"})
+    for (const std::vector<double>& bands : {bands_of_31(), std::vector<double>{450, 550, 650}}) {
+      const SpectralImage image = ramp(illuminant(name), 20, 5, bands);
+      PictureOptions options;
+      options.percentile = 100;
+      options.scene_white = illuminant(name);
+      const PngImage picture = srgb_picture(image, options);
+      for (std::size_t i = 0; i < image.band_size(); ++i) {
+        const auto [r, g, b] = pixel(picture, i);
+        // The sRGB curve, independently: reflectance to code value. Rounding may differ by one code.
+        const int want = static_cast<int>(std::lround(255 * srgb_encoded(static_cast<double>(i + 1) / 100)));
+        EXPECT_NEAR(r, want, 1) << name << ' ' << i;
+        EXPECT_NEAR(g, want, 1) << name << ' ' << i;
+        EXPECT_NEAR(b, want, 1) << name << ' ' << i;
+      }
+    }
+}
+
+TEST(Picture, WithoutASceneWhiteALampKeepsItsColour) {
+  PictureOptions options;
+  options.percentile = 100;
+  const auto [r, g, b] = pixel(srgb_picture(ramp(illuminant("A")), options), 49);
+  EXPECT_GT(r, g);
+  EXPECT_GT(g, b);
+}
+
+TEST(Picture, MeanGreyAndAFixedLevelAreKept) {
+  const SpectralImage image = ramp(illuminant("D65"));
+  PictureOptions options;
+  options.exposure = PictureOptions::Exposure::mean_grey;
+  const PictureRenderer grey(image, options);
+  double mean = 0;
+  for (int row = 0; row < 5; ++row) {
+    std::vector<LinearRgb> pixels(20);
+    grey.linear_row(row, pixels);
+    for (const LinearRgb& p : pixels) mean += xyz_of(p).y / 100;
+  }
+  EXPECT_NEAR(mean, 0.18, 1e-6);  // float levels
+
+  options.exposure = PictureOptions::Exposure::fixed;
+  options.white_level = 2 * grey.white_level();
+  EXPECT_EQ(PictureRenderer(image, options).white_level(), 2 * grey.white_level());
+}
+
+TEST(Picture, FewBrightPointsOnBlackAreNotLost) {
+  SpectralImage image(100, 100, {550}, 5);
+  image.at(0, 50, 50) = 3;  // one pixel in 10,000: the 99.5th percentile is black
+  const PngImage picture = srgb_picture(image);
+  EXPECT_EQ(pixel(picture, 50 * 100 + 50), (std::array<int, 3>{255, 255, 255}));
+  EXPECT_EQ(pixel(picture, 0), (std::array<int, 3>{0, 0, 0}));
+}
+
+TEST(Picture, ASingleWavelengthIsGreyUnlessAskedForInColour) {
+  SpectralImage image(2, 1, {589}, 5);
+  image.at(0, 0, 0) = 1, image.at(0, 0, 1) = 0.5f;
+  PictureOptions options;
+  options.percentile = 100;
+  const PngImage grey = srgb_picture(image, options);
+  EXPECT_EQ(pixel(grey, 0), (std::array<int, 3>{255, 255, 255}));
+  EXPECT_EQ(pixel(grey, 1), (std::array<int, 3>{188, 188, 188}));  // half the light
+  options.monochrome_in_colour = true;
+  const auto [r, g, b] = pixel(srgb_picture(image, options), 1);
+  EXPECT_GT(r, g);  // sodium yellow lies outside sRGB on the side of no blue
+  EXPECT_GT(g, 100);
+  EXPECT_EQ(b, 0);
+}
+
+TEST(Picture, InfraredIsShownInGreyByItsIrradiance) {
+  SpectralImage image(2, 1, {850, 950}, 5);
+  image.at(0, 0, 0) = 2, image.at(1, 0, 1) = 1;
+  PictureOptions options;
+  options.percentile = 100;
+  const PictureRenderer renderer(image, options);
+  EXPECT_DOUBLE_EQ(renderer.white_level(), 100);  // W/m²: 2 · 50 nm
+  const PngImage picture = srgb_picture(image, options);
+  EXPECT_EQ(pixel(picture, 0), (std::array<int, 3>{255, 255, 255}));
+  EXPECT_EQ(pixel(picture, 1), (std::array<int, 3>{188, 188, 188}));
+}
+
+TEST(Picture, BlackIsBlack) {
+  const PngImage picture = srgb_picture(SpectralImage(3, 2, {450, 550}, 5));
+  EXPECT_EQ(picture.samples, std::vector<std::uint16_t>(18, 0));
+  EXPECT_EQ(picture.text.at("Exposure"), "no light");
+}
+
+TEST(Picture, IsTheSameWhetherStreamedOrNotAndForAnyNumberOfThreads) {
+  const test::Scratch scratch;
+  SpectralImage image = ramp(illuminant("A"), 37, 41);
+  image.provenance = "a ramp";
+  std::vector<std::string> bytes;
+  for (const int threads : {1, 2, 3}) {
+    const ThreadLimit limit(threads);
+    write_picture(scratch.path("a.png"), image, {}, 16);
+    bytes.push_back(read_whole_file(scratch.path("a.png")));
+    EXPECT_EQ(bytes.back(), bytes.front());
+    EXPECT_EQ(read_png(scratch.path("a.png")).samples, srgb_picture(image, {}, 16).samples);
+  }
+  EXPECT_EQ(read_png(scratch.path("a.png")).text.at("Description"), "a ramp");
+}
+
+TEST(Picture, RefusesNanAndSenselessOptions) {
+  SpectralImage image = ramp(illuminant("D65"));
+  PictureOptions options;
+  options.percentile = 0;
+  EXPECT_THROW(srgb_picture(image, options), InputError);
+  options = {};
+  options.exposure = PictureOptions::Exposure::fixed;
+  EXPECT_THROW(srgb_picture(image, options), InputError);
+  options = {};
+  options.exposure = PictureOptions::Exposure::mean_grey;
+  options.grey = std::nan("");
+  EXPECT_THROW(srgb_picture(image, options), InputError);
+  options = {};
+  options.scene_white = Spectrum({1000, 1100}, {1, 1});
+  EXPECT_THROW(srgb_picture(image, options), InputError);
+  EXPECT_THROW(srgb_picture(image, {}, 12), InputError);
+  image.at(3, 2, 1) = std::nanf("");
+  EXPECT_THROW(srgb_picture(image), InputError);
+}
+
+}  // namespace
+}  // namespace petzval
