@@ -83,7 +83,8 @@ std::string image_strip_svg(const std::vector<StripFrame>& frames, const ImageSt
   const std::size_t per_row = static_cast<std::size_t>(std::max(1, options.frames_per_row));
   const std::size_t rows = (frames.size() + per_row - 1) / per_row;
   const std::size_t columns = std::min(per_row, frames.size());
-  const double row_height = options.frame_px + line_height * static_cast<double>(caption_lines) + 2 * gap;
+  const double row_height = options.frame_px + line_height * static_cast<double>(caption_lines) +
+                            (caption_lines > 0 ? 1.6 : 1) * gap;
 
   XmlWriter xml;
   open_svg(xml, gap + static_cast<double>(columns) * (options.frame_px + gap),

@@ -13,10 +13,12 @@ namespace petzval {
 
 struct HeatMapOptions {
   ColourMap map = ColourMap::inferno;
-  std::optional<double>
-      black;  ///< value of the darkest colour; absent: 0, or the smallest value if that is below 0
-  std::optional<double> white;  ///< value of the lightest colour; absent: the largest value
-  double gamma = 1;  ///< colour = ((value − black)/(white − black))^(1/gamma): 2 lifts faint wings
+  /// Value of the darkest colour; absent: 0, or the smallest value if that is below 0.
+  std::optional<double> black{};
+  /// Value of the lightest colour; absent: the largest value.
+  std::optional<double> white{};
+  /// Colour = ((value − black)/(white − black))^(1/gamma): 2 lifts faint wings.
+  double gamma = 1;
   bool first_row_on_top = true;
 };
 
@@ -35,7 +37,7 @@ struct ImageStripOptions {
   double frame_px = 120;
   int frames_per_row = 8;
   double frame_width = 0;  ///< what the width of a frame stands for, for the scale bar; 0: no bar
-  std::string unit;        ///< of frame_width: "µm"
+  std::string unit{};      ///< of frame_width: "µm"
 };
 
 /// Square frames side by side, pixels unsmoothed, with a scale bar in the first one, as SVG.

@@ -48,13 +48,13 @@ Block table(const Table& table);
 
 /// A name and what belongs to it: "focal length", "6.000", "mm".
 struct Fact {
-  std::string name, value, unit;
+  std::string name, value, unit{};
 };
 Block facts(const std::vector<Fact>& list);
 
 /// A quantity as somebody else reports it and as it is computed here.
 struct Comparison {
-  std::string quantity, reported, computed, remark;
+  std::string quantity, reported, computed, remark{};
 };
 Block comparison(const std::vector<Comparison>& rows, std::string_view reported_by,
                  std::string_view computed_by);

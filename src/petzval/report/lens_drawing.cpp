@@ -13,6 +13,8 @@ namespace petzval {
 
 namespace {
 
+constexpr double number_row_px = 14;
+
 std::vector<double> vertices_z_mm(const Lens& lens) {
   std::vector<double> z{0};
   for (const Surface& surface : lens.surfaces) z.push_back(z.back() + surface.thickness_mm);
@@ -53,8 +55,9 @@ void fill_from_neighbours(std::vector<double>& heights, double fallback) {
 }
 
 struct View {
-  double z_left, y_half, px_per_mm;    ///< what is seen [mm], and the scale
-  double width_px, height_px, top_px;  ///< of the window on the lens
+  double z_left, y_half, px_per_mm;  ///< what is seen [mm], and the scale
+  double width_px, height_px;        ///< of the window on the lens
+  double top_px;                     ///< how far down the drawing that window begins
   double x(double z_mm) const { return (z_mm - z_left) * px_per_mm; }
   double y(double y_mm) const { return (y_half - y_mm) * px_per_mm; }
 };
@@ -102,8 +105,17 @@ Scene make_scene(const Lens& lens, const std::vector<DrawnRay>& rays, const Lens
   return scene;
 }
 
-View make_view(const Scene& scene, const LensDrawingOptions& options, double top_px) {
-  constexpr double smallest_mm = 1e-9, side_px = 24;
+/// The largest height of a ray in what is seen of object space.
+double highest_ray_mm(const std::vector<DrawnRay>& rays, double z_left) {
+  double height = 0;
+  for (const DrawnRay& ray : rays)
+    for (const auto& [z, y] : ray.zy_mm)
+      if (z >= z_left && std::isfinite(y)) height = std::max(height, std::abs(y));
+  return height;
+}
+
+View make_view(const Scene& scene, const LensDrawingOptions& options) {
+  constexpr double smallest_mm = 1e-9, side_px = 24, most_for_rays = 1.4;
   double z_front = scene.vertex_z.back(), z_back = scene.vertex_z.back(), y_most = scene.image_half_height;
   for (const auto& points : scene.profiles) {
     for (const auto& [z, y] : points) {
@@ -114,13 +126,13 @@ View make_view(const Scene& scene, const LensDrawingOptions& options, double top
     }
   }
   const double length = std::max(z_back - z_front, smallest_mm);
-  View view{};
-  view.top_px = top_px;
-  view.y_half = std::max(1.12 * y_most, smallest_mm);
   const double lead = std::max(options.lead_mm.value_or(0.2 * length), 0.0);
   const double seen = length + lead;
-  view.px_per_mm = std::min((options.width_px - side_px) / seen, options.tallest_px / (2 * view.y_half));
+  View view{};
   view.z_left = z_front - lead;
+  const double rays_need = std::min(highest_ray_mm(scene.rays, view.z_left), most_for_rays * y_most);
+  view.y_half = std::max(1.06 * std::max(y_most, rays_need), smallest_mm);
+  view.px_per_mm = std::min((options.width_px - side_px) / seen, options.tallest_px / (2 * view.y_half));
   view.width_px = seen * view.px_per_mm + side_px;
   view.height_px = 2 * view.y_half * view.px_per_mm;
   return view;
@@ -151,7 +163,9 @@ void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
   for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
     if (!scene.lens.surfaces[i].stop) continue;
     const auto [z, y] = scene.profiles[i].back();
-    const double x = view.x(z), inner = y, outer = std::max(1.25 * y, 0.9 * view.y_half);
+    const double neighbour =
+        std::max(scene.profiles[i == 0 ? 0 : i - 1].back()[1], scene.profiles[i + 1].back()[1]);
+    const double x = view.x(z), inner = y, outer = std::max(1.3 * y, neighbour);
     for (const double side : {1.0, -1.0})
       xml.leaf("path", {{"class", "pz-line"},
                         {"stroke-width", 2.4},
@@ -163,7 +177,7 @@ void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
 
 void draw_rays(XmlWriter& xml, const Scene& scene, const View& view) {
   for (const DrawnRay& ray : scene.rays)
-    xml.leaf("path", {{"class", ray.colour.empty() ? "pz-line" : ""},
+    xml.leaf("path", {{"class", ray.colour.empty() ? "pz-line" : "pz-data"},
                       {"d", path_of(view, ray.zy_mm, false)},
                       {"fill", "none"},
                       {"stroke", ray.colour},
@@ -184,24 +198,35 @@ void draw_axis_and_image(XmlWriter& xml, const Scene& scene, const View& view) {
            {{"class", "pz-line"}, {"d", path_of(view, scene.profiles.back(), false)}, {"stroke-width", 2.2}});
 }
 
-/// Numbers above the surfaces, in as many rows as they need not to touch.
-void draw_surface_numbers(XmlWriter& xml, const Scene& scene, const View& view, int rows) {
-  constexpr double row_px = 14, digit_px = 7;
-  std::vector<double> row_ends(static_cast<std::size_t>(rows), -1e9);
+/// Numbers stand above the surfaces in rows, so that they do not touch: the row of each, 0 lowest.
+std::vector<std::size_t> number_rows(const Scene& scene, const View& view) {
+  constexpr double digit_px = 7, gap_px = 3;
+  std::vector<double> row_ends;
+  std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
+    const double x = view.x(scene.profiles[i].back()[0]);
+    const double half = digit_px * static_cast<double>(std::to_string(i).size()) / 2;
+    const auto free_row =
+        std::find_if(row_ends.begin(), row_ends.end(), [&](double end) { return x - half >= end; });
+    const auto row = static_cast<std::size_t>(free_row - row_ends.begin());
+    if (row == row_ends.size()) row_ends.push_back(0);
+    row_ends[row] = x + half + gap_px;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void draw_surface_numbers(XmlWriter& xml, const Scene& scene, const View& view,
+                          const std::vector<std::size_t>& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto [z, y] = scene.profiles[i].back();
-    const std::string number = std::to_string(i);
-    const double x = view.x(z), half = digit_px * static_cast<double>(number.size()) / 2;
-    std::size_t row = 0;
-    while (row + 1 < row_ends.size() && x - half < row_ends[row]) ++row;
-    row_ends[row] = std::max(row_ends[row], x + half + 3);
-    const double text_y = view.top_px - 6 - row_px * static_cast<double>(row);
+    const double x = view.x(z), text_y = view.top_px - 6 - number_row_px * static_cast<double>(rows[i]);
     xml.leaf(
         "line",
         {{"class", "pz-grid"}, {"x1", x}, {"y1", text_y + 3}, {"x2", x}, {"y2", view.top_px + view.y(y)}});
     xml.text("text",
              {{"class", "pz-soft"}, {"x", x}, {"y", text_y}, {"text-anchor", "middle"}, {"font-size", 11.0}},
-             number);
+             std::to_string(i));
   }
 }
 
@@ -222,7 +247,7 @@ void draw_title_and_legend(XmlWriter& xml, const LensDrawingOptions& options) {
              {{"class", "pz-ink"}, {"x", 12.0}, {"y", 24.0}, {"font-size", 15.0}, {"font-weight", "600"}},
              options.title);
   double x = 12;
-  const double y = options.title.empty() ? 18 : 44;
+  const double y = options.title.empty() ? 18 : 46;
   for (const LegendLabel& label : options.legend) {
     xml.leaf("line", {{"x1", x},
                       {"y1", y - 4},
@@ -231,7 +256,7 @@ void draw_title_and_legend(XmlWriter& xml, const LensDrawingOptions& options) {
                       {"stroke", label.colour},
                       {"stroke-width", 2.0}});
     xml.text("text", {{"class", "pz-ink"}, {"x", x + 24}, {"y", y}}, label.text);
-    x += 24 + 6.7 * static_cast<double>(character_count(label.text)) + 18;
+    x += 24 + 7.0 * static_cast<double>(character_count(label.text)) + 18;
   }
 }
 
@@ -258,20 +283,24 @@ std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<
 std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
                       const LensDrawingOptions& options) {
   if (lens.surfaces.empty()) throw InputError("a lens without surfaces cannot be drawn");
-  constexpr int number_rows = 3;
-  constexpr double scale_bar_px = 34;
-  double top_px = 8 + (options.title.empty() ? 0 : 24) + (options.legend.empty() ? 0 : 20);
-  if (options.surface_numbers) top_px += 14 * number_rows + 4;
+  constexpr double scale_bar_px = 34, number_gap_px = 6;
   const Scene scene = make_scene(lens, rays, options);
-  const View view = make_view(scene, options, top_px);
+  View view = make_view(scene, options);
+  const std::vector<std::size_t> rows =
+      options.surface_numbers ? number_rows(scene, view) : std::vector<std::size_t>();
+  view.top_px = 8 + (options.title.empty() ? 0 : 26) + (options.legend.empty() ? 0 : 20);
+  if (!rows.empty())
+    view.top_px +=
+        number_gap_px + number_row_px * static_cast<double>(1 + *std::max_element(rows.begin(), rows.end()));
 
   XmlWriter xml;
-  open_svg(xml, view.width_px, top_px + view.height_px + scale_bar_px,
+  open_svg(xml, view.width_px, view.top_px + view.height_px + scale_bar_px,
            "Layout of " + (lens.name.empty() ? "a lens" : lens.name));
   draw_title_and_legend(xml, options);
-  if (options.surface_numbers) draw_surface_numbers(xml, scene, view, number_rows);
-  xml.open("svg",
-           {{"y", top_px}, {"width", view.width_px}, {"height", view.height_px}, {"overflow", "hidden"}});
+  if (options.surface_numbers) draw_surface_numbers(xml, scene, view, rows);
+  xml.open(
+      "svg",
+      {{"y", view.top_px}, {"width", view.width_px}, {"height", view.height_px}, {"overflow", "hidden"}});
   draw_axis_and_image(xml, scene, view);
   draw_elements(xml, scene, view);
   draw_rays(xml, scene, view);

@@ -15,7 +15,7 @@ namespace petzval {
 /// point that is not finite breaks the line.
 struct DrawnRay {
   std::vector<std::array<double, 2>> zy_mm;
-  std::string colour;  ///< "#rrggbb", by field or by wavelength; empty: ink
+  std::string colour{};  ///< "#rrggbb", by field or by wavelength; empty: ink
 };
 
 struct LegendLabel {

@@ -13,11 +13,11 @@ namespace petzval {
 namespace {
 
 constexpr double right_margin_px = 22, bottom_margin_px = 50, least_frame_px = 60;
-constexpr double title_px = 24, legend_gap_px = 18;
+constexpr double title_px = 26, legend_gap_px = 18;
 
 /// The width that a text at 12 px is given; the font is not known here.
 double text_width_px(std::string_view text) {
-  return 6.7 * static_cast<double>(character_count(text));
+  return 7.0 * static_cast<double>(character_count(text));
 }
 
 /// The extent of the data along one axis, grown one value at a time.

@@ -155,7 +155,8 @@ void draw_lines(XmlWriter& xml, const Plot& plot, const PlotLayout& layout) {
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
     if (series.stroke == PlotStroke::none) continue;
-    xml.leaf("path", {{"d", path_of(series, layout)},
+    xml.leaf("path", {{"class", "pz-data"},
+                      {"d", path_of(series, layout)},
                       {"fill", "none"},
                       {"stroke", layout.colours[i]},
                       {"stroke-width", series.width_px},
@@ -190,7 +191,7 @@ void draw_markers_and_notes(XmlWriter& xml, const Plot& plot, const PlotLayout& 
 }
 
 void draw_legend(XmlWriter& xml, const Plot& plot, const PlotLayout& layout) {
-  const double first_row = plot.title.empty() ? 18 : 42;
+  const double first_row = plot.title.empty() ? 18 : 44;
   for (const LegendEntry& entry : layout.legend) {
     const PlotSeries& series = plot.series[entry.series];
     const double y = first_row + legend_row_px * entry.row;

@@ -13,9 +13,9 @@ namespace petzval {
 /// One axis. Without `from` and `to` the range is that of the data, grown to the next tick.
 struct PlotAxis {
   std::string label;
-  std::string unit;  ///< "mm"; shown in brackets after the label
+  std::string unit{};  ///< "mm"; shown in brackets after the label
   PlotScale scale = PlotScale::linear;
-  std::optional<double> from, to;
+  std::optional<double> from{}, to{};
 };
 
 enum class PlotStroke { none, solid, dashed, dotted };
@@ -44,7 +44,7 @@ struct PlotGuide {
   enum class At { x, y };
   At at = At::y;
   double value = 0;
-  std::string label;
+  std::string label{};
 };
 
 /// A picture beneath the lines, its edges at these places of the axes. Pixels are not smoothed.

@@ -10,8 +10,8 @@ namespace petzval {
 
 struct TableColumn {
   std::string name;
-  std::string unit;  ///< empty: none
-  int decimals = 3;  ///< shown to people; CSV files get every digit
+  std::string unit{};  ///< empty: none
+  int decimals = 3;    ///< shown to people; CSV files get every digit
 };
 
 /// A number or a piece of text. A number that is not finite is a gap.

@@ -10,6 +10,8 @@ namespace petzval {
 
 namespace {
 
+/// A range that ends this part of a step beside a tick is taken to end on it.
+constexpr double on_tick = 1e-6;
 constexpr std::string_view minus_sign = "\xE2\x88\x92";  // U+2212
 
 std::string with_true_minus(std::string text) {
@@ -55,10 +57,10 @@ Ticks linear_ticks(double low, double high, int wanted, bool round_outwards) {
   Ticks ticks;
   std::tie(ticks.from, ticks.to) = drawable_linear(low, high);
   const double step = nice_step((ticks.to - ticks.from) / wanted);
-  double first = std::ceil(ticks.from / step - 1e-6), last = std::floor(ticks.to / step + 1e-6);
+  double first = std::ceil(ticks.from / step - on_tick), last = std::floor(ticks.to / step + on_tick);
   if (round_outwards) {
-    first = std::floor(ticks.from / step + 1e-6);
-    last = std::ceil(ticks.to / step - 1e-6);
+    first = std::floor(ticks.from / step + on_tick);
+    last = std::ceil(ticks.to / step - on_tick);
     ticks.from = std::min(ticks.from, first * step);
     ticks.to = std::max(ticks.to, last * step);
   }

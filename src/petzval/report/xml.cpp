@@ -60,7 +60,8 @@ constexpr std::string_view style =
     "stroke:#2f5d86}.pz-note{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}"
     "@media screen and (prefers-color-scheme:dark){.pz-paper{fill:#15181d}.pz-ink{fill:#e6e9ee}"
     ".pz-soft{fill:#9aa4b0}.pz-line{stroke:#e6e9ee}.pz-frame{stroke:#6b7580}.pz-grid{stroke:#2a2f37}"
-    ".pz-glass{fill:#3b6c99;fill-opacity:.5;stroke:#9cc4e8}.pz-note{stroke:#15181d}}";
+    ".pz-glass{fill:#3b6c99;fill-opacity:.5;stroke:#9cc4e8}.pz-note{stroke:#15181d}.pz-data{filter:"
+    "brightness(1.35)}}";
 
 }  // namespace
 
