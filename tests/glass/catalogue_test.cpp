@@ -169,6 +169,12 @@ TEST(BundledCatalogue, UnknownGlassNamesTheNearest) {
   EXPECT_NE(other.find("SCHOTT:N-BK7"), std::string::npos) << other;
 }
 
+TEST(BundledCatalogue, WhatIsNoNameIsNotRepeated) {
+  for (const std::string& name :
+       {std::string(), std::string("N-BK7\n"), std::string("N\0BK7", 6), std::string(1 << 20, 'N')})
+    EXPECT_EQ(unknown(name), "that is not the name of a glass; one is SCHOTT:N-BK7");
+}
+
 TEST(BundledCatalogue, AmbiguousBareNameNeedsACatalogue) {
   EXPECT_EQ(unknown("F2"), "glass F2 is ambiguous; say which: CDGM:F2, HIKARI:F2, SCHOTT:F2");
   EXPECT_EQ(bundled().find("F2", {"SCHOTT"})->full_name(), "SCHOTT:F2");

@@ -25,6 +25,10 @@ bool same_dispersion(const Glass& a, const Glass& b) {
          a.shortest_nm == b.shortest_nm && a.longest_nm == b.longest_nm;
 }
 
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
+}
+
 /// "BK7" of "N-BK7", "LAK10" of "H-LAK10": makers put a letter or two for the kind in front.
 std::string_view without_prefix(std::string_view bare) {
   constexpr std::size_t longest_prefix = 2;
@@ -98,6 +102,10 @@ std::vector<std::string> GlassCatalogue::Impl::nearest(const std::string& bare,
 }
 
 void GlassCatalogue::Impl::unknown(const std::string& name) const {
+  // Longer than any name, or not a word at all: nothing to compare, and not to be repeated.
+  constexpr std::size_t longest_name = 100;
+  if (name.empty() || name.size() > longest_name || std::any_of(name.begin(), name.end(), is_control))
+    throw InputError("that is not the name of a glass; one is SCHOTT:N-BK7");
   const std::size_t colon = name.find(':');
   if (colon == name.npos)
     throw InputError(

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""petzval glass list, show and find."""
+
+import os
+import unittest
+
+from petzval_cli import ProgramTest
+
+
+class Glass(ProgramTest):
+    def test_list(self):
+        rows = self.json_of("glass", "list")["rows"]
+        self.assertEqual(len(rows), 1629)
+        schott = self.json_of("glass", "list", "--catalogue", "schott")["rows"]
+        self.assertEqual(len(schott), 156)
+        self.assertEqual([row["name"] for row in schott], [row["name"] for row in rows if row["name"].startswith("SCHOTT:")])
+        self.assertIn("SCHOTT:N-BK7", self.assert_succeeds("glass", "list"))
+
+    def test_show(self):
+        glass = self.json_of("glass", "show", "n-bk7", "--wavelengths", "486.1327,587.5618")
+        self.assertEqual(glass["name"], "SCHOTT:N-BK7")
+        self.assertEqual(glass["formula"], 2)
+        self.assertEqual(glass["coefficients"][1], 1.03961212)
+        self.assertEqual((glass["shortest_nm"], glass["longest_nm"]), (300, 2500))
+        # Five decimals of the data sheet.
+        self.assertAlmostEqual(glass["rows"][0]["index"], 1.52238, delta=0.51e-5)
+        self.assertAlmostEqual(glass["rows"][1]["index"], 1.51680, delta=0.51e-5)
+        self.assertAlmostEqual(glass["vd"], 64.17, delta=0.0051)
+        text = self.assert_succeeds("glass", "show", "SCHOTT:N-BK7", "--wavelengths", "486.1327")
+        self.assertIn("1.522376", text)
+
+    def test_absorption_that_nobody_states_is_not_zero(self):
+        row = self.json_of("glass", "show", "MISC:SILICA", "--wavelengths", "500")["rows"][0]
+        self.assertIsNone(row["extinction"])
+
+    def test_find_ranks_by_the_stated_distance(self):
+        rows = self.json_of("glass", "find", "--nd", "1.5168", "--vd", "64.17", "--count", "7")["rows"]
+        self.assertEqual(len(rows), 7)
+        distances = [((row["nd"] - 1.5168) ** 2 + (0.01 * (row["vd"] - 64.17)) ** 2) ** 0.5 for row in rows]
+        self.assertEqual(distances, sorted(distances))
+        for row, distance in zip(rows, distances):
+            self.assertAlmostEqual(row["distance"], distance, delta=1e-12)
+        self.assertIn("SCHOTT:N-BK7", [row["name"] for row in rows])
+        every = self.json_of("glass", "list")["rows"]
+        nearer = [row for row in every if row["nd"] is not None
+                  and ((row["nd"] - 1.5168) ** 2 + (0.01 * (row["vd"] - 64.17)) ** 2) ** 0.5 < distances[-1] - 1e-12]
+        self.assertEqual(len(nearer), 6)
+
+    def test_find_by_one_number_in_one_catalogue(self):
+        rows = self.json_of("glass", "find", "--vd", "60", "--catalogue", "hoya", "--count", "3")["rows"]
+        self.assertTrue(all(row["name"].startswith("HOYA:") for row in rows))
+
+    def test_refusals(self):
+        self.assert_refused("glass", "show", "BK7", words=["unknown glass BK7", "SCHOTT:N-BK7"])
+        self.assert_refused("glass", "show", "F2", words=["ambiguous", "SCHOTT:F2", "CDGM:F2"])
+        self.assert_refused("glass", "show", "N-BK7", "--wavelengths", "500,299.9", words=["SCHOTT:N-BK7", "299.9", "300"])
+        self.assert_refused("glass", "show", "N-BK7", "--wavelengths", "green", words=["--wavelengths"])
+        self.assert_refused("glass", "show", "N-BK7", "--wavelengths", "nan", words=["nan"])
+        self.assert_refused("glass", "show", "x" * 100000, words=["not the name of a glass"])
+        self.assert_refused("glass", "list", "--catalogue", "NIKON", words=["NIKON", "HIKARI"])
+        self.assert_refused("glass", "find", words=["--nd", "--vd"])
+        self.assert_refused("glass", "find", "--nd", "inf", words=["--nd"])
+        self.assert_refused("glass", "find", "--nd", "1.5", "--count", "0", words=["--count"])
+
+    def test_damaged_catalogue(self):
+        (self.folder / "glass").mkdir()
+        self.write("glass/catalogue.pgc", b"PZGLASS1 and then something else")
+        self.assert_refused("glass", "list", words=["catalogue.pgc", "damaged"],
+                            env={**os.environ, "PETZVAL_DATA": str(self.folder)})
+
+
+if __name__ == "__main__":
+    unittest.main()
