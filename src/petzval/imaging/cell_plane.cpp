@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/imaging/cell_plane.h>
+
+#include <cmath>
+
+namespace petzval {
+
+CellPlane::CellPlane(const SensorGeometry& geometry) : grid(geometry) {
+  constexpr double max_cells = 2147483648.0;  // 8 GB of floats
+  if (grid.columns < 1 || grid.rows < 1 || !(grid.pitch_um > 0) || !std::isfinite(grid.pitch_um) ||
+      double(grid.columns) * grid.rows > max_cells)
+    throw InputError(fmt::format("{} × {} cells at {} µm: 1 to 2^31 cells of a positive pitch are right",
+                                 grid.columns, grid.rows, grid.pitch_um));
+  values.assign(columns() * rows(), 0.0F);
+}
+
+SensorGeometry grown(const SensorGeometry& grid, int margin) {
+  return {grid.columns + 2 * margin, grid.rows + 2 * margin, grid.pitch_um};
+}
+
+SensorGeometry subdivided(const SensorGeometry& grid, int factor) {
+  return {grid.columns * factor, grid.rows * factor, grid.pitch_um / factor};
+}
+
+CellPlane averaged(const CellPlane& plane, int factor) {
+  if (factor == 1) return plane;
+  CellPlane result({plane.grid.columns / factor, plane.grid.rows / factor, plane.grid.pitch_um * factor});
+  const auto step = static_cast<std::size_t>(factor);
+  for (std::size_t row = 0; row < result.rows(); ++row)
+    for (std::size_t column = 0; column < result.columns(); ++column) {
+      double sum = 0;
+      for (std::size_t i = 0; i < step; ++i)
+        for (std::size_t j = 0; j < step; ++j) sum += double(plane.row(row * step + i)[column * step + j]);
+      result.row(row)[column] = static_cast<float>(sum / (double(factor) * factor));
+    }
+  return result;
+}
+
+}  // namespace petzval

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/distortion.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// From a field of the table to a radius in the scene, in samples.
+double scene_radius(double field, std::optional<double> object_to_sensor_mm, const Scene& scene) {
+  if (object_to_sensor_mm) return field / (*object_to_sensor_mm * scene.tangent_per_sample());
+  constexpr double widest_deg = 89.999;  // a plane cannot fill half of space: from here on, beyond any scene
+  return std::tan(radians(std::min(field, widest_deg))) / scene.tangent_per_sample();
+}
+
+/// Bilinear between sample centres; `column`, `row` in samples.
+double radiance_at(std::span<const float> band, const Scene& scene, double column, double row,
+                   Surround surround) {
+  const double columns = scene.columns(), rows = scene.rows();
+  if (surround != Surround::extend && !(column >= 0 && column <= columns && row >= 0 && row <= rows))
+    return 0;
+  const double u = std::clamp(column - 0.5, 0.0, columns - 1), v = std::clamp(row - 0.5, 0.0, rows - 1);
+  const auto j = static_cast<std::size_t>(u), i = static_cast<std::size_t>(v);
+  const double right = u - double(j), below = v - double(i);
+  const auto width = static_cast<std::size_t>(scene.columns());
+  const std::size_t j_next = std::min(j + 1, width - 1);
+  const float* here = band.data() + i * width;
+  const float* next = band.data() + std::min(i + 1, static_cast<std::size_t>(scene.rows()) - 1) * width;
+  const double upper = here[j] + right * (double(here[j_next]) - here[j]);
+  const double lower = next[j] + right * (double(next[j_next]) - next[j]);
+  return upper + below * (lower - upper);
+}
+
+}  // namespace
+
+SceneMap::SceneMap(const RadialProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
+                   double largest_height_mm)
+    : middle_column_(scene.columns() / 2.0),
+      middle_row_(scene.rows() / 2.0),
+      last_height_mm_(std::min(lens.max_height_mm(), largest_height_mm)),
+      last_height_squared_(last_height_mm_ * last_height_mm_) {
+  constexpr std::size_t step_count = 4096;
+  steps_per_square_ = last_height_squared_ > 0 ? double(step_count) / last_height_squared_ : 0;
+  // Towards the axis ρ/r' tends to a constant: taken where it is still numerically sound.
+  const double near_axis_mm = 1e-4 * last_height_mm_;
+  for (std::size_t k = 0; k <= step_count + 1; ++k) {
+    const double height_mm = last_height_mm_ * std::sqrt(std::min(1.0, double(k) / double(step_count)));
+    const double off_axis_mm = std::max(height_mm, near_axis_mm);
+    const double ratio =
+        off_axis_mm > 0
+            ? scene_radius(lens.object_field(off_axis_mm), object_to_sensor_mm, scene) / off_axis_mm
+            : 0.0;
+    steps_.push_back({ratio, lens.g_source_sr(height_mm)});
+    if (k == 0 || k > step_count) continue;
+    const double below_mm = last_height_mm_ * std::sqrt(double(k - 1) / double(step_count));
+    const double radial =
+        (ratio * height_mm - steps_[k - 1].samples_per_mm * below_mm) / (height_mm - below_mm);
+    finest_samples_per_mm_ = std::max({finest_samples_per_mm_, radial, ratio});
+  }
+}
+
+SceneMap::Place SceneMap::place(double x_mm, double y_mm) const {
+  const double square = x_mm * x_mm + y_mm * y_mm;
+  const bool dark = square > last_height_squared_ * (1 + 1e-12);  // rounding must not darken the rim
+  const double step = std::min(square, last_height_squared_) * steps_per_square_;
+  const auto k = static_cast<std::size_t>(step);
+  const double t = step - double(k);
+  const double ratio =
+      steps_[k].samples_per_mm + t * (steps_[k + 1].samples_per_mm - steps_[k].samples_per_mm);
+  const double g = steps_[k].g_source_sr + t * (steps_[k + 1].g_source_sr - steps_[k].g_source_sr);
+  return {middle_column_ - ratio * x_mm, middle_row_ + ratio * y_mm, dark ? 0.0 : g};
+}
+
+SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid) {
+  // ρ grows with r', so the outline of the grid sees farthest; where it lies in the dark, the last bright
+  // place on the way there. One quadrant is enough: the others are its mirror images.
+  SeenExtent seen;
+  const SceneMap::Place axis = map.place(0, 0);
+  const auto look = [&](double x_mm, double y_mm) {
+    const double shrink = std::min(1.0, map.last_height_mm() / std::hypot(x_mm, y_mm));
+    const SceneMap::Place place = map.place(shrink * x_mm, shrink * y_mm);
+    const double columns = std::abs(place.column - axis.column), rows = std::abs(place.row - axis.row);
+    seen.columns = std::max(seen.columns, columns);
+    seen.rows = std::max(seen.rows, rows);
+    seen.radius = std::max(seen.radius, std::hypot(columns, rows));
+  };
+  for (double column = grid.columns; column > grid.columns / 2.0; --column)
+    look(grid.x_mm(column), grid.y_mm(0));
+  for (double row = grid.rows; row > grid.rows / 2.0; --row) look(grid.x_mm(0), grid.y_mm(row));
+  look(grid.x_mm(grid.columns / 2.0), grid.y_mm(0));
+  look(grid.x_mm(0), grid.y_mm(grid.rows / 2.0));
+  return seen;
+}
+
+CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                           int parts, Surround surround) {
+  CellPlane plane(grid);
+  const std::span<const float> radiance = scene.band(band);
+  parallel_for(plane.rows(), [&](std::size_t row) {
+    for (std::size_t column = 0; column < plane.columns(); ++column) {
+      double sum = 0;
+      for (int i = 0; i < parts; ++i)
+        for (int j = 0; j < parts; ++j) {
+          const SceneMap::Place place = map.place(grid.x_mm(double(column) + (j + 0.5) / parts),
+                                                  grid.y_mm(double(row) + (i + 0.5) / parts));
+          if (place.g_source_sr == 0) continue;
+          sum += place.g_source_sr * radiance_at(radiance, scene, place.column, place.row, surround);
+        }
+      plane.row(row)[column] = static_cast<float>(sum / (double(parts) * parts));
+    }
+  });
+  return plane;
+}
+
+}  // namespace petzval

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which part of the scene each cell of the image sees, and the irradiance there before blur.
+#pragma once
+
+#include <petzval/imaging/cell_plane.h>
+#include <petzval/optics/table_interpolation.h>
+#include <petzval/scene/scene.h>
+
+#include <optional>
+#include <vector>
+
+namespace petzval {
+
+/// What is seen beyond the edges of a scene that does not cover the field.
+enum class Surround {
+  error,  ///< nothing may be: InputError
+  zero,   ///< darkness
+  extend  ///< the nearest sample of the scene
+};
+
+/// The way from image space to the samples of a scene at one wavelength.
+///
+/// The samples seen lie on the line through the axis on which the cell lies, at a radius ρ(r') that is the
+/// tangent of the object angle (object at infinity) or the object height (finite) in units of scene samples.
+/// ρ/r' and g_source are smooth functions of r'², and are kept as such, at 4096 steps with straight lines in
+/// between: no square root, no trigonometry and no division on the way from cell to sample, and an error
+/// below 1e-7 for smooth lenses.
+class SceneMap {
+ public:
+  /// \param lens  at the wavelength; beyond its last field there is darkness.
+  /// \param object_to_sensor_mm  where a finite object stands; absent: at infinity, fields are degrees.
+  /// \param largest_height_mm  the farthest that place() will be asked for.
+  SceneMap(const RadialProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
+           double largest_height_mm);
+
+  /// A place in the scene, in samples (centres at half-integers, rows down), and how much of its light
+  /// arrives.
+  struct Place {
+    double column, row, g_source_sr;  ///< g_source 0: no chief ray lands here
+  };
+  Place place(double x_mm, double y_mm) const;
+  /// Beyond it every place is dark.
+  double last_height_mm() const { return last_height_mm_; }
+  /// The most samples of the scene that a millimetre of the image spans, radially or tangentially.
+  double finest_samples_per_mm() const { return finest_samples_per_mm_; }
+
+ private:
+  double middle_column_, middle_row_;
+  double last_height_mm_, last_height_squared_, steps_per_square_;
+  double finest_samples_per_mm_ = 0;
+  struct Step {
+    double samples_per_mm, g_source_sr;
+  };
+  std::vector<Step> steps_;
+};
+
+/// How far a grid of cells sees from the axis [samples of the scene]: to left and right, up and down, to the
+/// corner.
+struct SeenExtent {
+  double columns = 0, rows = 0, radius = 0;
+};
+SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid);
+
+/// Irradiance before blur: radiance × g_source, at every cell of a grid.
+///
+/// \param parts  the scene is taken at parts × parts points of each cell, spread evenly, and averaged: 1 (the
+/// centre)
+///   where a sample of the scene is no smaller than a cell, more where it is finer, so that it is averaged
+///   over the cell's footprint. Between sample centres radiance is bilinear; within half a sample of the
+///   scene's edge it is that of the edge.
+/// \param surround  what lies beyond the scene; `error` here means zero (form_image() looks before).
+CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                           int parts, Surround surround);
+
+}  // namespace petzval

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shift-variant blur without approximation: the oracle for all faster methods.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/imaging/cell_plane.h>
+#include <petzval/imaging/psf_kernel.h>
+
+namespace petzval {
+
+/// Blurs a plane whose every cell has its own kernel, added up directly in double precision. Parameters as
+/// blur_sections(). Slow: one kernel a cell.
+CellPlane blur_exact(const CellPlane& source, const PsfField& psfs, int margin,
+                     const ProgressCallback& progress = {});
+
+}  // namespace petzval

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/exact_blur.h>
+#include <petzval/imaging/image_formation.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Everything about one band that is known before its light is.
+struct BandPlan {
+  SensorGeometry source;  ///< the frame's cells and the margin around them
+  int margin = 0;
+  SceneMap map;
+  std::optional<PsfField> psfs;  ///< none without blur
+};
+
+double half_diagonal_mm(const SensorGeometry& grid) {
+  return std::hypot(grid.width_mm(), grid.height_mm()) / 2;
+}
+
+void check_distances(const Scene& scene, const LensDataTable& table) {
+  const std::optional<double> table_mm = object_to_sensor_mm(table);
+  const auto say = [](std::optional<double> mm) {
+    return mm ? fmt::format("{:.6g} m", *mm / mm_per_m) : "infinity";
+  };
+  std::optional<double> scene_mm = scene.distance_m();
+  if (scene_mm) *scene_mm *= mm_per_m;
+  constexpr double relative_tolerance = 1e-3;
+  const bool agree = scene_mm && table_mm ? std::abs(*scene_mm - *table_mm) <= relative_tolerance * *table_mm
+                                          : !scene_mm && !table_mm;
+  if (!agree)
+    throw InputError(
+        fmt::format("the scene is at {}, but the lens data table was made for an object at {} from the "
+                    "sensor; give the scene that distance, or build the table for the scene's",
+                    say(scene_mm), say(table_mm)));
+}
+
+BandPlan plan_band(const Scene& scene, int band, const LensDataTable& table, const RadialProfiles& profiles,
+                   const SensorGeometry& frame, const ImagingOptions& options) {
+  const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(band)];
+  std::optional<PsfField> psfs;
+  int margin = 0;
+  if (options.method != BlurMethod::none) {
+    psfs.emplace(table, wavelength_nm, frame.pitch_um, options.interpolation);
+    margin = psfs->radius();
+  }
+  if (options.method == BlurMethod::sections) transform_size(options.sections, margin);
+  const SensorGeometry source = grown(frame, margin);
+  SceneMap map(profiles.at_wavelength(wavelength_nm), object_to_sensor_mm(table), scene,
+               half_diagonal_mm(source));
+  return {source, margin, std::move(map), std::move(psfs)};
+}
+
+/// \throws InputError if the scene ends before the field does and nothing was said about its surroundings.
+void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, Surround surround,
+                    std::vector<std::string>& notes) {
+  SeenExtent seen;
+  int margin = 0;
+  for (const BandPlan& plan : plans) {
+    const SeenExtent band = seen_extent(plan.map, plan.source);
+    seen = {std::max(seen.columns, band.columns), std::max(seen.rows, band.rows),
+            std::max(seen.radius, band.radius)};
+    margin = std::max(margin, plan.margin);
+  }
+  constexpr double rounding = 1 + 1e-9;
+  if (2 * seen.columns <= scene.columns() * rounding && 2 * seen.rows <= scene.rows() * rounding) return;
+
+  const auto full_angle = [&](double samples) {
+    return degrees(2 * std::atan(samples * scene.tangent_per_sample()));
+  };
+  const double wide = full_angle(seen.columns), high = full_angle(seen.rows),
+               across = full_angle(seen.radius);
+  const auto short_by = [](double needed, double have) { return std::max(0.0, needed - have); };
+  const std::string shortfall = fmt::format(
+      "the scene covers {:.2f}° × {:.2f}° ({:.2f}° across its corners), the frame with a margin of {} cells "
+      "for the "
+      "PSF sees {:.2f}° × {:.2f}° ({:.2f}°): it falls short by {:.2f}° horizontally, {:.2f}° vertically and "
+      "{:.2f}° "
+      "diagonally",
+      scene.horizontal_angle_deg(), scene.vertical_angle_deg(), scene.diagonal_angle_deg(), margin, wide,
+      high, across, short_by(wide, scene.horizontal_angle_deg()), short_by(high, scene.vertical_angle_deg()),
+      short_by(across, scene.diagonal_angle_deg()));
+  if (surround == Surround::error)
+    throw InputError(shortfall +
+                     "; a larger --scene-angle, a smaller sensor, or --surround zero or extend would do");
+  notes.push_back(shortfall + (surround == Surround::zero
+                                   ? "; beyond it is darkness (--surround zero)"
+                                   : "; beyond it its edge goes on (--surround extend)"));
+}
+
+void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& sensor,
+                       std::vector<std::string>& notes) {
+  const double corner_mm = half_diagonal_mm(sensor);
+  double last_mm = corner_mm, missing_mm = 0;
+  for (const BandPlan& plan : plans) {
+    const double cell_mm = plan.source.pitch_um * mm_per_um;
+    last_mm = std::min(last_mm, plan.map.last_height_mm());
+    missing_mm = std::max(missing_mm, corner_mm + (plan.margin - 1) * cell_mm - plan.map.last_height_mm());
+  }
+  if (last_mm < corner_mm)
+    notes.push_back(
+        fmt::format("the last chief ray of the lens data table lands {:.4f} mm from the axis: beyond, "
+                    "towards the corners at {:.4f} mm, the image is dark",
+                    last_mm, corner_mm));
+  else if (missing_mm > 0)
+    notes.push_back(
+        fmt::format("the lens data table ends {:.4f} mm short of the places whose light could just reach "
+                    "the corners: no light comes from there",
+                    missing_mm));
+}
+
+/// How many points of a cell to take in each direction, so that no sample of the scene is skipped in any
+/// band.
+int points_per_cell(const std::vector<BandPlan>& plans) {
+  constexpr int most = 64;
+  double samples = 1;
+  for (const BandPlan& plan : plans)
+    samples = std::max(samples, plan.map.finest_samples_per_mm() * plan.source.pitch_um * mm_per_um);
+  constexpr double rounding = 1e-6;
+  return static_cast<int>(std::min<double>(most, std::ceil(samples - rounding)));
+}
+
+CellPlane blur(const CellPlane& source, const BandPlan& plan, const ImagingOptions& options,
+               const ProgressCallback& progress) {
+  if (options.method == BlurMethod::none) return source;
+  if (options.method == BlurMethod::exact) return blur_exact(source, *plan.psfs, plan.margin, progress);
+  return blur_sections(source, *plan.psfs, plan.margin, options.sections, progress);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void finish(ImagingReport& report, const SpectralImage& image, const ImagingOptions& options) {
+  const auto [darkest, brightest] = std::minmax_element(image.values().begin(), image.values().end());
+  report.darkest = *darkest;
+  report.brightest = *brightest;
+  constexpr double worth_a_note = 1e-4;  // well above the rounding of the transforms
+  if (report.darkest < -worth_a_note * report.brightest)
+    report.notes.push_back(
+        fmt::format("irradiance goes down to {:.3g}, {:.2g} of the brightest pixel: negative lobes "
+                    "of interpolated OTFs",
+                    report.darkest, -report.darkest / report.brightest));
+  if (report.least_captured < 0.99)
+    report.notes.push_back(
+        fmt::format("the PSF windows of the lens data table hold {:.2f} % of the light and more; "
+                    "the rest is taken to fall as the held part does",
+                    100 * report.least_captured));
+  if (options.method != BlurMethod::none)
+    report.notes.push_back(
+        fmt::format("light may come in from {} cells around the frame; light that leaves the frame "
+                    "is lost",
+                    report.margin_cells));
+}
+
+}  // namespace
+
+void ImagingOptions::validate() const {
+  constexpr int most = 16;
+  if (supersample < 1 || supersample > most)
+    throw InputError(fmt::format("supersampling of {}: 1 to {} is right", supersample, most));
+  if (method == BlurMethod::sections) transform_size(sections, 0);
+}
+
+std::optional<double> object_to_sensor_mm(const LensDataTable& table) {
+  if (!table.object_distance_mm) return std::nullopt;
+  return *table.object_distance_mm + table.vertex_to_sensor_mm;
+}
+
+SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                         const ImagingOptions& options, const ProgressCallback& progress,
+                         ImagingReport* report) {
+  ImagingReport own;
+  ImagingReport& says = report != nullptr ? *report : own;
+  says = {};
+
+  // Everything that can be refused is refused before the work starts.
+  options.validate();
+  scene.validate();
+  table.validate();
+  check_distances(scene, table);
+  SpectralImage image(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
+  const SensorGeometry frame = subdivided(sensor, options.supersample);
+  const RadialProfiles profiles(table, options.fit);
+  std::vector<BandPlan> plans;
+  for (int band = 0; band < scene.bands(); ++band)
+    plans.push_back(plan_band(scene, band, table, profiles, frame, options));
+  check_coverage(scene, plans, options.surround, says.notes);
+  note_dark_corners(plans, sensor, says.notes);
+  says.scene_points_per_cell = points_per_cell(plans);
+
+  for (int band = 0; band < scene.bands(); ++band) {
+    const BandPlan& plan = plans[static_cast<std::size_t>(band)];
+    const auto start = std::chrono::steady_clock::now();
+    const CellPlane ideal =
+        ideal_irradiance(scene, band, plan.map, plan.source, says.scene_points_per_cell, options.surround);
+    says.distortion_seconds += seconds_since(start);
+
+    const auto start_of_blur = std::chrono::steady_clock::now();
+    const CellPlane blurred = blur(ideal, plan, options, [&](double fraction, const std::string& what) {
+      if (progress) progress((band + fraction) / scene.bands(), what);
+    });
+    says.blur_seconds += seconds_since(start_of_blur);
+
+    const CellPlane pixels = averaged(blurred, options.supersample);
+    std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
+    says.margin_cells = std::max(says.margin_cells, plan.margin);
+    if (plan.psfs) says.least_captured = std::min(says.least_captured, plan.psfs->least_captured());
+    if (options.method == BlurMethod::sections)
+      says.transform_size = std::max(says.transform_size, transform_size(options.sections, plan.margin));
+    if (progress) progress((band + 1.0) / scene.bands(), "image");
+  }
+  finish(says, image, options);
+  return image;
+}
+
+}  // namespace petzval

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a planar scene through a lens data table to the irradiance on a sensor.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/image/spectral_image.h>
+#include <petzval/imaging/distortion.h>
+#include <petzval/imaging/psf_kernel.h>
+#include <petzval/imaging/section_blur.h>
+#include <petzval/optics/lens_data_table.h>
+#include <petzval/optics/table_interpolation.h>
+#include <petzval/scene/scene.h>
+#include <petzval/sensor/sensor.h>
+
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+enum class BlurMethod {
+  none,      ///< distortion and illumination alone
+  sections,  ///< one PSF a section, by Fourier transform
+  exact      ///< one PSF a cell, added up directly
+};
+
+struct ImagingOptions {
+  BlurMethod method = BlurMethod::sections;
+  SectionOptions sections;
+  PsfInterpolation interpolation = PsfInterpolation::psf;
+  RadialFit fit;        ///< of distortion and g_source over image height
+  int supersample = 1;  ///< S: source cells are S × S to a pixel, 1 to 16
+  Surround surround = Surround::error;
+
+  /// \throws InputError saying what would be right.
+  void validate() const;
+};
+
+/// What there is to say about an image that was formed.
+struct ImagingReport {
+  /// Things a user should know, one line each: how the edges were treated, dark corners, light outside the
+  /// PSF windows, undershoot.
+  std::vector<std::string> notes;
+  int margin_cells = 0;           ///< how far light may come in from outside the frame, the most of all bands
+  int transform_size = 0;         ///< the largest, of `sections`
+  int scene_points_per_cell = 1;  ///< scene samples averaged in a cell: this squared
+  double least_captured = 1;      ///< the least share of light that a PSF window in use holds
+  double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
+  double distortion_seconds = 0, blur_seconds = 0;
+};
+
+/// Forms the image, band by band (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source,
+/// blur):
+///
+/// 1. A grid of source cells, S × S to a pixel, covers the frame and as much around it as a PSF reaches.
+/// 2. Each cell takes the scene's radiance at the object point whose chief ray lands on its centre, times
+/// g_source:
+///    ideal_irradiance().
+/// 3. Its light is spread by the PSF of its place, integrated over the cells: blur_sections() or
+/// blur_exact().
+///    Light may come in from outside the frame; light that leaves it is lost.
+/// 4. S × S cells are averaged into a pixel: mean irradiance over a box of one pitch (PixelAperture::box).
+///
+/// \param scene  radiance; its bands must lie within the table's wavelengths, its distance must be the
+/// table's (to
+///   1e-3), and it must cover the field.
+/// \param sensor  the frame, centred on the axis.
+/// \param report  may be null.
+/// \throws InputError for anything that does not fit, with what would help; in the case of a scene that is
+/// too small,
+///   by how many degrees. The bytes do not depend on the number of threads.
+SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                         const ImagingOptions& options, const ProgressCallback& progress = {},
+                         ImagingReport* report = nullptr);
+
+/// From the object plane to the sensor plane [mm]; absent: infinity.
+std::optional<double> object_to_sensor_mm(const LensDataTable& table);
+
+}  // namespace petzval

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the PSFs of a lens data table to the weights with which one cell's light reaches the cells about it.
+#pragma once
+
+#include <petzval/imaging/psf_deposit.h>
+#include <petzval/optics/lens_data_table.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace petzval {
+
+/// What is interpolated between the fields and wavelengths of a table.
+enum class PsfInterpolation {
+  psf,  ///< the PSFs, linearly (the same thing as the complex OTFs, linearly)
+  otf   ///< modulus and phase of the OTFs, each linearly: overshoots where zeros move; for comparison
+};
+
+/// The kernels of one wavelength at every place of the image.
+///
+/// For a chief ray that lands at (x', y') the PSFs of the bracketing field heights, at the bracketing
+/// wavelengths, are interpolated, rotated about the chief ray to the azimuth of (x', y'), integrated over the
+/// cells and normalised to sum 1 (Maeda, Catrysse & Wandell 2005, section 2.2.3; the sum is the OTF at zero
+/// frequency). Integrated: each fine sample is spread evenly over a square of its own spacing, which the
+/// cells under it share by area, so that the energy is exact and nothing is missed between sampling points.
+/// Beyond the heights of the table its last PSF holds.
+class PsfField {
+ public:
+  /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
+  /// more than 4000 cells.
+  PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
+           PsfInterpolation interpolation = PsfInterpolation::psf);
+
+  /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
+  int radius() const { return radius_; }
+  double cell_um() const { return cell_um_; }
+  /// Whether all PSFs are the same left and right of the tangential plane, as those of a centred lens are;
+  /// then mirrored places have mirrored kernels.
+  bool mirror_symmetric() const { return mirror_symmetric_; }
+  /// The least share of light that a PSF's window caught when the table was made.
+  double least_captured() const { return least_captured_; }
+
+  /// \param x_mm, y_mm  where the chief ray lands in image space (x' > 0 is left of the picture's middle).
+  Kernel kernel_at(double x_mm, double y_mm) const;
+
+ private:
+  /// One wavelength of the table.
+  struct Layer {
+    double weight = 1;
+    std::vector<double> height_mm;
+    std::vector<RunningPsf> psfs;
+  };
+  /// The two PSFs of a layer between which a height lies.
+  struct Pair {
+    const RunningPsf *low, *high;
+    double weight_high;
+  };
+  static Pair pair_at(const Layer& layer, double height_mm);
+  Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
+  Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
+
+  double cell_um_;
+  PsfInterpolation interpolation_;
+  std::vector<Layer> layers_;
+  int radius_ = 0;
+  bool mirror_symmetric_ = true;
+  double least_captured_ = 1;
+};
+
+}  // namespace petzval

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "imaging/synthetic_table.h"
+
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/imaging/otf_interpolation.h>
+#include <petzval/imaging/psf_kernel.h>
+
+namespace petzval {
+namespace {
+
+using namespace testing;
+
+void add(const Psf& psf, double weight, const std::array<double, 2>& direction, double cell_um,
+         Kernel& kernel) {
+  const RunningPsf running(psf);
+  const WeightedPsf weighted{&running, weight};
+  deposit({&weighted, 1}, direction, cell_um, kernel);
+}
+
+/// First and third moments of a kernel along a direction of the picture, in cells.
+struct Moments {
+  double mean = 0, third = 0;
+};
+
+Moments moments_along(const Kernel& kernel, double column_direction, double row_direction) {
+  Moments moments;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int row = -kernel.radius; row <= kernel.radius; ++row)
+      for (int column = -kernel.radius; column <= kernel.radius; ++column) {
+        const double along = column * column_direction + row * row_direction;
+        if (pass == 0)
+          moments.mean += kernel.at(row, column) * along;
+        else
+          moments.third += kernel.at(row, column) * std::pow(along - moments.mean, 3);
+      }
+  return moments;
+}
+
+// The integral of a rotated Gaussian over a cell, by the midpoint rule from its formula; rotation is written
+// here once more, from the meaning of the axes: in the picture, tangential points away from the middle, and
+// sagittal is that turned a quarter clockwise as seen on the screen (at the bottom of the picture: to the
+// left).
+double gaussian_over_cell(int row, int column, double cell_um, double azimuth, const Spot& spot) {
+  constexpr int steps = 64;
+  const double t_column = std::cos(azimuth), t_row = std::sin(azimuth), s_column = -t_row, s_row = t_column;
+  double total = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const double x = (column + (j + 0.5) / steps - 0.5) * cell_um,
+                   y = (row + (i + 0.5) / steps - 0.5) * cell_um;
+      const double s = (x * s_column + y * s_row - spot.s_um) / spot.sigma_s_um;
+      const double t = (x * t_column + y * t_row - spot.t_um) / spot.sigma_t_um;
+      total += std::exp(-(s * s + t * t) / 2);
+    }
+  return total * std::pow(cell_um / steps, 2) / (2 * pi * spot.sigma_s_um * spot.sigma_t_um);
+}
+
+TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
+  TableRecipe recipe;
+  const Spot spot{1.5, -2, 2, 4, 1};
+  constexpr double spacing_um = 0.1;
+  recipe.psf = [&](double, double) { return psf_of_spots({spot}, 401, spacing_um); };
+  const LensDataTable table = make_table(recipe);
+  // The deposit spreads each sample over a square of the spacing: a Gaussian of so much more variance.
+  Spot widened = spot;
+  widened.sigma_s_um = std::sqrt(spot.sigma_s_um * spot.sigma_s_um + spacing_um * spacing_um / 12);
+  widened.sigma_t_um = std::sqrt(spot.sigma_t_um * spot.sigma_t_um + spacing_um * spacing_um / 12);
+  for (const double cell_um : {5.0, 1.3})
+    for (const double degrees : {0.0, 30.0, 90.0, 205.0, 300.0}) {
+      const double azimuth = radians(degrees);
+      const PsfField psfs(table, 550, cell_um);
+      const Kernel kernel = psfs.kernel_at(-std::cos(azimuth), std::sin(azimuth));  // columns run along −x'
+      double worst = 0;
+      for (int row = -kernel.radius; row <= kernel.radius; ++row)
+        for (int column = -kernel.radius; column <= kernel.radius; ++column)
+          worst = std::max(worst, std::abs(kernel.at(row, column) -
+                                           gaussian_over_cell(row, column, cell_um, azimuth, widened)));
+      // A cell's edge cuts samples, whose slope the deposit does not see: at most spacing²/8 × the steepest
+      // slope of the Gaussian's profile, 0.242/σ² = 0.0605 µm⁻².
+      EXPECT_LT(worst, spacing_um * spacing_um / 8 * 0.0605) << cell_um << " µm, " << degrees << "°";
+    }
+}
+
+TEST(PsfKernel, PointsAwayFromTheMiddleOfThePictureAtEightAzimuths) {
+  for (const double lean : {0.0, 0.6}) {
+    const LensDataTable table = make_table(comatic_recipe(lean));
+    const PsfField psfs(table, 550, 3.0);
+    EXPECT_EQ(psfs.mirror_symmetric(), lean == 0);
+    const double height_mm = table.real_image_height_mm[3];
+    const Psf& psf = table.psf[3];
+    double mean_s = 0, mean_t = 0;  // of the samples [cells]
+    for (int i = 0; i < psf.size; ++i)
+      for (int j = 0; j < psf.size; ++j) {
+        mean_s += double(psf.at(i, j)) * (j - psf.size / 2) * psf.spacing_um / 3.0;
+        mean_t += double(psf.at(i, j)) * (i - psf.size / 2) * psf.spacing_um / 3.0;
+      }
+    ASSERT_GT(mean_t, 0.5);
+    for (int eighth = 0; eighth < 8; ++eighth) {
+      const double azimuth = eighth * pi / 4;
+      const double right = std::cos(azimuth), down = std::sin(azimuth);
+      const Kernel kernel = psfs.kernel_at(-right * height_mm, down * height_mm);
+      const Moments tangential = moments_along(kernel, right, down);
+      const Moments sagittal = moments_along(kernel, -down, right);
+      // Integrated over cells, a smooth PSF keeps its centre of gravity: to the aliasing of a cell of 3 µm.
+      EXPECT_NEAR(tangential.mean, mean_t, 2e-3) << eighth;
+      EXPECT_NEAR(sagittal.mean, mean_s, 2e-3) << eighth;
+      EXPECT_GT(tangential.third, 1) << eighth;
+    }
+  }
+}
+
+TEST(PsfKernel, SumsToOneWhateverTheCells) {
+  const LensDataTable table = make_table(comatic_recipe(0.3));
+  for (const double cell_um : {0.2, 0.5, 0.7, 3.0, 100.0}) {  // samples coarser than a cell, equal, finer
+    const Kernel kernel = PsfField(table, 550, cell_um).kernel_at(0.5, -0.3);
+    EXPECT_NEAR(kernel.sum(), 1, 1e-12) << cell_um;
+  }
+  // Nothing is lost before it is normalised either: the radius holds every sample at every azimuth.
+  const PsfField psfs(table, 550, 0.7);
+  for (const double degrees : {0.0, 45.0, 77.0}) {
+    Kernel kernel(psfs.radius());
+    add(table.psf[2], 1, {std::cos(radians(degrees)), std::sin(radians(degrees))}, 0.7, kernel);
+    EXPECT_NEAR(kernel.sum(), std::accumulate(table.psf[2].values.begin(), table.psf[2].values.end(), 0.0),
+                1e-12);
+  }
+}
+
+TEST(PsfKernel, SamplesCoarserThanCellsAreSquares) {
+  // One sample of 4 µm on cells of 1 µm: a square of 4 × 4 cells about the middle of a cell, so that the two
+  // outer rows hold half.
+  TableRecipe recipe;
+  recipe.psf = [](double, double) { return Psf{1, 4.0, {1.0F}, 1.0}; };
+  const LensDataTable table = make_table(recipe);
+  const Kernel kernel = PsfField(table, 550, 1.0).kernel_at(0, 1);
+  ASSERT_EQ(kernel.radius, 2);
+  EXPECT_NEAR(kernel.at(0, 0), 1.0 / 16, 1e-15);
+  EXPECT_NEAR(kernel.at(2, 0), 0.5 / 16, 1e-15);
+  EXPECT_NEAR(kernel.at(-2, 2), 0.25 / 16, 1e-15);
+}
+
+TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
+  TableRecipe recipe = comatic_recipe();
+  recipe.wavelengths_nm = {500, 600};
+  recipe.height_mm = [](double field, double nm) { return field / 10 * (1 + (nm - 500) / 1000); };
+  recipe.psf = [](double field, double nm) {
+    return psf_of_spots({{0, field / 4, 2, 2, 1}}, nm < 550 ? 65 : 91, nm < 550 ? 0.5 : 0.6);
+  };
+  const LensDataTable table = make_table(recipe);
+  const double height_mm = 1.1;  // 500 nm: between 1.0 and 1.5, 0.2 of the way; 600 nm: at 1.1, field 10
+  const PsfField between(table, 525, 2.0);
+  const Kernel kernel = between.kernel_at(0, height_mm);
+  Kernel expected(kernel.radius);
+  add(table.psf[table.index(2, 0)], 0.75 * 0.8, {0, 1}, 2.0, expected);
+  add(table.psf[table.index(3, 0)], 0.75 * 0.2, {0, 1}, 2.0, expected);
+  add(table.psf[table.index(2, 1)], 0.25, {0, 1}, 2.0, expected);
+  // PSFs are stored in float.
+  for (std::size_t i = 0; i < kernel.weights.size(); ++i)
+    EXPECT_NEAR(kernel.weights[i], expected.weights[i], 1e-8);
+}
+
+TEST(PsfKernel, RefusesDamagedTablesAndForeignWavelengths) {
+  LensDataTable table = make_table({});
+  EXPECT_THROW(PsfField(table, 549.4, 3.0), InputError);
+  EXPECT_NO_THROW(PsfField(table, 550.4, 3.0));  // a single wavelength serves ±0.5 nm
+  EXPECT_THROW(PsfField(table, 550, 1e-4), InputError) << "a kernel of 10^11 weights";
+  table.psf[2].values.pop_back();
+  EXPECT_THROW(PsfField(table, 550, 3.0), InputError);
+  table.psf[2] = Psf{1, 1.0, {0.0F}, 1.0};
+  EXPECT_THROW(PsfField(table, 550, 3.0), InputError) << "a dark PSF";
+}
+
+// The shift theorem: halfway in modulus and phase between a point and the same point one cell on lies the
+// point moved by half a cell, a sinc with negative lobes; halfway between the PSFs are two points of half the
+// light.
+TEST(OtfInterpolation, MovesWherePsfInterpolationBlends) {
+  constexpr int radius = 8;
+  Kernel here(radius), there(radius);
+  here.at(0, 0) = 1;
+  there.at(0, 1) = 1;
+  const Kernel half = between_otfs(here, there, 0.5);
+  for (int column = -3; column <= 4; ++column) {
+    const double d = pi * (column - 0.5);
+    // Periodic in 36 cells (the transform's size) instead of endless: sinc becomes sin d / (N tan(d/N)).
+    EXPECT_NEAR(half.at(0, column), std::sin(d) / (36 * std::tan(d / 36)), 1e-12) << column;
+    EXPECT_NEAR(half.at(1, column), 0, 1e-12);
+  }
+  EXPECT_NEAR(between_otfs(here, there, 0).at(0, 0), 1, 1e-12);
+  EXPECT_NEAR(between_otfs(here, there, 1).at(0, 1), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace petzval
