@@ -8,7 +8,7 @@ packages=(
   # compiler and build
   g++ cmake ninja-build
   # libraries
-  libboost-dev libcli11-dev libeigen3-dev libfftw3-dev libfmt-dev libhdf5-dev libmatio-dev libopenexr-dev
+  libboost-dev libcli11-dev libeigen3-dev libfftw3-dev libfmt-dev libhdf5-dev libhwy-dev libmatio-dev libopenexr-dev
   libpng-dev libtbb-dev nlohmann-json3-dev zlib1g-dev
 )
 test_packages=(libbenchmark-dev libgtest-dev python3 python3-h5py python3-numpy)

@@ -29,22 +29,6 @@ std::optional<ExitRay> exit_ray(const FieldTracer& tracer, const Pencil& pencil,
   return ExitRay{ray.direction[0], ray.direction[1], ray.point_mm[0], ray.point_mm[1], ray.opl_mm};
 }
 
-/// |∂(α, β)/∂(u, v)| at a ray, by one-sided differences that step inwards where the outer neighbour fails.
-double exit_jacobian(const FieldTracer& tracer, const Pencil& pencil, const PupilNode& node,
-                     const ExitRay& at, double nudge) {
-  double derivative[2][2] = {};
-  for (int axis = 0; axis < 2; ++axis)
-    for (const double step : {nudge, -nudge}) {
-      const auto near =
-          exit_ray(tracer, pencil, node.u + (axis == 0 ? step : 0), node.v + (axis == 1 ? step : 0));
-      if (!near) continue;
-      derivative[axis][0] = (near->alpha - at.alpha) / step;
-      derivative[axis][1] = (near->beta - at.beta) / step;
-      break;
-    }
-  return std::abs(derivative[0][0] * derivative[1][1] - derivative[0][1] * derivative[1][0]);
-}
-
 /// Extent of the light at the image point.
 struct Extent {
   double alpha_width = 0, beta_width = 0;  ///< of the pupil in direction cosines
@@ -83,6 +67,35 @@ int radial_for(double phase) {
   return static_cast<int>(std::ceil(0.5 * phase + 3 * std::cbrt(phase) + 12));
 }
 
+/// A node's ray and its neighbours at u − nudge and v − nudge.
+constexpr std::size_t rays_per_node = 3;
+
+RayBatch trace_with_neighbours(const FieldTracer& tracer, const Pencil& pencil,
+                               const std::vector<PupilNode>& nodes, double nudge) {
+  RayBatch rays;
+  const auto launch = [&](double u, double v) {
+    // Labels outside the unit disc have no ray; a ray along the axis' perpendicular fails in the trace.
+    const Ray ray = pencil.ray(u, v).value_or(Ray{{0, 0, 0}, {1, 0, 0}});
+    rays.push_back(ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
+                   ray.direction[2]);
+  };
+  for (const PupilNode& node : nodes) {
+    launch(node.u, node.v);
+    launch(node.u - nudge, node.v);
+    launch(node.u, node.v - nudge);
+  }
+  tracer.tracer().trace(rays, Tracer::Clip::none);
+  return rays;
+}
+
+/// |∂(α, β)/∂(u, v)| from a ray and its two neighbours; 0 where one of them fails.
+double exit_jacobian(const RayBatch& rays, std::size_t ray, double nudge) {
+  if (rays.status[ray + 1] != RayStatus::ok || rays.status[ray + 2] != RayStatus::ok) return 0;
+  const double du_alpha = rays.l[ray] - rays.l[ray + 1], du_beta = rays.m[ray] - rays.m[ray + 1];
+  const double dv_alpha = rays.l[ray] - rays.l[ray + 2], dv_beta = rays.m[ray] - rays.m[ray + 2];
+  return std::abs(du_alpha * dv_beta - du_beta * dv_alpha) / (nudge * nudge);
+}
+
 }  // namespace
 
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
@@ -118,21 +131,23 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
   const double index = tracer.tracer().image_index();
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
 
+  const std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, radial_nodes);
+  const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
+  const RayBatch rays = trace_with_neighbours(tracer, pencil, nodes, nudge);
+
   PupilWaves waves;
   waves.wavelength_nm = tracer.tracer().wavelength_nm();
   waves.image_index = index;
-  const std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, radial_nodes);
-  const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
-  for (const PupilNode& node : nodes) {
-    const std::optional<ExitRay> ray = exit_ray(tracer, pencil, node.u, node.v);
-    if (!ray) continue;
-    const double jacobian = exit_jacobian(tracer, pencil, node, *ray, nudge);
-    const double to_foot_mm = -ray->x_mm * ray->alpha + (chief.image_height_mm - ray->y_mm) * ray->beta;
-    waves.alpha.push_back(ray->alpha);
-    waves.beta.push_back(outwards * ray->beta);
-    waves.phase_waves.push_back((ray->opl_mm + index * to_foot_mm - chief.at_image.opl_mm) / lambda_mm);
-    waves.amplitude.push_back(node.weight * std::sqrt(jacobian));
-    waves.flux += 2 * node.weight;
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    const std::size_t ray = rays_per_node * node;
+    if (rays.status[ray] != RayStatus::ok) continue;
+    const double alpha = rays.l[ray], beta = rays.m[ray];
+    const double to_foot_mm = -rays.x_mm[ray] * alpha + (chief.image_height_mm - rays.y_mm[ray]) * beta;
+    waves.alpha.push_back(alpha);
+    waves.beta.push_back(outwards * beta);
+    waves.phase_waves.push_back((rays.opl_mm[ray] + index * to_foot_mm - chief.at_image.opl_mm) / lambda_mm);
+    waves.amplitude.push_back(nodes[node].weight * std::sqrt(exit_jacobian(rays, ray, nudge)));
+    waves.flux += 2 * nodes[node].weight;
   }
   if (waves.size() == 0) return {};
   return waves;

@@ -100,7 +100,7 @@ Pencil Pencil::from_object(const Lens& lens, double field) {
   if (lens.object_distance_mm) return Pencil(Kind::object_point, field, -*lens.object_distance_mm);
   if (std::abs(field) >= 180)
     throw InputError(fmt::format("a field angle of {:g}° looks backwards; it must lie inside ±180°", field));
-  return Pencil(Kind::parallel, radians(field), 0);
+  return Pencil(Kind::parallel, std::sin(radians(field)), std::cos(radians(field)));
 }
 
 Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm) {
@@ -108,16 +108,13 @@ Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm) {
 }
 
 std::optional<Ray> Pencil::ray(double u, double v) const {
-  if (kind_ == Kind::parallel) {
-    const double sine = std::sin(field_), cosine = std::cos(field_);
-    return Ray{{u, v * cosine, -v * sine}, {0, sine, cosine}};
-  }
+  if (kind_ == Kind::parallel) return Ray{{u, v * z_, -v * y_}, {0, y_, z_}};
   const double cosine_sq = 1 - u * u - v * v;
   if (!(cosine_sq > 0)) return {};
   const double cosine = std::sqrt(cosine_sq);
   // A backward ray travels against the light.
-  if (kind_ == Kind::image_point) return Ray{{0, field_, z_mm_}, {-u, -v, -cosine}};
-  return Ray{{0, field_, z_mm_}, {u, v, cosine}};
+  if (kind_ == Kind::image_point) return Ray{{0, y_, z_}, {-u, -v, -cosine}};
+  return Ray{{0, y_, z_}, {u, v, cosine}};
 }
 
 Tracer::Clearance Pencil::clearance(const Tracer& tracer, double u, double v, Tracer::Clip clip) const {

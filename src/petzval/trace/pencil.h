@@ -39,11 +39,10 @@ class Pencil {
 
  private:
   enum class Kind { parallel, object_point, image_point };
-  Pencil(Kind kind, double field, double z_mm) : kind_(kind), field_(field), z_mm_(z_mm) {}
+  Pencil(Kind kind, double y, double z) : kind_(kind), y_(y), z_(z) {}
 
   Kind kind_;
-  double field_;  ///< angle [rad] or height [mm]
-  double z_mm_;   ///< of the point
+  double y_, z_;  ///< the point [mm], or the sine and cosine of the field angle
 };
 
 /// Finds the v of the chief ray of a pencil: the meridional ray through the centre of the real stop surface.

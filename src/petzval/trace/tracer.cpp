@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/trace/batch_kernel.h>
 #include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -132,21 +134,56 @@ void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
   }
 }
 
-void trace_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays) {
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (rays.status[i] != RayStatus::ok) continue;
-    Ray ray{{rays.x_mm[i], rays.y_mm[i], rays.z_mm[i]}, {rays.l[i], rays.m[i], rays.n[i]}, rays.opl_mm[i]};
-    trace_one(tracer, backward, clip, ray, nullptr);
-    rays.x_mm[i] = ray.point_mm[0];
-    rays.y_mm[i] = ray.point_mm[1];
-    rays.z_mm[i] = ray.point_mm[2];
-    rays.l[i] = ray.direction[0];
-    rays.m[i] = ray.direction[1];
-    rays.n[i] = ray.direction[2];
-    rays.opl_mm[i] = ray.opl_mm;
-    rays.status[i] = ray.status;
-    rays.failed_at[i] = static_cast<std::int16_t>(ray.failed_at);
+/// The surfaces in the order of travel, for the batch kernel.
+KernelPath kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip) {
+  const std::vector<Tracer::PreparedSurface>& surfaces = tracer.surfaces();
+  KernelPath path;
+  path.sense = backward ? -1 : 1;
+  path.to_image = !backward;
+  path.image_z_mm = tracer.image_z_mm();
+  path.image_index = tracer.image_index();
+  path.first_vertex_z_mm = (backward ? surfaces.back() : surfaces.front()).vertex_z_mm;
+  double vertex_z = path.first_vertex_z_mm;
+  for (std::size_t step = 0; step < surfaces.size(); ++step) {
+    const std::size_t i = backward ? surfaces.size() - 1 - step : step;
+    const Tracer::PreparedSurface& surface = surfaces[i];
+    const double before = backward ? surface.index_after : surface.index_before;
+    const double behind = backward ? surface.index_before : surface.index_after;
+    path.surfaces.push_back({surface.curvature, surface.conic, vertex_z - surface.vertex_z_mm, before,
+                             before / behind, clip_radius_sq(tracer, i, clip) * (1 + rim_tolerance)});
+    vertex_z = surface.vertex_z_mm;
   }
+  path.last_vertex_z_mm = vertex_z;
+  return path;
+}
+
+void trace_ray_of_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays,
+                        std::size_t i) {
+  Ray ray{{rays.x_mm[i], rays.y_mm[i], rays.z_mm[i]}, {rays.l[i], rays.m[i], rays.n[i]}, rays.opl_mm[i]};
+  trace_one(tracer, backward, clip, ray, nullptr);
+  rays.x_mm[i] = ray.point_mm[0];
+  rays.y_mm[i] = ray.point_mm[1];
+  rays.z_mm[i] = ray.point_mm[2];
+  rays.l[i] = ray.direction[0];
+  rays.m[i] = ray.direction[1];
+  rays.n[i] = ray.direction[2];
+  rays.opl_mm[i] = ray.opl_mm;
+  rays.status[i] = ray.status;
+  rays.failed_at[i] = static_cast<std::int16_t>(ray.failed_at);
+}
+
+void trace_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays) {
+  const bool aspheric =
+      std::any_of(tracer.surfaces().begin(), tracer.surfaces().end(),
+                  [](const Tracer::PreparedSurface& surface) { return !surface.polynomial.empty(); });
+  const bool all_alive = std::all_of(rays.status.begin(), rays.status.end(),
+                                     [](RayStatus status) { return status == RayStatus::ok; });
+  // The SIMD kernel does spheres, conics and planes, and leaves every ray that fails to the scalar trace.
+  std::vector<std::uint8_t> clean(rays.size(), 0);
+  if (!aspheric && all_alive && rays.size() > 0)
+    trace_batch_simd(kernel_path(tracer, backward, clip), rays, clean);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (!clean[i] && rays.status[i] == RayStatus::ok) trace_ray_of_batch(tracer, backward, clip, rays, i);
 }
 
 }  // namespace
