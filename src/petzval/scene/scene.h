@@ -18,8 +18,12 @@ namespace petzval {
 /// sample index, for infinite distance too.
 class Scene {
  public:
+  /// The most samples times bands that a scene may have (8 GiB).
+  static constexpr std::size_t max_values = std::size_t{1} << 31;
+
   Scene() = default;
-  /// All zero. \throws InputError as SpectralImage, or for an angle outside (0, 180).
+  /// All zero. \throws InputError on sizes below 1, wavelengths that do not increase, more than `max_values`
+  /// values, an angle outside (0, 180) or a distance that is not positive.
   Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
         std::optional<double> distance_m);
 
@@ -27,9 +31,13 @@ class Scene {
   int rows() const { return rows_; }
   int bands() const { return static_cast<int>(wavelengths_nm_.size()); }
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
-  std::size_t band_size() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+  std::size_t band_size() const {
+    return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+  }
   std::span<float> band(int index);
   std::span<const float> band(int index) const;
+  /// All bands, one after the other.
+  std::span<const float> values() const { return radiance_; }
 
   /// Full horizontal angle; the vertical one follows from square samples.
   double horizontal_angle_deg() const { return horizontal_angle_deg_; }
@@ -42,18 +50,22 @@ class Scene {
   void set_distance_m(std::optional<double> distance_m);
   void set_horizontal_angle_deg(double angle);
 
-  /// Mean CIE 1931 luminance [cd/m²] over all samples (683 lm/W · Σ ȳ L Δλ).
+  /// Mean spectral radiance of each band over all samples [W·m⁻²·sr⁻¹·nm⁻¹].
+  std::vector<double> mean_radiance() const;
+  /// Mean CIE 1931 luminance [cd/m²] over all samples (683 lm/W · Σ ȳ L Δλ, Observer::weights).
   double mean_luminance_cd_m2() const;
-  /// Scales all radiance so that the mean luminance is this. \throws InputError for a black scene.
+  /// Scales all radiance (and the illuminant) so that the mean luminance is this. \throws InputError for a
+  /// scene that is black to the eye.
   void set_mean_luminance_cd_m2(double luminance);
-  /// Keeps only the bands nearest to / interpolated at these wavelengths (linear; no extrapolation).
+  /// The scene at other wavelengths: linear between its bands. \throws InputError for one outside the bands.
   Scene resampled(std::span<const double> wavelengths_nm) const;
   /// \throws InputError at the first NaN, infinity or negative radiance, naming band, row and column.
   void validate() const;
 
   std::string name;
-  std::optional<Spectrum> illuminant;  ///< spectral irradiance/π [W·m⁻²·sr⁻¹·nm⁻¹] of a perfect white, if known
-  std::vector<float> depth_m;          ///< empty, or rows·columns distances
+  std::optional<Spectrum>
+      illuminant;  ///< spectral irradiance/π [W·m⁻²·sr⁻¹·nm⁻¹] of a perfect white, if known
+  std::vector<float> depth_m;  ///< empty, or rows·columns distances, row-major
 
  private:
   int columns_ = 0, rows_ = 0;

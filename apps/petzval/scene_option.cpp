@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_option.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace petzval::app {
+
+namespace {
+
+template <typename Number>
+std::optional<Number> whole_text(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+double positive(const std::string& option, const std::string& text, const char* right) {
+  const std::optional<double> value = whole_text<double>(text);
+  if (!value || !(*value > 0) || std::isinf(*value))
+    throw InputError(fmt::format("{} {}: {} would be right", option, text, right));
+  return *value;
+}
+
+/// "768x576"
+void take_size(const std::string& text, SceneOptions& options) {
+  const std::size_t cross = text.find('x');
+  if (cross != std::string::npos) {
+    options.columns = whole_text<int>(std::string_view(text).substr(0, cross));
+    options.rows = whole_text<int>(std::string_view(text).substr(cross + 1));
+  }
+  if (cross == std::string::npos || !options.columns || !options.rows || *options.columns < 1 ||
+      *options.rows < 1)
+    throw InputError(fmt::format("--scene-size {}: columns x rows, such as 768x576, would be right", text));
+}
+
+}  // namespace
+
+void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
+  CLI::Option* option =
+      command.add_option(positional ? "scene" : "--scene", path_or_name,
+                         "ISET .mat, spectral .exr, or a chart's name (petzval scene list)");
+  if (required) option->required();
+  command.add_option("--scene-angle", angle, "Full horizontal angle of the scene [degrees]");
+  command.add_option("--scene-distance", distance, "Distance from the sensor plane [m], or inf");
+  command.add_option("--scene-luminance", luminance,
+                     "Mean luminance [cd/m2], of the whole spectrum whatever --wavelengths takes from it");
+  command.add_option("--scene-size", size, "Samples of a chart: 768x576");
+  command.add_option("--wavelengths", wavelengths, "Bands [nm]: 400:10:700, or a list 450,550,650");
+  command.add_option("--illuminant", illuminant,
+                     "Light on a chart or on reflectances: D65, A, E, 3200K or a file");
+}
+
+SceneOptions SceneChoice::options(SceneOptions defaults) const {
+  SceneOptions options = std::move(defaults);
+  if (!angle.empty())
+    options.horizontal_angle_deg = positive("--scene-angle", angle, "degrees above 0 and below 180");
+  if (distance == "inf")
+    options.distance_m = std::numeric_limits<double>::infinity();
+  else if (!distance.empty())
+    options.distance_m = positive("--scene-distance", distance, "metres above 0, or inf,");
+  if (!luminance.empty())
+    options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");
+  if (!size.empty()) take_size(size, options);
+  if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
+  if (!illuminant.empty()) options.illuminant = illuminant;
+  return options;
+}
+
+}  // namespace petzval::app

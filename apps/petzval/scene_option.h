@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene on the command line.
+#pragma once
+
+#include <petzval/scene/scene_file.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace petzval::app {
+
+/// SCENE with --scene-angle, --scene-distance, --scene-luminance, --scene-size, --wavelengths and
+/// --illuminant.
+struct SceneChoice {
+  std::string path_or_name;
+  std::string angle, distance, luminance, size, wavelengths, illuminant;  ///< as typed; empty: not given
+
+  /// Adds the positional SCENE (or `--scene` when `positional` is false) and the options.
+  void add_to(CLI::App& command, bool positional = true, bool required = true);
+  /// What the user said, and `defaults` where nothing was said. (A size of a command's own choosing must not
+  /// be among the defaults of a scene that is a file: see is_chart().) \throws InputError naming the option
+  /// that is wrong.
+  SceneOptions options(SceneOptions defaults = {}) const;
+  /// Reads the scene with these options.
+  Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
+  /// Whether the scene is a chart, which can be made in any size and angle.
+  bool is_chart() const { return is_builtin_scene(path_or_name); }
+};
+
+}  // namespace petzval::app

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/colour/observer.h>
+#include <petzval/scene/chart_canvas.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace petzval {
+
+namespace {
+
+constexpr int shortest_seen_nm = 370, longest_seen_nm = 780;
+
+std::vector<double> default_wavelengths_nm() {
+  std::vector<double> wavelengths;
+  for (int nm = 400; nm <= 700; nm += 10) wavelengths.push_back(nm);
+  return wavelengths;
+}
+
+/// What each nanometre of an illuminant adds to luminance.
+Spectrum seen_light(const Spectrum& illuminant) {
+  std::vector<double> wavelengths;
+  for (int nm = shortest_seen_nm; nm <= longest_seen_nm; ++nm) wavelengths.push_back(nm);
+  const std::vector<Xyz> weights = Observer::cie_1931().weights(wavelengths);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < wavelengths.size(); ++i)
+    values.push_back(illuminant.at(wavelengths[i]) * weights[i].y);
+  return Spectrum(std::move(wavelengths), std::move(values));
+}
+
+double sum(const std::vector<double>& values) {
+  double total = 0;
+  for (double value : values) total += value;
+  return total;
+}
+
+}  // namespace
+
+ChartCanvas::ChartCanvas(const ChartOptions& options)
+    : options_(options),
+      illuminant_(petzval::illuminant(options.illuminant)),
+      seen_(seen_light(illuminant_)),
+      scene_(options.columns, options.rows,
+             options.wavelengths_nm.empty() ? default_wavelengths_nm() : options.wavelengths_nm,
+             options.horizontal_angle_deg, options.distance_m) {
+  if (!(options.mean_luminance_cd_m2 > 0 && std::isfinite(options.mean_luminance_cd_m2)))
+    throw InputError(fmt::format("a mean luminance of {} cd/m²; a positive one would be right",
+                                 options.mean_luminance_cd_m2));
+  const std::vector<double>& bands = scene_.wavelengths_nm();
+  if (std::none_of(bands.begin(), bands.end(), [&](double nm) { return illuminant_.at(nm) > 0; }))
+    throw InputError(
+        fmt::format("illuminant {} has no light at the scene's wavelengths; it reaches from {} to {} nm",
+                    options.illuminant, illuminant_.front_nm(), illuminant_.back_nm()));
+  if (!(sum(seen_.values()) > 0))
+    throw InputError(
+        fmt::format("illuminant {} has no visible light to set a luminance by", options.illuminant));
+  luminous_reflectance_.resize(scene_.band_size());
+}
+
+Paint ChartCanvas::paint(const Spectrum& reflectance) const {
+  Paint result;
+  for (double nm : scene_.wavelengths_nm())
+    result.reflectance.push_back(static_cast<float>(std::max(0.0, reflectance.at_extended(nm))));
+  double luminance = 0;
+  for (std::size_t i = 0; i < seen_.values().size(); ++i)
+    luminance += seen_.values()[i] * std::max(0.0, reflectance.at_extended(seen_.wavelengths_nm()[i]));
+  result.luminous_reflectance = static_cast<float>(luminance / sum(seen_.values()));
+  return result;
+}
+
+Paint ChartCanvas::flat_paint(double reflectance) const {
+  return paint(Spectrum({555.0}, {reflectance}));
+}
+
+void ChartCanvas::fill(const Paint& paint) {
+  modulate(paint, [](int, std::span<double> factors) { std::fill(factors.begin(), factors.end(), 1.0); });
+}
+
+void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
+  const int first = static_cast<int>(std::clamp(std::floor(shape.top()), 0.0, static_cast<double>(rows())));
+  const int end = static_cast<int>(std::clamp(std::ceil(shape.bottom()), 0.0, static_cast<double>(rows())));
+  if (first >= end) return;
+  const std::size_t width = static_cast<std::size_t>(columns());
+  parallel_for(static_cast<std::size_t>(end - first), [&](std::size_t index) {
+    const std::size_t row = static_cast<std::size_t>(first) + index;
+    std::vector<double> coverage(width);
+    shape.coverage(static_cast<int>(row), coverage);
+    const auto is_covered = [](double area) { return area > 0; };
+    const auto first_pixel = std::find_if(coverage.begin(), coverage.end(), is_covered);
+    const auto end_pixel =
+        std::find_if(coverage.rbegin(), std::make_reverse_iterator(first_pixel), is_covered).base();
+    const auto mix = [&](std::span<float> plane, float value) {
+      float* pixel = plane.data() + row * width + static_cast<std::size_t>(first_pixel - coverage.begin());
+      for (auto area = first_pixel; area != end_pixel; ++area, ++pixel)
+        *pixel = static_cast<float>(*pixel + *area * (value - *pixel));
+    };
+    for (int band = 0; band < scene_.bands(); ++band)
+      mix(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
+    mix(luminous_reflectance_, paint.luminous_reflectance);
+  });
+}
+
+void ChartCanvas::modulate(const Paint& paint,
+                           const std::function<void(int row, std::span<double> factors)>& factor) {
+  const std::size_t width = static_cast<std::size_t>(columns());
+  parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t row) {
+    std::vector<double> factors(width);
+    factor(static_cast<int>(row), factors);
+    const auto set = [&](std::span<float> plane, float value) {
+      for (std::size_t x = 0; x < width; ++x) plane[row * width + x] = static_cast<float>(value * factors[x]);
+    };
+    for (int band = 0; band < scene_.bands(); ++band)
+      set(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
+    set(luminous_reflectance_, paint.luminous_reflectance);
+  });
+}
+
+Scene ChartCanvas::lit() && {
+  double mean = 0;
+  for (float value : luminous_reflectance_) mean += value;
+  mean /= static_cast<double>(luminous_reflectance_.size());
+  if (!(mean > 0)) throw InputError("the chart is black at this size; more samples would show it");
+  const double level = options_.mean_luminance_cd_m2 / (lumens_per_watt * sum(seen_.values()) * mean);
+
+  parallel_for(static_cast<std::size_t>(scene_.bands()), [&](std::size_t band) {
+    const double light = level * illuminant_.at(scene_.wavelengths_nm()[band]);
+    for (float& value : scene_.band(static_cast<int>(band))) value = static_cast<float>(value * light);
+  });
+  scene_.illuminant = illuminant_.scaled(level);
+  return std::move(scene_);
+}
+
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A board to paint charts on, in reflectances.
+#pragma once
+
+#include <petzval/scene/scene.h>
+#include <petzval/scene/shape.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// Size, colours and light of a chart.
+struct ChartOptions {
+  int columns = 768, rows = 576;
+  std::vector<double> wavelengths_nm;  ///< empty: 400 to 700 nm every 10 nm
+  double horizontal_angle_deg = 40;
+  std::optional<double> distance_m;   ///< absent: at infinity
+  std::string illuminant = "D65";     ///< a name or file, as petzval::illuminant() takes it
+  double mean_luminance_cd_m2 = 100;  ///< of the whole chart, over its whole spectrum
+};
+
+/// A reflectance at the wavelengths of a canvas, and what the eye sees of it under the canvas's light.
+struct Paint {
+  std::vector<float> reflectance;
+  float luminous_reflectance = 0;
+};
+
+/// A chart in the making: a scene whose bands hold reflectances until it is lit. Shapes are painted one over
+/// the other; a pixel that a shape covers in part becomes a mixture by area.
+class ChartCanvas {
+ public:
+  /// Black. \throws InputError as Scene, for an unknown illuminant, or one without light at any of the
+  /// wavelengths.
+  explicit ChartCanvas(const ChartOptions& options);
+
+  int columns() const { return scene_.columns(); }
+  int rows() const { return scene_.rows(); }
+
+  Paint paint(const Spectrum& reflectance) const;
+  /// The same reflectance at all wavelengths.
+  Paint flat_paint(double reflectance) const;
+
+  void fill(const Paint& paint);
+  void draw(const Shape& shape, const Paint& paint);
+  /// Sets every pixel to `paint` times a factor: factor(row, factors of the row's pixels).
+  void modulate(const Paint& paint, const std::function<void(int row, std::span<double> factors)>& factor);
+
+  /// The scene: reflectance × illuminant, the illuminant so strong that the mean luminance is what the
+  /// options say. The level is found from the whole visible spectrum: which wavelengths are asked for does
+  /// not change the radiance at any of them. \throws InputError if all is black.
+  Scene lit() &&;
+
+ private:
+  ChartOptions options_;
+  Spectrum illuminant_;
+  Spectrum seen_;  ///< the illuminant times ȳ, every nanometre
+  Scene scene_;
+  std::vector<float> luminous_reflectance_;
+};
+
+}  // namespace petzval

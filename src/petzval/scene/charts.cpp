@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/colour/spectra_files.h>
+#include <petzval/scene/charts.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+constexpr double edge_dark = 0.2, edge_light = 0.8;
+
+/// Integral from 0 to u of the square wave that is +1 on [0, 1), −1 on [1, 2), and so on.
+double square_wave_integral(double u) {
+  const double phase = u - 2 * std::floor(u / 2);
+  return phase < 1 ? phase : 2 - phase;
+}
+
+/// Mean of that square wave over each of `count` pixels; the middle of the row of pixels lies at u =
+/// squares/2.
+std::vector<double> square_wave(int count, double pixels_per_square, int squares) {
+  std::vector<double> means;
+  for (int i = 0; i < count; ++i) {
+    const double from = (i - count / 2.0) / pixels_per_square + squares / 2.0;
+    const double to = from + 1 / pixels_per_square;
+    means.push_back((square_wave_integral(to) - square_wave_integral(from)) * pixels_per_square);
+  }
+  return means;
+}
+
+}  // namespace
+
+Scene checkerboard_chart(const ChartOptions& options, int squares_across) {
+  if (squares_across < 1 || squares_across > options.columns)
+    throw InputError(
+        fmt::format("a checkerboard of {} squares across; 1 to {} (a sample each) would be right",
+                    squares_across, options.columns));
+  ChartCanvas canvas(options);
+  const double size = static_cast<double>(options.columns) / squares_across;
+  // The board is a product of two square waves, and so is its mean over a pixel.
+  const std::vector<double> across = square_wave(options.columns, size, squares_across);
+  const std::vector<double> down = square_wave(options.rows, size, squares_across);
+  canvas.modulate(canvas.flat_paint(1), [&](int row, std::span<double> factors) {
+    for (std::size_t x = 0; x < factors.size(); ++x)
+      factors[x] = std::clamp(0.5 + 0.5 * across[x] * down[static_cast<std::size_t>(row)], 0.0, 1.0);
+  });
+  return std::move(canvas).lit();
+}
+
+void draw_colorchecker(ChartCanvas& canvas, Point corner, double width) {
+  const SpectrumSet patches = read_spectrum_set("colorchecker_reflectance");
+  // In units of the distance from patch to patch: 6.3 × 4.3 with a margin, each patch 0.85.
+  const double pitch = width / 6.3, margin = 0.225 * pitch, side = 0.85 * pitch;
+  Shape board;
+  board.add_rectangle(corner.x, corner.y, corner.x + width, corner.y + width / colorchecker_aspect);
+  canvas.draw(board, canvas.paint(patches.find("black").scaled(0.5)));
+  for (std::size_t i = 0; i < patches.spectra.size(); ++i) {
+    const double x = corner.x + margin + pitch * static_cast<double>(i % 6);
+    const double y = corner.y + margin + pitch * static_cast<double>(i / 6);
+    Shape patch;
+    patch.add_rectangle(x, y, x + side, y + side);
+    canvas.draw(patch, canvas.paint(patches.spectra[i].spectrum));
+  }
+}
+
+Scene colorchecker_chart(const ChartOptions& options) {
+  ChartCanvas canvas(options);
+  canvas.fill(canvas.paint(read_spectrum_set("colorchecker_reflectance").find("neutral 5")));
+  const double width = 0.96 * std::min<double>(options.columns, options.rows * colorchecker_aspect);
+  draw_colorchecker(canvas, {(options.columns - width) / 2, (options.rows - width / colorchecker_aspect) / 2},
+                    width);
+  return std::move(canvas).lit();
+}
+
+Scene point_chart(const ChartOptions& options, int points_across) {
+  if (points_across < 1 || points_across > std::min(options.columns, options.rows))
+    throw InputError(fmt::format("a grid of {0} x {0} points; 1 to {1} (a sample each) would be right",
+                                 points_across, std::min(options.columns, options.rows)));
+  ChartCanvas canvas(options);
+  const auto sample = [&](int point, int samples) {
+    return static_cast<std::size_t>((2 * static_cast<std::int64_t>(point) + 1) * samples /
+                                    (2 * points_across));
+  };
+  canvas.modulate(canvas.flat_paint(1), [&](int row, std::span<double> factors) {
+    for (int j = 0; j < points_across; ++j)
+      if (sample(j, options.rows) == static_cast<std::size_t>(row))
+        for (int i = 0; i < points_across; ++i) factors[sample(i, options.columns)] = 1;
+  });
+  return std::move(canvas).lit();
+}
+
+Scene wall_chart(const ChartOptions& options) {
+  ChartCanvas canvas(options);
+  canvas.fill(canvas.flat_paint(1));
+  return std::move(canvas).lit();
+}
+
+Scene slanted_edge_chart(const ChartOptions& options, double angle_deg) {
+  if (!(std::abs(angle_deg) <= 45))
+    throw InputError(
+        fmt::format("an edge {} degrees from the vertical; -45 to 45 would be right", angle_deg));
+  ChartCanvas canvas(options);
+  canvas.fill(canvas.flat_paint(edge_dark));
+  const double w = options.columns, h = options.rows;
+  const double lean = std::tan(radians(angle_deg)) * h / 2;
+  const double beyond = w + std::abs(lean);
+  Shape right_half;
+  right_half.add_polygon(
+      std::array<Point, 4>{{{w / 2 + lean, 0}, {beyond, 0}, {beyond, h}, {w / 2 - lean, h}}});
+  canvas.draw(right_half, canvas.flat_paint(edge_light));
+  return std::move(canvas).lit();
+}
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Test charts of any size, at any wavelengths. Edges are antialiased by exact area.
+#pragma once
+
+#include <petzval/scene/chart_canvas.h>
+
+namespace petzval {
+
+/// Squares of reflectance 1 and 0, `squares_across` from edge to edge; the middle of the picture is a corner
+/// of four of them if that number is even, the middle of one if it is odd. (Fig. 10 of Maeda, Catrysse &
+/// Wandell 2005.)
+Scene checkerboard_chart(const ChartOptions& options, int squares_across = 16);
+
+/// The 24 patches of a ColorChecker, measured reflectances, six by four on a black board on grey, as large as
+/// fits.
+Scene colorchecker_chart(const ChartOptions& options);
+
+/// White single samples on black, `points_across` × `points_across` in the middles of equal cells.
+Scene point_chart(const ChartOptions& options, int points_across = 9);
+
+/// White everywhere.
+Scene wall_chart(const ChartOptions& options);
+
+/// Dark (0.2, left) and light (0.8, right) halves: the contrast of 4:1 of ISO 12233. The edge goes through
+/// the middle of the picture and leans by an angle from the vertical, its upper end to the right.
+Scene slanted_edge_chart(const ChartOptions& options, double angle_deg = 5);
+
+/// A chart in which every defect of a lens shows: a line grid to the corners (distortion, field curvature),
+/// Siemens stars, slanted squares and bars (blur, lateral colour), ColorChecker and grey steps (colour,
+/// veiling light), lettering, on an even grey texture (shading). All reflectances are measured ones or
+/// multiples of them. Laid out for 4:3; other shapes get more background.
+Scene studio_chart(const ChartOptions& options);
+
+/// Paints a ColorChecker into a rectangle [pixels] whose width is 1.45 times its height
+/// (colorchecker_aspect).
+void draw_colorchecker(ChartCanvas& canvas, Point corner, double width);
+inline constexpr double colorchecker_aspect = 6.3 / 4.3;
+
+}  // namespace petzval

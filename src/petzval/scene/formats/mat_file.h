@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MATLAB variables, as matio hands them over.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct matvar_t;
+
+namespace petzval {
+
+/// A full real array of numbers of any MATLAB type, in MATLAB's order (the first index runs fastest).
+class MatNumbers {
+ public:
+  std::size_t size() const { return size_; }
+  const std::vector<std::size_t>& dimensions() const { return dimensions_; }
+  double operator[](std::size_t index) const { return read_(data_, index); }
+  /// Bits of an unsigned integer type, 0 for all others.
+  int unsigned_bits() const { return unsigned_bits_; }
+  std::vector<double> values() const;
+
+ private:
+  friend class MatValue;
+  const void* data_ = nullptr;
+  double (*read_)(const void*, std::size_t) = nullptr;
+  std::size_t size_ = 0;
+  std::vector<std::size_t> dimensions_;
+  int unsigned_bits_ = 0;
+};
+
+/// A variable or a field of one, with its full name ("scene.data.photons") for messages. Valid as long as the
+/// MatFile that it comes from.
+class MatValue {
+ public:
+  MatValue(const matvar_t* variable, std::string name, const std::string& file)
+      : variable_(variable), name_(std::move(name)), file_(&file) {}
+
+  const std::string& name() const { return name_; }
+  bool is_struct() const;
+  /// A field of a 1 × 1 struct, if it is there and not empty. \throws InputError if this is no struct.
+  std::optional<MatValue> find(const std::string& field) const;
+  /// \throws InputError if the field is missing or empty.
+  MatValue at(const std::string& field) const;
+
+  /// \throws InputError unless it is a real, full array of numbers.
+  MatNumbers numbers() const;
+  /// \throws InputError unless it is one number.
+  double number() const;
+  /// Printable ASCII; other characters become '?'. Empty if this is no text.
+  std::string text() const;
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  const matvar_t* variable_;
+  std::string name_;
+  const std::string* file_;
+};
+
+/// One variable of a MAT file of version 5 or 7, read after check_mat_structure has seen all of it.
+class MatFile {
+ public:
+  /// \throws InputError for a damaged file, or one without the variable.
+  MatFile(const std::string& path, const std::string& variable);
+
+  MatValue variable() const { return {variable_.get(), name_, path_}; }
+  const std::string& path() const { return path_; }
+
+ private:
+  struct Free {
+    void operator()(matvar_t* variable) const;
+  };
+  std::string path_, name_;
+  std::unique_ptr<matvar_t, Free> variable_;
+};
+
+}  // namespace petzval

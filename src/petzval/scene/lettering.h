@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Letters made of straight strokes, for charts.
+#pragma once
+
+#include <petzval/scene/shape.h>
+
+#include <string_view>
+
+namespace petzval {
+
+/// Adds capital letters, figures and . - / to a shape; other characters leave a gap.
+/// \param left, top  corner of the first letter's box. \param height  of the letters, strokes included.
+void add_text(Shape& shape, std::string_view text, double left, double top, double height);
+
+/// Width of a text from the left of its first letter's box to the right of its last one's.
+double text_width(std::string_view text, double height);
+
+}  // namespace petzval

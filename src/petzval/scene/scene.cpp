@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/colour/observer.h>
+#include <petzval/scene/scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Wavelengths that differ by less than this are the same one [nm]: a file's rounding, not another colour.
+constexpr double same_wavelength_nm = 1e-6;
+
+void check_wavelengths(std::span<const double> wavelengths_nm) {
+  if (wavelengths_nm.empty()) throw InputError("a scene needs at least one wavelength");
+  double previous = 0;
+  for (double wavelength : wavelengths_nm) {
+    if (!(wavelength > previous) || !std::isfinite(wavelength))
+      throw InputError(fmt::format("wavelength {} nm after {} nm; positive, increasing ones would be right",
+                                   wavelength, previous));
+    previous = wavelength;
+  }
+}
+
+void check_angle(double degrees) {
+  if (!(degrees > 0 && degrees < 180))
+    throw InputError(fmt::format("a scene {} degrees wide; above 0 and below 180 would be right", degrees));
+}
+
+void check_distance(std::optional<double> distance_m) {
+  if (distance_m && !(*distance_m > 0 && std::isfinite(*distance_m)))
+    throw InputError(
+        fmt::format("a scene at {} m; a positive distance or none (infinity) would be right", *distance_m));
+}
+
+/// A wavelength among others: between `lower` and `lower + 1`, `fraction` of the way.
+struct BandPosition {
+  int lower = 0;
+  double fraction = 0;
+};
+
+BandPosition band_position(const std::vector<double>& bands_nm, double wavelength_nm) {
+  if (!(wavelength_nm >= bands_nm.front() - same_wavelength_nm &&
+        wavelength_nm <= bands_nm.back() + same_wavelength_nm))
+    throw InputError(fmt::format("the scene has no radiance at {} nm; its bands reach from {} to {} nm",
+                                 wavelength_nm, bands_nm.front(), bands_nm.back()));
+  const auto above = std::upper_bound(bands_nm.begin(), bands_nm.end(), wavelength_nm);
+  if (above == bands_nm.end()) return {static_cast<int>(bands_nm.size()) - 1, 0.0};
+  if (above == bands_nm.begin()) return {0, 0.0};
+  const double below = *(above - 1);
+  return {static_cast<int>(above - bands_nm.begin()) - 1, (wavelength_nm - below) / (*above - below)};
+}
+
+}  // namespace
+
+Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+             std::optional<double> distance_m)
+    : columns_(columns), rows_(rows), wavelengths_nm_(std::move(wavelengths_nm)) {
+  if (columns < 1 || rows < 1)
+    throw InputError(fmt::format("a scene of {} x {} samples; at least 1 x 1 would be right", columns, rows));
+  check_wavelengths(wavelengths_nm_);
+  if (band_size() > max_values / wavelengths_nm_.size())
+    throw InputError(fmt::format("a scene of {} x {} samples in {} bands is too large; up to {} values fit",
+                                 columns, rows, bands(), max_values));
+  set_horizontal_angle_deg(horizontal_angle_deg);
+  set_distance_m(distance_m);
+  radiance_.resize(band_size() * wavelengths_nm_.size());
+}
+
+std::span<float> Scene::band(int index) {
+  return std::span(radiance_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+}
+
+std::span<const float> Scene::band(int index) const {
+  return std::span(radiance_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+}
+
+double Scene::tangent_per_sample() const {
+  return 2 * std::tan(radians(horizontal_angle_deg_) / 2) / columns_;
+}
+
+double Scene::vertical_angle_deg() const {
+  return degrees(2 * std::atan(tangent_per_sample() * rows_ / 2));
+}
+
+double Scene::diagonal_angle_deg() const {
+  return degrees(2 * std::atan(tangent_per_sample() * std::hypot(columns_, rows_) / 2));
+}
+
+void Scene::set_distance_m(std::optional<double> distance_m) {
+  check_distance(distance_m);
+  distance_m_ = distance_m;
+}
+
+void Scene::set_horizontal_angle_deg(double angle) {
+  check_angle(angle);
+  horizontal_angle_deg_ = angle;
+}
+
+std::vector<double> Scene::mean_radiance() const {
+  std::vector<double> means;
+  for (int index = 0; index < bands(); ++index) {
+    double sum = 0;
+    for (float value : band(index)) sum += value;
+    means.push_back(sum / static_cast<double>(band_size()));
+  }
+  return means;
+}
+
+double Scene::mean_luminance_cd_m2() const {
+  const std::vector<double> means = mean_radiance();
+  const std::vector<Xyz> weights = Observer::cie_1931().weights(wavelengths_nm_);
+  double luminance = 0;
+  for (std::size_t i = 0; i < means.size(); ++i) luminance += lumens_per_watt * means[i] * weights[i].y;
+  return luminance;
+}
+
+void Scene::set_mean_luminance_cd_m2(double luminance) {
+  if (!(luminance > 0 && std::isfinite(luminance)))
+    throw InputError(fmt::format("a mean luminance of {} cd/m²; a positive one would be right", luminance));
+  const double now = mean_luminance_cd_m2();
+  if (!(now > 0 && std::isfinite(now)))
+    throw InputError(
+        fmt::format("the scene's mean luminance is {} cd/m² (bands from {} to {} nm): no factor makes it {}",
+                    now, wavelengths_nm_.front(), wavelengths_nm_.back(), luminance));
+  const double factor = luminance / now;
+  for (float& value : radiance_) value = static_cast<float>(value * factor);
+  if (illuminant) illuminant = illuminant->scaled(factor);
+}
+
+Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
+  check_wavelengths(wavelengths_nm);
+  std::vector<BandPosition> positions;
+  for (double wavelength : wavelengths_nm) positions.push_back(band_position(wavelengths_nm_, wavelength));
+
+  Scene result(columns_, rows_, {wavelengths_nm.begin(), wavelengths_nm.end()}, horizontal_angle_deg_,
+               distance_m_);
+  result.name = name;
+  result.illuminant = illuminant;
+  result.depth_m = depth_m;
+  for (int index = 0; index < result.bands(); ++index) {
+    const auto [lower, fraction] = positions[static_cast<std::size_t>(index)];
+    const std::span<const float> below = band(lower);
+    const std::span<const float> above = band(std::min(lower + 1, bands() - 1));
+    const std::span<float> out = result.band(index);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = static_cast<float>((1 - fraction) * below[i] + fraction * above[i]);
+  }
+  return result;
+}
+
+void Scene::validate() const {
+  for (int index = 0; index < bands(); ++index) {
+    const std::span<const float> values = band(index);
+    const auto bad =
+        std::find_if(values.begin(), values.end(), [](float v) { return !(v >= 0 && std::isfinite(v)); });
+    if (bad == values.end()) continue;
+    const std::size_t at = static_cast<std::size_t>(bad - values.begin());
+    const std::size_t width = static_cast<std::size_t>(columns_);
+    throw InputError(
+        fmt::format("radiance {} in the band of {} nm at row {}, column {}; finite and not negative would "
+                    "be right",
+                    *bad, wavelengths_nm_[static_cast<std::size_t>(index)], at / width, at % width));
+  }
+}
+
+}  // namespace petzval

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scenes by name: files and built-in charts.
+#pragma once
+
+#include <petzval/scene/scene.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// What the user may say about a scene; what is left open comes from the file or is the chart's own default.
+struct SceneOptions {
+  std::optional<int> columns, rows;    ///< charts only (768 × 576); a file has its size
+  std::vector<double> wavelengths_nm;  ///< empty: the file's bands; 400 to 700 nm every 10 nm for a chart
+  std::optional<double> horizontal_angle_deg;  ///< replaces the file's; 40 for a chart
+  std::optional<double> distance_m;  ///< replaces the file's; a chart stands at infinity. inf: at infinity
+  std::string illuminant;            ///< charts (D65) and reflectance pictures only
+  std::optional<double> mean_luminance_cd_m2;  ///< of the whole spectrum, whatever wavelengths are then taken
+                                               ///< from it; replaces the file's; 100 for a chart
+};
+
+/// Reads a scene:
+///   a file     .mat (ISET) or .exr (spectral OpenEXR), or the name of a bundled one (data/scenes)
+///   a chart    "checkerboard", "checkerboard:16", "slanted-edge:5" … as builtin_scenes() lists them
+/// \throws InputError for an unknown name, a bad parameter, a damaged file, an option that does not apply.
+Scene read_scene(const std::string& path_or_name, const SceneOptions& options = {});
+
+/// A chart that read_scene makes from its name.
+struct BuiltinScene {
+  std::string name;         ///< "checkerboard[:N]"
+  std::string description;  ///< one line
+};
+std::vector<BuiltinScene> builtin_scenes();
+/// Whether read_scene makes a chart of this name: it is one's name, and no file is called so.
+bool is_builtin_scene(const std::string& path_or_name);
+
+/// Wavelengths as users write them: "400:10:700" (from, step, to), "450,550,650", "587.5618", and mixtures.
+/// \throws InputError saying what would be right.
+std::vector<double> parse_wavelengths_nm(const std::string& text);
+
+}  // namespace petzval
