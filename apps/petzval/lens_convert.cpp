@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens convert.
+#include <fmt/format.h>
+#include <petzval/lens/lens_file.h>
+
+#include <memory>
+
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct ConvertCommand {
+  LensChoice lens;
+  std::string output;
+};
+
+void convert(const ConvertCommand& options, const Shared& shared) {
+  const Lens lens = options.lens.read(shared);
+  write_lens(lens, options.output);
+  if (!shared.quiet) fmt::print("{}: {} surfaces\n", options.output, lens.surfaces.size());
+}
+
+}  // namespace
+
+void add_lens_convert(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<ConvertCommand>();
+  CLI::App* command = add_command(lens, shared, "convert",
+                                  "Write a lens in another format: .json (native), .zmx or .dat (pbrt)",
+                                  "petzval lens convert dgauss-50mm dgauss.zmx", false,
+                                  [options, &shared] { convert(*options, shared); });
+  options->lens.add_to(*command);
+  command->add_option("output", options->output, "File to write; its extension tells the format")->required();
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens info.
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/lens/first_order.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "field_option.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct InfoCommand {
+  LensChoice lens;
+  std::optional<double> wavelength_nm;
+};
+
+nlohmann::ordered_json pupil_json(const PupilData& pupil, const char* origin) {
+  return {{"position_mm", number_or_null(pupil.position_mm)},
+          {"position_from", origin},
+          {"diameter_mm", number_or_null(pupil.diameter_mm)}};
+}
+
+nlohmann::ordered_json info_json(const Lens& lens, const FirstOrder& data) {
+  return {
+      {"lens", lens.name},
+      {"source", lens.source},
+      {"wavelength_nm", data.wavelength_nm},
+      {"object_distance_mm", lens.object_distance_mm ? number_or_null(*lens.object_distance_mm) : nullptr},
+      {"efl_mm", number_or_null(data.efl_mm)},
+      {"bfl_mm", number_or_null(data.bfl_mm)},
+      {"ffl_mm", number_or_null(data.ffl_mm)},
+      {"f_number", number_or_null(data.f_number)},
+      {"working_f_number", number_or_null(data.working_f_number)},
+      {"image_space_na", number_or_null(data.image_space_na)},
+      {"field_of_view_deg", number_or_null(data.field_of_view_deg)},
+      {"magnification", number_or_null(data.magnification)},
+      {"entrance_pupil", pupil_json(data.entrance_pupil, "vertex 1")},
+      {"exit_pupil", pupil_json(data.exit_pupil, "image surface")},
+      {"petzval_radius_mm", number_or_null(data.petzval_radius_mm)},
+      {"total_track_mm", number_or_null(data.total_track_mm)},
+      {"paraxial_image_mm", number_or_null(data.paraxial_image_mm)},
+      {"stop_semi_diameter_mm", number_or_null(data.stop_semi_diameter_mm)},
+      {"lagrange_invariant_mm", number_or_null(data.lagrange_invariant_mm)}};
+}
+
+void print_first_order(const Lens& lens, const FirstOrder& data) {
+  const auto line = [](const char* what, double value, const char* remark) {
+    const std::string number = std::isfinite(value) ? fmt::format("{:.6f}", value) : "infinite";
+    fmt::print("  {:<28} {:>16}  {}\n", what, number, remark);
+  };
+  fmt::print("{}\n{}\n\nAt {:g} nm, lengths in mm\n", lens.name, lens.source, data.wavelength_nm);
+  line("object distance", lens.object_distance_mm.value_or(INFINITY), "in front of vertex 1");
+  line("focal length", data.efl_mm, "");
+  line("back focal length", data.bfl_mm, "last vertex to rear focal point");
+  line("front focal length", data.ffl_mm, "vertex 1 to front focal point");
+  line("f-number", data.f_number, "paraxial, object at infinity");
+  line("working f-number", data.working_f_number, "paraxial, at the object distance");
+  line("image-space NA", data.image_space_na, "paraxial, at the object distance");
+  line("field of view [deg]", data.field_of_view_deg, "full angle at the entrance pupil");
+  line("magnification", data.magnification, "");
+  line("entrance pupil position", data.entrance_pupil.position_mm, "from vertex 1");
+  line("entrance pupil diameter", data.entrance_pupil.diameter_mm, "");
+  line("exit pupil position", data.exit_pupil.position_mm, "from the image surface");
+  line("exit pupil diameter", data.exit_pupil.diameter_mm, "");
+  line("stop semi-diameter", data.stop_semi_diameter_mm, "height of the paraxial marginal ray");
+  line("Petzval radius", data.petzval_radius_mm, "");
+  line("total track", data.total_track_mm, "vertex 1 to image surface");
+  line("paraxial image", data.paraxial_image_mm, "behind the last vertex");
+}
+
+void print_surfaces(const Lens& lens) {
+  fmt::print("\n{:>3} {:>14} {:>12} {:>12}  {}\n", "", "radius [mm]", "to next [mm]", "semi-d. [mm]",
+             "behind it");
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const Surface& surface = lens.surfaces[i];
+    const double c = surface.curvature_per_mm;
+    std::string remark = surface.material.description();
+    if (surface.stop) remark += "; stop";
+    if (surface.conic != 0) remark += fmt::format("; conic {:g}", surface.conic);
+    for (const auto& [power, coefficient] : surface.asphere)
+      remark += fmt::format("; r^{} {:g}", power, coefficient);
+    fmt::print("{:>3} {:>14} {:>12.6g} {:>12}  {}\n", i, c == 0 ? "flat" : fmt::format("{:.6g}", 1 / c),
+               surface.thickness_mm,
+               surface.semi_diameter_mm ? fmt::format("{:.6g}", *surface.semi_diameter_mm) : "unbounded",
+               remark);
+  }
+}
+
+void info(const InfoCommand& options, const Shared& shared) {
+  const auto wavelength_nm = options.wavelength_nm;
+  if (wavelength_nm && !(std::isfinite(*wavelength_nm) && *wavelength_nm > 0))
+    throw InputError(fmt::format("--wavelength {}: must be a positive number of nm", *wavelength_nm));
+  const Lens lens = options.lens.read(shared);
+  const FirstOrder data = first_order(lens, wavelength_nm);
+  if (shared.json) return print_json(info_json(lens, data));
+  print_first_order(lens, data);
+  print_surfaces(lens);
+}
+
+}  // namespace
+
+void add_lens_info(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<InfoCommand>();
+  CLI::App* command =
+      add_command(lens, shared, "info", "First-order data and surfaces",
+                  "petzval lens info edmund-54852 --wavelength 486.13 --set object_distance_mm=500", true,
+                  [options, &shared] { info(*options, shared); });
+  options->lens.add_to(*command);
+  command->add_option("--wavelength", options->wavelength_nm,
+                      "In nm; the lens's reference wavelength if not given");
+}
+
+}  // namespace petzval::app
