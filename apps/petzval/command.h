@@ -45,5 +45,6 @@ void note(const Shared& shared, const std::string& message);
 void add_lens_commands(CLI::App& app, Shared& shared);
 void add_glass_commands(CLI::App& app, Shared& shared);
 void add_scene_commands(CLI::App& app, Shared& shared);
+void add_optics_commands(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   app::add_lens_commands(program, shared);
   app::add_glass_commands(program, shared);
   app::add_scene_commands(program, shared);
+  app::add_optics_commands(program, shared);
   try {
     program.parse(argc, argv);
     // Results on stdout are results: a full disk behind a pipe is a failure too.
