@@ -37,7 +37,7 @@ class BadLensFile(ProgramTest):
     def test_noise(self):
         self.refuse(b"\x00\xff\xfe" * 100, "bad.json")
         self.refuse("[" * 100000, "bad.json")
-        self.refuse(b"", "bad.json", name="bad.zmx")
+        self.refuse(b"", "bad.zmx", name="bad.zmx")
         self.refuse(b"\x00\xff\xfe" * 100, "bad.dat", name="bad.dat")
         self.refuse("a lens", "bad.txt", name="bad.txt")
 

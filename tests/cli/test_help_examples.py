@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The example in the help of every command runs as it stands, in a folder with the files that it names."""
+
+import re
+import shlex
+import unittest
+
+from petzval_cli import ProgramTest, leaf_commands
+
+RAYS = "x_mm,y_mm,z_mm,L,M,N,wavelength_nm\n0,0,-10,0,0,1,587.56\n0,1,-10,0,0,1,587.56\n"
+# Commands that take long for what they do: tests of their own run them.
+SLOW = [["demo"]]
+
+
+class HelpExamples(ProgramTest):
+    def example(self, command):
+        """The example of a command's help, as words."""
+        text = self.assert_succeeds(*command, "--help")
+        line, = re.findall(r"^Example:\n((?:  .*\n?)+)", text, re.MULTILINE)
+        words = shlex.split(line.replace("\\\n", " "))
+        self.assertEqual(words[: 1 + len(command)], ["petzval", *command])
+        return words[1:]
+
+    def provide(self, word):
+        """Makes the input file `word`, if it is one and is not there."""
+        if (self.folder / word).exists():
+            return
+        if word.endswith(".csv"):
+            self.write(word, RAYS)
+        elif word.endswith((".zmx", ".dat")):
+            self.assert_succeeds("lens", "convert", "us-2532751" if word.endswith(".zmx") else "wide-22mm", word)
+        elif word.endswith((".h5", ".hdf5")):
+            self.assert_succeeds("optics", "build", "edmund-54852", "--sensor", "64x48@6.25", "-o", word)
+        elif word.endswith(".exr"):
+            self.assert_succeeds("scene", "convert", "studio", word)
+
+    def test_examples(self):
+        outputs = {"-o", "--output", "--plot"}
+        for command in leaf_commands():
+            if command in SLOW:
+                continue
+            with self.subTest(command=" ".join(command)):
+                words = self.example(command)
+                made = words[-1:] if command[-1] == "convert" else []
+                for previous, word in zip(words, words[1:]):
+                    if previous not in outputs and word not in made:
+                        self.provide(word)
+                self.assert_succeeds(*words)
+
+
+if __name__ == "__main__":
+    unittest.main()
