@@ -279,11 +279,11 @@ with h5py.File(sys.argv[1]) as f:
     assert (psf[0, 0, 3:8, 3:8] > 0).all()
     # coma: more light at +t, away from the axis, than at -t; less so along s
     assert psf[0, 0, 6, 5] > psf[0, 0, 5, 6] > psf[0, 0, 5, 4] > psf[0, 0, 4, 5]
-    # as a user would keep an altered copy
-    with h5py.File(sys.argv[2], 'w') as g:
-        for name in f: f.copy(name, g)
-        for name, value in f.attrs.items(): g.attrs[name] = value
-        g.attrs['lens_name'] = 'altered'
+# as a user would keep an altered copy (opened anew: H5Ocopy of HDF5 1.10.8 overruns its buffer on chunks in the cache)
+with h5py.File(sys.argv[1]) as f, h5py.File(sys.argv[2], 'w') as g:
+    for name in f: f.copy(name, g)
+    for name, value in f.attrs.items(): g.attrs[name] = value
+    g.attrs['lens_name'] = 'altered'
 )");
   ASSERT_EQ(std::system((python + path("check.py") + " " + path("t.h5") + " " + path("copy.h5")).c_str()), 0);
   table.lens_name = "altered";
