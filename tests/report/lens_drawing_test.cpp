@@ -133,6 +133,23 @@ TEST(LensDrawing, DrawsAirGapsAsDashesAndImmersionAsGlass) {
   EXPECT_EQ(occurrences(svg, "class=\"pz-glass\""), 1);        // the water up to the image
 }
 
+// Rays that come in from far outside are cut at the left edge of the picture, not at its lower one.
+TEST(LensDrawing, MakesRoomForSlantedRays) {
+  Lens lens;
+  lens.surfaces = {surface(0, 10, 1.5, 5)};
+  const auto height = [](const std::string& svg) {
+    const std::size_t at = svg.find("height=\"") + 8;
+    return std::stod(svg.substr(at, svg.find('"', at) - at));
+  };
+  const DrawnRay slanted{{{-1000, -500}, {0, 0}, {10, 0}}, ""};  // half a mm up for each mm along
+  LensDrawingOptions options;
+  options.lead_mm = 12;  // there the ray is 6 mm below the axis, the lens only 5 mm
+  options.image_half_height_mm = 1;
+  EXPECT_GT(height(draw_lens(lens, {slanted}, options)), height(draw_lens(lens, {}, options)));
+  options.lead_mm = 8;  // 4 mm
+  EXPECT_EQ(height(draw_lens(lens, {slanted}, options)), height(draw_lens(lens, {}, options)));
+}
+
 TEST(LensDrawing, StandsAbsurdLenses) {
   const Lens empty;
   EXPECT_THROW(draw_lens(empty, {}), InputError);

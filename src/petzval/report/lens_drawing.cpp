@@ -105,17 +105,27 @@ Scene make_scene(const Lens& lens, const std::vector<DrawnRay>& rays, const Lens
   return scene;
 }
 
-/// The largest height of a ray in what is seen of object space.
+/// The largest height of a ray to the right of z_left, where straight stretches are cut.
 double highest_ray_mm(const std::vector<DrawnRay>& rays, double z_left) {
   double height = 0;
-  for (const DrawnRay& ray : rays)
-    for (const auto& [z, y] : ray.zy_mm)
-      if (z >= z_left && std::isfinite(y)) height = std::max(height, std::abs(y));
+  const auto include = [&](double y) {
+    if (std::isfinite(y)) height = std::max(height, std::abs(y));
+  };
+  for (const DrawnRay& ray : rays) {
+    for (std::size_t i = 0; i < ray.zy_mm.size(); ++i) {
+      const auto [z, y] = ray.zy_mm[i];
+      if (z < z_left) continue;
+      include(y);
+      if (i == 0 || !(ray.zy_mm[i - 1][0] < z_left)) continue;
+      const auto [last_z, last_y] = ray.zy_mm[i - 1];
+      include(y + (last_y - y) * (z - z_left) / (z - last_z));
+    }
+  }
   return height;
 }
 
 View make_view(const Scene& scene, const LensDrawingOptions& options) {
-  constexpr double smallest_mm = 1e-9, side_px = 24, most_for_rays = 1.4;
+  constexpr double smallest_mm = 1e-9, side_px = 24, most_for_rays = 1.3;
   double z_front = scene.vertex_z.back(), z_back = scene.vertex_z.back(), y_most = scene.image_half_height;
   for (const auto& points : scene.profiles) {
     for (const auto& [z, y] : points) {
