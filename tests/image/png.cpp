@@ -138,6 +138,21 @@ TEST(Png, RefusesASizeThatTheFileCannotHold) {
   }
 }
 
+TEST(Png, RefusesAChunkThatTheFileCannotHold) {
+  const test::Scratch scratch;
+  PngImage image = noise(1, 1, 1, 8);
+  image.text = {{"Description", "words"}};
+  write_png(scratch.path("a.png"), image);
+  std::string bytes = read_whole_file(scratch.path("a.png"));
+  bytes[bytes.find("iTXt") - 4] = 0x32;  // 800 MB, which libpng would make room for
+  try {
+    read_png(scratch.with("b.png", bytes));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("ends within a chunk"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Png, DamagedFilesDoNoHarm) {
   const test::Scratch scratch;
   PngImage image = noise(9, 8, 3, 16);

@@ -140,6 +140,7 @@ void pack(std::span<const std::uint16_t> samples, int bits, std::vector<png_byte
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), bytes_(read_whole_file(path)), rest_(bytes_) {
+    check_chunks();
     png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &error_, on_error, on_warning);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
     if (!info_) {
@@ -207,6 +208,20 @@ class Reader {
   }
 
  private:
+  /// libpng makes room for a chunk of the length that the file states; hold that against the file first.
+  void check_chunks() const {
+    constexpr std::size_t signature = 8, framing = 12;  // length, name and checksum
+    std::size_t left = bytes_.size() > signature ? bytes_.size() - signature : 0;
+    while (left >= framing) {
+      std::uint32_t length = 0;
+      for (std::size_t i = 0; i < 4; ++i)
+        length = length << 8 | static_cast<unsigned char>(bytes_[bytes_.size() - left + i]);
+      if (length > left - framing)
+        throw InputError(path_, "is not a sound PNG: the file ends within a chunk");
+      left -= framing + length;
+    }
+  }
+
   PngTransfer transfer() const {
     int intent = 0;
     png_fixed_point gamma = 0;
