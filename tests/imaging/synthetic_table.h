@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/optics/lens_data_table.h>
+#include <petzval/scene/scene.h>
 
 #include <cmath>
 #include <functional>
@@ -84,6 +85,18 @@ inline TableRecipe comatic_recipe(double lean = 0) {
   TableRecipe recipe;
   recipe.psf = [lean](double field, double) { return comatic_psf(field / 20, lean); };
   return recipe;
+}
+
+/// Adds a Gaussian star about the centre of a sample.
+inline void add_star(Scene& scene, int band, int column, int row, double sigma_samples) {
+  for (int i = 0; i < scene.rows(); ++i)
+    for (int j = 0; j < scene.columns(); ++j) {
+      const double square =
+          std::pow((i - row) / sigma_samples, 2) + std::pow((j - column) / sigma_samples, 2);
+      if (square < 60)
+        scene.band(band)[static_cast<std::size_t>(i * scene.columns() + j)] +=
+            static_cast<float>(std::exp(-square / 2));
+    }
 }
 
 inline double sum_of(const CellPlane& plane) {

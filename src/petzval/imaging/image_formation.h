@@ -57,6 +57,7 @@ struct ImagingReport {
 ///    ideal_irradiance().
 /// 3. Its light is spread by the PSF of its place, integrated over the cells: blur_sections() or
 /// blur_exact().
+///    The light of a cell starts from its centre, so that PSFs much smaller than a cell want S > 1.
 ///    Light may come in from outside the frame; light that leaves it is lost.
 /// 4. S × S cells are averaged into a pixel: mean irradiance over a box of one pitch (PixelAperture::box).
 ///

@@ -28,12 +28,13 @@ class SectionBlur {
         spectrum_(fft.spectrum_size()),
         otf_(fft.spectrum_size()) {}
 
+  bool has_light(int first_row, int first_column) const;
   void set_kernel(const Kernel& kernel);
   /// Blurs one section with the kernel, which is turned over left-right and top-bottom if so told.
   void add_section(int first_row, int first_column, bool flip_rows, bool flip_columns);
 
  private:
-  bool load(int first_row, int first_column, bool flip_rows, bool flip_columns);
+  void load(int first_row, int first_column, bool flip_rows, bool flip_columns);
   void add_to_result(int first_row, int first_column, bool flip_rows, bool flip_columns);
   std::size_t square() const { return static_cast<std::size_t>(fft_.columns()); }
 
@@ -44,6 +45,16 @@ class SectionBlur {
   AlignedVector<float> cells_;
   Spectrum spectrum_, otf_;
 };
+
+bool SectionBlur::has_light(int first_row, int first_column) const {
+  const int from = std::max(0, first_column), to = std::min(first_column + section_, source_.grid.columns);
+  const int bottom = std::min(first_row + section_, source_.grid.rows);
+  for (int row = std::max(0, first_row); row < bottom; ++row) {
+    const float* in = source_.row(static_cast<std::size_t>(row));
+    if (std::any_of(in + from, in + to, [](float light) { return light != 0; })) return true;
+  }
+  return false;
+}
 
 void SectionBlur::set_kernel(const Kernel& kernel) {
   std::fill(cells_.begin(), cells_.end(), 0.0F);
@@ -56,7 +67,7 @@ void SectionBlur::set_kernel(const Kernel& kernel) {
 }
 
 void SectionBlur::add_section(int first_row, int first_column, bool flip_rows, bool flip_columns) {
-  if (!load(first_row, first_column, flip_rows, flip_columns)) return;
+  load(first_row, first_column, flip_rows, flip_columns);
   fft_.forward(cells_, spectrum_);
   for (std::size_t k = 0; k < spectrum_.size(); ++k) {
     const float a = spectrum_[k].real(), b = spectrum_[k].imag(), c = otf_[k].real(), d = otf_[k].imag();
@@ -66,23 +77,17 @@ void SectionBlur::add_section(int first_row, int first_column, bool flip_rows, b
   add_to_result(first_row, first_column, flip_rows, flip_columns);
 }
 
-/// Instead of the kernel, the section itself is turned over, and its image again on the way out. \return
-/// whether there is any light in it.
-bool SectionBlur::load(int first_row, int first_column, bool flip_rows, bool flip_columns) {
+/// Instead of the kernel, the section itself is turned over, and its image again on the way out.
+void SectionBlur::load(int first_row, int first_column, bool flip_rows, bool flip_columns) {
   std::fill(cells_.begin(), cells_.end(), 0.0F);
   const int from = std::max(0, -first_column), to = std::min(section_, source_.grid.columns - first_column);
-  bool any = false;
   for (int i = 0; i < section_; ++i) {
     const int row = first_row + i;
     if (row < 0 || row >= source_.grid.rows) continue;
     const float* in = source_.row(static_cast<std::size_t>(row));
     float* out = cells_.data() + static_cast<std::size_t>(flip_rows ? section_ - 1 - i : i) * square();
-    for (int j = from; j < to; ++j) {
-      out[flip_columns ? section_ - 1 - j : j] = in[first_column + j];
-      any = any || in[first_column + j] != 0.0F;
-    }
+    for (int j = from; j < to; ++j) out[flip_columns ? section_ - 1 - j : j] = in[first_column + j];
   }
-  return any;
 }
 
 void SectionBlur::add_to_result(int first_row, int first_column, bool flip_rows, bool flip_columns) {
@@ -111,6 +116,7 @@ void blur_crossing(const SectionGroup& rows, const SectionGroup& columns, const 
     for (const SectionSpan& row : rows.sections)
       for (const SectionSpan& column : columns.sections) {
         if (!psfs.mirror_symmetric() && (row.mirrored != column.mirrored) != across) continue;
+        if (!blur.has_light(row.first, column.first)) continue;
         if (!ready)  // columns run along −x'; the kernel of the pair across the axis is made for its mirrored
                      // column
           blur.set_kernel(

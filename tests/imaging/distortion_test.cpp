@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "imaging/synthetic_table.h"
+
+#include <gtest/gtest.h>
+#include <petzval/imaging/distortion.h>
+
+namespace petzval {
+namespace {
+
+using namespace testing;
+
+/// Barrel distortion of 12 % at 20°, in closed form.
+double barrel_height_mm(double field_deg) {
+  const double ideal = 6 * std::tan(radians(field_deg));
+  return ideal * (1 - 0.12 * std::pow(ideal / (6 * std::tan(radians(20.0))), 2));
+}
+
+TableRecipe barrel_recipe() {
+  TableRecipe recipe;
+  recipe.fields.clear();
+  for (int field = 0; field <= 24; ++field) recipe.fields.push_back(field);
+  recipe.height_mm = [](double field, double) { return barrel_height_mm(field); };
+  return recipe;
+}
+
+SceneMap map_of(const LensDataTable& table, const Scene& scene, const SensorGeometry& grid,
+                std::optional<double> distance_mm = {}) {
+  return {RadialProfiles(table).at_wavelength(550), distance_mm, scene,
+          std::hypot(grid.width_mm(), grid.height_mm()) / 2};
+}
+
+// A star at a known object angle lands where the lens puts that angle: at eight azimuths, upright. The star
+// is a Gaussian of 1.5 pixels, which pixels resolve, on a scene three times finer, so that straight lines
+// between samples leave no moiré; the curvature of the distortion moves its centre of gravity by less than
+// 0.01 pixel.
+TEST(IdealIrradiance, PutsPointsWhereTheTableSays) {
+  const LensDataTable table = make_table(barrel_recipe());
+  const SensorGeometry grid{401, 301, 10};
+  for (int eighth = 0; eighth < 8; ++eighth) {
+    const double azimuth = radians(45.0 * eighth + 10);
+    const int column = static_cast<int>(std::lround(750 + 420 * std::cos(azimuth)));
+    const int row = static_cast<int>(std::lround(570 + 420 * std::sin(azimuth)));
+    Scene scene(1501, 1141, {550}, 45, std::nullopt);
+    add_star(scene, 0, column, row, 4.5);
+    const double right = (column - 750) * scene.tangent_per_sample();
+    const double down = (row - 570) * scene.tangent_per_sample();
+    const double tangent = std::hypot(right, down);
+    const double height_pixels = barrel_height_mm(degrees(std::atan(tangent))) / 0.010;
+    const CellPlane image = ideal_irradiance(scene, 0, map_of(table, scene, grid), grid, 4, Surround::error);
+    const Centroid centre = centroid(image);
+    EXPECT_NEAR(centre.column, 200.5 + height_pixels * right / tangent, 0.02) << eighth;
+    EXPECT_NEAR(centre.row, 150.5 + height_pixels * down / tangent, 0.02) << eighth;
+  }
+}
+
+TEST(SceneMap, FollowsTheTableWithinAThousandthOfASample) {
+  const LensDataTable table = make_table(barrel_recipe());
+  const Scene scene(501, 381, {550}, 45, std::nullopt);
+  const SensorGeometry grid{401, 301, 10};
+  const SceneMap map = map_of(table, scene, grid);
+  for (double field = 0.01; field < 22; field += 0.173) {
+    const double height = RadialProfiles(table).at_wavelength(550).image_height_mm(field);
+    const SceneMap::Place place = map.place(-height * 0.6, height * 0.8);
+    const double radius = std::tan(radians(field)) / scene.tangent_per_sample();
+    EXPECT_NEAR(place.column, 250.5 + 0.6 * radius, 1e-3) << field;
+    EXPECT_NEAR(place.row, 190.5 + 0.8 * radius, 1e-3) << field;
+  }
+}
+
+TEST(SceneMap, TakesFiniteObjectsByTheirHeight) {
+  // Object heights in mm at 250 mm from the sensor, magnification −1/40: a pixel of 5 µm sees 0.2 mm.
+  TableRecipe recipe;
+  recipe.fields = {0, 20, 40, 60};
+  recipe.object_distance_mm = 240;
+  recipe.height_mm = [](double field, double) { return field / 40; };
+  const LensDataTable table = make_table(recipe);
+  Scene scene(200, 100, {550}, degrees(2 * std::atan(0.2)), 0.25);  // 100 mm wide: samples of 0.5 mm
+  const SceneMap map = map_of(table, scene, {100, 100, 5}, 250.0);
+  const SceneMap::Place place = map.place(-0.1, 0.05);  // images of 4 mm to the right and 2 mm down
+  EXPECT_NEAR(place.column, 108, 1e-9);
+  EXPECT_NEAR(place.row, 54, 1e-9);
+  EXPECT_NEAR(map.finest_samples_per_mm(), 80, 1e-9);
+}
+
+TEST(SceneMap, IsDarkBeyondTheLastField) {
+  const LensDataTable table = make_table({});
+  const double last_mm = table.real_image_height_mm.back();
+  const Scene scene(100, 100, {550}, 60, std::nullopt);
+  const SceneMap map(RadialProfiles(table).at_wavelength(550), {}, scene, 10);
+  EXPECT_EQ(map.last_height_mm(), last_mm);
+  EXPECT_EQ(map.place(0, last_mm).g_source_sr, 0.25);
+  EXPECT_EQ(map.place(0, last_mm * 1.001).g_source_sr, 0);
+}
+
+TEST(SeenExtent, IsWhereTheOutlineLooks) {
+  const LensDataTable table = make_table({});  // height 6 tan: no distortion
+  const Scene scene(1000, 1000, {550}, 60, std::nullopt);
+  const double samples_per_mm = 1 / (6 * scene.tangent_per_sample());
+  const SensorGeometry grid{300, 200, 10};
+  const SeenExtent seen = seen_extent(map_of(table, scene, grid), grid);
+  // The table's curve between fields 5° apart misses the tangent by some 1e-5.
+  EXPECT_NEAR(seen.columns / (1.5 * samples_per_mm), 1, 1e-4);
+  EXPECT_NEAR(seen.rows / (1.0 * samples_per_mm), 1, 1e-4);
+  EXPECT_NEAR(seen.radius / (std::hypot(1.5, 1.0) * samples_per_mm), 1, 1e-4);
+  // Where the corners are dark, up to the last field only.
+  const SensorGeometry wide{500, 400, 10};
+  const double last = table.real_image_height_mm.back();
+  EXPECT_NEAR(seen_extent(map_of(table, scene, wide), wide).columns / (last * samples_per_mm), 1, 1e-4);
+}
+
+TEST(IdealIrradiance, AveragesScenesThatAreFinerThanCells) {
+  // Stripes one sample wide, some five to a pixel: their mean must come out, not their aliases.
+  Scene scene(2000, 1500, {550}, 40, std::nullopt);
+  for (std::size_t i = 0; i < scene.band_size(); ++i) scene.band(0)[i] = i % 2 == 0 ? 2.0F : 0.0F;
+  const LensDataTable table = make_table({});
+  const SensorGeometry grid{300, 200, 10};
+  const SceneMap map = map_of(table, scene, grid);
+  const double samples_per_cell = map.finest_samples_per_mm() * 0.010;
+  ASSERT_GT(samples_per_cell, 4);
+  const CellPlane image =
+      ideal_irradiance(scene, 0, map, grid, static_cast<int>(std::ceil(samples_per_cell)), Surround::error);
+  // At least one bilinear point a sample over a width that is no whole number of stripes: a part of one
+  // stripe is left over, of some nine points.
+  for (const float value : image.values) EXPECT_NEAR(value, 0.25, 0.25 / samples_per_cell);
+  EXPECT_NEAR(sum_of(image) / double(image.values.size()), 0.25, 0.25 * 2e-3);
+}
+
+TEST(IdealIrradiance, ShowsTheSurroundThatIsAskedFor) {
+  Scene scene(20, 20, {550}, 10, std::nullopt);
+  std::fill(scene.band(0).begin(), scene.band(0).end(), 4.0F);
+  const LensDataTable table = make_table({});
+  const SensorGeometry grid{300, 200, 10};  // sees 28°
+  const SceneMap map = map_of(table, scene, grid);
+  const CellPlane zero = ideal_irradiance(scene, 0, map, grid, 1, Surround::zero);
+  const CellPlane extended = ideal_irradiance(scene, 0, map, grid, 1, Surround::extend);
+  EXPECT_EQ(zero.row(100)[0], 0);
+  EXPECT_FLOAT_EQ(zero.row(100)[150], 1);
+  for (const float value : extended.values) EXPECT_FLOAT_EQ(value, 1);
+}
+
+}  // namespace
+}  // namespace petzval
