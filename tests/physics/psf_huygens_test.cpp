@@ -20,6 +20,9 @@ using independent::IndependentRay;
 using independent::Real;
 using independent::SphereTracer;
 
+/// From the plane of the wavelets to the image; the light is continued straight back to it, through the lens.
+constexpr double plane_distance_mm = 640;
+
 struct Wavelet {
   double x, y, amplitude, path;  ///< on the exit plane
 };
@@ -44,19 +47,39 @@ std::vector<Wavelet> exit_wavelets(const Lens& lens, double wavelength_nm, doubl
     return At{double(p[0]), double(p[1]), double(ray->path + t)};
   };
   const double cell = 2 * half_width / grid, nudge = 1e-4 * half_width;
+  // Which corners of the cells pass: cells that the pupil's edge crosses count by the share of 6 × 6 rays
+  // that do.
+  std::vector<char> passes(static_cast<std::size_t>((grid + 1) * (grid + 1)));
+  const auto corner = [&](int i, int j) -> char& {
+    return passes[static_cast<std::size_t>(i * (grid + 1) + j)];
+  };
+  const double left = -half_width, bottom = chief_v - half_width;
+  for (int i = 0; i <= grid; ++i)
+    for (int j = 0; j <= grid; ++j)
+      corner(i, j) = to_plane(left + j * cell, bottom + i * cell, true).has_value();
+  const auto coverage = [&](int i, int j) {
+    const int corners = corner(i, j) + corner(i, j + 1) + corner(i + 1, j) + corner(i + 1, j + 1);
+    if (corners % 4 == 0) return corners / 4.0;
+    int passed = 0;
+    for (int k = 0; k < 36; ++k)
+      passed += to_plane(left + (j + (k % 6 + 0.5) / 6) * cell, bottom + (i + (k / 6 + 0.5) / 6) * cell, true)
+                    .has_value();
+    return passed / 36.0;
+  };
   std::vector<Wavelet> wavelets;
   for (int i = 0; i < grid; ++i)
     for (int j = 0; j < grid; ++j) {
-      const double u = -half_width + (j + 0.5) * cell, v = chief_v - half_width + (i + 0.5) * cell;
-      const auto at = to_plane(u, v, true);
-      if (!at) continue;
+      const double share = coverage(i, j);
+      if (share == 0) continue;
+      const double u = left + (j + 0.5) * cell, v = bottom + (i + 0.5) * cell;
+      const auto at = to_plane(u, v, false);
       const auto px = to_plane(u + nudge, v, false), mx = to_plane(u - nudge, v, false);
       const auto py = to_plane(u, v + nudge, false), my = to_plane(u, v - nudge, false);
-      if (!px || !mx || !py || !my) continue;
+      if (!at || !px || !mx || !py || !my) continue;
       const double area_ratio =
           std::abs((px->x - mx->x) * (py->y - my->y) - (px->y - mx->y) * (py->x - my->x)) /
           (4 * nudge * nudge);
-      wavelets.push_back({at->x, at->y, cell * cell * std::sqrt(area_ratio), at->path});
+      wavelets.push_back({at->x, at->y, share * cell * cell * std::sqrt(area_ratio), at->path});
     }
   return wavelets;
 }
@@ -82,9 +105,9 @@ TEST_P(HuygensFields, AgreesWithinAThousandthOfThePeak) {
   const PupilBoundary pupil = *tracer.object_pupil(chief);
   double reach = 0;
   for (const double r : pupil.radius) reach = std::max(reach, r);
-  const double exit_z = tracer.tracer().image_z_mm() - 4.0;
+  const double exit_z = tracer.tracer().image_z_mm() - plane_distance_mm;
   const auto wavelets =
-      exit_wavelets(lens, lambda_nm, chief.object_field, pupil.centre_v, 1.02 * reach, exit_z, 360);
+      exit_wavelets(lens, lambda_nm, chief.object_field, pupil.centre_v, 1.02 * reach, exit_z, 300);
 
   double peak = 0, worst = 0;
   for (const float value : psf.values) peak = std::max(peak, value * irradiance_per_value);
@@ -94,15 +117,16 @@ TEST_P(HuygensFields, AgreesWithinAThousandthOfThePeak) {
       const double x = (j - size / 2) * spacing, y = chief.image_height_mm + (i - size / 2) * spacing;
       std::complex<double> field = 0;
       for (const Wavelet& w : wavelets) {
-        const double r = std::sqrt((x - w.x) * (x - w.x) + (y - w.y) * (y - w.y) + 16.0);
-        field += w.amplitude * (4.0 / r) / r *
+        const double r =
+            std::sqrt((x - w.x) * (x - w.x) + (y - w.y) * (y - w.y) + plane_distance_mm * plane_distance_mm);
+        field += w.amplitude * (plane_distance_mm / r) / r *
                  std::polar(1.0, k * std::remainder(w.path + r - chief.at_image.opl_mm, lambda_mm));
       }
       const double huygens = std::norm(field) / (lambda_mm * lambda_mm);
       worst = std::max(worst, std::abs(huygens - psf.at(i, j) * irradiance_per_value) / peak);
     }
   RecordProperty("worst_over_peak", std::to_string(worst));
-  EXPECT_LT(worst, 1e-3);  // the grid's ragged pupil edge alone is worth a few 1e-4
+  EXPECT_LT(worst, 5e-4);  // measured 1.5e-4 to 1.9e-4
 }
 
 INSTANTIATE_TEST_SUITE_P(Heights, HuygensFields, testing::Values(0.0, 1.4, 2.4));

@@ -36,6 +36,11 @@ double psf_margin_mm(FieldTracer& tracer) {
   return 0.5 * plan->size * plan->spacing_um * mm_per_um;
 }
 
+/// A pupil that vignetting has shrunk to this share of the one on axis counts as dark: its PSF is wider than
+/// any grid.
+constexpr double dark_pupil_share = 1e-3;
+constexpr int limit_azimuths = 32;
+
 /// Objects at a finite distance are looked for no farther out than this (87°).
 constexpr double widest_tangent = 20;
 
@@ -44,14 +49,19 @@ constexpr double widest_tangent = 20;
 class FieldLimit {
  public:
   FieldLimit(const Lens& lens, double wavelength_nm, Tracer::Clip clip)
-      : tracer_(lens, wavelength_nm, clip), sign_(towards_positive_image(lens)) {}
+      : tracer_(lens, wavelength_nm, clip), sign_(towards_positive_image(lens)) {
+    if (const std::optional<ChiefRay> axis = tracer_.chief_ray(0))
+      if (const auto pupil = tracer_.object_pupil(*axis, limit_azimuths))
+        least_area_ = dark_pupil_share * pupil->area();
+  }
 
   std::optional<double> height(double field) {
     const double end =
         tracer_.lens().object_distance_mm ? widest_tangent * *tracer_.lens().object_distance_mm : 179.0;
     if (field > end) return {};
     const std::optional<ChiefRay> chief = tracer_.chief_ray(sign_ * field);
-    if (!chief || !tracer_.object_pupil(*chief, 16)) return {};
+    const auto pupil = chief ? tracer_.object_pupil(*chief, limit_azimuths) : std::nullopt;
+    if (!pupil || !(pupil->area() > least_area_)) return {};
     return chief->image_height_mm;
   }
 
@@ -90,6 +100,7 @@ class FieldLimit {
 
   FieldTracer tracer_;
   double sign_;
+  double least_area_ = 0;
 };
 
 std::vector<double> choose_fields(const Lens& lens, const TableOptions& options) {
@@ -127,11 +138,9 @@ TableOptions completed(const Lens& lens, TableOptions options) {
   return options;
 }
 
-void fill_entry(FieldTracer& tracer, double object_field, int psf_size, LensDataTable& table,
+void fill_entry(FieldTracer& tracer, double object_field, const PsfOptions& options, LensDataTable& table,
                 std::size_t entry) {
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
-  PsfOptions options;
-  options.size = psf_size;
   const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options) : std::nullopt;
   if (!psf)
     throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", tracer.lens().name,

@@ -13,7 +13,8 @@ namespace petzval {
 struct TableOptions {
   std::vector<double> wavelengths_nm;  ///< empty: the lens's own
   /// Real image height that the table must reach [mm]: half the sensor diagonal. The table goes on until a
-  /// PSF radius beyond it, or until no ray passes. 0: the lens's largest field.
+  /// PSF radius beyond it, or until no ray passes (less than a thousandth of the pupil's area on axis). 0:
+  /// the lens's largest field.
   double max_image_height_mm = 0;
   int field_count = 21;  ///< evenly spaced object fields, 0 included
   int psf_size = 0;      ///< samples a side of every PSF; 0: as many as each one needs
@@ -26,8 +27,8 @@ struct TableOptions {
 
 /// The table of a lens as it stands (Camera::lens()): chief rays aimed at the real stop, g_source, g_sensor
 /// and diffraction PSFs through the vignetted pupil, at every field and wavelength. Deterministic for any
-/// number of threads. Memory: at most fields × wavelengths × largest_psf_size² × 4 bytes. \throws InputError if no ray passes
-/// on the axis, or an index is not known at a wavelength.
+/// number of threads. Memory: at most fields × wavelengths × largest_psf_size² × 4 bytes. \throws InputError
+/// if no ray passes on the axis, or an index is not known at a wavelength.
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& options,
                                     const ProgressCallback& progress = {});
 

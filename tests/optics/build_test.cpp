@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/optics/build.h>
+
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+TableOptions small(std::vector<double> wavelengths_nm, double max_image_height_mm) {
+  TableOptions options;
+  options.wavelengths_nm = std::move(wavelengths_nm);
+  options.max_image_height_mm = max_image_height_mm;
+  options.field_count = 5;
+  options.psf_size = 32;
+  return options;
+}
+
+TEST(BuildTable, ReachesTheAskedHeightAndAPsfRadiusMore) {
+  const Lens lens = read_lens("edmund-54852").lens;
+  const LensDataTable table = build_lens_data_table(lens, small({486.13, 587.56, 656.27}, 2.5));
+  ASSERT_EQ(table.fields.size(), 5u);
+  EXPECT_EQ(table.fields.front(), 0);
+  for (std::size_t w = 0; w < 3; ++w) {
+    EXPECT_GT(table.real_image_height_mm[table.index(4, w)], 2.5);
+    EXPECT_LT(table.real_image_height_mm[table.index(4, w)], 2.6);
+    EXPECT_EQ(table.real_image_height_mm[table.index(0, w)], 0);
+  }
+  EXPECT_TRUE(table.finite_object());
+  EXPECT_DOUBLE_EQ(table.vertex_to_sensor_mm, lens.total_track_mm());
+}
+
+TEST(BuildTable, HoldsWhatTheFieldTracerSays) {
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const LensDataTable table = build_lens_data_table(lens, small({550}, 10));
+  FieldTracer tracer(lens, 550);
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    const ChiefRay chief = *tracer.chief_ray(table.fields[f]);
+    EXPECT_NEAR(table.real_image_height_mm[f], chief.image_height_mm, 1e-9);
+    EXPECT_NEAR(table.g_sensor_sr[f], tracer.g_sensor_sr(chief), 1e-9);
+    EXPECT_NEAR(table.g_source_sr[f], tracer.g_source_sr(chief), 1e-7);
+  }
+}
+
+TEST(BuildTable, EndsAtTheLastFieldThatPasses) {
+  // 60 mm lies far outside the image circle of the 22 mm wide-angle lens.
+  const Lens lens = read_lens("wide-22mm").lens;
+  const LensDataTable table = build_lens_data_table(lens, small({550}, 60));
+  EXPECT_LT(table.real_image_height_mm.back(), 60);
+  EXPECT_GT(table.g_sensor_sr.back(), 0);
+  FieldTracer tracer(lens, 550);
+  const std::optional<ChiefRay> beyond = tracer.chief_ray(table.fields.back() * 1.02);
+  EXPECT_TRUE(!beyond || tracer.g_sensor_sr(*beyond) < 0.2 * table.g_sensor_sr.back());
+}
+
+TEST(BuildTable, IsTheSameForAnyNumberOfThreads) {
+  const Lens lens = read_lens("edmund-54852").lens;
+  const TableOptions options = small({500, 600}, 1.5);
+  const LensDataTable many = build_lens_data_table(lens, options);
+  const ThreadLimit one(1);
+  const LensDataTable single = build_lens_data_table(lens, options);
+  EXPECT_EQ(many.fields, single.fields);
+  EXPECT_EQ(many.g_source_sr, single.g_source_sr);
+  for (std::size_t i = 0; i < many.psf.size(); ++i) EXPECT_EQ(many.psf[i].values, single.psf[i].values);
+}
+
+TEST(BuildTable, SaysWhenNoRayPasses) {
+  Lens lens = read_lens("edmund-54852").lens;
+  lens.surfaces[4].semi_diameter_mm = 1.5;
+  lens.surfaces[3].thickness_mm = 500;  // the stop far behind everything: nothing arrives
+  lens.surfaces[5].semi_diameter_mm = 1e-6;
+  EXPECT_THROW(build_lens_data_table(lens, small({550}, 1)), InputError);
+  TableOptions options = small({-5}, 1);
+  EXPECT_THROW(build_lens_data_table(read_lens("edmund-54852").lens, options), InputError);
+}
+
+}  // namespace
+}  // namespace petzval
