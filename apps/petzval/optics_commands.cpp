@@ -163,6 +163,7 @@ nlohmann::ordered_json info_json(const LensDataTable& table, const RadialProfile
           {"vertex_to_sensor_mm", table.vertex_to_sensor_mm},
           {"first_order", first_order_json(table.first_order)},
           {"field_definition", field_definition(kind)},
+          {"distortion_reference", "paraxial image at first_order.wavelength_nm"},
           {"wavelengths_nm", table.wavelengths_nm},
           {"rows", rows_json(table)},
           {"fit", fit_json(table, profiles, fit)}};
@@ -180,7 +181,9 @@ void print_header(const LensDataTable& table) {
 }
 
 void print_rows(const LensDataTable& table) {
-  fmt::print("\n{:>11} {:>15} {:>18} {:>15} {:>13} {:>13} {:>13} {:>11} {:>13} {:>9}\n",
+  fmt::print("\ndistortion against the paraxial image at {:g} nm, lateral colour included\n",
+             table.first_order.wavelength_nm);
+  fmt::print("{:>11} {:>15} {:>18} {:>15} {:>13} {:>13} {:>13} {:>11} {:>13} {:>9}\n",
              fmt::format("field [{}]", table.field_unit()), "wavelength [nm]", "image height [mm]",
              "distortion [%]", "g_source [sr]", "g_sensor [sr]", "relative ill.", "PSF samples",
              "spacing [um]", "captured");
