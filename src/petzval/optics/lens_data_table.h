@@ -12,12 +12,12 @@
 
 namespace petzval {
 
-/// Real chief-ray height, g_source, g_sensor and PSF by object field and wavelength, for one lens at one focus and
-/// stop. Arrays are [field][wavelength], field-major.
+/// Real chief-ray height, g_source, g_sensor and PSF by object field and wavelength, for one lens at one
+/// focus and stop. Arrays are [field][wavelength], field-major.
 struct LensDataTable {
   std::string lens_name;
-  std::string provenance;                    ///< program, version, options: one line
-  std::string lens_json;                     ///< the prescription it was built from, native JSON; may be empty
+  std::string provenance;  ///< program, version, options: one line
+  std::string lens_json;   ///< the prescription it was built from, native JSON; may be empty
   std::optional<double> object_distance_mm;  ///< object to vertex 1; absent = infinity
   double vertex_to_sensor_mm = 0;            ///< vertex 1 to the image surface, along the axis
   FirstOrder first_order;
@@ -31,11 +31,13 @@ struct LensDataTable {
   std::vector<Psf> psf;
 
   bool finite_object() const { return object_distance_mm.has_value(); }
-  std::size_t index(std::size_t field, std::size_t wavelength) const { return field * wavelengths_nm.size() + wavelength; }
+  std::size_t index(std::size_t field, std::size_t wavelength) const {
+    return field * wavelengths_nm.size() + wavelength;
+  }
   /// "deg" or "mm".
   const char* field_unit() const { return finite_object() ? "mm" : "deg"; }
-  /// Tangent of the object angle, seen from vertex 1's plane at the object distance (finite: h / distance), of a
-  /// field value.
+  /// Tangent of the object angle, seen from vertex 1's plane at the object distance (finite: h / distance),
+  /// of a field value.
   double field_tangent(double field) const;
   /// \throws InputError unless sizes agree, axes increase, heights increase with field and nothing is NaN.
   void validate() const;
