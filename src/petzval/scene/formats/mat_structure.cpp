@@ -5,6 +5,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -207,16 +208,17 @@ class Inflation {
   z_stream stream_{};
 };
 
-/// Unpacks one variable, having seen from its tag how long it will be.
+/// Unpacks what one variable holds, having seen from its tag how much that is.
 std::vector<std::byte> unpacked(const Walker& walker, Bytes packed) {
   Inflation inflation(walker, packed);
-  std::vector<std::byte> bytes(8);
-  inflation.fill(bytes);
-  const std::size_t size = walker.word(bytes, 1);
+  std::array<std::byte, 8> tag;
+  inflation.fill(tag);
+  const std::size_t size = walker.word(tag, 1);
+  if (walker.word(tag, 0) != matrix) walker.fail("a compressed variable is no array");
   if (size > max_variable_size || size > packed.size() * max_deflate_ratio)
     walker.fail("a compressed variable claims to be too large");
-  bytes.resize(8 + size + 1);
-  inflation.fill_to_end(std::span(bytes).subspan(8));
+  std::vector<std::byte> bytes(size + 1);
+  inflation.fill_to_end(bytes);
   bytes.pop_back();
   return bytes;
 }
@@ -224,10 +226,7 @@ std::vector<std::byte> unpacked(const Walker& walker, Bytes packed) {
 void check_variable(const Walker& walker, const Element& variable) {
   if (variable.type == compressed) {
     const std::vector<std::byte> bytes = unpacked(walker, variable.data);
-    Walker inside = walker.into(bytes);
-    const Element array = inside.next(false);
-    if (array.type != matrix) walker.fail("a compressed variable is no array");
-    return check_array(walker.into(array.data), 0);
+    return check_array(walker.into(bytes), 0);
   }
   if (variable.type != matrix)
     walker.fail(fmt::format("data of type {} where a variable should be", variable.type));

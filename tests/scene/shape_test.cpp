@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/units.h>
+#include <petzval/scene/lettering.h>
+#include <petzval/scene/shape.h>
+
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+namespace petzval {
+namespace {
+
+// Sums of a few hundred terms of order 1 in double precision.
+constexpr double rounding = 1e-11;
+
+std::vector<double> row_of(const Shape& shape, int row, std::size_t columns) {
+  std::vector<double> pixels(columns);
+  shape.coverage(row, pixels);
+  return pixels;
+}
+
+double area(const Shape& shape, int rows, std::size_t columns) {
+  double sum = 0;
+  for (int row = 0; row < rows; ++row) {
+    const std::vector<double> pixels = row_of(shape, row, columns);
+    sum = std::accumulate(pixels.begin(), pixels.end(), sum);
+  }
+  return sum;
+}
+
+TEST(Shape, RectangleCoversPixelsInPart) {
+  Shape shape;
+  shape.add_rectangle(1.25, 0.5, 3.5, 2);
+  EXPECT_EQ(row_of(shape, 0, 5), (std::vector<double>{0, 0.375, 0.5, 0.25, 0}));
+  EXPECT_EQ(row_of(shape, 1, 5), (std::vector<double>{0, 0.75, 1, 0.5, 0}));
+  EXPECT_EQ(row_of(shape, 2, 5), (std::vector<double>(5, 0.0)));
+}
+
+TEST(Shape, TriangleByHand) {
+  // The edge from (0, 0) to (4, 2) leaves 1/4, 3/4 … of the pixels below it.
+  Shape shape;
+  shape.add_polygon(std::array<Point, 3>{{{0, 0}, {4, 2}, {0, 2}}});
+  EXPECT_EQ(row_of(shape, 0, 4), (std::vector<double>{0.75, 0.25, 0, 0}));
+  EXPECT_EQ(row_of(shape, 1, 4), (std::vector<double>{1, 1, 0.75, 0.25}));
+}
+
+TEST(Shape, DirectionDoesNotMatter) {
+  Shape clockwise, counterclockwise;
+  clockwise.add_polygon(std::array<Point, 3>{{{0.3, 0.2}, {3.7, 1.1}, {1.2, 2.9}}});
+  counterclockwise.add_polygon(std::array<Point, 3>{{{1.2, 2.9}, {3.7, 1.1}, {0.3, 0.2}}});
+  for (int row = 0; row < 3; ++row)
+    for (std::size_t x = 0; x < 4; ++x)
+      EXPECT_NEAR(row_of(clockwise, row, 4)[x], row_of(counterclockwise, row, 4)[x], rounding);
+}
+
+TEST(Shape, AreaIsThatOfGeometry) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> place(0, 30), size(0.1, 9), angle(-4, 4);
+  for (int i = 0; i < 50; ++i) {
+    const double side = size(random);
+    Shape square, disc;
+    square.add_square({place(random) + 10, place(random) + 10}, side, angle(random));
+    EXPECT_NEAR(area(square, 50, 50), side * side, 50 * rounding);
+    disc.add_disc({place(random) + 10, place(random) + 10}, side, 90);
+    EXPECT_NEAR(area(disc, 50, 50), 45 * side * side * std::sin(2 * pi / 90), 50 * rounding)
+        << "regular 90-gon";
+  }
+}
+
+TEST(Shape, WhatIsOutsideThePictureDoesNotMatter) {
+  // A square that sticks out on all sides is the whole picture; one cut by each border agrees with the same
+  // one in a larger picture.
+  Shape everything;
+  everything.add_square({2, 2}, 100, 0.4);
+  EXPECT_NEAR(area(everything, 4, 4), 16, rounding);
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> place(-4, 14), angle(-4, 4);
+  for (int i = 0; i < 100; ++i) {
+    const Point centre{place(random), place(random)};
+    const double turn = angle(random);
+    Shape here, shifted;
+    here.add_square(centre, 5, turn);
+    shifted.add_square({centre.x + 20, centre.y + 20}, 5, turn);
+    for (int row = 0; row < 10; ++row) {
+      const std::vector<double> small = row_of(here, row, 10), large = row_of(shifted, row + 20, 50);
+      for (std::size_t x = 0; x < 10; ++x) EXPECT_NEAR(small[x], large[x + 20], rounding);
+    }
+  }
+}
+
+TEST(Shape, AgreesWithCountingPoints) {
+  // Another method: 64 × 64 points a pixel, inside or outside. An edge of length below 2 in a pixel misjudges
+  // less than 2 · 64 of 4096 points by half each.
+  const std::array<Point, 4> corners = {{{0.7, 1.3}, {6.2, 0.4}, {4.1, 5.9}, {2.9, 2.2}}};  // not convex
+  Shape shape;
+  shape.add_polygon(corners);
+  const auto inside = [&](double x, double y) {
+    bool is_inside = false;
+    for (std::size_t i = 0, j = 3; i < 4; j = i++)
+      if ((corners[i].y > y) != (corners[j].y > y) &&
+          x < (corners[j].x - corners[i].x) * (y - corners[i].y) / (corners[j].y - corners[i].y) +
+                  corners[i].x)
+        is_inside = !is_inside;
+    return is_inside;
+  };
+  for (int row = 0; row < 7; ++row) {
+    const std::vector<double> pixels = row_of(shape, row, 7);
+    for (std::size_t x = 0; x < 7; ++x) {
+      int count = 0;
+      for (int i = 0; i < 64; ++i)
+        for (int j = 0; j < 64; ++j)
+          count += inside(static_cast<double>(x) + (i + 0.5) / 64, row + (j + 0.5) / 64);
+      EXPECT_NEAR(pixels[x], count / 4096.0, 64.0 / 4096) << row << " " << x;
+    }
+  }
+}
+
+TEST(Lettering, StaysInItsBox) {
+  Shape shape;
+  const char* text = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-/";
+  add_text(shape, text, 10, 5, 20);
+  EXPECT_GE(shape.top(), 5 - 2) << "slanted strokes reach a little beyond";
+  EXPECT_LE(shape.bottom(), 25 + 2);
+  const std::size_t columns = static_cast<std::size_t>(text_width(text, 20)) + 20;
+  const double ink = area(shape, 30, columns), box = 20 * text_width(text, 20);
+  EXPECT_GT(ink, 0.1 * box);
+  EXPECT_LT(ink, 0.6 * box);
+}
+
+TEST(Lettering, LetterIIsThreeBars) {
+  // 7 grid steps high less the rounding of the box: strokes of 0.9 steps, two level ones of 2.9, one upright
+  // of 6.9 that overlaps them by 0.9 each.
+  Shape shape;
+  add_text(shape, "I", 0, 0, 69);
+  EXPECT_NEAR(area(shape, 70, 60), 100 * (2 * 0.9 * 2.9 + 0.9 * (6.9 - 1.8)), 1e-6);
+}
+
+TEST(Lettering, UnknownCharactersAreGaps) {
+  Shape shape;
+  add_text(shape, "\t~\xff é", 0, 0, 10);
+  EXPECT_TRUE(shape.empty());
+  EXPECT_EQ(text_width("", 10), 0);
+}
+
+}  // namespace
+}  // namespace petzval
