@@ -48,8 +48,8 @@ LensDataTable table_at(const std::vector<double>& wavelengths_nm) {
   return table;
 }
 
-Scene checkerboard(const std::vector<double>& wavelengths_nm) {
-  Scene scene(1024, 768, wavelengths_nm, 60, std::nullopt);
+Scene checkerboard(const std::vector<double>& wavelengths_nm, int columns, int rows) {
+  Scene scene(columns, rows, wavelengths_nm, 60, std::nullopt);
   for (int band = 0; band < scene.bands(); ++band)
     for (int row = 0; row < scene.rows(); ++row)
       for (int column = 0; column < scene.columns(); ++column)
@@ -68,7 +68,7 @@ void run(benchmark::State& state, const std::vector<double>& wavelengths_nm, con
          int transform) {
   const ThreadLimit one_thread(1);
   const LensDataTable table = table_at(wavelengths_nm);
-  const Scene scene = checkerboard(wavelengths_nm);
+  const Scene scene = checkerboard(wavelengths_nm, sensor.columns, sensor.rows);
   ImagingOptions options;
   options.surround = Surround::extend;
   options.sections = {16, transform};

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/exact_blur.h>
 #include <petzval/imaging/image_formation.h>
 
@@ -12,18 +13,6 @@
 namespace petzval {
 
 namespace {
-
-/// Everything about one band that is known before its light is.
-struct BandPlan {
-  SensorGeometry source;  ///< the frame's cells and the margin around them
-  int margin = 0;
-  SceneMap map;
-  std::optional<PsfField> psfs;  ///< none without blur
-};
-
-double half_diagonal_mm(const SensorGeometry& grid) {
-  return std::hypot(grid.width_mm(), grid.height_mm()) / 2;
-}
 
 void check_distances(const Scene& scene, const LensDataTable& table) {
   const std::optional<double> table_mm = object_to_sensor_mm(table);
@@ -42,33 +31,12 @@ void check_distances(const Scene& scene, const LensDataTable& table) {
                     say(scene_mm), say(table_mm)));
 }
 
-BandPlan plan_band(const Scene& scene, int band, const LensDataTable& table, const RadialProfiles& profiles,
-                   const SensorGeometry& frame, const ImagingOptions& options) {
-  const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(band)];
-  std::optional<PsfField> psfs;
-  int margin = 0;
-  if (options.method != BlurMethod::none) {
-    psfs.emplace(table, wavelength_nm, frame.pitch_um, options.interpolation);
-    margin = psfs->radius();
-  }
-  if (options.method == BlurMethod::sections) transform_size(options.sections, margin);
-  const SensorGeometry source = grown(frame, margin);
-  SceneMap map(profiles.at_wavelength(wavelength_nm), object_to_sensor_mm(table), scene,
-               half_diagonal_mm(source));
-  return {source, margin, std::move(map), std::move(psfs)};
-}
-
 /// \throws InputError if the scene ends before the field does and nothing was said about its surroundings.
-void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, Surround surround,
-                    std::vector<std::string>& notes) {
-  SeenExtent seen;
+void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
+                    Surround surround, std::vector<std::string>& notes) {
+  const SeenExtent seen = seen_extent(plans, frame);
   int margin = 0;
-  for (const BandPlan& plan : plans) {
-    const SeenExtent band = seen_extent(plan.map, plan.source);
-    seen = {std::max(seen.columns, band.columns), std::max(seen.rows, band.rows),
-            std::max(seen.radius, band.radius)};
-    margin = std::max(margin, plan.margin);
-  }
+  for (const BandPlan& plan : plans) margin = std::max(margin, plan.margin);
   constexpr double rounding = 1 + 1e-9;
   if (2 * seen.columns <= scene.columns() * rounding && 2 * seen.rows <= scene.rows() * rounding) return;
 
@@ -95,12 +63,11 @@ void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, Surr
                                    : "; beyond it its edge goes on (--surround extend)"));
 }
 
-void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& sensor,
+void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& frame,
                        std::vector<std::string>& notes) {
-  const double corner_mm = half_diagonal_mm(sensor);
+  const double corner_mm = half_diagonal_mm(frame), cell_mm = frame.pitch_um * mm_per_um;
   double last_mm = corner_mm, missing_mm = 0;
   for (const BandPlan& plan : plans) {
-    const double cell_mm = plan.source.pitch_um * mm_per_um;
     last_mm = std::min(last_mm, plan.map.last_height_mm());
     missing_mm = std::max(missing_mm, corner_mm + (plan.margin - 1) * cell_mm - plan.map.last_height_mm());
   }
@@ -118,20 +85,21 @@ void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry&
 
 /// How many points of a cell to take in each direction, so that no sample of the scene is skipped in any
 /// band.
-int points_per_cell(const std::vector<BandPlan>& plans) {
+int points_per_cell(const std::vector<BandPlan>& plans, const SensorGeometry& frame) {
   constexpr int most = 64;
   double samples = 1;
   for (const BandPlan& plan : plans)
-    samples = std::max(samples, plan.map.finest_samples_per_mm() * plan.source.pitch_um * mm_per_um);
+    samples = std::max(samples, plan.map.finest_samples_per_mm() * frame.pitch_um * mm_per_um);
   constexpr double rounding = 1e-6;
   return static_cast<int>(std::min<double>(most, std::ceil(samples - rounding)));
 }
 
-CellPlane blur(const CellPlane& source, const BandPlan& plan, const ImagingOptions& options,
-               const ProgressCallback& progress) {
+CellPlane blur(const CellPlane& source, const LensDataTable& table, double wavelength_nm, int margin,
+               const ImagingOptions& options, const ProgressCallback& progress) {
   if (options.method == BlurMethod::none) return source;
-  if (options.method == BlurMethod::exact) return blur_exact(source, *plan.psfs, plan.margin, progress);
-  return blur_sections(source, *plan.psfs, plan.margin, options.sections, progress);
+  const PsfField psfs(table, wavelength_nm, source.grid.pitch_um, options.interpolation);
+  if (options.method == BlurMethod::exact) return blur_exact(source, psfs, margin, progress);
+  return blur_sections(source, psfs, margin, options.sections, progress);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -188,31 +156,30 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
   check_distances(scene, table);
   SpectralImage image(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
   const SensorGeometry frame = subdivided(sensor, options.supersample);
-  const RadialProfiles profiles(table, options.fit);
-  std::vector<BandPlan> plans;
-  for (int band = 0; band < scene.bands(); ++band)
-    plans.push_back(plan_band(scene, band, table, profiles, frame, options));
-  check_coverage(scene, plans, options.surround, says.notes);
-  note_dark_corners(plans, sensor, says.notes);
-  says.scene_points_per_cell = points_per_cell(plans);
+  const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
+  check_coverage(scene, plans, frame, options.surround, says.notes);
+  note_dark_corners(plans, frame, says.notes);
+  says.scene_points_per_cell = points_per_cell(plans, frame);
 
   for (int band = 0; band < scene.bands(); ++band) {
     const BandPlan& plan = plans[static_cast<std::size_t>(band)];
     const auto start = std::chrono::steady_clock::now();
-    const CellPlane ideal =
-        ideal_irradiance(scene, band, plan.map, plan.source, says.scene_points_per_cell, options.surround);
+    const CellPlane ideal = ideal_irradiance(scene, band, plan.map, grown(frame, plan.margin),
+                                             says.scene_points_per_cell, options.surround);
     says.distortion_seconds += seconds_since(start);
 
     const auto start_of_blur = std::chrono::steady_clock::now();
-    const CellPlane blurred = blur(ideal, plan, options, [&](double fraction, const std::string& what) {
+    const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(band)];
+    const auto within_band = [&](double fraction, const std::string& what) {
       if (progress) progress((band + fraction) / scene.bands(), what);
-    });
+    };
+    const CellPlane blurred = blur(ideal, table, wavelength_nm, plan.margin, options, within_band);
     says.blur_seconds += seconds_since(start_of_blur);
 
     const CellPlane pixels = averaged(blurred, options.supersample);
     std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
     says.margin_cells = std::max(says.margin_cells, plan.margin);
-    if (plan.psfs) says.least_captured = std::min(says.least_captured, plan.psfs->least_captured());
+    says.least_captured = std::min(says.least_captured, plan.least_captured);
     if (options.method == BlurMethod::sections)
       says.transform_size = std::max(says.transform_size, transform_size(options.sections, plan.margin));
     if (progress) progress((band + 1.0) / scene.bands(), "image");

@@ -15,12 +15,13 @@ namespace {
 
 /// Distance from the chief ray to the farthest sample that holds light [µm].
 double reach_um(const Psf& psf) {
-  double farthest = 0;
+  int farthest_squared = 0;
   for (int i = 0; i < psf.size; ++i)
-    for (int j = 0; j < psf.size; ++j)
-      if (psf.at(i, j) != 0.0F)
-        farthest = std::max(farthest, std::hypot(double(i - psf.size / 2), double(j - psf.size / 2)));
-  return farthest * psf.spacing_um;
+    for (int j = 0; j < psf.size; ++j) {
+      const int t = i - psf.size / 2, s = j - psf.size / 2;
+      if (psf.at(i, j) != 0.0F) farthest_squared = std::max(farthest_squared, t * t + s * s);
+    }
+  return std::sqrt(double(farthest_squared)) * psf.spacing_um;
 }
 
 bool is_mirror_symmetric(const Psf& psf) {

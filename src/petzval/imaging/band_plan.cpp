@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/imaging/band_plan.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+double half_diagonal_mm(const SensorGeometry& grid) {
+  return std::hypot(grid.width_mm(), grid.height_mm()) / 2;
+}
+
+std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
+                                 const ImagingOptions& options) {
+  const RadialProfiles profiles(table, options.fit);
+  std::vector<BandPlan> plans;
+  for (const double wavelength_nm : scene.wavelengths_nm()) {
+    int margin = 0;
+    double least_captured = 1;
+    if (options.method != BlurMethod::none) {
+      // Made again when its band's turn comes: those of all bands together would fill the memory.
+      const PsfField psfs(table, wavelength_nm, frame.pitch_um, options.interpolation);
+      margin = psfs.radius();
+      least_captured = psfs.least_captured();
+    }
+    if (options.method == BlurMethod::sections) transform_size(options.sections, margin);
+    SceneMap map(profiles.at_wavelength(wavelength_nm), object_to_sensor_mm(table), scene,
+                 half_diagonal_mm(grown(frame, margin)));
+    plans.push_back({std::move(map), margin, least_captured});
+  }
+  return plans;
+}
+
+SeenExtent seen_extent(const std::vector<BandPlan>& plans, const SensorGeometry& frame) {
+  SeenExtent seen;
+  for (const BandPlan& plan : plans) {
+    const SeenExtent band = seen_extent(plan.map, grown(frame, plan.margin));
+    seen.columns = std::max(seen.columns, band.columns);
+    seen.rows = std::max(seen.rows, band.rows);
+    seen.radius = std::max(seen.radius, band.radius);
+  }
+  return seen;
+}
+
+}  // namespace petzval

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/band_plan.h>
+#include <petzval/imaging/field_of_view.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                          const ImagingOptions& options) {
+  const SensorGeometry frame = subdivided(sensor, options.supersample);
+  const SeenExtent seen = seen_extent(plan_bands(scene, table, frame, options), frame);
+  const double half_columns = std::max(seen.columns, seen.rows * scene.columns() / scene.rows());
+  constexpr double room = 1 + 1e-6;  // so that rounding does not make the scene too small again
+  const double angle = degrees(2 * std::atan(room * half_columns * scene.tangent_per_sample()));
+  constexpr double widest_deg = 175;
+  if (!(angle < widest_deg))
+    throw InputError(
+        fmt::format("the field of the sensor is {:.1f}° wide: no plane scene covers it; --surround zero "
+                    "or extend and a --scene-angle would do",
+                    angle));
+  return angle;
+}
+
+double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
+  const double sample_mm = scene.distance_m() ? *scene.distance_m() * mm_per_m * scene.tangent_per_sample() *
+                                                    std::abs(lens.magnification)
+                                              : std::abs(lens.efl_mm) * scene.tangent_per_sample();
+  if (!(sample_mm > 0) || !std::isfinite(sample_mm))
+    throw InputError(
+        "the lens forms no image of a finite size of this scene: a --sensor would settle the pixels");
+  return sample_mm * um_per_mm;
+}
+
+SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, const ImagingOptions& options) {
+  const double pitch_um = natural_pitch_um(scene, table.first_order);
+  const auto frame_of = [&](int columns) {
+    const double rows = double(columns) * scene.rows() / scene.columns();
+    return SensorGeometry{columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
+  };
+  const std::vector<BandPlan> plans =
+      plan_bands(scene, table, subdivided(frame_of(scene.columns()), options.supersample), options);
+  const auto covered = [&](int columns) {
+    const SeenExtent seen = seen_extent(plans, subdivided(frame_of(columns), options.supersample));
+    return 2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows();
+  };
+  int fits = 0, too_large = scene.columns() + 1;
+  while (too_large - fits > 1) {
+    const int middle = fits + (too_large - fits) / 2;
+    (covered(middle) ? fits : too_large) = middle;
+  }
+  if (fits < 1)
+    throw InputError(
+        fmt::format("the PSF alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: a "
+                    "larger --scene-angle or a --sensor would do",
+                    scene.columns(), scene.rows(), pitch_um));
+  return frame_of(fits);
+}
+
+}  // namespace petzval
