@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/lens/formats/json_document.h>
 #include <petzval/lens/formats/json_locator.h>
+#include <petzval/lens/formats/number_text.h>
 #include <petzval/lens/formats/text_lines.h>
 
 #include <algorithm>
@@ -18,9 +19,6 @@ using nlohmann::json;
 // No lens comes near these; what does is an accident or an attack.
 constexpr std::size_t deepest_nesting = 16;
 constexpr std::size_t most_entries = 200'000;
-/// A double tells at most this many decimal digits apart.
-constexpr std::ptrdiff_t double_digits = 17;
-
 /// Reads the text for the parser and lets others see how far it has come.
 class WatchedIterator {
  public:
@@ -99,11 +97,7 @@ class Locator {
   bool binary(json::binary_t&) { return false; }
   bool number_float(double value, const std::string& digits) {
     add(value);
-    const auto mantissa_end =
-        std::find_if(digits.begin(), digits.end(), [](char c) { return c == 'e' || c == 'E'; });
-    if (std::count_if(digits.begin(), mantissa_end, [](unsigned char c) { return std::isdigit(c); }) >
-        double_digits)
-      result_.long_numbers[path_of_last_] = digits;
+    if (is_beyond_double(digits)) result_.long_numbers[path_of_last_] = digits;
     return true;
   }
   bool key(std::string& name) {

@@ -12,7 +12,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::ptrdiff_t double_digits = 17, extended_digits = 21;
+constexpr int double_digits = 17, extended_digits = 21;
 
 template <typename Number>
 std::optional<Number> parse(std::string_view word) {
@@ -21,11 +21,6 @@ std::optional<Number> parse(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || word.empty()) return {};
   return value;
-}
-
-std::ptrdiff_t mantissa_digits(std::string_view number) {
-  const auto end = std::find_if(number.begin(), number.end(), [](char c) { return c == 'e' || c == 'E'; });
-  return std::count_if(number.begin(), end, [](unsigned char c) { return std::isdigit(c); });
 }
 
 /// The double whose reciprocal is the curvature and whose text is shortest.
@@ -73,9 +68,16 @@ std::optional<int> parse_integer(std::string_view word) {
   return parse<int>(word);
 }
 
+bool is_beyond_double(std::string_view number) {
+  number = number.substr(0, number.find_first_of("eE"));
+  const std::size_t first = std::min(number.find_first_of("123456789"), number.size());
+  return std::count_if(number.begin() + static_cast<std::ptrdiff_t>(first), number.end(),
+                       [](unsigned char c) { return std::isdigit(c); }) > double_digits;
+}
+
 std::string radius_text(double curvature_per_mm) {
   if (const auto text = short_radius(curvature_per_mm)) return *text;
-  for (std::ptrdiff_t digits = double_digits + 1; digits < extended_digits; ++digits) {
+  for (int digits = double_digits + 1; digits < extended_digits; ++digits) {
     const std::string text = fmt::format("{:#.{}g}", 1.0L / curvature_per_mm, digits);
     if (curvature_from_radius(text) == curvature_per_mm) return text;
   }
@@ -83,7 +85,7 @@ std::string radius_text(double curvature_per_mm) {
 }
 
 double curvature_from_radius(std::string_view radius) {
-  if (mantissa_digits(radius) <= double_digits) return 1 / parse<double>(radius).value_or(NAN);
+  if (!is_beyond_double(radius)) return 1 / parse<double>(radius).value_or(NAN);
   return static_cast<double>(1 / parse<long double>(radius).value_or(NAN));
 }
 

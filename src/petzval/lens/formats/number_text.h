@@ -19,6 +19,9 @@ std::optional<double> parse_number(std::string_view word);
 std::optional<double> parse_scaled_number(std::string_view word, int power_of_ten);
 std::optional<int> parse_integer(std::string_view word);
 
+/// Whether a number has more digits than a double can hold, which is 17.
+bool is_beyond_double(std::string_view number);
+
 /// Files give radii, a surface has a curvature, and one double in six is the reciprocal of no double. So a
 /// radius is written with as many digits as its curvature needs, mostly those of a double, sometimes up to
 /// four more: curvature_from_radius(radius_text(c)) == c for every c ≠ 0.

@@ -40,7 +40,7 @@ void read_row(const TextLine& line, const std::string& file, PbrtTable& table) {
     const auto number = parse_number(word);
     if (!number)
       throw InputError(file, line.number,
-                       fmt::format("\"{}\" is not a number; a row has {}", word, row_form));
+                       fmt::format("\"{}\" is not a number; a row has {}", quotable(word), row_form));
     numbers.push_back(*number);
   }
   if (numbers.size() == 1 && table.rows.empty() && !table.stated_focal_length_mm) {

@@ -118,7 +118,8 @@ std::string quotable(std::string_view text) {
   std::size_t end = std::min(text.size(), longest);
   while (end > 0 && end < text.size() && (text[end] & 0xC0) == 0x80) --end;  // not within a character
   std::string result(text.substr(0, end));
-  std::replace_if(result.begin(), result.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; }, '?');
   return end < text.size() ? result + "…" : result;
 }
 

@@ -6,6 +6,7 @@
 #include <petzval/lens/formats/zmx.h>
 
 #include <algorithm>
+#include <set>
 
 namespace petzval {
 
@@ -20,28 +21,48 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::vector<std::string> catalogues_of(const Lens& lens) {
-  std::vector<std::string> catalogues;
+/// The first catalogue glass of a lens that a reader who searches `catalogue` before its own would mistake.
+const Glass* mistaken_glass(const Lens& lens, const std::string& catalogue,
+                            const std::set<std::string>& later) {
   for (const Surface& surface : lens.surfaces) {
     const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&surface.material.kind());
-    if (glass && std::find(catalogues.begin(), catalogues.end(), (*glass)->catalogue) == catalogues.end())
-      catalogues.push_back((*glass)->catalogue);
+    if (glass && (*glass)->catalogue != catalogue && later.count((*glass)->catalogue) &&
+        GlassCatalogue::bundled().contains(catalogue + ":" + (*glass)->name))
+      return glass->get();
   }
-  return catalogues;
+  return nullptr;
+}
+
+/// The catalogues of a lens's glasses, in an order in which each name finds its own glass first: a .zmx file
+/// names glasses without their catalogue.
+std::vector<std::string> catalogue_order(const Lens& lens) {
+  std::set<std::string> left;
+  for (const Surface& surface : lens.surfaces)
+    if (const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&surface.material.kind()))
+      left.insert((*glass)->catalogue);
+  std::vector<std::string> order;
+  while (!left.empty()) {
+    const auto next = std::find_if(left.begin(), left.end(), [&](const auto& catalogue) {
+      return !mistaken_glass(lens, catalogue, left);
+    });
+    if (next == left.end())
+      throw InputError(fmt::format("surfaces: a .zmx file cannot tell {} from the glass {} of {}",
+                                   mistaken_glass(lens, *left.begin(), left)->full_name(),
+                                   mistaken_glass(lens, *left.begin(), left)->name, *left.begin()));
+    order.push_back(*next);
+    left.erase(next);
+  }
+  return order;
 }
 
 struct GlassText {
   std::size_t surface;
-  const std::vector<std::string>& catalogues;
 
   std::string operator()(const Material::Air&) const { return ""; }
   std::string operator()(const std::shared_ptr<const Glass>& glass) const {
-    const bool one_word = glass->name.find_first_of(" \t\"") == std::string::npos;
-    if (!one_word ||
-        GlassCatalogue::bundled().find(glass->name, catalogues)->full_name() != glass->full_name())
-      throw InputError(
-          fmt::format("surfaces[{}].glass: {} has no name that a .zmx file could tell from others", surface,
-                      glass->full_name()));
+    if (glass->name.find_first_of(" \t\"") != std::string::npos)
+      throw InputError(fmt::format("surfaces[{}].glass: a .zmx file cannot hold a name with blanks: {}",
+                                   surface, glass->full_name()));
     return fmt::format("  GLAS {} 0 0 1.5 40 0 0 0 0 0 0\n", glass->name);
   }
   std::string operator()(const Material::Model& model) const { return model_glass(model.nd, model.vd); }
@@ -71,14 +92,14 @@ std::string shape_text(const Surface& surface, std::size_t i) {
   return text;
 }
 
-std::string surface_text(const Lens& lens, std::size_t i, const std::vector<std::string>& catalogues) {
+std::string surface_text(const Lens& lens, std::size_t i) {
   const Surface& surface = lens.surfaces[i];
   std::string text =
       fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface, i));
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
   text += fmt::format("  DISZ {}\n", number_text(surface.thickness_mm));
-  text += std::visit(GlassText{i, catalogues}, surface.material.kind());
+  text += std::visit(GlassText{i}, surface.material.kind());
   // The size of the stop, where the aperture is given by it, is an automatic DIAM beside the clear aperture.
   const bool sets_aperture = surface.stop && lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm;
   const double semi = sets_aperture ? lens.aperture.value : surface.semi_diameter_mm.value_or(0);
@@ -134,7 +155,7 @@ std::string wavelengths_text(const Lens& lens) {
 
 std::string zmx_text(const Lens& lens) {
   lens.validate();
-  const std::vector<std::string> catalogues = catalogues_of(lens);
+  const std::vector<std::string> catalogues = catalogue_order(lens);
   std::string text = fmt::format("MODE SEQ\nNAME {}\nNOTE 0 {}\nUNIT MM X W X CM MR CPMM\n",
                                  one_line(lens.name), one_line(lens.source));
   text += aperture_text(lens.aperture);
@@ -143,7 +164,7 @@ std::string zmx_text(const Lens& lens) {
   text += fields_text(lens) + wavelengths_text(lens);
   text += fmt::format("SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ {}\n",
                       lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "INFINITY");
-  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) text += surface_text(lens, i, catalogues);
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) text += surface_text(lens, i);
   return text + fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n",
                             lens.surfaces.size() + 1);
 }

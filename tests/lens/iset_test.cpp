@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// ISET's lens JSON.
+#include "sample_lenses.h"
+#include "scratch_file.h"
+
+#include <petzval/lens/first_order.h>
+
+namespace petzval {
+namespace {
+
+using namespace testing;
+
+constexpr const char* example = R"({
+  "description": " made for this test ", "name": "pair",
+  "surfaces": [
+    {"ior": 1.5, "radius": 60, "semi_aperture": 10, "thickness": 6},
+    {"ior": 1, "radius": -60, "semi_aperture": 10, "thickness": 3},
+    {"ior": 0, "radius": 0, "semi_aperture": 7.5, "thickness": 5},
+    {"ior": 1.7, "radius": 500, "semi_aperture": 8, "thickness": 1.5},
+    {"ior": 1, "radius": -1e5, "semi_aperture": 8, "thickness": 0}
+  ],
+  "metadata": {"focalLength": 100, "fNumber": 4, "filmdistance": 20}
+})";
+
+std::string complaint(const std::string& before, const std::string& after) {
+  std::string text = example;
+  text.replace(text.find(before), before.size(), after);
+  return error_of([&] { read_text("bad.json", text); });
+}
+
+TEST(IsetReader, IsToldByItsContents) {
+  const LensFile file = read_text("lens.json", example);
+  const Lens& lens = file.lens;
+  EXPECT_EQ(lens.name, "pair");
+  EXPECT_EQ(lens.source, "made for this test");
+  ASSERT_EQ(lens.surfaces.size(), 5u);
+  EXPECT_EQ(lens.surfaces[0].material.index(587), 1.5);
+  EXPECT_EQ(lens.surfaces[0].semi_diameter_mm, 10);
+  EXPECT_EQ(lens.surfaces[0].thickness_mm, 6);
+  EXPECT_TRUE(lens.surfaces[1].material.is_air());
+  EXPECT_EQ(lens.stop_index(), 2u);
+  EXPECT_EQ(lens.aperture.value, 7.5);
+  EXPECT_NEAR(trace_paraxial(lens, 1, 0, 587.5618).height_mm.back(), 0, 1e-14);
+  ASSERT_EQ(file.notes.size(), 1u);
+}
+
+TEST(IsetReader, IsTheSameLensAsItsTwinInRows) {
+  const Lens rows =
+      read_text("twin.dat", "60 6 1.5 20\n-60 3 1 20\n0 5 0 15\n500 1.5 1.7 16\n-1e5 0 1 16\n").lens;
+  expect_same_optics(read_text("lens.json", example).lens, rows);
+}
+
+TEST(IsetReader, NamesLineAndPath) {
+  expect_mentions(complaint("\"ior\": 1.7", "\"ior\": 0.7"),
+                  {"bad.json:7: surfaces[3].ior must be at least 1"});
+  expect_mentions(complaint("\"radius\": 500", "\"radius\": \"500\""),
+                  {"bad.json:7: surfaces[3].radius must be"});
+  expect_mentions(complaint("\"radius\": 500, ", ""), {"bad.json:7: surfaces[3] has no \"radius\""});
+  expect_mentions(complaint("\"radius\": 500", "\"conic_constant\": 1, \"radius\": 500"),
+                  {"surfaces[3].conic_constant"});
+  expect_mentions(complaint("\"radius\": 500", "\"radius\": 0"),
+                  {"bad.json:7: surfaces[3] is a second stop"});
+  expect_mentions(complaint("\"ior\": 0, \"radius\": 0", "\"ior\": 1, \"radius\": 9"), {"no stop"});
+  expect_mentions(complaint("\"semi_aperture\": 7.5", "\"semi_aperture\": -1"),
+                  {"surfaces[2].semi_diameter_mm must be positive"});
+  expect_mentions(complaint("\"metadata\"", "\"meta\""), {"bad.json:10: meta is not a key"});
+}
+
+}  // namespace
+}  // namespace petzval
