@@ -75,7 +75,7 @@ TEST(SceneLuminance, ScalesAsOurOwnSumSays) {
   scene.illuminant = Spectrum({400, 700}, {1, 2});
   const float before = scene.band(7)[5];
   scene.set_mean_luminance_cd_m2(250);
-  const Spectrum& y_bar = read_spectrum_set("cie_1931_xyz").spectra[1].spectrum;
+  const Spectrum y_bar = read_spectrum_set("cie_1931_xyz").find("y_bar");
   double luminance = 0;
   for (int band = 0; band < scene.bands(); ++band) {
     double mean = 0;
