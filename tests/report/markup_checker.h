@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -122,6 +123,41 @@ inline int occurrences(std::string_view text, std::string_view what) {
   for (std::size_t i = text.find(what); i != std::string_view::npos; i = text.find(what, i + what.size()))
     ++count;
   return count;
+}
+
+/// One start tag with its attributes and the text right behind it.
+struct Element {
+  std::map<std::string, std::string> attributes;
+  std::string text;
+  double number(const std::string& name) const { return std::stod(attributes.at(name)); }
+};
+
+/// All elements of a well-formed document with this tag ("" for any).
+inline std::vector<Element> elements(std::string_view document, std::string_view tag) {
+  std::vector<Element> found;
+  const std::string start = "<" + std::string(tag);
+  for (std::size_t i = document.find(start); i != std::string_view::npos; i = document.find(start, i + 1)) {
+    std::size_t at = i + start.size();
+    if (!tag.empty() && std::isalnum(static_cast<unsigned char>(document[at])) != 0) continue;
+    Element element;
+    while (document[at] != '>') {
+      const std::size_t begin = document.find_first_not_of(" \n/", at);
+      if (document[begin] == '>') break;
+      const std::size_t equals = document.find("=\"", begin), close = document.find('>', begin);
+      if (equals > close) {
+        at = close;
+        break;
+      }
+      const std::size_t end = document.find('"', equals + 2);
+      element.attributes[std::string(document.substr(begin, equals - begin))] =
+          document.substr(equals + 2, end - equals - 2);
+      at = end + 1;
+    }
+    const std::size_t content = document.find('>', at) + 1;
+    element.text = document.substr(content, document.find('<', content) - content);
+    found.push_back(std::move(element));
+  }
+  return found;
 }
 
 /// Whether coordinates of a drawing hold something that is not a number.

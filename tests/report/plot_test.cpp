@@ -6,58 +6,49 @@
 
 #include <cmath>
 #include <random>
-#include <regex>
 
 #include "report/markup_checker.h"
 
 namespace petzval {
 namespace {
 
+using test::Element;
+using test::elements;
 using test::has_non_finite_numbers;
 using test::markup_fault;
 using test::occurrences;
 
-/// The groups of the n-th match of a pattern.
-std::vector<std::string> matches(const std::string& text, const std::string& pattern, int group = 1) {
-  const std::regex regex(pattern);
-  std::vector<std::string> found;
-  for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end; ++i)
-    found.push_back((*i)[group]);
-  return found;
-}
-
-double only_number(const std::string& text, const std::string& pattern) {
-  const auto found = matches(text, pattern);
-  EXPECT_EQ(found.size(), 1u) << pattern;
-  return found.empty() ? std::nan("") : std::stod(found[0]);
+/// The one text of a drawing that reads so.
+Element text_reading(const std::string& svg, const std::string& content) {
+  std::vector<Element> found;
+  for (const Element& text : elements(svg, "text"))
+    if (text.text == content) found.push_back(text);
+  EXPECT_EQ(found.size(), 1u) << content;
+  return found.at(0);
 }
 
 TEST(Plot, PutsPointsAtTheirTicks) {
   Plot plot;
   plot.scatter("", {0, 0.5, 3}, {0, 40, 100});
   const std::string svg = plot.svg();
-  const auto x = matches(svg, "<circle cx=\"([-0-9.]+)\""), y = matches(svg, "<circle .*?cy=\"([-0-9.]+)\"");
-  ASSERT_EQ(x.size(), 3u);
-  const double tick_x =
-      only_number(svg, "<text class=\"pz-ink\" x=\"([0-9.]+)\" y=\"[0-9.]+\" text-anchor=\"middle\">0\\.5<");
-  const double tick_y =
-      only_number(svg, "<text class=\"pz-ink\" x=\"[0-9.]+\" y=\"([0-9.]+)\" text-anchor=\"end\">40<");
-  EXPECT_NEAR(std::stod(x[1]), tick_x, 0.02);      // two decimals are written
-  EXPECT_NEAR(std::stod(y[1]), tick_y - 4, 0.02);  // labels hang 4 px below their tick
-  EXPECT_LT(std::stod(y[2]), std::stod(y[0]));     // up is up
+  const auto points = elements(svg, "circle");
+  ASSERT_EQ(points.size(), 3u);
+  // Two decimals are written; labels of the y axis hang 4 px below their tick.
+  EXPECT_NEAR(points[1].number("cx"), text_reading(svg, "0.5").number("x"), 0.02);
+  EXPECT_NEAR(points[1].number("cy"), text_reading(svg, "40").number("y") - 4, 0.02);
+  EXPECT_LT(points[2].number("cy"), points[0].number("cy"));  // up is up
 }
 
 TEST(Plot, LogarithmicAxesAreLogarithmic) {
   Plot plot;
   plot.x.scale = plot.y.scale = PlotScale::logarithmic;
   plot.scatter("", {1, 10, 100, 1000}, {1e-6, 1e-4, 1e-2, 1});
-  const std::string svg = plot.svg();
-  const auto x = matches(svg, "<circle cx=\"([-0-9.]+)\""), y = matches(svg, "<circle .*?cy=\"([-0-9.]+)\"");
-  ASSERT_EQ(x.size(), 4u);
-  for (std::size_t i = 2; i < 4; ++i) {
-    EXPECT_NEAR(std::stod(x[i]) - std::stod(x[i - 1]), std::stod(x[1]) - std::stod(x[0]), 0.03);
-    EXPECT_NEAR(std::stod(y[i]) - std::stod(y[i - 1]), std::stod(y[1]) - std::stod(y[0]), 0.03);
-  }
+  const auto points = elements(plot.svg(), "circle");
+  ASSERT_EQ(points.size(), 4u);
+  for (const char* axis : {"cx", "cy"})
+    for (std::size_t i = 2; i < 4; ++i)
+      EXPECT_NEAR(points[i].number(axis) - points[i - 1].number(axis),
+                  points[1].number(axis) - points[0].number(axis), 0.03);
 }
 
 TEST(Plot, BreaksTheLineAtGaps) {
@@ -66,11 +57,11 @@ TEST(Plot, BreaksTheLineAtGaps) {
   plot.line("", {0, 1, 2, 3, 4, 5, 6}, {0, 1, nan, 3, inf, 5, 6});
   const std::string svg = plot.svg();
   EXPECT_FALSE(has_non_finite_numbers(svg));
-  const auto paths = matches(svg, "<path class=\"pz-data\" d=\"([^\"]+)\"");
+  const auto paths = elements(svg, "path");
   ASSERT_EQ(paths.size(), 1u);
-  EXPECT_EQ(occurrences(paths[0], "M"), 3);
-  EXPECT_EQ(occurrences(paths[0], "h0"), 1);  // the lonely point at 3
-  EXPECT_EQ(occurrences(paths[0], "L"), 2);
+  EXPECT_EQ(occurrences(paths[0].attributes.at("d"), "M"), 3);
+  EXPECT_EQ(occurrences(paths[0].attributes.at("d"), "h0"), 1);  // the lonely point at 3
+  EXPECT_EQ(occurrences(paths[0].attributes.at("d"), "L"), 2);
 }
 
 TEST(Plot, LeavesOutWhatALogarithmicAxisCannotShow) {
@@ -89,10 +80,10 @@ TEST(Plot, EqualAspectMakesACircleRound) {
   plot.y.from = -1;
   plot.y.to = 1;
   plot.scatter("", {0, 1, 0}, {0, 0, 1});
-  const std::string svg = plot.svg();
-  const auto x = matches(svg, "<circle cx=\"([-0-9.]+)\""), y = matches(svg, "<circle .*?cy=\"([-0-9.]+)\"");
-  ASSERT_EQ(x.size(), 3u);
-  EXPECT_NEAR(std::stod(x[1]) - std::stod(x[0]), std::stod(y[0]) - std::stod(y[2]), 0.03);
+  const auto points = elements(plot.svg(), "circle");
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_NEAR(points[1].number("cx") - points[0].number("cx"),
+              points[0].number("cy") - points[2].number("cy"), 0.03);
 }
 
 TEST(Plot, EscapesEveryText) {
@@ -113,9 +104,10 @@ TEST(Plot, LoadsNothing) {
   Plot plot;
   plot.images.push_back({heat_map_png(std::vector<float>{1, 2}, 2, 1), 0, 2, 0, 1});
   const std::string svg = plot.svg();
-  const auto references = matches(svg, "(?:href|src)=\"(.{5})");
-  ASSERT_EQ(references.size(), 1u);
-  EXPECT_EQ(references[0], "data:");
+  const auto images = elements(svg, "image");
+  ASSERT_EQ(images.size(), 1u);
+  EXPECT_EQ(images[0].attributes.at("href").substr(0, 15), "data:image/png;");
+  EXPECT_EQ(occurrences(svg, "href=") + occurrences(svg, "src="), 1);
   EXPECT_EQ(svg.find("url("), std::string::npos);
   EXPECT_EQ(svg.find("@import"), std::string::npos);
   EXPECT_EQ(occurrences(svg, " id=\""), 0);  // several drawings share a page
@@ -127,10 +119,10 @@ TEST(Plot, ShowsLegendsOfNamedSeriesInDifferentColours) {
   const std::string svg = plot.svg();
   EXPECT_EQ(occurrences(svg, ">first<"), 1);
   EXPECT_EQ(occurrences(svg, ">second<"), 1);
-  const auto colours = matches(svg, "<path class=\"pz-data\"[^>]*stroke=\"(#[0-9a-f]{6})\"");
-  ASSERT_EQ(colours.size(), 3u);
-  EXPECT_NE(colours[0], colours[1]);
-  EXPECT_NE(colours[1], colours[2]);
+  const auto lines = elements(svg, "path");
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_NE(lines[0].attributes.at("stroke"), lines[1].attributes.at("stroke"));
+  EXPECT_NE(lines[1].attributes.at("stroke"), lines[2].attributes.at("stroke"));
 }
 
 TEST(Plot, RefusesUnequalNumbers) {
