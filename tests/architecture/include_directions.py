@@ -2,8 +2,10 @@
 """Finds includes that run against the floors of the modules.
 
 A file in src/petzval/<module> may include headers of its own module and of modules on lower floors
-(src/petzval/floors.txt). The modules that it includes must be those that src/petzval/CMakeLists.txt names after
-USES, for the module's tests are linked with these alone.
+(src/petzval/floors.txt). The modules that it and the files in tests/<module> include must be those that
+src/petzval/CMakeLists.txt names after USES, for the module's tests are linked with these alone.
+
+    include_directions.py MODULES_FOLDER TESTS_FOLDER
 """
 
 import pathlib
@@ -61,8 +63,12 @@ def floor_faults(what, module, lower, floors):
     return []
 
 
-def find_faults(modules_folder):
-    """All faults of a folder like src/petzval, one sentence each."""
+def source_files(folder):
+    return sorted(path for path in folder.rglob("*") if path.suffix in SOURCE_SUFFIXES)
+
+
+def find_faults(modules_folder, tests_folder):
+    """All faults of folders like src/petzval and tests, one sentence each."""
     floors = read_floors(modules_folder / "floors.txt")
     uses = read_uses(modules_folder / "CMakeLists.txt")
     faults = []
@@ -73,25 +79,27 @@ def find_faults(modules_folder):
         for lower in sorted(lowers):
             faults += floor_faults("CMakeLists.txt", module, lower, floors)
     for folder in sorted(path for path in modules_folder.iterdir() if path.is_dir()):
-        faults += module_faults(folder, floors, uses)
+        faults += module_faults(folder, tests_folder / folder.name, floors, uses)
     return faults
 
 
-def module_faults(folder, floors, uses):
-    """Faults of one module's files."""
+def module_faults(folder, tests, floors, uses):
+    """Faults of one module's files, in its folder and that of its tests."""
     module = folder.name
-    sources = sorted(path for path in folder.rglob("*") if path.suffix in SOURCE_SUFFIXES)
+    sources = source_files(folder)
     if not sources:
         return []
     if module not in floors or module not in uses:
         return [f"{module}: needs a line in floors.txt and one in CMakeLists.txt"]
     faults = []
     used = set()
-    for path in sources:
+    for path in sources + source_files(tests):
+        is_test = path.is_relative_to(tests)
         for number, lower in included_modules(path):
-            what = f"{path.relative_to(folder.parent)}:{number}"
+            what = f"{path.relative_to(tests.parent if is_test else folder.parent)}:{number}"
             if lower is None:
-                faults.append(f"{what}: include other folders as <petzval/module/header.h>")
+                if not is_test:  # tests/ is an include folder of the tests
+                    faults.append(f"{what}: include other folders as <petzval/module/header.h>")
                 continue
             used.add(lower)
             faults += floor_faults(what, module, lower, floors)
@@ -104,7 +112,7 @@ def module_faults(folder, floors, uses):
 
 
 def main():
-    faults = find_faults(pathlib.Path(sys.argv[1]))
+    faults = find_faults(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
     print("\n".join(faults) or "every include runs downwards")
     return 1 if faults else 0
 

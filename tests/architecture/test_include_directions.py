@@ -27,24 +27,27 @@ class IncludeDirections(unittest.TestCase):
         self.write("lens/formats/json.cpp", '#include <petzval/lens/lens.h>\n#include "json.h"\n')
         self.write("trace/tracer.h", "#include <petzval/base/error.h>\n#include <petzval/lens/lens.h>\n")
 
-    def write(self, name, text):
-        path = self.root / name
+    def write(self, name, text, folder="modules"):
+        path = self.root / folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
 
+    def faults(self):
+        return include_directions.find_faults(self.root / "modules", self.root / "tests")
+
     def assert_only_fault(self, *words):
-        faults = include_directions.find_faults(self.root)
+        faults = self.faults()
         self.assertEqual(len(faults), 1, faults)
         for word in words:
             self.assertIn(word, faults[0])
 
     def test_a_tree_without_fault(self):
-        self.assertEqual(include_directions.find_faults(self.root), [])
+        self.assertEqual(self.faults(), [])
 
     def test_upward_include(self):
         self.write("lens/lens.cpp", "#include <petzval/trace/tracer.h>\n")
         self.write("CMakeLists.txt", CMAKE.replace("lens USES base", "lens USES base trace"))
-        faults = include_directions.find_faults(self.root)
+        faults = self.faults()
         self.assertEqual(len(faults), 2, faults)
         self.assertIn("lens (floor 4) may not use trace (floor 5)", faults[0])
         self.assertIn("lens/lens.cpp:1", faults[1])
@@ -52,13 +55,13 @@ class IncludeDirections(unittest.TestCase):
     def test_include_on_the_same_floor(self):
         self.write("image/image.h", "\n#include <petzval/lens/lens.h>\n")
         self.write("CMakeLists.txt", CMAKE + "petzval_module(image USES lens)\n")
-        faults = include_directions.find_faults(self.root)
+        faults = self.faults()
         self.assertEqual(len(faults), 2, faults)
         self.assertIn("image/image.h:2", faults[1])
 
     def test_odd_spacing_hides_nothing(self):
         self.write("base/error.h", '  #  include "petzval/lens/lens.h"\n')
-        faults = include_directions.find_faults(self.root)
+        faults = self.faults()
         self.assertIn("base/error.h:1: base (floor 1) may not use lens (floor 4)", faults)
 
     def test_include_by_relative_path(self):
@@ -73,6 +76,16 @@ class IncludeDirections(unittest.TestCase):
         self.write("lens/lens.h", "")
         self.assert_only_fault("lens USES base")
 
+    def test_named_for_the_tests_alone(self):
+        self.write("lens/lens.h", "")
+        self.write("lens/lens_test.cpp", "#include <petzval/base/error.h>\n", folder="tests")
+        self.assertEqual(self.faults(), [])
+
+    def test_a_test_that_reaches_upwards(self):
+        self.write("base/error_test.cpp", "#include <petzval/lens/lens.h>\n", folder="tests")
+        faults = self.faults()
+        self.assertIn("base/error_test.cpp:1: base (floor 1) may not use lens (floor 4)", faults)
+
     def test_module_without_floor(self):
         self.write("render/scene.h", "")
         self.assert_only_fault("render")
@@ -80,7 +93,7 @@ class IncludeDirections(unittest.TestCase):
     def test_floor_given_twice(self):
         self.write("floors.txt", FLOORS + "base 2\n")
         with self.assertRaisesRegex(ValueError, "floors.txt:5"):
-            include_directions.find_faults(self.root)
+            self.faults()
 
 
 if __name__ == "__main__":

@@ -2,7 +2,8 @@
 # Rules that the compiler does not know: directions of includes, licence lines, nothing left unfinished.
 set(here ${CMAKE_CURRENT_LIST_DIR})
 add_test(NAME architecture.include_directions
-  COMMAND Python3::Interpreter ${here}/include_directions.py ${PROJECT_SOURCE_DIR}/src/petzval)
+  COMMAND Python3::Interpreter ${here}/include_directions.py
+    ${PROJECT_SOURCE_DIR}/src/petzval ${PROJECT_SOURCE_DIR}/tests)
 add_test(NAME architecture.source_rules COMMAND Python3::Interpreter ${here}/source_rules.py ${PROJECT_SOURCE_DIR})
 foreach(checker include_directions source_rules)
   add_test(NAME architecture.${checker}_finds_faults COMMAND Python3::Interpreter ${here}/test_${checker}.py)
