@@ -13,7 +13,7 @@ namespace petzval {
 
 namespace {
 
-constexpr double white = 0.88, light = 0.62, middle_grey = 0.19, dark = 0.08, black = 0.03;
+constexpr double white = 0.88, light = 0.62, middle_grey = 0.19, black = 0.03;
 
 /// The layout, in thirds of the chart's height (4 × 3 of them at 4:3), origin in the middle of the picture.
 class Studio {
