@@ -26,6 +26,9 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       const std::string& description, const std::string& example, bool prints_numbers,
                       std::function<void()> work);
 
+/// \throws InputError when the command line names a subcommand that does not exist, with the nearest that do.
+void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv);
+
 /// A lens on the command line: LENS, --set, --substitute.
 struct LensChoice {
   std::string path_or_name;
@@ -46,5 +49,7 @@ void add_lens_commands(CLI::App& app, Shared& shared);
 void add_glass_commands(CLI::App& app, Shared& shared);
 void add_scene_commands(CLI::App& app, Shared& shared);
 void add_optics_commands(CLI::App& app, Shared& shared);
+void add_image_command(CLI::App& app, Shared& shared);
+void add_demo_command(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -28,7 +28,10 @@ int main(int argc, char** argv) {
   app::add_glass_commands(program, shared);
   app::add_scene_commands(program, shared);
   app::add_optics_commands(program, shared);
+  app::add_image_command(program, shared);
+  app::add_demo_command(program, shared);
   try {
+    app::refuse_unknown_command(program, argc, argv);
     program.parse(argc, argv);
     // Results on stdout are results: a full disk behind a pipe is a failure too.
     if (std::fflush(stdout) != 0) return report("standard output cannot be written", 1);
