@@ -24,8 +24,8 @@ class Pictures(ProgramTest):
         return numpy.load(self.folder / outputs[0])
 
     def test_a_uniform_scene_gives_radiance_times_g(self):
-        """Irradiance = L · g_sensor, band by band. Here it is about the level that leaves the program, so the tolerance is what
-        tells band from band (g_sensor differs by 0.4 %) and every forgotten factor; tests/physics is about the digits."""
+        """Irradiance = L · g_sensor, band by band. Here it is about the level that leaves the program: the tolerance is small
+        against every factor that could be forgotten (π, n², (1 − m)² = 1.05); tests/physics is about the digits."""
         radiance = [0.02, 0.05, 0.03]
         picture = self.take(lambda row, column, band: radiance[band])
         self.assertEqual(picture.shape, (48, 64, 3))
