@@ -61,7 +61,7 @@ PRESCRIPTIONS = {
         SMITH.format("p. 175: Sigler"), {"fields": angles(0, 2, 3.5, 5)}),
     "fisheye-10mm": (
         "dat", "pbrt/fisheye.10mm.dat", "Fisheye lens 10 mm f/4, 78 degrees half field",
-        SMITH.format("p. 164: Muller"), {"fields": angles(0, 30, 55, 77)}),
+        SMITH.format("p. 164: Muller"), {"fields": angles(0, 30, 55, 75)}),
     "cooke-triplet": (
         "project", "json/cooke_triplet_f5.json", "Cooke triplet 50 mm f/5, 20 degrees half field",
         "The vendor sample \"Cooke 40 degree field\", by way of Optiland (MIT)", {}),
