@@ -27,16 +27,23 @@ Material catalogue_glass(const std::string& name, const std::vector<std::string>
   return Material(GlassCatalogue::bundled().find(name, preferred));
 }
 
+std::optional<std::string> substitute(const std::string& name, const LensReadOptions& options) {
+  for (const auto& [from, to] : options.substitutions)
+    if (upper_case(from) == upper_case(name)) return to;
+  return {};
+}
+
 }  // namespace
+
+bool is_substituted(const std::string& name, const LensReadOptions& options) {
+  return substitute(name, options).has_value();
+}
 
 Material find_glass(const std::string& name, const LensReadOptions& options,
                     const std::vector<std::string>& preferred) {
-  for (const auto& [from, to] : options.substitutions) {
-    if (upper_case(from) != upper_case(name)) continue;
-    const auto model = model_glass(to);
-    return model ? *model : catalogue_glass(to, preferred);
-  }
-  return catalogue_glass(name, preferred);
+  const std::string wanted = substitute(name, options).value_or(name);
+  const auto model = wanted == name ? std::nullopt : model_glass(wanted);
+  return model ? *model : catalogue_glass(wanted, preferred);
 }
 
 }  // namespace petzval

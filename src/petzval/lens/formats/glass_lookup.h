@@ -9,7 +9,10 @@
 
 namespace petzval {
 
-/// The material that a file calls `name`, after the user's substitutions (case does not matter).
+/// Whether the user asked for another glass in place of this one; case does not matter.
+bool is_substituted(const std::string& name, const LensReadOptions& options);
+
+/// The material that a file calls `name`, after the user's substitutions.
 /// \param preferred  catalogues to search first, in this order.
 /// \throws InputError naming the nearest known glasses and the way to substitute one.
 Material find_glass(const std::string& name, const LensReadOptions& options,

@@ -29,6 +29,9 @@ struct SurfaceType {
 constexpr SurfaceType surface_types[] = {{"STANDARD", 0}, {"EVENASPH", 2}, {"ODDASPHE", 1}};
 constexpr int most_parameters = 8;
 
+/// What stands for the name of a glass that has none.
+constexpr const char* unnamed_glass = "___BLANK";
+
 const SurfaceType& surface_type(const ZmxFile& file, const ZmxBlock& block) {
   const ZmxRecord* record = block.find("TYPE");
   if (!record) return surface_types[0];
@@ -53,34 +56,40 @@ void read_polynomial(const ZmxContext& context, const ZmxBlock& block, int power
   }
 }
 
-/// GLAS name, how the name is meant (1: a model glass), …, nd, Vd, ΔP_gF.
+/// nd, Vd and the deviation ΔP_gF from the normal line, of a glass that is given by these and not by its
+/// name.
+Material read_model_glass(const ZmxContext& context, const ZmxBlock& block, const ZmxRecord& record) {
+  const ZmxFile& file = context.file;
+  const std::string name = quotable(record.values[0]);
+  const double nd = file.number(block, record, 3), vd = file.number_or(block, record, 4, 0);
+  if (file.number_or(block, record, 5, 0) != 0)
+    file.fail(
+        block, record.line,
+        fmt::format("a model glass off the normal line (by {} in its partial dispersion) is not modelled; "
+                    "name a glass, or use --substitute {}=…",
+                    quotable(record.values[5]), name));
+  if (record.values[0] != unnamed_glass)
+    context.notes.push_back(fmt::format("{}:{}: SURF {}: a model glass, nd {} Vd {}; its name {} is not used",
+                                        file.name, record.line, block.number, nd, vd, name));
+  // Without an Abbe number a model glass has no dispersion.
+  try {
+    return vd == 0 ? Material(Material::Constant{nd}) : Material(Material::Model{nd, vd});
+  } catch (const InputError& error) {
+    file.fail(block, record.line, error.what());
+  }
+}
+
+/// GLAS name, how the name is meant (1: a model glass), a pickup, nd, Vd, ΔP_gF.
 Material read_glass(const ZmxContext& context, const ZmxBlock& block, const ZmxRecord& record) {
   const ZmxFile& file = context.file;
   if (!record.has(0)) file.fail(block, record.line, "GLAS must have a glass name");
   const std::string& name = record.values[0];
   if (name == "MIRROR") file.fail(block, record.line, "GLAS MIRROR: mirrors are not modelled");
-  constexpr const char* unnamed = "___BLANK";
+  const bool is_model = name == unnamed_glass || file.number_or(block, record, 1, 0) == 1;
+  if (is_model && !is_substituted(name, context.options)) return read_model_glass(context, block, record);
   try {
-    if (name != unnamed && file.number_or(block, record, 1, 0) != 1)
-      return find_glass(name, context.options, context.catalogues);
-    for (const auto& substitution : context.options.substitutions)
-      if (substitution.first == name) return find_glass(name, context.options, context.catalogues);
-    const double nd = file.number(block, record, 3), vd = file.number_or(block, record, 4, 0);
-    if (file.number_or(block, record, 5, 0) != 0)
-      file.fail(
-          block, record.line,
-          fmt::format(
-              "a model glass off the normal line (deviation {} of its partial dispersion) is not modelled; "
-              "name a glass, or use --substitute {}=…",
-              record.values[5], name));
-    if (name != unnamed)
-      context.notes.push_back(
-          fmt::format("{}:{}: SURF {}: a model glass, nd {} Vd {}; its name {} is not used", file.name,
-                      record.line, block.number, nd, vd, quotable(name)));
-    // Without an Abbe number a model glass has no dispersion.
-    return vd == 0 ? Material(Material::Constant{nd}) : Material(Material::Model{nd, vd});
+    return find_glass(name, context.options, context.catalogues);
   } catch (const InputError& error) {
-    if (std::string(error.what()).compare(0, file.name.size() + 1, file.name + ":") == 0) throw;
     file.fail(block, record.line, error.what());
   }
 }
