@@ -64,12 +64,13 @@ std::vector<double> bands(int count) {
   return wavelengths_nm;
 }
 
-void run(benchmark::State& state, const std::vector<double>& wavelengths_nm, const SensorGeometry& sensor,
-         int transform) {
+void run(benchmark::State& state, BlurMethod method, const std::vector<double>& wavelengths_nm,
+         const SensorGeometry& sensor, int transform) {
   const ThreadLimit one_thread(1);
   const LensDataTable table = table_at(wavelengths_nm);
   const Scene scene = checkerboard(wavelengths_nm, sensor.columns, sensor.rows);
   ImagingOptions options;
+  options.method = method;
   options.surround = Surround::extend;
   options.sections = {16, transform};
   ImagingReport report;
@@ -83,13 +84,19 @@ void run(benchmark::State& state, const std::vector<double>& wavelengths_nm, con
 }
 
 void checkerboard_768x576(benchmark::State& state) {
-  run(state, {587.5618}, {768, 576, 6.25}, static_cast<int>(state.range(0)));
+  run(state, BlurMethod::sections, {587.5618}, {768, 576, 6.25}, static_cast<int>(state.range(0)));
 }
 BENCHMARK(checkerboard_768x576)->Arg(64)->Arg(0)->Unit(benchmark::kMillisecond);
 
 void scene_380x253_31_bands(benchmark::State& state) {
-  run(state, bands(31), {380, 253, 12.5}, static_cast<int>(state.range(0)));
+  run(state, BlurMethod::sections, bands(31), {380, 253, 12.5}, static_cast<int>(state.range(0)));
 }
 BENCHMARK(scene_380x253_31_bands)->Arg(64)->Arg(0)->Unit(benchmark::kMillisecond);
+
+/// Not in the paper: sections that fade into each other.
+void checkerboard_768x576_blended(benchmark::State& state) {
+  run(state, BlurMethod::blended, {587.5618}, {768, 576, 6.25}, 0);
+}
+BENCHMARK(checkerboard_768x576_blended)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include <petzval/image/picture.h>
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_formation.h>
-#include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 
 #include <algorithm>
@@ -33,7 +32,7 @@ struct ImageCommand {
   LensChoice lens;
   FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
   std::string optics, sensor;
-  std::string focus = "auto", method = "sections", interpolate = "psf", fit = "monotone", surround = "error";
+  std::string focus = "auto", method = "blended", interpolate = "psf", fit = "monotone", surround = "error";
   std::optional<double> f_number;
   SectionOptions sections;
   int supersample = 1, bits = 8;
@@ -58,9 +57,10 @@ void check_outputs(const std::vector<std::string>& outputs) {
 
 ImagingOptions imaging_options(const ImageCommand& command) {
   ImagingOptions options;
-  options.method = command.method == "none"    ? BlurMethod::none
-                   : command.method == "exact" ? BlurMethod::exact
-                                               : BlurMethod::sections;
+  options.method = command.method == "none"       ? BlurMethod::none
+                   : command.method == "exact"    ? BlurMethod::exact
+                   : command.method == "sections" ? BlurMethod::sections
+                                                  : BlurMethod::blended;
   options.sections = command.sections;
   options.interpolation = command.interpolate == "otf" ? PsfInterpolation::otf : PsfInterpolation::psf;
   options.fit = RadialFit::parse(command.fit);
@@ -156,9 +156,8 @@ SceneAndTable from_lens(const ImageCommand& command, const std::optional<SensorG
   const Lens lens = focused(camera, command.focus, scene.distance_m());
   TableOptions options;
   options.wavelengths_nm = scene.wavelengths_nm();
-  options.max_image_height_mm = image_height_mm(scene, lens, sensor);
   if (command.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
-  return {std::move(scene), build_lens_data_table(lens, options, progress)};
+  return {std::move(scene), table_for_frame(lens, options, image_height_mm(scene, lens, sensor), progress)};
 }
 
 /// A chart without an angle of its own fills the frame; without a sensor the frame follows the scene.
@@ -188,8 +187,9 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
   const std::string between = options.interpolation == PsfInterpolation::otf ? "OTFs" : "PSFs";
   if (options.method == BlurMethod::exact)
     return fmt::format("exact, every cell its own PSF; {} interpolated", between);
-  return fmt::format("sections of {0} x {0} cells, transforms of {1} x {1}; {2} interpolated",
-                     options.sections.section, report.transform_size, between);
+  return fmt::format("{3}sections of {0} x {0} cells, transforms of {1} x {1}; {2} interpolated",
+                     options.sections.section, report.transform_size, between,
+                     options.method == BlurMethod::blended ? "blended " : "");
 }
 
 std::string distance_text(const Scene& scene) {
@@ -299,8 +299,11 @@ void add_lens_options(CLI::App& command, ImageCommand& options) {
 }
 
 void add_method_options(CLI::App& command, ImageCommand& options) {
-  command.add_option("--method", options.method, "Blur: one PSF a section, one a cell (slow), or none")
-      ->check(CLI::IsMember({"sections", "exact", "none"}))
+  command
+      .add_option("--method", options.method,
+                  "Blur: one PSF a section, which fades into the next (blended) or does not (sections, as in "
+                  "the 2005 paper); one PSF a cell (exact, slow); none")
+      ->check(CLI::IsMember({"blended", "sections", "exact", "none"}))
       ->capture_default_str();
   command.add_option("--section", options.sections.section, "Cells along a side of a section")
       ->capture_default_str();

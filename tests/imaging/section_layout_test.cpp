@@ -37,5 +37,24 @@ TEST(SectionLayout, GroupsKeepTheirDistanceAndMirrorTheirSections) {
     }
 }
 
+// The weights of all sections that reach a cell sum to 1: light is neither made nor lost by fading.
+TEST(SectionLayout, FadingSectionsShareEveryCellWholly) {
+  for (const int cells : {1, 2, 7, 16, 17, 97})
+    for (const int length : {1, 2, 3, 8, 16, 1000}) {
+      const std::vector<float> weights = fading_weights(length);
+      std::vector<double> shares(static_cast<std::size_t>(cells));
+      for (const SectionGroup& group : lay_fading_sections(cells, length))
+        for (const SectionSpan& section : group.sections) {
+          const double centre = section.first + double(weights.size()) / 2 - cells / 2.0;
+          EXPECT_EQ(centre, section.mirrored ? -group.centre : group.centre);
+          for (std::size_t i = 0; i < weights.size(); ++i) {
+            const int cell = section.first + static_cast<int>(i);
+            if (cell >= 0 && cell < cells) shares[static_cast<std::size_t>(cell)] += double(weights[i]);
+          }
+        }
+      for (const double share : shares) EXPECT_NEAR(share, 1, 1e-7) << cells << " by " << length;
+    }
+}
+
 }  // namespace
 }  // namespace petzval

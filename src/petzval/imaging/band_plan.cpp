@@ -23,7 +23,7 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
       margin = psfs.radius();
       least_captured = psfs.least_captured();
     }
-    if (options.method == BlurMethod::sections) transform_size(options.sections, margin);
+    if (options.by_sections()) transform_size(options.section_options(), margin);
     SceneMap map(profiles.at_wavelength(wavelength_nm), object_to_sensor_mm(table), scene,
                  half_diagonal_mm(grown(frame, margin)));
     plans.push_back({std::move(map), margin, least_captured});

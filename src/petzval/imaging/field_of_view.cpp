@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace petzval {
 
@@ -59,6 +60,19 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
                     "larger --scene-angle or a --sensor would do",
                     scene.columns(), scene.rows(), pitch_um));
   return frame_of(fits);
+}
+
+LensDataTable table_for_frame(const Lens& lens, TableOptions options, double half_diagonal_mm,
+                              const ProgressCallback& progress) {
+  // Two fields tell how large the PSF is at the corner, where it is largest.
+  TableOptions probe = options;
+  probe.field_count = 2;
+  probe.max_image_height_mm = half_diagonal_mm;
+  double reach_um = 0;
+  for (const Psf& psf : build_lens_data_table(lens, probe).psf)
+    reach_um = std::max(reach_um, psf.half_width_um() * std::numbers::sqrt2);
+  options.max_image_height_mm = half_diagonal_mm + reach_um * mm_per_um;
+  return build_lens_data_table(lens, options, progress);
 }
 
 }  // namespace petzval

@@ -99,7 +99,7 @@ CellPlane blur(const CellPlane& source, const LensDataTable& table, double wavel
   if (options.method == BlurMethod::none) return source;
   const PsfField psfs(table, wavelength_nm, source.grid.pitch_um, options.interpolation);
   if (options.method == BlurMethod::exact) return blur_exact(source, psfs, margin, progress);
-  return blur_sections(source, psfs, margin, options.sections, progress);
+  return blur_sections(source, psfs, margin, options.section_options(), progress);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -130,11 +130,15 @@ void finish(ImagingReport& report, const SpectralImage& image, const ImagingOpti
 
 }  // namespace
 
+SectionOptions ImagingOptions::section_options() const {
+  return {sections.section, sections.transform, method == BlurMethod::blended};
+}
+
 void ImagingOptions::validate() const {
   constexpr int most = 16;
   if (supersample < 1 || supersample > most)
     throw InputError(fmt::format("supersampling of {}: 1 to {} is right", supersample, most));
-  if (method == BlurMethod::sections) transform_size(sections, 0);
+  if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
 
 std::optional<double> object_to_sensor_mm(const LensDataTable& table) {
@@ -180,8 +184,9 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
     says.margin_cells = std::max(says.margin_cells, plan.margin);
     says.least_captured = std::min(says.least_captured, plan.least_captured);
-    if (options.method == BlurMethod::sections)
-      says.transform_size = std::max(says.transform_size, transform_size(options.sections, plan.margin));
+    if (options.by_sections())
+      says.transform_size =
+          std::max(says.transform_size, transform_size(options.section_options(), plan.margin));
     if (progress) progress((band + 1.0) / scene.bands(), "image");
   }
   finish(says, image, options);

@@ -19,18 +19,22 @@ namespace petzval {
 
 enum class BlurMethod {
   none,      ///< distortion and illumination alone
-  sections,  ///< one PSF a section, by Fourier transform
+  sections,  ///< one PSF a section, by Fourier transform: the paper's
+  blended,   ///< the same with sections that fade into each other: no seams
   exact      ///< one PSF a cell, added up directly
 };
 
 struct ImagingOptions {
-  BlurMethod method = BlurMethod::sections;
-  SectionOptions sections;
+  BlurMethod method = BlurMethod::blended;
+  SectionOptions sections;  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
   RadialFit fit;        ///< of distortion and g_source over image height
   int supersample = 1;  ///< S: source cells are S × S to a pixel, 1 to 16
   Surround surround = Surround::error;
 
+  bool by_sections() const { return method == BlurMethod::sections || method == BlurMethod::blended; }
+  /// The sections of the method.
+  SectionOptions section_options() const;
   /// \throws InputError saying what would be right.
   void validate() const;
 };

@@ -17,10 +17,13 @@ using Spectrum = AlignedVector<std::complex<float>>;
 /// Blurs sections one by one: the buffers of one thread's work.
 class SectionBlur {
  public:
-  SectionBlur(const CellPlane& source, CellPlane& result, int section, int radius, const RealFft2<float>& fft)
+  /// \param weights  of a section's cells along either axis.
+  SectionBlur(const CellPlane& source, CellPlane& result, const std::vector<float>& weights, int radius,
+              const RealFft2<float>& fft)
       : source_(source),
         result_(result),
-        section_(section),
+        weights_(weights),
+        section_(static_cast<int>(weights.size())),
         radius_(radius),
         margin_((source.grid.columns - result.grid.columns) / 2),
         fft_(fft),
@@ -40,6 +43,7 @@ class SectionBlur {
 
   const CellPlane& source_;
   CellPlane& result_;
+  const std::vector<float>& weights_;
   int section_, radius_, margin_;
   RealFft2<float> fft_;
   AlignedVector<float> cells_;
@@ -86,7 +90,10 @@ void SectionBlur::load(int first_row, int first_column, bool flip_rows, bool fli
     if (row < 0 || row >= source_.grid.rows) continue;
     const float* in = source_.row(static_cast<std::size_t>(row));
     float* out = cells_.data() + static_cast<std::size_t>(flip_rows ? section_ - 1 - i : i) * square();
-    for (int j = from; j < to; ++j) out[flip_columns ? section_ - 1 - j : j] = in[first_column + j];
+    const float weight = weights_[static_cast<std::size_t>(i)];
+    for (int j = from; j < to; ++j)
+      out[flip_columns ? section_ - 1 - j : j] =
+          weight * weights_[static_cast<std::size_t>(j)] * in[first_column + j];
   }
 }
 
@@ -133,14 +140,14 @@ int transform_size(const SectionOptions& options, int radius) {
   constexpr int max_section = 4096;
   if (options.section < 1 || options.section > max_section)
     throw InputError(fmt::format("sections of {} cells: 1 to {} are right", options.section, max_section));
-  const int needed = options.section + 2 * radius;
+  const int needed = options.window() + 2 * radius;
   if (options.transform == 0) return good_fft_size(needed);
   constexpr int max_transform = 16384;
   if (options.transform < needed || options.transform > max_transform)
-    throw InputError(
-        fmt::format("transforms of {0} cells for sections of {1} cells and PSFs of {2}: from {3} "
-                    "(= {1} + {2} − 1) to {4} are right",
-                    options.transform, options.section, 2 * radius + 1, needed, max_transform));
+    throw InputError(fmt::format(
+        "transforms of {0} cells for {1} cells a section and PSFs of {2}: from {3} (= {1} + {2} − 1) to "
+        "{4} are right",
+        options.transform, options.window(), 2 * radius + 1, needed, max_transform));
   return options.transform;
 }
 
@@ -149,17 +156,21 @@ CellPlane blur_sections(const CellPlane& source, const PsfField& psfs, int margi
   const int size = transform_size(options, psfs.radius());
   const RealFft2<float> fft(size, size);
   CellPlane result(grown(source.grid, -margin));
-  const std::vector<SectionGroup> columns = lay_sections(source.grid.columns, options.section);
-  const std::vector<SectionGroup> rows = lay_sections(source.grid.rows, options.section);
+  const auto lay = options.blend ? lay_fading_sections : lay_sections;
+  const std::vector<SectionGroup> columns = lay(source.grid.columns, options.section);
+  const std::vector<SectionGroup> rows = lay(source.grid.rows, options.section);
+  const std::vector<float> weights = options.blend
+                                         ? fading_weights(options.section)
+                                         : std::vector<float>(static_cast<std::size_t>(options.section), 1);
 
   // Rows of sections that write to different rows of cells work at the same time; the turns follow each
   // other, so that each cell is summed in one order whatever the number of threads.
   const auto turns =
-      static_cast<std::size_t>((options.section + 2 * psfs.radius() - 1) / options.section + 1);
+      static_cast<std::size_t>((options.window() + 2 * psfs.radius() - 1) / options.section + 1);
   for (std::size_t turn = 0; turn < std::min(turns, rows.size()); ++turn) {
     const std::size_t count = (rows.size() - turn + turns - 1) / turns;
     parallel_for(count, [&](std::size_t i) {
-      SectionBlur blur(source, result, options.section, psfs.radius(), fft);
+      SectionBlur blur(source, result, weights, psfs.radius(), fft);
       for (const SectionGroup& column : columns) blur_crossing(rows[turn + i * turns], column, psfs, blur);
     });
     if (progress) progress(double(turn + 1) / double(turns), "blur");

@@ -11,6 +11,12 @@ namespace petzval {
 struct SectionOptions {
   int section = 16;   ///< cells along a side of a section, 1 to 4096
   int transform = 0;  ///< cells along a side of the transforms; 0: the smallest good size
+  /// Sections reach over half of their neighbours and fade into them, linearly from centre to centre: the
+  /// kernel of every cell is then a bilinear mixture of the four nearest sections' kernels, without seams.
+  bool blend = false;
+
+  /// Cells along a side of what a section takes in: itself, or twice as much when it fades.
+  int window() const { return !blend ? section : 2 * section - section % 2; }
 };
 
 /// The size of the transforms for PSFs of this radius: a section and the PSF about it must fit without

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/section_layout.h>
 
+#include <cmath>
 #include <utility>
 
 namespace petzval {
@@ -25,6 +26,23 @@ std::vector<SectionGroup> lay_sections(int cells, int length) {
     groups.push_back(std::move(group));
   }
   return groups;
+}
+
+std::vector<SectionGroup> lay_fading_sections(int cells, int length) {
+  const int around = (length + 1) / 2;
+  std::vector<SectionGroup> groups = lay_sections(cells + 2 * around, length);
+  for (SectionGroup& group : groups)
+    for (SectionSpan& section : group.sections) section.first -= around + length / 2;
+  return groups;
+}
+
+std::vector<float> fading_weights(int length) {
+  std::vector<float> weights;
+  for (int cell = 0; cell < 2 * length - length % 2; ++cell) {
+    const double distance = std::abs(cell + 0.5 - (length - 0.5 * (length % 2)));
+    weights.push_back(static_cast<float>(1 - distance / length));
+  }
+  return weights;
 }
 
 }  // namespace petzval

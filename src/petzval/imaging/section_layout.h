@@ -26,4 +26,13 @@ struct SectionGroup {
 /// a group.
 std::vector<SectionGroup> lay_sections(int cells, int length);
 
+/// The same for sections that fade into each other: they reach over half a length on either side (less half a
+/// cell if the length is odd), and as many lie around the grid that the weights of fading sum to 1 in every
+/// cell.
+std::vector<SectionGroup> lay_fading_sections(int cells, int length);
+
+/// Weights of the cells of a fading section of 2 × length (− 1 if odd) cells: 1 − distance from its centre /
+/// length.
+std::vector<float> fading_weights(int length);
+
 }  // namespace petzval
