@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace petzval {
+namespace {
+
+TEST(ParallelFor, CallsEveryIndexOnce) {
+  std::vector<std::atomic<int>> calls(1000);
+  parallel_for(calls.size(), [&](std::size_t i) { ++calls[i]; });
+  for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+  parallel_for(0, [](std::size_t) { FAIL() << "nothing to do"; });
+}
+
+TEST(ParallelFor, HandsOnExceptions) {
+  EXPECT_THROW(parallel_for(100,
+                            [](std::size_t i) {
+                              if (i == 50) throw InputError("fifty");
+                            }),
+               InputError);
+}
+
+TEST(ThreadLimit, HoldsWhileItLives) {
+  const int before = thread_count();
+  {
+    const ThreadLimit one(1);
+    EXPECT_EQ(thread_count(), 1);
+  }
+  EXPECT_EQ(thread_count(), before);
+  const ThreadLimit all(0);
+  EXPECT_EQ(thread_count(), before);
+}
+
+TEST(Errors, NameFileAndLine) {
+  EXPECT_STREQ(InputError("lens.json", 12, "no stop").what(), "lens.json:12: no stop");
+  EXPECT_STREQ(InputError("lens.json", "no stop").what(), "lens.json: no stop");
+}
+
+TEST(NearestNames, RankByEditDistanceWithoutCase) {
+  const std::vector<std::string> names = {"N-BK7", "N-SF11", "N-BK10", "F2"};
+  EXPECT_EQ(nearest_names("n-bk8", names, 2), (std::vector<std::string>{"N-BK7", "N-BK10"}));
+  EXPECT_EQ(nearest_names("x", {}, 3), std::vector<std::string>{});
+}
+
+TEST(DataFiles, ArePathsOrBundledNames) {
+  EXPECT_NE(find_data_file("lenses", ".json", "edmund-54852", "lens").find("lenses/edmund-54852.json"),
+            std::string::npos);
+  try {
+    find_data_file("lenses", ".json", "edmund-54851", "lens");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("edmund-54852"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(find_data_file("lenses", ".json", "", "lens"), InputError);
+  EXPECT_THROW(find_data_file("lenses", ".json", "no/such/file.json", "lens"), InputError);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WholeFileTest : public testing::Test {
+ protected:
+  WholeFileTest() {
+    std::string pattern = (fs::temp_directory_path() / "petzval-XXXXXX").string();
+    folder = mkdtemp(pattern.data());
+  }
+  ~WholeFileTest() override { fs::remove_all(folder); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+
+  fs::path folder;
+};
+
+TEST_F(WholeFileTest, AppearsOnlyWhenCommitted) {
+  const std::string path = folder / "out.txt";
+  {
+    WholeFile file(path);
+    std::ofstream(file.temporary_path()) << "half";
+    EXPECT_FALSE(fs::exists(path));
+  }
+  EXPECT_EQ(entries(), 0u) << "an abandoned file leaves nothing behind";
+  write_whole_file(path, "whole");
+  EXPECT_EQ(read_whole_file(path), "whole");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(WholeFileTest, KeepsTheOldFileUntilTheNewOneIsWhole) {
+  const std::string path = folder / "out.txt";
+  write_whole_file(path, "old");
+  {
+    WholeFile file(path);
+    std::ofstream(file.temporary_path()) << "new";
+    EXPECT_EQ(read_whole_file(path), "old");
+  }
+  EXPECT_EQ(read_whole_file(path), "old");
+  write_whole_file(path, "new");
+  EXPECT_EQ(read_whole_file(path), "new");
+}
+
+TEST_F(WholeFileTest, TemporaryNameKeepsTheExtension) {
+  EXPECT_EQ(fs::path(WholeFile(folder / "picture.png").temporary_path()).extension(), ".png");
+  EXPECT_EQ(fs::path(WholeFile(folder / "picture.png").temporary_path()).parent_path(), folder);
+}
+
+TEST_F(WholeFileTest, RefusesFoldersAndMissingFolders) {
+  EXPECT_THROW(WholeFile{folder.string()}, InputError);
+  EXPECT_THROW(WholeFile{(folder / "none" / "out.txt").string()}, InputError);
+  EXPECT_THROW(WholeFile{std::string()}, InputError);
+}
+
+TEST_F(WholeFileTest, ReadingSaysWhatIsWrong) {
+  EXPECT_THROW(read_whole_file(folder / "none"), InputError);
+  EXPECT_THROW(read_whole_file(folder), InputError);
+  write_whole_file(folder / "big", std::string(2000, 'x'));
+  EXPECT_THROW(read_whole_file(folder / "big", 1000), InputError);
+}
+
+TEST_F(WholeFileTest, BinaryBytesSurvive) {
+  std::string bytes;
+  for (int i = 0; i < 70000; ++i) bytes.push_back(static_cast<char>(i * 31));
+  write_whole_file(folder / "bytes", bytes);
+  EXPECT_EQ(read_whole_file(folder / "bytes"), bytes);
+}
+
+}  // namespace
+}  // namespace petzval
