@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The examples in the documents do what the documents say.
+# The examples in the documents do what the documents say, and those in examples/ run.
 set(here ${CMAKE_CURRENT_LIST_DIR})
 add_test(NAME docs.runner_finds_faults COMMAND Python3::Interpreter ${here}/test_run_examples.py)
 set_tests_properties(docs.runner_finds_faults PROPERTIES ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
@@ -13,4 +13,19 @@ if(TARGET petzval_program)
     set_tests_properties(docs.${name} PROPERTIES
       ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
   endforeach()
+
+  # examples/, as their README says to run them.
+  set(examples ${PROJECT_SOURCE_DIR}/examples)
+  set(scratch ${PROJECT_BINARY_DIR}/examples)
+  file(MAKE_DIRECTORY ${scratch})
+  add_test(NAME examples.open_a_gap COMMAND ${examples}/open_a_gap.sh)
+  add_test(NAME examples.stop_down COMMAND ${examples}/stop_down.sh ${scratch})
+  add_test(NAME examples.build_table COMMAND petzval_program optics build edmund-54852 --wavelengths 587.56
+    --sensor third-inch-768x576 -o edmund.h5)
+  add_test(NAME examples.read_table COMMAND Python3::Interpreter ${examples}/read_table.py edmund.h5)
+  set_tests_properties(examples.build_table PROPERTIES FIXTURES_SETUP table)
+  set_tests_properties(examples.read_table PROPERTIES FIXTURES_REQUIRED table)
+  set_tests_properties(examples.open_a_gap examples.stop_down examples.build_table examples.read_table PROPERTIES
+    WORKING_DIRECTORY ${scratch}
+    ENVIRONMENT "PATH=$<TARGET_FILE_DIR:petzval_program>:$ENV{PATH};PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
 endif()
