@@ -36,6 +36,12 @@ Formed form(const Demo& demo, const Scene& scene, const LensDataTable& table, co
   return formed;
 }
 
+std::string with_minus(std::string text) {
+  for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at))
+    text.replace(at, 1, "−");
+  return text;
+}
+
 std::optional<double> scene_distance_m(const LensDataTable& table) {
   if (const std::optional<double> distance = object_to_sensor_mm(table)) return *distance / mm_per_m;
   return {};

@@ -53,6 +53,9 @@ double covering_angle_deg(const LensDataTable& table, const SensorGeometry& sens
 /// From the plane of the table to the sensor [m]; absent: infinity.
 std::optional<double> scene_distance_m(const LensDataTable& table);
 
+/// The text with true minus signs.
+std::string with_minus(std::string text);
+
 void layout_section(Demo& demo);                                    ///< Fig. 5 and first-order data
 void distortion_section(Demo& demo, const LensDataTable& table);    ///< Fig. 6
 void illumination_section(Demo& demo, const LensDataTable& table);  ///< Figs. 7 and 8

@@ -106,13 +106,13 @@ void layout_section(Demo& demo) {
           {{"focal length", "6.0 mm", fmt::format("{:.4f} mm", data.efl_mm), ""},
            {"image-space NA", "0.264", fmt::format("{:.4f} real, {:.4f} paraxial", sine, data.image_space_na),
             "the real marginal ray; its paraxial limit is that of the working f-number 1.8"},
-           {"magnification", "−0.024", fmt::format("{:.5f}", data.magnification), ""},
+           {"magnification", "−0.024", with_minus(fmt::format("{:.5f}", data.magnification)), ""},
            {"full field of view", "52.4°", fmt::format("{:.2f}°", data.field_of_view_deg),
             "to the paraxial image height of 3 mm"},
            {"distortion at the edge", "roughly −10 %",
-            fmt::format("{:.2f} % at 3 mm paraxial, {:.2f} % at 3 mm real",
-                        distortion_percent(lens, Fields::Kind::paraxial_image_height_mm, 3),
-                        distortion_percent(lens, Fields::Kind::real_image_height_mm, 3)),
+            with_minus(fmt::format("{:.2f} % at 3 mm paraxial, {:.2f} % at 3 mm real",
+                                   distortion_percent(lens, Fields::Kind::paraxial_image_height_mm, 3),
+                                   distortion_percent(lens, Fields::Kind::real_image_height_mm, 3))),
             "the corner of the sensor lies at 3 mm real image height"},
            {"lateral colour", "< 15 µm", fmt::format("{:.1f} µm", lateral_colour_um(lens)),
             "486.13 to 656.27 nm, up to 3 mm paraxial; the paper does not state its wavelengths"}},
@@ -132,7 +132,7 @@ void distortion_section(Demo& demo, const LensDataTable& table) {
   plot.scatter("ray trace", ideal, real);
   plot.line("no distortion", {0, ideal.back()}, {0, ideal.back()}).stroke = PlotStroke::dotted;
   std::vector<std::vector<TableCell>> residuals;
-  add_fits(plot, ideal, real, Powers::no_constant, residuals, "real image height [µm]", um_per_mm);
+  add_fits(plot, ideal, real, Powers::no_constant, residuals, "real image height", um_per_mm);
   demo.write("fig06-distortion.svg", plot.svg());
   demo.page.section("Distorted image height (figure 6)", "Distortion")
       .add(html::figure(
