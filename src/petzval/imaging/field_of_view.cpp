@@ -64,8 +64,13 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
 
 LensDataTable table_for_frame(const Lens& lens, TableOptions options, double half_diagonal_mm,
                               const ProgressCallback& progress) {
-  // Two fields tell how large the PSF is at the corner, where it is largest.
+  // Axis and corner at the ends of the spectrum tell how far the largest PSFs reach.
   TableOptions probe = options;
+  if (!probe.wavelengths_nm.empty()) {
+    const auto [shortest, longest] =
+        std::minmax_element(probe.wavelengths_nm.begin(), probe.wavelengths_nm.end());
+    probe.wavelengths_nm = *shortest < *longest ? std::vector{*shortest, *longest} : std::vector{*shortest};
+  }
   probe.field_count = 2;
   probe.max_image_height_mm = half_diagonal_mm;
   double reach_um = 0;
