@@ -9,7 +9,9 @@
 #include <petzval/lens/lens_file.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <filesystem>
 
 namespace petzval::app {
 
@@ -75,6 +77,15 @@ Lens LensChoice::read(const Shared& shared) const {
 
 void note(const Shared& shared, const std::string& message) {
   if (!shared.quiet) fmt::print(stderr, "petzval: note: {}\n", message);
+}
+
+void require_extension(const std::string& path, const std::vector<std::string>& extensions,
+                       const std::string& what) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+    throw InputError(path, fmt::format("{} is written as {}", what, fmt::join(extensions, ", ")));
 }
 
 }  // namespace petzval::app

@@ -44,6 +44,10 @@ struct LensChoice {
 /// Prints a note on stderr, unless --quiet: "petzval: note: …".
 void note(const Shared& shared, const std::string& message);
 
+/// \throws InputError unless the path ends in one of the extensions (".svg"), whatever their case.
+void require_extension(const std::string& path, const std::vector<std::string>& extensions,
+                       const std::string& what);
+
 // One function a subcommand, each in its own file.
 void add_lens_commands(CLI::App& app, Shared& shared);
 void add_glass_commands(CLI::App& app, Shared& shared);

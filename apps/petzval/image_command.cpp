@@ -12,6 +12,7 @@
 #include <petzval/image/picture.h>
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_formation.h>
+#include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 
 #include <algorithm>
@@ -157,7 +158,8 @@ SceneAndTable from_lens(const ImageCommand& command, const std::optional<SensorG
   TableOptions options;
   options.wavelengths_nm = scene.wavelengths_nm();
   if (command.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
-  return {std::move(scene), table_for_frame(lens, options, image_height_mm(scene, lens, sensor), progress)};
+  options.max_image_height_mm = image_height_mm(scene, lens, sensor);
+  return {std::move(scene), build_lens_data_table(lens, options, progress)};
 }
 
 /// A chart without an angle of its own fills the frame; without a sensor the frame follows the scene.

@@ -25,6 +25,7 @@ struct DrawCommand {
 };
 
 void draw(const DrawCommand& options, const Shared& shared) {
+  require_extension(options.output, {".svg"}, "a drawing");
   const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
   const FieldTableRequest request = options.fields.request(lens);
   FieldTracer tracer(

@@ -95,15 +95,13 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
     const std::size_t shape[] = {size, size};
     return write_npy(path, shape, std::span<const float>(first.values));
   }
-  if (extension == ".png") {
-    HeatMapOptions map;
-    map.first_row_on_top = false;
-    return write_whole_file(path, heat_map_png(first.values, first.size, first.size, map));
-  }
-  throw InputError(path, "a PSF can be written as .svg, .png or .npy");
+  HeatMapOptions map;
+  map.first_row_on_top = false;
+  write_whole_file(path, heat_map_png(first.values, first.size, first.size, map));
 }
 
 void psf(const PsfCommand& options, const Shared& shared) {
+  if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
   const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
   const FieldTableRequest request = options.fields.request(lens);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);

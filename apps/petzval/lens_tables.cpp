@@ -24,8 +24,10 @@ std::shared_ptr<TableCommand> add_table_command(CLI::App& parent, Shared& shared
                                                 const std::string& description, const std::string& example,
                                                 void (*work)(const TableCommand&, const Shared&)) {
   auto options = std::make_shared<TableCommand>();
-  CLI::App* command =
-      add_command(parent, shared, name, description, example, true, [=, &shared] { work(*options, shared); });
+  CLI::App* command = add_command(parent, shared, name, description, example, true, [=, &shared] {
+    if (!options->plot.empty()) require_extension(options->plot, {".svg"}, "a plot");
+    work(*options, shared);
+  });
   options->lens.add_to(*command);
   options->fields.add_to(*command);
   command->add_option("--plot", options->plot, "Also draw the table into this SVG file");

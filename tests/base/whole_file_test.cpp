@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -62,6 +63,18 @@ TEST_F(WholeFileTest, RefusesFoldersAndMissingFolders) {
   EXPECT_THROW(WholeFile{folder.string()}, InputError);
   EXPECT_THROW(WholeFile{(folder / "none" / "out.txt").string()}, InputError);
   EXPECT_THROW(WholeFile{std::string()}, InputError);
+}
+
+TEST_F(WholeFileTest, LeavesPipesAndLinksAsTheyAre) {
+  const std::string pipe = folder / "pipe", link = folder / "link", target = folder / "target";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(WholeFile{pipe}, InputError);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  write_whole_file(target, "old");
+  fs::create_symlink("target", link);
+  write_whole_file(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_whole_file(target), "new");
 }
 
 TEST_F(WholeFileTest, ReadingSaysWhatIsWrong) {

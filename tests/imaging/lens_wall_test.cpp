@@ -7,6 +7,7 @@
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/optics/build.h>
 
 #include <cmath>
 
@@ -19,7 +20,8 @@ TEST(LensWall, ComesOutAsTheBackwardTraceSays) {
   constexpr double half_diagonal_mm = 3;  // 480 pixels of 6.25 µm
   TableOptions table_options;
   table_options.wavelengths_nm = {587.5618};
-  const LensDataTable table = table_for_frame(lens, table_options, half_diagonal_mm);
+  table_options.max_image_height_mm = half_diagonal_mm;
+  const LensDataTable table = build_lens_data_table(lens, table_options);
   Scene wall(64, 48, {587.5618}, 90, *object_to_sensor_mm(table) / mm_per_m);
   std::fill(wall.band(0).begin(), wall.band(0).end(), 1.0F);
   const SpectralImage image = form_image(wall, table, sensor, {});

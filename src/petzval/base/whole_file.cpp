@@ -37,6 +37,11 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) throw InputError("an output file needs a name");
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) throw InputError(path_, "is a folder; give the name of a file in it");
+  if (fs::exists(path_, ignored) && !fs::is_regular_file(path_, ignored))
+    throw InputError(path_,
+                     "is a pipe or a device; output is renamed into place, so it needs an ordinary file");
+  // Through a link the file that it points to is replaced, not the link.
+  if (fs::is_symlink(path_, ignored)) path_ = fs::weakly_canonical(path_, ignored).string();
   const fs::path folder = fs::path(path_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, ignored))
     throw InputError(path_, fmt::format("the folder {} does not exist; make it first", folder.string()));

@@ -16,7 +16,7 @@ namespace petzval {
 /// Without commit() nothing is left behind and a previous out.png is untouched.
 class WholeFile {
  public:
-  /// \throws InputError if the folder does not exist or `path` is itself a folder.
+  /// \throws InputError if the folder does not exist, or `path` is a folder, a pipe or a device.
   explicit WholeFile(std::string path);
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;

@@ -62,22 +62,4 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
   return frame_of(fits);
 }
 
-LensDataTable table_for_frame(const Lens& lens, TableOptions options, double half_diagonal_mm,
-                              const ProgressCallback& progress) {
-  // Axis and corner at the ends of the spectrum tell how far the largest PSFs reach.
-  TableOptions probe = options;
-  if (!probe.wavelengths_nm.empty()) {
-    const auto [shortest, longest] =
-        std::minmax_element(probe.wavelengths_nm.begin(), probe.wavelengths_nm.end());
-    probe.wavelengths_nm = *shortest < *longest ? std::vector{*shortest, *longest} : std::vector{*shortest};
-  }
-  probe.field_count = 2;
-  probe.max_image_height_mm = half_diagonal_mm;
-  double reach_um = 0;
-  for (const Psf& psf : build_lens_data_table(lens, probe).psf)
-    reach_um = std::max(reach_um, psf.half_width_um() * std::numbers::sqrt2);
-  options.max_image_height_mm = half_diagonal_mm + reach_um * mm_per_um;
-  return build_lens_data_table(lens, options, progress);
-}
-
 }  // namespace petzval

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <petzval/imaging/image_formation.h>
-#include <petzval/optics/build.h>
 
 namespace petzval {
 
@@ -20,11 +19,5 @@ double natural_pitch_um(const Scene& scene, const FirstOrder& lens);
 /// The largest centred frame of the scene's shape and natural pitch whose field, the margin for the PSF
 /// included, the scene covers. \throws InputError as form_image(), or if not even one pixel fits.
 SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, const ImagingOptions& options);
-
-/// The table that an image on a frame needs: to the corner, and as far beyond as a PSF there reaches, so that
-/// light from outside comes in everywhere (where the lens passes any). \param options  max_image_height_mm is
-/// set here. \throws InputError as build_lens_data_table().
-LensDataTable table_for_frame(const Lens& lens, TableOptions options, double half_diagonal_mm,
-                              const ProgressCallback& progress = {});
 
 }  // namespace petzval

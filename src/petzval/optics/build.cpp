@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace petzval {
 
@@ -24,16 +25,13 @@ double towards_positive_image(const Lens& lens) {
   return ideal_image_height_mm(lens, 1.0, lens.reference_wavelength_nm) < 0 ? -1.0 : 1.0;
 }
 
-/// Half-width of the on-axis PSF window [mm], the margin that light from beyond the sensor's corner may
-/// cross.
-double psf_margin_mm(FieldTracer& tracer) {
-  const std::optional<ChiefRay> axis = tracer.chief_ray(0);
-  const std::optional<PsfPlan> plan = axis ? plan_psf(tracer, *axis) : std::nullopt;
-  if (!plan)
-    throw InputError(
-        fmt::format("{}: no ray passes the stop on the axis at {:g} nm; check stop and clear apertures",
-                    tracer.lens().name, tracer.tracer().wavelength_nm()));
-  return 0.5 * plan->size * plan->spacing_um * mm_per_um;
+/// How far from the chief ray the PSF window of a field reaches [mm], to its corner; nothing where no ray
+/// passes.
+std::optional<double> psf_reach_mm(FieldTracer& tracer, double object_field, const PsfOptions& options) {
+  const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+  const std::optional<PsfPlan> plan = chief ? plan_psf(tracer, *chief, options) : std::nullopt;
+  if (!plan) return {};
+  return std::numbers::sqrt2 * 0.5 * plan->size * plan->spacing_um * mm_per_um;
 }
 
 /// A pupil that vignetting has shrunk to this share of the one on axis counts as dark: its PSF is wider than
@@ -103,17 +101,35 @@ class FieldLimit {
   double least_area_ = 0;
 };
 
+PsfOptions psf_options_of(const TableOptions& options) {
+  PsfOptions psf;
+  psf.size = options.psf_size;
+  psf.largest_size = options.largest_psf_size;
+  return psf;
+}
+
+/// The field whose image lies a PSF's reach beyond the asked height, or the last one that passes.
+double outermost_field(const Lens& lens, const TableOptions& options, double wavelength_nm, double stride) {
+  FieldTracer tracer(lens, wavelength_nm, options.clip);
+  const PsfOptions psf = psf_options_of(options);
+  const std::optional<double> on_axis = psf_reach_mm(tracer, 0, psf);
+  if (!on_axis)
+    throw InputError(
+        fmt::format("{}: no ray passes the stop on the axis at {:g} nm; check stop and clear apertures",
+                    lens.name, wavelength_nm));
+  FieldLimit limit(lens, wavelength_nm, options.clip);
+  const double field = limit.last_field(options.max_image_height_mm + *on_axis, stride);
+  const std::optional<double> outside = psf_reach_mm(tracer, towards_positive_image(lens) * field, psf);
+  if (!outside || *outside <= *on_axis) return field;
+  return limit.last_field(options.max_image_height_mm + *outside, stride);
+}
+
 std::vector<double> choose_fields(const Lens& lens, const TableOptions& options) {
   const double stride = lens.object_distance_mm ? *lens.object_distance_mm / 50 : 1.0;
-  double last = 0;
-  for (std::size_t w = 0; w < options.wavelengths_nm.size(); ++w) {
-    FieldTracer tracer(lens, options.wavelengths_nm[w], options.clip);
-    const double wanted = options.max_image_height_mm + psf_margin_mm(tracer);
-    FieldLimit limit(lens, options.wavelengths_nm[w], options.clip);
-    const double field = limit.last_field(wanted, stride);
-    // The fields belong to all wavelengths: far enough for each, but no farther than each can pass.
-    last = w == 0 ? field : std::max(last, field);
-  }
+  // The fields belong to all wavelengths: far enough for each (the ends of the spectrum decide), but no
+  // farther than each can pass.
+  double last = std::max(outermost_field(lens, options, options.wavelengths_nm.front(), stride),
+                         outermost_field(lens, options, options.wavelengths_nm.back(), stride));
   for (const double wavelength : options.wavelengths_nm) {
     FieldLimit limit(lens, wavelength, options.clip);
     if (limit.height(last)) continue;
@@ -183,9 +199,7 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
   table.g_sensor_sr.resize(entries);
   table.psf.resize(entries);
 
-  PsfOptions psf_options;
-  psf_options.size = options.psf_size;
-  psf_options.largest_size = options.largest_psf_size;
+  const PsfOptions psf_options = psf_options_of(options);
   const double sign = towards_positive_image(lens);
   std::atomic<std::size_t> done{0};
   parallel_for(entries, [&](std::size_t entry) {
