@@ -121,7 +121,7 @@ void checkerboard_section(Demo& demo, const LensDataTable& table) {
   const FirstOrder data = first_order(demo.edmund, paper_wavelength_nm);
   // Scene samples are pixels in the ideal image; the scene is wider than the frame by the barrel's share and
   // more.
-  const int columns = sensor.columns + 4 * square_pixels, rows = sensor.rows + 4 * square_pixels;
+  const int columns = sensor.columns + 6 * square_pixels, rows = sensor.rows + 6 * square_pixels;
   const double distance_mm = *object_to_sensor_mm(table);
   const double sample_mm = sensor.pitch_um * mm_per_um / std::abs(data.magnification);
   SceneOptions scene_options;
