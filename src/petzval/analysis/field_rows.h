@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every analysis by field and wavelength does first: aim the chief ray, or say that there is none.
+#pragma once
+
+#include <fmt/format.h>
+#include <petzval/analysis/field_tables.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+
+#include <vector>
+
+namespace petzval {
+
+/// The error for a field that no light gets through at.
+inline InputError no_ray_passes(const Lens& lens, double field, double wavelength_nm) {
+  return InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm; a smaller field would be right",
+                                lens.name, field, wavelength_nm));
+}
+
+/// Rows [field][wavelength], wavelengths in parallel; `make(tracer, chief)` gives one row as an optional,
+/// empty where no ray passes. Sets row.field and row.wavelength_nm.
+/// \throws InputError naming a field at which no chief ray or no ray at all passes.
+template <class Row, class Make>
+std::vector<Row> field_rows(const Lens& lens, const FieldTableRequest& request, Make&& make) {
+  std::vector<double> objects;
+  for (const double field : request.fields) objects.push_back(object_field(lens, request.field_kind, field));
+  const std::size_t wavelengths = request.wavelengths_nm.size();
+  std::vector<Row> rows(objects.size() * wavelengths);
+  parallel_for(wavelengths, [&](std::size_t w) {
+    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip);
+    for (std::size_t f = 0; f < objects.size(); ++f) {
+      const std::optional<ChiefRay> chief = tracer.chief_ray(objects[f]);
+      std::optional<Row> row = chief ? make(tracer, *chief) : std::nullopt;
+      if (!row) throw no_ray_passes(lens, request.fields[f], request.wavelengths_nm[w]);
+      row->field = request.fields[f];
+      row->wavelength_nm = request.wavelengths_nm[w];
+      rows[f * wavelengths + w] = *row;
+    }
+  });
+  return rows;
+}
+
+}  // namespace petzval

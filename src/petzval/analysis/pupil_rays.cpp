@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/pupil_rays.h>
+#include <petzval/base/units.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Distance to neighbouring rays per pupil radius: the central difference errs by its square, 1e-8, and
+/// rounding by 1e-12.
+constexpr double nudge_per_radius = 1e-4;
+
+class Launcher {
+ public:
+  Launcher(const FieldTracer& tracer, const ChiefRay& chief)
+      : tracer_(tracer), chief_(chief), pencil_(Pencil::from_object(tracer.lens(), chief.object_field)) {}
+
+  Tracer::Clearance trace(double u, double v) const {
+    return pencil_.clearance(tracer_.tracer(), u, v, Tracer::Clip::none);
+  }
+  static bool arrived(const Tracer::Clearance& traced) {
+    return traced.reached_stop && traced.ray.status == RayStatus::ok && std::isfinite(traced.worst);
+  }
+  PupilRay at_image(const Tracer::Clearance& traced) const {
+    const Ray& ray = traced.ray;
+    PupilRay result;
+    result.stop_y_mm = traced.stop_y_mm;
+    result.x_mm = ray.point_mm[0];
+    result.y_mm = ray.point_mm[1] - chief_.image_height_mm;
+    result.alpha = ray.direction[0];
+    result.beta = ray.direction[1];
+    result.path_mm = ray.opl_mm - chief_.at_image.opl_mm;
+    return result;
+  }
+
+  /// Sets the three weights of a node from its four neighbours; false where one of them fails.
+  bool weigh(const PupilNode& node, double nudge, PupilRay& ray) const {
+    const Tracer::Clearance right = trace(node.u + nudge, node.v), left = trace(node.u - nudge, node.v),
+                            above = trace(node.u, node.v + nudge), below = trace(node.u, node.v - nudge);
+    for (const Tracer::Clearance* each : {&right, &left, &above, &below})
+      if (!arrived(*each)) return false;
+    const auto area = [&](auto&& x, auto&& y) {
+      return std::abs((x(right) - x(left)) * (y(above) - y(below)) -
+                      (y(right) - y(left)) * (x(above) - x(below))) /
+             (4 * nudge * nudge);
+    };
+    ray.entrance_measure = 2 * node.weight;
+    ray.stop_area_mm2 = ray.entrance_measure * area([](const auto& at) { return at.stop_x_mm; },
+                                                    [](const auto& at) { return at.stop_y_mm; });
+    ray.exit_solid_angle_sr = ray.entrance_measure * area([](const auto& at) { return at.ray.direction[0]; },
+                                                          [](const auto& at) { return at.ray.direction[1]; });
+    return true;
+  }
+
+ private:
+  const FieldTracer& tracer_;
+  const ChiefRay& chief_;
+  Pencil pencil_;
+};
+
+}  // namespace
+
+std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chief,
+                                 const PupilSampling& sampling) {
+  std::vector<PupilRay> rays;
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, sampling.azimuths);
+  if (!pupil) return rays;
+  const Launcher launcher(tracer, chief);
+  const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
+  for (const PupilNode& node : half_pupil_nodes(*pupil, sampling.radial_nodes)) {
+    const Tracer::Clearance traced = launcher.trace(node.u, node.v);
+    if (!Launcher::arrived(traced)) continue;
+    PupilRay ray = launcher.at_image(traced);
+    if (launcher.weigh(node, nudge, ray)) rays.push_back(ray);
+  }
+  if (rays.empty()) return rays;
+  for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i) {
+    const double u = pupil->radius[i] * std::sin(pupil->azimuth(i)),
+                 v = pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i));
+    const Tracer::Clearance traced = launcher.trace(u, v);
+    if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
+  }
+  return rays;
+}
+
+std::vector<PupilRay> ring_rays(const FieldTracer& tracer, const ChiefRay& chief, int rings) {
+  std::vector<PupilRay> rays;
+  const Launcher launcher(tracer, chief);
+  for (int ring = 1; ring <= rings; ++ring) {
+    const int count = 6 * ring;
+    // 12 k azimuths, every other one: the boundary is asked for 8 at least.
+    const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, 2 * count);
+    if (!pupil) return rays;
+    for (std::size_t i = 0; i < pupil->radius.size(); i += 2) {
+      const double radius = pupil->radius[i] * (ring - 0.5) / (rings - 0.5);
+      const Tracer::Clearance traced = launcher.trace(radius * std::sin(pupil->azimuth(i)),
+                                                      pupil->centre_v + radius * std::cos(pupil->azimuth(i)));
+      if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
+    }
+  }
+  return rays;
+}
+
+double exit_solid_angle_sr(const FieldTracer& tracer, const std::vector<PupilRay>& rays) {
+  const double index = tracer.tracer().image_index();
+  double sum = 0;
+  for (const PupilRay& ray : rays) sum += ray.exit_solid_angle_sr;
+  return index * index * sum;
+}
+
+}  // namespace petzval

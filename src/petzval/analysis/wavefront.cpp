@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/field_rows.h>
+#include <petzval/analysis/wavefront.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/first_order.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace petzval {
+
+namespace {
+
+/// Radius of the reference sphere, positive when the exit pupil lies in front of the image.
+double sphere_radius_mm(const FieldTracer& tracer, const ChiefRay& chief) {
+  const double pupil_mm = first_order(tracer.lens()).exit_pupil.position_mm;
+  return std::copysign(std::hypot(pupil_mm, chief.image_height_mm), -pupil_mm);
+}
+
+/// How far before the image surface a ray crosses the sphere, less the radius (so that no digits are lost for
+/// a distant pupil): with q = (D·d)² − D², t − R = D·d ± q/(√(R² + q) + |R|).
+double past_radius_mm(const PupilRay& ray, double radius_mm) {
+  const double along = ray.x_mm * ray.alpha + ray.y_mm * ray.beta;
+  if (std::isinf(radius_mm)) return along;
+  const double q = along * along - ray.x_mm * ray.x_mm - ray.y_mm * ray.y_mm;
+  const double size = std::abs(radius_mm), past = q / (std::sqrt(size * size + q) + size);
+  return radius_mm > 0 ? along + past : along - past;
+}
+
+/// Sums over the stop.
+struct StopMoments {
+  double area = 0, w = 0, ww = 0, y = 0, yy = 0, wy = 0;
+
+  void add(double weight, double waves, double height) {
+    area += weight;
+    w += weight * waves;
+    ww += weight * waves * waves;
+    y += weight * height;
+    yy += weight * height * height;
+    wy += weight * waves * height;
+  }
+  double variance() const { return std::max(0.0, ww / area - w * w / (area * area)); }
+  /// The part of the variance that a tilt in y explains; there is none in x, by symmetry.
+  double tilt_variance() const {
+    const double covariance = wy / area - w * y / (area * area);
+    const double spread = yy / area - y * y / (area * area);
+    return spread > 0 ? covariance * covariance / spread : 0;
+  }
+};
+
+}  // namespace
+
+std::vector<double> opd_waves(const FieldTracer& tracer, const ChiefRay& chief,
+                              const std::vector<PupilRay>& rays) {
+  const double radius = sphere_radius_mm(tracer, chief), index = tracer.tracer().image_index();
+  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
+  std::vector<double> waves;
+  for (const PupilRay& ray : rays) {
+    waves.push_back((index * past_radius_mm(ray, radius) - ray.path_mm) / lambda_mm);
+    if (!std::isfinite(waves.back()))
+      throw InputError(
+          fmt::format("{}: the exit pupil lies {:g} mm from the image and rays miss the reference "
+                      "sphere there; a wavefront needs a pupil away from the image",
+                      tracer.lens().name, std::abs(radius)));
+  }
+  return waves;
+}
+
+std::optional<WavefrontRow> wavefront(const FieldTracer& tracer, const ChiefRay& chief,
+                                      const PupilSampling& sampling) {
+  const std::vector<PupilRay> rays = pupil_rays(tracer, chief, sampling);
+  if (rays.empty()) return {};
+  const std::vector<double> waves = opd_waves(tracer, chief, rays);
+  StopMoments moments;
+  std::complex<double> amplitude = 0;
+  double solid_angle = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    moments.add(rays[i].stop_area_mm2, waves[i], rays[i].stop_y_mm);
+    amplitude += std::polar(rays[i].exit_solid_angle_sr, 2 * pi * waves[i]);
+    solid_angle += rays[i].exit_solid_angle_sr;
+  }
+  const auto [lowest, highest] = std::minmax_element(waves.begin(), waves.end());
+  WavefrontRow row;
+  row.real_image_height_mm = chief.image_height_mm;
+  row.rms_waves = std::sqrt(moments.variance());
+  row.rms_without_tilt_waves = std::sqrt(std::max(0.0, moments.variance() - moments.tilt_variance()));
+  row.pv_waves = *highest - *lowest;
+  row.strehl = std::norm(amplitude) / (solid_angle * solid_angle);
+  row.reference_sphere_radius_mm = std::abs(sphere_radius_mm(tracer, chief));
+  return row;
+}
+
+std::vector<WavefrontRow> wavefront_table(const Lens& lens, const FieldTableRequest& request) {
+  return field_rows<WavefrontRow>(
+      lens, request, [](FieldTracer& tracer, const ChiefRay& chief) { return wavefront(tracer, chief); });
+}
+
+}  // namespace petzval
