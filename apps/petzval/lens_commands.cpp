@@ -16,6 +16,7 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_spots(*lens, shared);
   add_lens_wavefront(*lens, shared);
   add_lens_seidel(*lens, shared);
+  add_lens_mtf(*lens, shared);
   add_lens_convert(*lens, shared);
 }
 

@@ -17,5 +17,6 @@ void add_lens_psf(CLI::App& lens, Shared& shared);
 void add_lens_spots(CLI::App& lens, Shared& shared);
 void add_lens_wavefront(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);
+void add_lens_mtf(CLI::App& lens, Shared& shared);
 
 }  // namespace petzval::app

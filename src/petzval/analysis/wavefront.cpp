@@ -12,22 +12,6 @@ namespace petzval {
 
 namespace {
 
-/// Radius of the reference sphere, positive when the exit pupil lies in front of the image.
-double sphere_radius_mm(const FieldTracer& tracer, const ChiefRay& chief) {
-  const double pupil_mm = first_order(tracer.lens()).exit_pupil.position_mm;
-  return std::copysign(std::hypot(pupil_mm, chief.image_height_mm), -pupil_mm);
-}
-
-/// How far before the image surface a ray crosses the sphere, less the radius (so that no digits are lost for
-/// a distant pupil): with q = (D·d)² − D², t − R = D·d ± q/(√(R² + q) + |R|).
-double past_radius_mm(const PupilRay& ray, double radius_mm) {
-  const double along = ray.x_mm * ray.alpha + ray.y_mm * ray.beta;
-  if (std::isinf(radius_mm)) return along;
-  const double q = along * along - ray.x_mm * ray.x_mm - ray.y_mm * ray.y_mm;
-  const double size = std::abs(radius_mm), past = q / (std::sqrt(size * size + q) + size);
-  return radius_mm > 0 ? along + past : along - past;
-}
-
 /// Sums over the stop.
 struct StopMoments {
   double area = 0, w = 0, ww = 0, y = 0, yy = 0, wy = 0;
@@ -51,13 +35,29 @@ struct StopMoments {
 
 }  // namespace
 
+double reference_sphere_radius_mm(const FieldTracer& tracer, const ChiefRay& chief) {
+  const double pupil_mm = first_order(tracer.lens()).exit_pupil.position_mm;
+  return std::copysign(std::hypot(pupil_mm, chief.image_height_mm), -pupil_mm);
+}
+
+double sphere_behind_foot_mm(double x_mm, double y_mm, double alpha, double beta, double radius_mm) {
+  if (std::isinf(radius_mm)) return 0;
+  // |D − t d| = R for the ray D − t d; with q = (D·d)² − D² no digits are lost for a distant pupil.
+  const double along = x_mm * alpha + y_mm * beta;
+  const double q = along * along - x_mm * x_mm - y_mm * y_mm;
+  const double size = std::abs(radius_mm), past = q / (std::sqrt(size * size + q) + size);
+  return radius_mm > 0 ? past : -past;
+}
+
 std::vector<double> opd_waves(const FieldTracer& tracer, const ChiefRay& chief,
                               const std::vector<PupilRay>& rays) {
-  const double radius = sphere_radius_mm(tracer, chief), index = tracer.tracer().image_index();
+  const double radius = reference_sphere_radius_mm(tracer, chief), index = tracer.tracer().image_index();
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
   std::vector<double> waves;
   for (const PupilRay& ray : rays) {
-    waves.push_back((index * past_radius_mm(ray, radius) - ray.path_mm) / lambda_mm);
+    const double back_mm = ray.x_mm * ray.alpha + ray.y_mm * ray.beta +
+                           sphere_behind_foot_mm(ray.x_mm, ray.y_mm, ray.alpha, ray.beta, radius);
+    waves.push_back((index * back_mm - ray.path_mm) / lambda_mm);
     if (!std::isfinite(waves.back()))
       throw InputError(
           fmt::format("{}: the exit pupil lies {:g} mm from the image and rays miss the reference "
@@ -87,7 +87,7 @@ std::optional<WavefrontRow> wavefront(const FieldTracer& tracer, const ChiefRay&
   row.rms_without_tilt_waves = std::sqrt(std::max(0.0, moments.variance() - moments.tilt_variance()));
   row.pv_waves = *highest - *lowest;
   row.strehl = std::norm(amplitude) / (solid_angle * solid_angle);
-  row.reference_sphere_radius_mm = std::abs(sphere_radius_mm(tracer, chief));
+  row.reference_sphere_radius_mm = std::abs(reference_sphere_radius_mm(tracer, chief));
   return row;
 }
 

@@ -10,6 +10,16 @@
 
 namespace petzval {
 
+/// Radius of the reference sphere of a field: from the chief ray's image point to the centre of the paraxial
+/// exit pupil at the lens's reference wavelength; positive when the pupil lies in front of the image,
+/// ±infinite when it is telecentric.
+double reference_sphere_radius_mm(const FieldTracer& tracer, const ChiefRay& chief);
+
+/// A ray at (x, y) from the sphere's centre on the image surface: how far back along it the sphere lies, less
+/// the radius and less the way back to the foot of the perpendicular from the centre; 0 for an infinite
+/// sphere, NaN where the ray misses.
+double sphere_behind_foot_mm(double x_mm, double y_mm, double alpha, double beta, double radius_mm);
+
 /// W of each ray [waves]: (OPL_chief − OPL_ray)/λ, each path to the sphere about the chief ray's image point
 /// through the centre of the paraxial exit pupil at the lens's reference wavelength (docs/CONVENTIONS.md,
 /// "Optical path difference"). A telecentric pupil makes the sphere a plane wave per ray: the foot of the

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens mtf: modulation transfer by frequency, field and wavelength.
+#include <fmt/format.h>
+#include <petzval/analysis/mtf.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/report/colours.h>
+#include <petzval/report/svg_plot.h>
+
+#include "analysis_command.h"
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct MtfCommand : AnalysisCommand {
+  MtfOptions mtf;
+  bool polychromatic = false, as_psf = false;
+};
+
+/// What the list of frequencies is unless one is given: a grid that shows the shape of the curve.
+const std::vector<double> default_frequencies{0, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100};
+
+std::string wavelength_text(double wavelength_nm) {
+  return wavelength_nm > 0 ? fmt::format("{:g}", wavelength_nm) : "all";
+}
+
+/// One pair of curves for each field and wavelength: tangential drawn through, sagittal dashed.
+void write_plot(const std::string& path, const Lens& lens, const FieldTableRequest& request,
+                const std::vector<MtfRow>& rows, std::size_t frequencies) {
+  Plot plot;
+  plot.title = lens.name + ": MTF, tangential solid, sagittal dashed";
+  plot.x = {"spatial frequency", "cycles/mm"};
+  plot.y = {"modulation transfer", "", PlotScale::linear, 0.0, 1.0};
+  for (std::size_t first = 0; first < rows.size(); first += frequencies) {
+    std::vector<double> frequency, tangential, sagittal;
+    for (std::size_t k = first; k < first + frequencies; ++k) {
+      frequency.push_back(rows[k].frequency_cpmm);
+      tangential.push_back(rows[k].tangential);
+      sagittal.push_back(rows[k].sagittal);
+    }
+    const std::string colour = series_colour(first / frequencies).hex();
+    const std::string wavelength =
+        rows[first].wavelength_nm > 0 ? fmt::format(", {:g} nm", rows[first].wavelength_nm) : "";
+    plot.line(fmt::format("{:g} {}{}", rows[first].field, field_unit(request.field_kind), wavelength),
+              frequency, tangential)
+        .colour = colour;
+    PlotSeries& dashed = plot.line("", frequency, sagittal);
+    dashed.colour = colour;
+    dashed.stroke = PlotStroke::dashed;
+  }
+  write_whole_file(path, plot.svg());
+}
+
+void mtf(const MtfCommand& options, const Shared& shared) {
+  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const FieldTableRequest request = options.fields.request(lens);
+  MtfOptions chosen = options.mtf;
+  if (chosen.frequencies_cpmm.empty()) chosen.frequencies_cpmm = default_frequencies;
+  if (options.polychromatic && chosen.weights.empty())
+    chosen.weights.assign(request.wavelengths_nm.size(), 1);
+  if (options.as_psf) chosen.model = {PupilModel::Amplitude::light, PupilModel::Phase::plane_waves};
+  const std::vector<MtfRow> rows = mtf_table(lens, request, chosen);
+  if (!options.plot.empty()) write_plot(options.plot, lens, request, rows, chosen.frequencies_cpmm.size());
+  if (shared.json) {
+    nlohmann::ordered_json json = analysis_json(lens, request);
+    json["method"] = chosen.geometric ? "geometric" : "diffraction";
+    if (!chosen.weights.empty()) {
+      json["wavelengths_nm"] = request.wavelengths_nm;
+      json["weights"] = chosen.weights;
+    }
+    for (const MtfRow& row : rows)
+      json["rows"].push_back(
+          {{"field", row.field},
+           {"wavelength_nm", row.wavelength_nm > 0 ? nlohmann::ordered_json(row.wavelength_nm)
+                                                   : nlohmann::ordered_json(nullptr)},
+           {"frequency_cpmm", row.frequency_cpmm},
+           {"tangential", row.tangential},
+           {"sagittal", row.sagittal}});
+    return print_json(json);
+  }
+  fmt::print("{}: {} MTF\n", lens.name, chosen.geometric ? "geometric" : "diffraction");
+  fmt::print("{:>28} {:>15} {:>21} {:>10} {:>8}\n", field_heading(request.field_kind), "wavelength [nm]",
+             "frequency [cycles/mm]", "tangential", "sagittal");
+  for (const MtfRow& row : rows)
+    fmt::print("{:>28g} {:>15} {:>21g} {:>10.4f} {:>8.4f}\n", row.field, wavelength_text(row.wavelength_nm),
+               row.frequency_cpmm, row.tangential, row.sagittal);
+}
+
+}  // namespace
+
+void add_lens_mtf(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<MtfCommand>();
+  CLI::App* command = add_analysis_command(
+      lens, shared, "mtf", "Modulation transfer, tangential and sagittal, by frequency, field and wavelength",
+      "petzval lens mtf cooke-triplet --frequencies 10,20,40 --polychromatic --plot mtf.svg", options,
+      [](const MtfCommand& chosen, const Shared& all) { mtf(chosen, all); });
+  command
+      ->add_option(
+          "--frequencies", options->mtf.frequencies_cpmm,
+          "Spatial frequencies on the sensor [cycles/mm], separated by commas; default: 0 to 100 by 10")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--polychromatic", options->polychromatic,
+                    "All wavelengths together, with equal weights");
+  command
+      ->add_option("--weights", options->mtf.weights,
+                   "All wavelengths together, with these weights, separated by commas: the light of each")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--geometric", options->mtf.geometric, "Of the rays alone, without diffraction");
+  command->add_flag(
+      "--as-psf", options->as_psf,
+      "The exact transform of `lens psf`; default: an evenly bright pupil on the reference sphere");
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/exit_pupil.h>
+#include <petzval/analysis/wavefront.h>
+#include <petzval/base/units.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Corners of the outline: a polygon of 512 is too small by a share of (2π/512)²/6 = 2.5e-5.
+constexpr int outline_azimuths = 512;
+/// Distance to neighbouring rays per pupil radius, for the Jacobian.
+constexpr double nudge_per_radius = 1e-4;
+/// The aim is good when the direction is met to this share of the pupil: what is left is put right by the
+/// slope of the phase, and errs by the square.
+constexpr double aim_tolerance = 1e-6;
+constexpr int aim_steps = 12;
+
+}  // namespace
+
+ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief)
+    : tracer_(&tracer),
+      chief_(chief),
+      pencil_(Pencil::from_object(tracer.lens(), chief.object_field)),
+      sphere_radius_mm_(reference_sphere_radius_mm(tracer, chief)) {}
+
+std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
+  const std::optional<Ray> launched = pencil_.ray(u, v);
+  if (!launched) return {};
+  const Ray ray = tracer_->tracer().trace(*launched, Tracer::Clip::none);
+  if (ray.status != RayStatus::ok) return {};
+  Probe probe{ray.direction[0], ray.direction[1], 0, ray.point_mm[0],
+              ray.point_mm[1] - chief_.image_height_mm};
+  const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
+  const double to_foot_mm = -probe.x_mm * probe.alpha - probe.y_mm * probe.beta;
+  probe.phase_waves =
+      (ray.opl_mm - chief_.at_image.opl_mm + tracer_->tracer().image_index() * to_foot_mm) / lambda_mm;
+  return probe;
+}
+
+std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay& chief) {
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, outline_azimuths);
+  if (!pupil) return {};
+  ExitPupil exit(tracer, chief);
+  if (!exit.find_outline(*pupil)) return {};
+  return exit;
+}
+
+bool ExitPupil::find_outline(const PupilBoundary& pupil) {
+  nudge_ = nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
+  double widest_u = 0, low_v = pupil.centre_v, high_v = pupil.centre_v;
+  for (std::size_t i = 0; i < pupil.radius.size() / 2; ++i) {
+    const double u = pupil.radius[i] * std::sin(pupil.azimuth(i)),
+                 v = pupil.centre_v + pupil.radius[i] * std::cos(pupil.azimuth(i));
+    const std::optional<Probe> rim = probe(u, v);
+    if (!rim) continue;
+    outline_alpha_.push_back(std::abs(rim->alpha));
+    outline_beta_.push_back(rim->beta);
+    transverse_mm_ = std::max(transverse_mm_, std::hypot(rim->x_mm, rim->y_mm));
+    widest_u = std::max(widest_u, u);
+    low_v = std::min(low_v, v);
+    high_v = std::max(high_v, v);
+  }
+  if (outline_beta_.size() < 8) return false;
+  outline_alpha_.insert(outline_alpha_.begin(), 0);
+  outline_beta_.insert(outline_beta_.begin(), outline_beta_.front());
+  outline_alpha_.push_back(0);
+  outline_beta_.push_back(outline_beta_.back());
+  alpha_max_ = *std::max_element(outline_alpha_.begin(), outline_alpha_.end());
+  const auto [low, high] = std::minmax_element(outline_beta_.begin(), outline_beta_.end());
+  beta_range_ = {*low, *high};
+  middle_beta_ = 0.5 * (*low + *high);
+  middle_v_ = 0.5 * (low_v + high_v);
+  // β may fall as v rises, and α as u: the signs of the map at the middle.
+  const std::optional<Probe> middle = probe(0, middle_v_), right = probe(nudge_, middle_v_),
+                             above = probe(0, middle_v_ + nudge_);
+  if (!middle || !right || !above) return false;
+  u_per_alpha_ = nudge_ / (right->alpha - middle->alpha);
+  v_per_beta_ = nudge_ / (above->beta - middle->beta);
+  middle_beta_ = middle->beta;
+  return alpha_max_ > 0 && beta_range_.length() > 0 && std::isfinite(u_per_alpha_) &&
+         std::isfinite(v_per_beta_);
+}
+
+ExitPupil::Chord ExitPupil::along_beta(double alpha) const {
+  Chord chord{beta_range_.high, beta_range_.low};
+  for (std::size_t i = 1; i < outline_alpha_.size(); ++i) {
+    const double a = outline_alpha_[i - 1], b = outline_alpha_[i];
+    if (a == b || (a <= alpha) == (b <= alpha)) continue;
+    const double beta =
+        outline_beta_[i - 1] + (alpha - a) / (b - a) * (outline_beta_[i] - outline_beta_[i - 1]);
+    chord = {std::min(chord.low, beta), std::max(chord.high, beta)};
+  }
+  return chord.low <= chord.high ? chord : Chord{};
+}
+
+ExitPupil::Chord ExitPupil::along_alpha(double beta) const {
+  double widest = 0;
+  for (std::size_t i = 1; i < outline_beta_.size(); ++i) {
+    const double a = outline_beta_[i - 1], b = outline_beta_[i];
+    if (a == b || (a < beta) == (b < beta)) continue;
+    widest = std::max(
+        widest, outline_alpha_[i - 1] + (beta - a) / (b - a) * (outline_alpha_[i] - outline_alpha_[i - 1]));
+  }
+  return {-widest, widest};
+}
+
+std::complex<double> ExitPupil::wave(double alpha, double beta, const PupilModel& model) const {
+  double u = u_per_alpha_ * alpha, v = middle_v_ + v_per_beta_ * (beta - middle_beta_);
+  for (int step = 0; step < aim_steps; ++step) {
+    const std::optional<Probe> at = probe(u, v), right = probe(u + nudge_, v), above = probe(u, v + nudge_);
+    if (!at || !right || !above) return 0;
+    const double alpha_u = (right->alpha - at->alpha) / nudge_, beta_u = (right->beta - at->beta) / nudge_;
+    const double alpha_v = (above->alpha - at->alpha) / nudge_, beta_v = (above->beta - at->beta) / nudge_;
+    const double jacobian = alpha_u * beta_v - alpha_v * beta_u;
+    const double miss_alpha = alpha - at->alpha, miss_beta = beta - at->beta;
+    if (std::hypot(miss_alpha, miss_beta) < aim_tolerance * widest()) {
+      const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
+      // ∂φ/∂(α, β) is the transverse ray: −n'(x, y)/λ.
+      double rest_mm = -(at->x_mm * miss_alpha + at->y_mm * miss_beta);
+      if (model.phase == PupilModel::Phase::reference_sphere)
+        rest_mm -= sphere_behind_foot_mm(at->x_mm, at->y_mm, at->alpha, at->beta, sphere_radius_mm_);
+      const double phase = at->phase_waves + tracer_->tracer().image_index() * rest_mm / lambda_mm;
+      const bool uniform = model.amplitude == PupilModel::Amplitude::uniform;
+      return std::polar(uniform ? 1 : 1 / std::sqrt(std::abs(jacobian)), 2 * pi * phase);
+    }
+    u += (miss_alpha * beta_v - miss_beta * alpha_v) / jacobian;
+    v += (miss_beta * alpha_u - miss_alpha * beta_u) / jacobian;
+  }
+  return 0;
+}
+
+}  // namespace petzval

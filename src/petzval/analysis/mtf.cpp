@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/field_rows.h>
+#include <petzval/analysis/mtf.h>
+#include <petzval/base/units.h>
+#include <petzval/numeric/quadrature.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Nodes along and across the chords: what a smooth overlap needs, and what the waves across it take, half as
+/// many nodes as radians; beyond the largest number the transfer is lost in noise anyway.
+constexpr int fewest_nodes = 24, most_nodes = 160;
+
+int nodes_for(double cycles) {
+  return std::clamp(static_cast<int>(std::ceil(fewest_nodes + 4 * cycles)), fewest_nodes, most_nodes);
+}
+
+/// The largest x in [low, high] at which `fits` holds, if it does at low and is lost but once on the way.
+template <class Fits>
+double last_fit(double low, double high, Fits&& fits) {
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// ∫ f over [low, high], with nodes crowded towards both ends as cos θ: a chord ends there like a square
+/// root.
+template <class F>
+void over_chords(double low, double high, int count, F&& f) {
+  const QuadratureRule rule = gauss_legendre(count, -0.5 * pi, 0.5 * pi);
+  const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+    f(middle + half * std::sin(rule.nodes[i]), half * std::cos(rule.nodes[i]) * rule.weights[i]);
+}
+
+class Autocorrelation {
+ public:
+  Autocorrelation(const ExitPupil& pupil, const PupilModel& model, int nodes)
+      : pupil_(pupil), model_(model), nodes_(nodes), rule_(gauss_legendre(nodes)) {}
+
+  /// Chords along β, pupil against itself shifted by s in β.
+  std::complex<double> tangential(double s) const {
+    const auto fits = [&](double alpha) { return pupil_.along_beta(alpha).length() > s; };
+    if (!fits(0)) return 0;
+    const double edge = last_fit(0, pupil_.alpha_max(), fits);
+    std::complex<double> sum = 0;
+    over_chords(-edge, edge, 2 * nodes_, [&](double alpha, double weight) {
+      if (alpha < 0) return;  // the mirror image
+      const ExitPupil::Chord chord = pupil_.along_beta(alpha);
+      if (chord.length() <= s) return;
+      sum += 2 * weight *
+             along(
+                 chord.low + s, chord.high, [&](double beta) { return wave(alpha, beta); },
+                 [&](double beta) { return wave(alpha, beta - s); });
+    });
+    return sum;
+  }
+  /// Chords along α, shifted in α; the two halves of the overlap are conjugates.
+  std::complex<double> sagittal(double s) const {
+    const auto fits = [&](double beta) { return pupil_.along_alpha(beta).length() > s; };
+    const auto [low, high] = pupil_.beta_range();
+    const std::optional<double> inner = widest_beta(s);
+    if (!inner) return 0;
+    const double from = -last_fit(-*inner, -low, [&](double beta) { return fits(-beta); });
+    const double to = last_fit(*inner, high, fits);
+    double sum = 0;
+    over_chords(from, to, nodes_, [&](double beta, double weight) {
+      const double half = 0.5 * pupil_.along_alpha(beta).length();
+      if (2 * half <= s) return;
+      sum += 2 * weight *
+             along(
+                 0.5 * s, half, [&](double alpha) { return wave(alpha, beta); },
+                 [&](double alpha) { return wave(alpha - s, beta); })
+                 .real();
+    });
+    return sum;
+  }
+
+ private:
+  std::complex<double> wave(double alpha, double beta) const {
+    // Mirror symmetric.
+    return pupil_.wave(std::abs(alpha), beta, model_);
+  }
+  template <class P, class Q>
+  std::complex<double> along(double low, double high, P&& p, Q&& q) const {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
+      const double at = low + (high - low) * rule_.nodes[i];
+      sum += rule_.weights[i] * p(at) * std::conj(q(at));
+    }
+    return sum * (high - low);
+  }
+  /// Where the pupil is widest in α, if that is wider than s.
+  std::optional<double> widest_beta(double s) const {
+    constexpr int steps = 64;
+    const auto [low, high] = pupil_.beta_range();
+    double best = low, width = 0;
+    for (int i = 1; i < steps; ++i) {
+      const double beta = low + (high - low) * i / steps, here = pupil_.along_alpha(beta).length();
+      if (here > width) {
+        best = beta;
+        width = here;
+      }
+    }
+    if (width <= s) return {};
+    return best;
+  }
+
+  const ExitPupil& pupil_;
+  PupilModel model_;
+  int nodes_;
+  QuadratureRule rule_;
+};
+
+void check(const FieldTableRequest& request, const MtfOptions& options) {
+  for (const double frequency : options.frequencies_cpmm)
+    if (!(frequency >= 0) || !std::isfinite(frequency))
+      throw InputError(fmt::format("a spatial frequency of {:g} cycles/mm; it must be 0 or more", frequency));
+  if (options.weights.empty()) return;
+  if (options.weights.size() != request.wavelengths_nm.size())
+    throw InputError(fmt::format("{} weights for {} wavelengths; give one a wavelength",
+                                 options.weights.size(), request.wavelengths_nm.size()));
+  double sum = 0;
+  for (const double weight : options.weights) {
+    if (!(weight >= 0) || !std::isfinite(weight))
+      throw InputError(fmt::format("a weight of {:g}; weights must be 0 or more", weight));
+    sum += weight;
+  }
+  if (!(sum > 0)) throw InputError("all weights are zero; at least one wavelength must count");
+}
+
+/// Both OTFs of a field and wavelength, frequency by frequency.
+struct OtfRow {
+  double field = 0, wavelength_nm = 0;
+  double image_height_mm = 0;
+  std::vector<std::complex<double>> tangential, sagittal;
+};
+
+std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, const MtfOptions& options) {
+  OtfRow row;
+  row.image_height_mm = chief.image_height_mm;
+  const auto fill = [&](auto&& otf) {
+    for (const double frequency : options.frequencies_cpmm) {
+      row.tangential.push_back(otf(MtfDirection::tangential, frequency));
+      row.sagittal.push_back(otf(MtfDirection::sagittal, frequency));
+    }
+  };
+  if (options.geometric) {
+    const std::vector<PupilRay> rays = pupil_rays(tracer, chief, {32, 192});
+    if (rays.empty()) return {};
+    fill([&](MtfDirection direction, double frequency) { return geometric_otf(rays, direction, frequency); });
+    return row;
+  }
+  const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);
+  if (!pupil) return {};
+  fill([&](MtfDirection direction, double frequency) {
+    return diffraction_otf(tracer, *pupil, direction, frequency, options.model);
+  });
+  return row;
+}
+
+/// One field over all its wavelengths, each at its own height.
+OtfRow polychromatic(const OtfRow* rows, const MtfOptions& options) {
+  OtfRow result;
+  result.field = rows[0].field;
+  result.tangential.resize(options.frequencies_cpmm.size());
+  result.sagittal.resize(options.frequencies_cpmm.size());
+  double sum = 0;
+  for (const double weight : options.weights) sum += weight;
+  for (std::size_t w = 0; w < options.weights.size(); ++w)
+    for (std::size_t k = 0; k < options.frequencies_cpmm.size(); ++k) {
+      const double cycles = options.frequencies_cpmm[k] * (rows[w].image_height_mm - rows[0].image_height_mm);
+      const double share = options.weights[w] / sum;
+      result.tangential[k] += share * rows[w].tangential[k] * std::polar(1.0, -2 * pi * cycles);
+      result.sagittal[k] += share * rows[w].sagittal[k];
+    }
+  return result;
+}
+
+}  // namespace
+
+std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
+                                     MtfDirection direction, double frequency_cpmm, const PupilModel& model) {
+  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
+  const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
+  const int nodes = nodes_for(2 * frequency_cpmm * pupil.transverse_mm());
+  const Autocorrelation pairs(pupil, model, nodes);
+  const std::complex<double> whole = Autocorrelation(pupil, model, fewest_nodes).tangential(0);
+  return (direction == MtfDirection::tangential ? pairs.tangential(shift) : pairs.sagittal(shift)) /
+         whole.real();
+}
+
+std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirection direction,
+                                   double frequency_cpmm) {
+  std::complex<double> sum = 0;
+  double total = 0;
+  for (const PupilRay& ray : rays) {
+    total += ray.entrance_measure;
+    // Rays stand for both halves: in x their phases cancel to a cosine.
+    sum += direction == MtfDirection::tangential
+               ? std::polar(ray.entrance_measure, -2 * pi * frequency_cpmm * ray.y_mm)
+               : ray.entrance_measure * std::cos(2 * pi * frequency_cpmm * ray.x_mm);
+  }
+  return sum / total;
+}
+
+std::vector<MtfRow> mtf_table(const Lens& lens, const FieldTableRequest& request, const MtfOptions& options) {
+  check(request, options);
+  std::vector<OtfRow> otfs = field_rows<OtfRow>(
+      lens, request,
+      [&](const FieldTracer& tracer, const ChiefRay& chief) { return otf_row(tracer, chief, options); });
+  if (!options.weights.empty()) {
+    std::vector<OtfRow> together;
+    for (std::size_t i = 0; i < otfs.size(); i += options.weights.size())
+      together.push_back(polychromatic(&otfs[i], options));
+    otfs = together;
+  }
+  std::vector<MtfRow> rows;
+  for (const OtfRow& otf : otfs)
+    for (std::size_t k = 0; k < options.frequencies_cpmm.size(); ++k)
+      rows.push_back({otf.field, otf.wavelength_nm, options.frequencies_cpmm[k], std::abs(otf.tangential[k]),
+                      std::abs(otf.sagittal[k])});
+  return rows;
+}
+
+}  // namespace petzval
