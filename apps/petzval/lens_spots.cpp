@@ -52,8 +52,8 @@ void draw_circle(Plot& plot, double x, double y, double radius) {
     ys.push_back(y + radius * std::sin(2 * pi * i / steps));
   }
   PlotSeries& circle = plot.line("", xs, ys);
-  circle.colour = "#808080";
-  circle.width_px = 1;
+  circle.colour = "#000000";
+  circle.width_px = 1.2;
 }
 
 /// Fields side by side, each about the chief ray of its first wavelength, with that wavelength's Airy circle.
@@ -69,31 +69,37 @@ void write_plot(const std::string& path, const Lens& lens, const FieldTableReque
     reach = std::max({reach, rows[i].airy_radius_um,
                       rows[i].max_radius_um + std::abs(rows[i].centroid_um) + std::abs(above_um(i))});
   Plot plot;
-  plot.title = lens.name + ": spot diagrams, fields side by side, Airy circle of the first wavelength";
+  plot.title = lens.name + ": spots and Airy circle";
   plot.x = {"sagittal, fields side by side", "µm"};
   plot.y = {"from the chief ray", "µm"};
+  plot.y.from = -1.3 * reach;
+  plot.y.to = 1.1 * reach;
   plot.equal_aspect = true;
   plot.width_px = 1000;
   const double pitch = 2.2 * reach;
+  constexpr double stroke_px = 1.3;
+  const double stroke = stroke_px * pitch * static_cast<double>(request.fields.size()) / plot.width_px;
   for (std::size_t w = 0; w < wavelengths; ++w) {
     std::vector<double> xs, ys;
     for (std::size_t f = 0; f < request.fields.size(); ++f) {
       const Diagram& diagram = all[f * wavelengths + w];
       for (std::size_t k = 0; k < diagram.x_um.size(); ++k) {
-        xs.push_back(diagram.x_um[k] + pitch * static_cast<double>(f));
-        ys.push_back(diagram.y_um[k] + above_um(f * wavelengths + w));
+        // A stroke as short as it is thick: markers of the plot would hide each other.
+        const double x = diagram.x_um[k] + pitch * static_cast<double>(f);
+        const double y = diagram.y_um[k] + above_um(f * wavelengths + w);
+        xs.insert(xs.end(), {x - 0.5 * stroke, x + 0.5 * stroke, std::nan("")});
+        ys.insert(ys.end(), {y, y, y});
       }
     }
-    PlotSeries& dots = plot.scatter(fmt::format("{:g} nm", request.wavelengths_nm[w]), xs, ys);
+    PlotSeries& dots = plot.line(fmt::format("{:g} nm", request.wavelengths_nm[w]), xs, ys);
     dots.colour = wavelength_colour(request.wavelengths_nm[w]).hex();
-    dots.marker = PlotMarker::dot;
-    dots.width_px = 0.6;
+    dots.width_px = stroke_px;
   }
   for (std::size_t f = 0; f < request.fields.size(); ++f) {
     const double x = pitch * static_cast<double>(f);
     draw_circle(plot, x, 0, rows[f * wavelengths].airy_radius_um);
-    plot.notes.push_back(
-        {x - reach, reach, fmt::format("{:g} {}", request.fields[f], field_unit(request.field_kind))});
+    plot.notes.push_back({x - 0.9 * reach, -1.15 * reach,
+                          fmt::format("{:g} {}", request.fields[f], field_unit(request.field_kind))});
   }
   write_whole_file(path, plot.svg());
 }
