@@ -239,6 +239,22 @@ void print_summary(const SpectralImage& image, const Scene& scene, const LensDat
   fmt::print("  irradiance  {:.4g} to {:.4g} W/(m2 nm)\n", report.darkest, report.brightest);
 }
 
+/// The white of the scene, if its light in these bands can be taken for white at all: two or three narrow
+/// bands cannot.
+std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& scene, const Shared& shared) {
+  const SpectralImage one_pixel(1, 1, image.wavelengths_nm(), image.pitch_um());
+  PictureOptions options;
+  options.scene_white = scene.illuminant;
+  try {
+    PictureRenderer(one_pixel, options);
+    return scene.illuminant;
+  } catch (const InputError& error) {
+    note(shared,
+         fmt::format("colours are shown as they fall on the sensor, not adapted to white: {}", error.what()));
+    return {};
+  }
+}
+
 void write_outputs(const ImageCommand& command, const SpectralImage& image, const Scene& scene,
                    const Shared& shared) {
   for (const std::string& path : command.outputs) {
@@ -247,7 +263,7 @@ void write_outputs(const ImageCommand& command, const SpectralImage& image, cons
       continue;
     }
     PictureOptions options;
-    options.scene_white = scene.illuminant;
+    options.scene_white = usable_white(image, scene, shared);
     note(shared, fmt::format("{}: {}", path, write_picture(path, image, options, command.bits)));
   }
 }
