@@ -6,6 +6,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 
+#include <csignal>
 #include <cstdio>
 #include <new>
 
@@ -20,6 +21,8 @@ int report(const std::string& message, int code) {
 
 int main(int argc, char** argv) {
   using namespace petzval;
+  // A limit on the size of files (ulimit -f) is a full disk like any other: an error, not a death by signal.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App program{"Petzval simulates a digital camera from the glass up.", "petzval"};
   app::Shared shared;
   program.set_version_flag("--version", std::string("petzval ") + version());

@@ -30,8 +30,8 @@ WRITERS = [
 
 
 def one_kilobyte_at_most():
-    """In the child: writing beyond 1024 bytes fails as on a full disk (EFBIG for ENOSPC). Python has SIGXFSZ ignored
-    already, and with restore_signals off the program inherits that."""
+    """In the child: writing beyond 1024 bytes fails as on a full disk (EFBIG for ENOSPC), and the signal that comes
+    with it would end a program that does not expect it."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
 
 
@@ -57,14 +57,13 @@ class OutputFiles(ProgramTest):
         self.assertTrue(writers)
         for writer in writers:
             with self.subTest(writer=writer):
-                self.assert_refused(*writer, code=1, words=[writer[-1]], preexec_fn=one_kilobyte_at_most,
-                                    restore_signals=False)
+                self.assert_refused(*writer, code=1, words=[writer[-1]], preexec_fn=one_kilobyte_at_most)
 
     def test_a_full_disk_keeps_what_was_there(self):
         for writer in self.large_writers():
             self.write(writer[-1], "precious")
             with self.subTest(writer=writer):
-                self.assert_refused(*writer, code=1, preexec_fn=one_kilobyte_at_most, restore_signals=False)
+                self.assert_refused(*writer, code=1, preexec_fn=one_kilobyte_at_most)
 
     def test_a_really_full_disk(self):
         """A file system of 16 kB of our own, where the machine lets a user make one."""
