@@ -55,7 +55,9 @@ void LensChoice::add_to(CLI::App& command, bool positional, bool required) {
   command.add_option("--set", settings, "Alter the lens: surfaces[4].thickness_mm=0.5 (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--substitute", substitutions, "Use another glass: LAK10C=CDGM:H-LAK10 (repeatable)")
+  command
+      .add_option("--substitute", substitutions,
+                  "Use another glass: LAK10C=CDGM:H-LAK10, or by nd/Vd SK1=1.61025/56.71 (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
 }
@@ -65,8 +67,10 @@ Lens LensChoice::read(const Shared& shared) const {
   for (const std::string& text : substitutions) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw InputError(
-          fmt::format("--substitute {}: give it as OLD=NEW, for example LAK10C=CDGM:H-LAK10", text));
+      throw InputError(fmt::format(
+          "--substitute {}: give it as OLD=NEW, for example LAK10C=CDGM:H-LAK10 or, by nd and Vd, "
+          "SK1=1.61025/56.71",
+          text));
     options.substitutions[text.substr(0, equals)] = text.substr(equals + 1);
   }
   LensFile file = read_lens(path_or_name, options);

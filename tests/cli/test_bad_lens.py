@@ -101,6 +101,7 @@ class BadUse(ProgramTest):
         self.write("unknown.json", singlet_with_surface(1, glass="SECRET-7"))
         self.assert_refused("lens", "info", "unknown.json", words=["SECRET-7"])
         self.assert_succeeds("lens", "info", "unknown.json", "--substitute", "SECRET-7=SCHOTT:N-BK7")
+        self.assert_succeeds("lens", "info", "unknown.json", "--substitute", "SECRET-7=1.61025/56.71")
         self.assert_refused("lens", "info", "unknown.json", "--substitute", "SECRET-7=NO-SUCH", words=["NO-SUCH"])
         self.assert_refused("lens", "info", "unknown.json", "--substitute", "SECRET-7", words=["--substitute"])
 
