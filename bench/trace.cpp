@@ -7,16 +7,21 @@
 #include <petzval/base/parallel.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
-#include <petzval/trace/surface_step.h>
+#include <petzval/trace/radiance_tracer.h>
 
-#include <cmath>
+#include <hwy/highway.h>
+#include <algorithm>
+#include <cstdint>
+
+#include "trace/plain_trace.h"
 
 namespace {
 
 using namespace petzval;
 
-constexpr int side = 64;
+constexpr int side = 32;
 
+/// All of its rays pass the 50 mm double Gauss.
 RayBatch parallel_beam(double semi_mm) {
   RayBatch rays;
   for (int i = 0; i < side; ++i)
@@ -26,8 +31,81 @@ RayBatch parallel_beam(double semi_mm) {
   return rays;
 }
 
-/// The baseline: one ray after the other through the same arithmetic, branches and all.
-void trace_one_by_one(benchmark::State& state) {
+/// The instruction set that a benchmark is held to, by its argument; the baseline is one ray after another.
+void use_target(benchmark::State& state) {
+  const std::int64_t target = state.range(0);
+  hwy::SetSupportedTargetsForTest(0);
+  if (!(hwy::SupportedTargets() & target)) state.SkipWithError("not on this machine");
+  hwy::SetSupportedTargetsForTest(target);
+  state.SetLabel(hwy::TargetName(target));
+}
+#define EACH_TARGET Arg(HWY_AVX3)->Arg(HWY_AVX2)->Arg(HWY_SSE4)
+
+template <class T>
+void plain_loop(benchmark::State& state) {
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const Tracer tracer(lens, 587.5618);
+  std::vector<plain::Surface<T>> surfaces;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const Tracer::PreparedSurface& from = tracer.surfaces()[i];
+    surfaces.push_back({T(from.curvature), T(lens.surfaces[i].thickness_mm),
+                        T(from.index_before / from.index_after), T(1e6)});
+  }
+  const RayBatch beam = parallel_beam(10);
+  std::vector<plain::Ray<T>> rays(beam.size());
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < beam.size(); ++i) {
+      rays[i] = {T(beam.x_mm[i]), T(beam.y_mm[i]), T(beam.z_mm[i]), T(beam.l[i]), T(beam.m[i]), T(beam.n[i])};
+      if (!plain::trace(surfaces, rays[i])) state.SkipWithError("a ray was lost");
+    }
+    benchmark::DoNotOptimize(rays.data());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
+}
+BENCHMARK(plain_loop<float>);
+BENCHMARK(plain_loop<double>);
+
+void batch_float(benchmark::State& state) {
+  use_target(state);
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const RadianceTracer tracer(Tracer(lens, 587.5618), RadianceTracer::Direction::forward, Tracer::Clip::none);
+  const RayBatch from = parallel_beam(10);
+  RadianceRays beam(from.size());
+  std::copy(from.x_mm.begin(), from.x_mm.end(), beam.x_mm.begin());
+  std::copy(from.y_mm.begin(), from.y_mm.end(), beam.y_mm.begin());
+  std::copy(from.z_mm.begin(), from.z_mm.end(), beam.z_mm.begin());
+  std::fill(beam.n.begin(), beam.n.end(), 1.0f);
+  RadianceRays rays = beam;
+  for (auto _ : state) {
+    rays = beam;
+    tracer.trace(rays);
+    benchmark::DoNotOptimize(rays.x_mm.data());
+  }
+  if (std::count(rays.passes.begin(), rays.passes.end(), 1) != std::ptrdiff_t(rays.size()))
+    state.SkipWithError("a ray was lost");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
+}
+BENCHMARK(batch_float)->EACH_TARGET;
+
+void batch_double(benchmark::State& state) {
+  use_target(state);
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const Tracer tracer(lens, 587.5618);
+  const RayBatch beam = parallel_beam(10);
+  RayBatch rays = beam;
+  for (auto _ : state) {
+    rays = beam;
+    tracer.trace(rays, Tracer::Clip::none);
+    benchmark::DoNotOptimize(rays.x_mm.data());
+  }
+  if (std::count(rays.status.begin(), rays.status.end(), RayStatus::ok) != std::ptrdiff_t(rays.size()))
+    state.SkipWithError("a ray was lost");
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
+}
+BENCHMARK(batch_double)->EACH_TARGET;
+
+/// The scalar trace of the library, which says why a ray fails.
+void library_scalar(benchmark::State& state) {
   const Lens lens = read_lens("dgauss-50mm").lens;
   const Tracer tracer(lens, 587.5618);
   const RayBatch beam = parallel_beam(10);
@@ -38,21 +116,7 @@ void trace_one_by_one(benchmark::State& state) {
                        Tracer::Clip::none));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
 }
-BENCHMARK(trace_one_by_one);
-
-void trace_batch_double(benchmark::State& state) {
-  const Lens lens = read_lens("dgauss-50mm").lens;
-  const Tracer tracer(lens, 587.5618);
-  const RayBatch beam = parallel_beam(10);
-  RayBatch rays = beam;
-  for (auto _ : state) {
-    rays = beam;
-    tracer.trace(rays, Tracer::Clip::none);
-    benchmark::DoNotOptimize(rays.x_mm.data());
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
-}
-BENCHMARK(trace_batch_double);
+BENCHMARK(library_scalar);
 
 void g_sensor(benchmark::State& state) {
   const Lens lens = read_lens("edmund-54852").lens;

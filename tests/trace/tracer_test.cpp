@@ -9,34 +9,14 @@
 #include <random>
 
 #include "physics/independent_tracer.h"
+#include "trace/sample_lenses.h"
 
 namespace petzval {
 namespace {
 
-Surface surface(double radius_mm, double thickness_mm, double index) {
-  Surface s;
-  s.curvature_per_mm = radius_mm == 0 ? 0 : 1 / radius_mm;
-  s.thickness_mm = thickness_mm;
-  if (index != 1) s.material = Material(Material::Constant{index});
-  return s;
-}
-
-/// A lens for testing, with a stop of 1.5 mm on its third surface.
-Lens triplet_like() {
-  Lens lens;
-  lens.name = "test lens";
-  lens.surfaces = {surface(20, 3, 1.62), surface(-200, 5, 1), surface(0, 4, 1), surface(-30, 2, 1.7),
-                   surface(25, 30, 1)};
-  lens.surfaces[2].stop = true;
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 1.5};
-  return lens;
-}
-
-Ray random_ray(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> place(-2, 2), slope(-0.2, 0.2);
-  const double l = slope(random), m = slope(random);
-  return {{place(random), place(random), -5}, {l, m, std::sqrt(1 - l * l - m * m)}};
-}
+using sample::random_ray;
+using sample::surface;
+using sample::triplet_like;
 
 TEST(Tracer, AgreesWithTheIndependentTracerOnSpheres) {
   const Lens lens = triplet_like();
@@ -173,50 +153,6 @@ TEST(Tracer, SaysHowARayFails) {
   const Ray reflected = Tracer(slab, 550).trace(Ray{{0, 2.5, -1}, {0, 0, 1}});
   EXPECT_EQ(reflected.status, RayStatus::tir);
   EXPECT_EQ(reflected.failed_at, 1);
-}
-
-TEST(Tracer, BatchesOfAnySizeAgreeWithSingleRays) {
-  // The batch runs through SIMD lanes with fused multiply-adds: the last bits may differ, statuses may not.
-  Lens lens = triplet_like();
-  lens.surfaces[0].conic = -0.6;
-  lens.surfaces[3].conic = 1.2;
-  lens.surfaces[1].semi_diameter_mm = 2.0;
-  const Tracer tracer(lens, 550);
-  std::mt19937_64 random(9);
-  for (const std::size_t count : {1, 2, 7, 8, 23, 24, 25, 100, 999}) {
-    RayBatch batch, backward;
-    std::vector<Ray> singles, singles_backward;
-    for (std::size_t i = 0; i < count; ++i) {
-      Ray ray = random_ray(random);
-      if (i % 10 == 9) ray.point_mm[1] += 25;  // misses
-      singles.push_back(tracer.trace(ray));
-      batch.push_back(ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
-                      ray.direction[2]);
-      const Ray back{{0.1 * ray.point_mm[0], ray.point_mm[1], 44},
-                     {ray.direction[0], ray.direction[1], -ray.direction[2]}};
-      singles_backward.push_back(tracer.trace_backward(back));
-      backward.push_back(back.point_mm[0], back.point_mm[1], back.point_mm[2], back.direction[0],
-                         back.direction[1], back.direction[2]);
-    }
-    tracer.trace(batch);
-    tracer.trace_backward(backward);
-    const auto compare = [](const RayBatch& rays, std::size_t i, const Ray& single) {
-      ASSERT_EQ(rays.status[i], single.status);
-      EXPECT_EQ(rays.failed_at[i], single.failed_at);
-      if (single.status != RayStatus::ok) return;
-      EXPECT_NEAR(rays.x_mm[i], single.point_mm[0], 1e-12);
-      EXPECT_NEAR(rays.y_mm[i], single.point_mm[1], 1e-12);
-      EXPECT_NEAR(rays.z_mm[i], single.point_mm[2], 1e-12);
-      EXPECT_NEAR(rays.l[i], single.direction[0], 1e-14);
-      EXPECT_NEAR(rays.m[i], single.direction[1], 1e-14);
-      EXPECT_NEAR(rays.n[i], single.direction[2], 1e-14);
-      EXPECT_NEAR(rays.opl_mm[i], single.opl_mm, 2e-12);
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-      compare(batch, i, singles[i]);
-      compare(backward, i, singles_backward[i]);
-    }
-  }
 }
 
 TEST(Pencil, ChiefRayPassesTheStopCentre) {

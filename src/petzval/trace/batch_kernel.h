@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The batch trace through spheres, conics and planes on whatever SIMD the machine has: lanes are rays.
+// The batch trace on whatever SIMD the machine has: lanes are rays. T is double, with optical path, or float,
+// for radiance, without.
 #pragma once
-
-#include <petzval/trace/ray_batch.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -10,27 +9,50 @@
 
 namespace petzval {
 
+enum class KernelSurfaceKind : std::uint8_t { plane, sphere, conic, even_asphere, odd_asphere };
+
 /// One surface in the order of travel, with everything that does not depend on the ray worked out.
+template <class T>
 struct KernelSurface {
-  double curvature, conic;
-  double to_vertex_mm;     ///< added to z on arrival: the previous vertex minus this one
-  double index_before;     ///< on the side the ray comes from
-  double index_ratio;      ///< before / behind
-  double clear_radius_sq;  ///< infinity: no clipping
+  KernelSurfaceKind kind = KernelSurfaceKind::plane;
+  bool clips = false;
+  T curvature = 0, conic = 0, one_plus_conic = 1;
+  T to_vertex_mm = 0;  ///< added to z on arrival: the previous vertex minus this one
+  T index_before = 1;  ///< on the side the ray comes from
+  T index_ratio = 1;   ///< before / behind
+  T index_ratio_sq = 1, one_minus_index_ratio_sq = 0;
+  T clear_radius_sq = 0;  ///< counts where `clips`
+  /// Horner coefficients in t = r²/ρ² (even) or t = r/ρ (odd), a_p ρ^p: in float they neither overflow nor
+  /// vanish.
+  std::vector<T> polynomial;
+  T per_polynomial_unit = 1;  ///< 1/ρ² or 1/ρ
 };
 
+/// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.
+template <class T>
 struct KernelPath {
-  std::vector<KernelSurface> surfaces;
-  double first_vertex_z_mm = 0;
-  double last_vertex_z_mm = 0;
-  double sense = 1;      ///< +1 forward, −1 backward
-  bool to_image = true;  ///< carry on to the image plane
-  double image_z_mm = 0, image_index = 1;
+  std::vector<KernelSurface<T>> surfaces;
+  T flip = 1;  ///< +1 forward, −1 backward: what z and n are multiplied by on the way in and out
+  T first_vertex_z_mm = 0, last_vertex_z_mm = 0;  ///< flipped
+  bool to_image = true;                           ///< carry on to the image plane
+  T image_z_mm = 0, image_index = 1;
 };
 
-/// Traces rays [0, rays.size()) in place and sets clean[i] = 1. Rays that fail, are clipped, or would need
-/// the other form of the quadratic are left untouched with clean[i] = 0: the scalar trace deals with them and
-/// says why.
-void trace_batch_simd(const KernelPath& path, RayBatch& rays, std::vector<std::uint8_t>& clean);
+/// `count` rays in columns; `opl` only in double. passes[i] becomes 1, or 0 for a ray that fails or is
+/// clipped, which is left as it was.
+template <class T>
+struct RayColumns {
+  T *x, *y, *z, *l, *m, *n, *opl;
+  std::uint8_t* passes;
+  std::size_t count;
+};
+
+/// Traces in place, by the widest instruction set of the machine (or what hwy::SetSupportedTargetsForTest
+/// allows). The last bits depend on the instruction set, not on the position in the batch. Method: the
+/// one-division form of the quadratic with z relative to the next vertex; three vectors in flight, so that
+/// the latencies of roots and divisions overlap; aspheres by Newton from their conic, to 1e-12 mm in double
+/// and to rounding in float.
+void trace_columns(const KernelPath<double>& path, const RayColumns<double>& rays);
+void trace_columns(const KernelPath<float>& path, const RayColumns<float>& rays);
 
 }  // namespace petzval

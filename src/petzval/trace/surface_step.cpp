@@ -47,6 +47,32 @@ bool asphere_sag(const Prepared& surface, double r_sq, double& sag, double& slop
   return true;
 }
 
+/// Newton along a ray that is already near the surface; the distance grows by what it walks.
+bool polish_on_asphere(const Prepared& surface, double sense, SurfaceRay& ray, double& distance,
+                       double normal[3]) {
+  const SurfaceRay start = ray;
+  double further = 0;
+  for (int i = 0; i < asphere_iterations && std::isfinite(further); ++i) {
+    ray = start;
+    advance(ray, further);
+    double sag, slope_over_r;
+    if (!asphere_sag(surface, ray.x * ray.x + ray.y * ray.y, sag, slope_over_r)) return false;
+    const double error = ray.z - sag;
+    const double nx = -slope_over_r * ray.x, ny = -slope_over_r * ray.y;
+    const double rate = ray.l * nx + ray.m * ny + ray.n;
+    if (std::abs(error) < asphere_tolerance_mm) {
+      const double scale = 1 / std::sqrt(nx * nx + ny * ny + 1);
+      normal[0] = nx * scale;
+      normal[1] = ny * scale;
+      normal[2] = scale;
+      distance += further;
+      return sense * rate > 0;
+    }
+    further -= error / rate;
+  }
+  return false;
+}
+
 bool intersect_asphere(const Prepared& surface, double sense, SurfaceRay& ray, double& distance,
                        double normal[3]) {
   const SurfaceRay start = ray;
@@ -54,25 +80,12 @@ bool intersect_asphere(const Prepared& surface, double sense, SurfaceRay& ray, d
   const double from_plane = -start.z / start.n;
   for (const double guess : {from_conic, from_plane}) {
     if (!std::isfinite(guess)) continue;
+    // Newton starts from a point near the surface: a ray may come from so far that its whole distance has no
+    // room for the last digits.
+    ray = start;
     distance = guess;
-    for (int i = 0; i < asphere_iterations; ++i) {
-      ray = start;
-      advance(ray, distance);
-      double sag, slope_over_r;
-      if (!asphere_sag(surface, ray.x * ray.x + ray.y * ray.y, sag, slope_over_r)) break;
-      const double error = ray.z - sag;
-      const double nx = -slope_over_r * ray.x, ny = -slope_over_r * ray.y;
-      const double rate = ray.l * nx + ray.m * ny + ray.n;
-      if (std::abs(error) < asphere_tolerance_mm) {
-        const double scale = 1 / std::sqrt(nx * nx + ny * ny + 1);
-        normal[0] = nx * scale;
-        normal[1] = ny * scale;
-        normal[2] = scale;
-        return sense * rate > 0;
-      }
-      distance -= error / rate;
-      if (!std::isfinite(distance)) break;
-    }
+    advance(ray, distance);
+    if (polish_on_asphere(surface, sense, ray, distance, normal)) return true;
   }
   return false;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/trace/batch_kernel.h>
+#include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
 
@@ -104,23 +104,22 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
   image_z_mm_ = z;
 }
 
-namespace {
-
-/// The square of the radius that clips at a surface.
-double clip_radius_sq(const Tracer& tracer, std::size_t surface, Tracer::Clip clip) {
+double Tracer::clip_radius_sq(std::size_t surface, Clip clip) const {
   double limit = infinity;
-  if (clip == Tracer::Clip::apertures) limit = tracer.surfaces()[surface].clear_radius_sq;
-  if (clip != Tracer::Clip::none && surface == tracer.stop_index())
-    limit = std::min(limit, tracer.stop_radius_mm() * tracer.stop_radius_mm());
-  return limit;
+  if (clip == Clip::apertures) limit = surfaces_[surface].clear_radius_sq;
+  if (clip != Clip::none && surface == stop_index_)
+    limit = std::min(limit, stop_radius_mm_ * stop_radius_mm_);
+  return limit * (1 + rim_tolerance);
 }
+
+namespace {
 
 void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
                std::vector<Intersection>* path) {
   walk(
       tracer.surfaces(), backward, ray,
       [&](std::size_t i, const SurfaceRay& at, const double*) {
-        return at.x * at.x + at.y * at.y <= clip_radius_sq(tracer, i, clip) * (1 + rim_tolerance);
+        return at.x * at.x + at.y * at.y <= tracer.clip_radius_sq(i, clip);
       },
       [&](std::size_t i, const SurfaceRay& at, const double* normal) {
         if (path)
@@ -132,29 +131,6 @@ void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
     reach_image(tracer, ray);
     if (path && ray.status == RayStatus::ok) path->push_back({ray.point_mm, ray.direction, {0, 0, 1}});
   }
-}
-
-/// The surfaces in the order of travel, for the batch kernel.
-KernelPath kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip) {
-  const std::vector<Tracer::PreparedSurface>& surfaces = tracer.surfaces();
-  KernelPath path;
-  path.sense = backward ? -1 : 1;
-  path.to_image = !backward;
-  path.image_z_mm = tracer.image_z_mm();
-  path.image_index = tracer.image_index();
-  path.first_vertex_z_mm = (backward ? surfaces.back() : surfaces.front()).vertex_z_mm;
-  double vertex_z = path.first_vertex_z_mm;
-  for (std::size_t step = 0; step < surfaces.size(); ++step) {
-    const std::size_t i = backward ? surfaces.size() - 1 - step : step;
-    const Tracer::PreparedSurface& surface = surfaces[i];
-    const double before = backward ? surface.index_after : surface.index_before;
-    const double behind = backward ? surface.index_before : surface.index_after;
-    path.surfaces.push_back({surface.curvature, surface.conic, vertex_z - surface.vertex_z_mm, before,
-                             before / behind, clip_radius_sq(tracer, i, clip) * (1 + rim_tolerance)});
-    vertex_z = surface.vertex_z_mm;
-  }
-  path.last_vertex_z_mm = vertex_z;
-  return path;
 }
 
 void trace_ray_of_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays,
@@ -173,17 +149,16 @@ void trace_ray_of_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, 
 }
 
 void trace_batch(const Tracer& tracer, bool backward, Tracer::Clip clip, RayBatch& rays) {
-  const bool aspheric =
-      std::any_of(tracer.surfaces().begin(), tracer.surfaces().end(),
-                  [](const Tracer::PreparedSurface& surface) { return !surface.polynomial.empty(); });
   const bool all_alive = std::all_of(rays.status.begin(), rays.status.end(),
                                      [](RayStatus status) { return status == RayStatus::ok; });
-  // The SIMD kernel does spheres, conics and planes, and leaves every ray that fails to the scalar trace.
-  std::vector<std::uint8_t> clean(rays.size(), 0);
-  if (!aspheric && all_alive && rays.size() > 0)
-    trace_batch_simd(kernel_path(tracer, backward, clip), rays, clean);
+  // The SIMD kernel leaves a ray that fails as it was: the scalar trace says why and where.
+  std::vector<std::uint8_t> passes(rays.size(), 0);
+  if (all_alive && rays.size() > 0)
+    trace_columns(kernel_path<double>(tracer, backward, clip),
+                  {rays.x_mm.data(), rays.y_mm.data(), rays.z_mm.data(), rays.l.data(), rays.m.data(),
+                   rays.n.data(), rays.opl_mm.data(), passes.data(), rays.size()});
   for (std::size_t i = 0; i < rays.size(); ++i)
-    if (!clean[i] && rays.status[i] == RayStatus::ok) trace_ray_of_batch(tracer, backward, clip, rays, i);
+    if (!passes[i] && rays.status[i] == RayStatus::ok) trace_ray_of_batch(tracer, backward, clip, rays, i);
 }
 
 }  // namespace
@@ -212,7 +187,7 @@ Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) co
   walk(
       surfaces_, backward, result.ray,
       [&](std::size_t i, const SurfaceRay& at, const double*) {
-        const double excess = (at.x * at.x + at.y * at.y) / clip_radius_sq(*this, i, clip) - 1;
+        const double excess = (at.x * at.x + at.y * at.y) * (1 + rim_tolerance) / clip_radius_sq(i, clip) - 1;
         if (excess > result.worst) {
           result.worst = excess;
           result.surface = static_cast<int>(i);

@@ -53,6 +53,9 @@ class Tracer {
   double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
   /// Radius that the stop clips at [mm].
   double stop_radius_mm() const { return stop_radius_mm_; }
+  /// The square of the radius that clips at a surface, a rounding wider than the clear aperture, so that rays
+  /// launched at a rim exactly are not lost; infinity where nothing clips.
+  double clip_radius_sq(std::size_t surface, Clip clip) const;
 
   /// Traces a batch in place, from object space to the image surface.
   void trace(RayBatch& rays, Clip clip = Clip::apertures) const;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/trace/kernel_path.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+KernelSurfaceKind kind_of(const Tracer::PreparedSurface& surface) {
+  const std::vector<double>& terms = surface.polynomial;
+  for (std::size_t p = 1; p < terms.size(); p += 2)
+    if (terms[p] != 0) return KernelSurfaceKind::odd_asphere;
+  if (!terms.empty()) return KernelSurfaceKind::even_asphere;
+  if (surface.curvature == 0) return KernelSurfaceKind::plane;
+  return surface.conic == 0 ? KernelSurfaceKind::sphere : KernelSurfaceKind::conic;
+}
+
+/// The radius ρ, a power of two, at which no term of the polynomial is larger than ρ itself.
+double polynomial_unit_mm(const std::vector<double>& terms) {
+  double unit = std::numeric_limits<double>::infinity();
+  for (std::size_t p = 2; p < terms.size(); ++p)
+    if (terms[p] != 0) unit = std::min(unit, std::pow(std::abs(terms[p]), -1 / (static_cast<double>(p) - 1)));
+  return std::isfinite(unit) && unit > 0 ? std::exp2(std::floor(std::log2(unit))) : 1.0;
+}
+
+template <class T>
+void set_polynomial(const std::vector<double>& terms, double flip, KernelSurface<T>& surface) {
+  const double unit = polynomial_unit_mm(terms);
+  const std::size_t step = surface.kind == KernelSurfaceKind::even_asphere ? 2 : 1;
+  for (std::size_t p = 0; p < terms.size(); p += step)
+    surface.polynomial.push_back(static_cast<T>(flip * terms[p] * std::pow(unit, static_cast<double>(p))));
+  surface.per_polynomial_unit = static_cast<T>(step == 2 ? 1 / (unit * unit) : 1 / unit);
+}
+
+template <class T>
+KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backward, double clip_radius_sq) {
+  const double flip = backward ? -1 : 1;
+  const double before = backward ? from.index_after : from.index_before;
+  const double ratio = before / (backward ? from.index_before : from.index_after);
+  KernelSurface<T> surface;
+  surface.kind = kind_of(from);
+  surface.clips = std::isfinite(clip_radius_sq);
+  surface.clear_radius_sq = surface.clips ? static_cast<T>(clip_radius_sq) : T(0);
+  surface.curvature = static_cast<T>(flip * from.curvature);
+  surface.conic = static_cast<T>(from.conic);
+  surface.one_plus_conic = static_cast<T>(1 + from.conic);
+  surface.index_before = static_cast<T>(before);
+  surface.index_ratio = static_cast<T>(ratio);
+  surface.index_ratio_sq = static_cast<T>(ratio * ratio);
+  surface.one_minus_index_ratio_sq = static_cast<T>(1 - ratio * ratio);
+  if (!from.polynomial.empty()) set_polynomial(from.polynomial, flip, surface);
+  return surface;
+}
+
+}  // namespace
+
+template <class T>
+KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip) {
+  const std::vector<Tracer::PreparedSurface>& surfaces = tracer.surfaces();
+  const double flip = backward ? -1 : 1;
+  KernelPath<T> path;
+  path.flip = static_cast<T>(flip);
+  path.to_image = !backward;
+  path.image_z_mm = static_cast<T>(tracer.image_z_mm());
+  path.image_index = static_cast<T>(tracer.image_index());
+  double vertex_z = flip * (backward ? surfaces.back() : surfaces.front()).vertex_z_mm;
+  path.first_vertex_z_mm = static_cast<T>(vertex_z);
+  for (std::size_t step = 0; step < surfaces.size(); ++step) {
+    const std::size_t i = backward ? surfaces.size() - 1 - step : step;
+    KernelSurface<T> surface = kernel_surface<T>(surfaces[i], backward, tracer.clip_radius_sq(i, clip));
+    const double next = flip * surfaces[i].vertex_z_mm;
+    surface.to_vertex_mm = static_cast<T>(vertex_z - next);
+    vertex_z = next;
+    path.surfaces.push_back(std::move(surface));
+  }
+  path.last_vertex_z_mm = static_cast<T>(vertex_z);
+  return path;
+}
+
+template KernelPath<double> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip);
+template KernelPath<float> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip);
+
+}  // namespace petzval
