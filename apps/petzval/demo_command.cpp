@@ -20,17 +20,32 @@ struct DemoCommand {
   std::string scene = "studio";
 };
 
-/// Makes the folder; one that exists is used, and files in it of the same names are replaced.
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw InputError(folder, fmt::format("cannot be made a folder: {}", error.message()));
-}
+/// The folder of the pictures: one that exists is used, and files in it of the same names are replaced; one
+/// that was made for pictures that then failed is taken away again.
+class PictureFolder {
+ public:
+  explicit PictureFolder(const std::string& folder) : folder_(folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw InputError(folder, fmt::format("cannot be made a folder: {}", error.message()));
+  }
+  ~PictureFolder() {
+    std::error_code not_empty;
+    std::filesystem::remove(folder_, not_empty);
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+
+ private:
+  std::string folder_;
+};
 
 void run_demo(const DemoCommand& options, const Shared& shared) {
-  make_folder(options.folder);
+  const PictureFolder folder(options.folder);
+  StagedFiles files;
   ProgressBar bar(!shared.quiet);
   Demo demo{options.folder,
+            files,
             options.scene,
             read_lens("edmund-54852").lens,
             read_lens("fisheye-10mm").lens,
@@ -72,7 +87,8 @@ void run_demo(const DemoCommand& options, const Shared& shared) {
                   "simulation, Proc. SPIE 5678 (2005)",
                   version()));
   demo.write("index.html", demo.page.html());
-  fmt::print("{}\n", std::filesystem::absolute(demo.path("index.html")).lexically_normal().string());
+  files.commit();
+  fmt::print("{}\n", (std::filesystem::absolute(options.folder) / "index.html").lexically_normal().string());
 }
 
 }  // namespace

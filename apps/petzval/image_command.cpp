@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
+#include <petzval/base/staged_files.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/camera/camera.h>
@@ -257,15 +258,18 @@ std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& sc
 
 void write_outputs(const ImageCommand& command, const SpectralImage& image, const Scene& scene,
                    const Shared& shared) {
+  StagedFiles files;
   for (const std::string& path : command.outputs) {
+    const std::string staged = files.stage(path);
     if (extension_of(path) != ".png") {
-      write_irradiance(path, image);
+      write_irradiance(staged, image);
       continue;
     }
     PictureOptions options;
     options.scene_white = usable_white(image, scene, shared);
-    note(shared, fmt::format("{}: {}", path, write_picture(path, image, options, command.bits)));
+    note(shared, fmt::format("{}: {}", path, write_picture(staged, image, options, command.bits)));
   }
+  files.commit();
 }
 
 void image(const ImageCommand& command, const Shared& shared) {

@@ -85,6 +85,19 @@ class OutputFiles(ProgramTest):
                 self.assertEqual(left, "ballast", "nothing else is left on the disk")
                 self.assertRegex(message[-1], "^petzval: error: ")
 
+    def test_outputs_of_one_command_appear_all_or_none(self):
+        """The picture of a wall is small enough, its irradiance is not."""
+        wall = ["image", "wall", *IMAGE[2:], "-o", "small.png", "-o", "large.npy"]
+        before = sorted(path.name for path in self.folder.iterdir())
+        self.assert_refused(*wall, code=1, words=["large.npy"], preexec_fn=one_kilobyte_at_most)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), before)
+        self.assert_succeeds(*wall)
+        self.assertLess((self.folder / "small.png").stat().st_size, 1024, "or the test above proves nothing")
+
+    def test_a_demo_that_fails_leaves_no_folder(self):
+        self.assert_refused("demo", "-o", "pictures", code=1, preexec_fn=one_kilobyte_at_most)
+        self.assertFalse((self.folder / "pictures").exists())
+
     def test_a_folder_that_is_not_there(self):
         for writer in WRITERS:
             self.assert_refused(*writer[:-1], f"nowhere/{writer[-1]}", words=["nowhere"])

@@ -12,7 +12,7 @@
 namespace petzval::app {
 
 std::string Demo::write(const std::string& name, const std::string& bytes) const {
-  write_whole_file(path(name), bytes);
+  write_whole_file(files.stage(folder + "/" + name), bytes);
   return name;
 }
 
@@ -20,7 +20,7 @@ html::Image Demo::picture(const std::string& name, const SpectralImage& image, c
                           const Scene* scene) const {
   PictureOptions options;
   if (scene && scene->illuminant && image.bands() > 1) options.scene_white = scene->illuminant;
-  write_picture(path(name), image, options);
+  write_picture(files.stage(folder + "/" + name), image, options);
   html::Image linked = html::linked_image(name, description);
   linked.columns = image.columns();
   linked.rows = image.rows();

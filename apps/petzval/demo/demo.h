@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/progress.h>
+#include <petzval/base/staged_files.h>
 #include <petzval/image/spectral_image.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/lens/lens.h>
@@ -25,12 +26,12 @@ inline constexpr SensorGeometry third_inch_sensor{768, 576, 6.25};
 /// What the sections share.
 struct Demo {
   std::string folder;
-  std::string scene;  ///< of the multispectral figure: a chart's name or a file
+  StagedFiles& files;  ///< of the folder: they appear when all are made
+  std::string scene;   ///< of the multispectral figure: a chart's name or a file
   Lens edmund, fisheye;
   html::Page page;
   ProgressCallback progress;  ///< of the section at work
 
-  std::string path(const std::string& name) const { return folder + "/" + name; }
   /// Writes a file of the page and returns its link.
   std::string write(const std::string& name, const std::string& bytes) const;
   /// Writes an image as PNG and as a figure of the page.
