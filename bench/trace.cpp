@@ -7,6 +7,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
+#include <petzval/trace/exit_pupil_region.h>
 #include <petzval/trace/radiance_tracer.h>
 
 #include <hwy/highway.h>
@@ -117,6 +118,15 @@ void library_scalar(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
 }
 BENCHMARK(library_scalar);
+
+/// From which directions light reaches 64 film radii, one thread.
+void exit_pupil_regions(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const Tracer tracer(lens, 587.5618);
+  for (auto _ : state) benchmark::DoNotOptimize(ExitPupilRegions(std::span(&tracer, 1), 21.6).area_sr(10, 0));
+}
+BENCHMARK(exit_pupil_regions)->Unit(benchmark::kMillisecond);
 
 void g_sensor(benchmark::State& state) {
   const Lens lens = read_lens("edmund-54852").lens;

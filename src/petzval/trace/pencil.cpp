@@ -20,23 +20,6 @@ constexpr double march_step_deg = 2.0;
 constexpr double march_steps_per_tangent = 30;
 constexpr int scan_points = 2000;
 
-struct Range {
-  double low, high;
-};
-
-/// Where the labels v of a pencil can lie at all: direction cosines, or a launch plane far wider than any
-/// glass.
-Range label_range(const Tracer& tracer, const Pencil& pencil) {
-  if (!pencil.object_at_infinity()) return {-1, 1};
-  double reach = tracer.stop_radius_mm() + tracer.image_z_mm();
-  for (const Tracer::PreparedSurface& surface : tracer.surfaces()) {
-    if (std::isfinite(surface.clear_radius_sq)) reach = std::max(reach, std::sqrt(surface.clear_radius_sq));
-    if (surface.curvature != 0)
-      reach = std::max(reach, std::min(1 / std::abs(surface.curvature), 10 * reach));
-  }
-  return {-2 * reach, 2 * reach};
-}
-
 /// Height at the stop of the meridional ray v, or NaN.
 double stop_height(const Tracer& tracer, const Pencil& pencil, double v) {
   const Tracer::Clearance traced = pencil.clearance(tracer, 0, v, Tracer::Clip::none);
@@ -44,7 +27,7 @@ double stop_height(const Tracer& tracer, const Pencil& pencil, double v) {
 }
 
 std::optional<double> newton_on_stop(const Tracer& tracer, const Pencil& pencil, double v) {
-  const Range range = label_range(tracer, pencil);
+  const LabelRange range = label_range(tracer, pencil);
   const double nudge = 1e-7 * (range.high - range.low);
   double height = stop_height(tracer, pencil, v);
   for (int i = 0; i < 40; ++i) {
@@ -77,7 +60,7 @@ double bisect_on_stop(const Tracer& tracer, const Pencil& pencil, double low, do
 }
 
 std::optional<double> scan_for_chief(const Tracer& tracer, const Pencil& pencil, double guess) {
-  const Range range = label_range(tracer, pencil);
+  const LabelRange range = label_range(tracer, pencil);
   std::optional<double> best;
   double previous_v = 0, previous = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i <= scan_points; ++i) {
@@ -94,6 +77,18 @@ std::optional<double> scan_for_chief(const Tracer& tracer, const Pencil& pencil,
 }
 
 }  // namespace
+
+LabelRange label_range(const Tracer& tracer, const Pencil& pencil) {
+  if (!pencil.object_at_infinity()) return {-1, 1};
+  double size = std::abs(tracer.image_z_mm());
+  if (std::isfinite(tracer.stop_radius_mm())) size += tracer.stop_radius_mm();
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces())
+    if (std::isfinite(surface.clear_radius_sq)) size = std::max(size, std::sqrt(surface.clear_radius_sq));
+  double reach = size;
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces())
+    if (surface.curvature != 0) reach = std::max(reach, std::min(1 / std::abs(surface.curvature), 10 * size));
+  return {-2 * reach, 2 * reach};
+}
 
 Pencil Pencil::from_object(const Lens& lens, double field) {
   if (!std::isfinite(field)) throw InputError("a field must be a finite number");

@@ -45,6 +45,13 @@ class Pencil {
   double y_, z_;  ///< the point [mm], or the sine and cosine of the field angle
 };
 
+/// Where the labels u and v of a pencil can lie at all: direction cosines, or a launch plane far wider than
+/// any glass.
+struct LabelRange {
+  double low, high;
+};
+LabelRange label_range(const Tracer& tracer, const Pencil& pencil);
+
 /// Finds the v of the chief ray of a pencil: the meridional ray through the centre of the real stop surface.
 /// Newton from `guess`, with a scan of the whole pencil when that fails; among several solutions the one
 /// nearest to the guess. Nothing when no ray of the pencil crosses the stop centre.

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/trace/exit_pupil_region.h>
+#include <petzval/trace/passing_region.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+/// What one film radius shows.
+struct ExitPupilRegions::Probe {
+  double film_radius_mm = 0;
+  std::vector<PassingRegion> wavelengths;  ///< those that let any light through
+
+  bool dark() const { return wavelengths.empty(); }
+  LabelBox box() const {
+    LabelBox all = wavelengths.front().box;
+    for (const PassingRegion& each : wavelengths) all = all.hull(each.box);
+    return all;
+  }
+};
+
+/// A film point's zone and frame.
+struct ExitPupilRegions::Place {
+  const Zone* zone;
+  double centre_v;
+  double along_x, along_y;  ///< unit vector from the axis to the film point
+};
+
+namespace {
+
+double sector_width(std::size_t sectors) {
+  return 2 * pi / static_cast<double>(sectors);
+}
+
+}  // namespace
+
+ExitPupilRegions::ExitPupilRegions(std::span<const Tracer> tracers, double film_radius_mm, std::size_t radii)
+    : film_radius_mm_(film_radius_mm) {
+  if (tracers.empty()) throw InputError("exit pupil regions need a wavelength, and there is none");
+  if (!(film_radius_mm > 0) || !std::isfinite(film_radius_mm))
+    throw InputError(fmt::format("a film radius of {:g} mm; it must be positive", film_radius_mm));
+  if (radii < 2 || radii > 100'000)
+    throw InputError(fmt::format("{} film radii; 2 to 100000 would be right", radii));
+  const double step = film_radius_mm / static_cast<double>(radii - 1);
+  std::vector<Probe> probes(radii);
+  parallel_for(radii, [&](std::size_t i) {
+    probes[i].film_radius_mm = step * static_cast<double>(i);
+    for (const Tracer& tracer : tracers)
+      if (auto passing = find_passing_region(tracer, Pencil::from_image(tracer, probes[i].film_radius_mm)))
+        probes[i].wavelengths.push_back(std::move(*passing));
+  });
+  for (std::size_t i = 0; i + 1 < radii; ++i) zones_.push_back(zone_between(probes[i], probes[i + 1], step));
+}
+
+ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const Probe& outer,
+                                                      double step_mm) {
+  Zone zone;
+  if (inner.dark() && outer.dark()) return zone;
+  // Where light ends inside the zone, what the one end shows may lie anywhere from there to the other.
+  const Probe& lit = inner.dark() ? outer : inner;
+  const Probe& other = outer.dark() ? inner : outer;
+  const LabelBox from = lit.box(), to = other.box();
+  const bool ends = inner.dark() || outer.dark();
+  const double centre_from = from.middle_v(), centre_to = to.middle_v();
+  zone.centre_v = 0.5 * (centre_from + centre_to);
+  zone.centre_v_per_mm = (centre_to - centre_from) / step_mm;
+  zone.scale_u = std::max(from.high_u, to.high_u);
+  zone.scale_v = 0.5 * std::max(from.high_v - from.low_v, to.high_v - to.low_v);
+
+  const double width = sector_width(sectors);
+  const auto cover = [&](double u, double v) {
+    const double x = u / zone.scale_u, y = v / zone.scale_v;
+    const double azimuth = std::atan2(x, y) + (x < 0 ? 2 * pi : 0);
+    double& radius = zone.radius[std::min(static_cast<std::size_t>(azimuth / width), sectors - 1)];
+    radius = std::max(radius, std::hypot(x, y));
+  };
+  for (const Probe* probe : {&lit, &other})
+    for (const PassingRegion& passing : probe->wavelengths)
+      for (const auto& [u, v] : passing.outline)
+        for (const double du : {-passing.cell_u, passing.cell_u})
+          for (const double dv : {-passing.cell_v, passing.cell_v}) {
+            const double offset = v + dv - (probe == &lit ? centre_from : centre_to);
+            cover(u + du, offset);
+            cover(-u - du, offset);
+          }
+  if (ends) {
+    // A wider berth: the pupil wanders, and closes, within the step.
+    for (double& radius : zone.radius) radius = 1.5 * std::max(radius, 0.5);
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < sectors; ++i) {
+    zone.share[i] = sum;
+    sum += 0.5 * zone.radius[i] * zone.radius[i] * width;
+  }
+  zone.share[sectors] = sum;
+  for (double& share : zone.share) share /= sum;
+  zone.area_sr = sum * zone.scale_u * zone.scale_v;
+  return zone;
+}
+
+const ExitPupilRegions::Zone& ExitPupilRegions::zone_at(double radius_mm) const {
+  const double position = radius_mm / film_radius_mm_ * static_cast<double>(zones_.size());
+  return zones_[std::min(static_cast<std::size_t>(position), zones_.size() - 1)];
+}
+
+ExitPupilRegions::Place ExitPupilRegions::place(double x_mm, double y_mm) const {
+  const double radius = std::hypot(x_mm, y_mm);
+  const Zone& zone = zone_at(radius);
+  const auto index = static_cast<double>(&zone - zones_.data());
+  const double step = film_radius_mm_ / static_cast<double>(zones_.size());
+  const double from_middle = std::clamp(radius - (index + 0.5) * step, -0.5 * step, 0.5 * step);
+  return {&zone, zone.centre_v + zone.centre_v_per_mm * from_middle, radius > 0 ? x_mm / radius : 0,
+          radius > 0 ? y_mm / radius : 1};
+}
+
+std::optional<ExitPupilRegions::Sample> ExitPupilRegions::sample(double x_mm, double y_mm, double random_1,
+                                                                 double random_2) const {
+  const Place at = place(x_mm, y_mm);
+  const Zone& zone = *at.zone;
+  if (!(zone.area_sr > 0)) return {};
+  const auto after = std::upper_bound(zone.share.begin() + 1, zone.share.end() - 1, random_1);
+  const auto sector = static_cast<std::size_t>(after - zone.share.begin()) - 1;
+  const double within = (random_1 - zone.share[sector]) / (zone.share[sector + 1] - zone.share[sector]);
+  const double azimuth = (static_cast<double>(sector) + std::clamp(within, 0.0, 1.0)) * sector_width(sectors);
+  const double radius = zone.radius[sector] * std::sqrt(random_2);
+  const double u = zone.scale_u * radius * std::sin(azimuth);
+  const double v = at.centre_v + zone.scale_v * radius * std::cos(azimuth);
+  return Sample{u * at.along_y + v * at.along_x, v * at.along_y - u * at.along_x, zone.area_sr};
+}
+
+double ExitPupilRegions::area_sr(double x_mm, double y_mm) const {
+  return zone_at(std::hypot(x_mm, y_mm)).area_sr;
+}
+
+double ExitPupilRegions::density_per_sr(double x_mm, double y_mm, double alpha, double beta) const {
+  const Place at = place(x_mm, y_mm);
+  const Zone& zone = *at.zone;
+  if (!(zone.area_sr > 0)) return 0;
+  const double u = alpha * at.along_y - beta * at.along_x, v = alpha * at.along_x + beta * at.along_y;
+  const double x = u / zone.scale_u, y = (v - at.centre_v) / zone.scale_v;
+  const double azimuth = std::atan2(x, y) + (x < 0 ? 2 * pi : 0);
+  const auto sector = std::min(static_cast<std::size_t>(azimuth / sector_width(sectors)), sectors - 1);
+  return std::hypot(x, y) <= zone.radius[sector] ? 1 / zone.area_sr : 0;
+}
+
+}  // namespace petzval
