@@ -264,8 +264,8 @@ TEST(FormImage, ReportsWhatItDid) {
   };
   ImagingReport report;
   form_image(wall(1), make_table(recipe), sensor, with_method(BlurMethod::sections), {}, &report);
-  EXPECT_EQ(report.margin_cells, 2);  // ⌈(16 µm·√2 + 0.25 µm)/10 µm − ½⌉
-  EXPECT_EQ(report.transform_size, 20);
+  EXPECT_EQ(report.margin_cells, 3);  // ⌈(16 µm·√2 + 0.25 µm)/10 µm⌉
+  EXPECT_EQ(report.transform_size, 24);
   EXPECT_EQ(report.scene_points_per_cell, 1);
   EXPECT_EQ(report.least_captured, 0.95);
   EXPECT_NEAR(report.brightest, 0.25, 1e-3);

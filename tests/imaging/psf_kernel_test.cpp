@@ -56,6 +56,7 @@ double gaussian_over_cell(int row, int column, double cell_um, double azimuth, c
   return total * std::pow(cell_um / steps, 2) / (2 * pi * spot.sigma_s_um * spot.sigma_t_um);
 }
 
+// And its centroid is where the spot's is, however wide the cells are.
 TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
   TableRecipe recipe;
   const Spot spot{1.5, -2, 2, 4, 1};
@@ -71,11 +72,21 @@ TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
       const double azimuth = radians(degrees);
       const PsfField psfs(table, 550, cell_um);
       const Kernel kernel = psfs.kernel_at(-std::cos(azimuth), std::sin(azimuth));  // columns run along −x'
-      double worst = 0;
+      const double t_column = std::cos(azimuth), t_row = std::sin(azimuth);
+      const std::array<double, 2> centre{(t_column * spot.t_um - t_row * spot.s_um) / cell_um,
+                                         (t_row * spot.t_um + t_column * spot.s_um) / cell_um};
+      // The window cuts the Gaussian where it has 5e-6 of its peak.
+      EXPECT_NEAR(kernel.centroid()[0], centre[0], 1e-4) << cell_um << " µm, " << degrees << "°";
+      EXPECT_NEAR(kernel.centroid()[1], centre[1], 1e-4) << cell_um << " µm, " << degrees << "°";
+      Kernel expected(kernel.radius);
       for (int row = -kernel.radius; row <= kernel.radius; ++row)
         for (int column = -kernel.radius; column <= kernel.radius; ++column)
-          worst = std::max(worst, std::abs(kernel.at(row, column) -
-                                           gaussian_over_cell(row, column, cell_um, azimuth, widened)));
+          expected.at(row, column) = gaussian_over_cell(row, column, cell_um, azimuth, widened);
+      const std::array<double, 2> integrated = expected.centroid();
+      expected.shift({centre[0] - integrated[0], centre[1] - integrated[1]});
+      double worst = 0;
+      for (std::size_t i = 0; i < kernel.weights.size(); ++i)
+        worst = std::max(worst, std::abs(kernel.weights[i] - expected.weights[i]));
       // A cell's edge cuts samples, whose slope the deposit does not see: at most spacing²/8 × the steepest
       // slope of the Gaussian's profile, 0.242/σ² = 0.0605 µm⁻².
       EXPECT_LT(worst, spacing_um * spacing_um / 8 * 0.0605) << cell_um << " µm, " << degrees << "°";
@@ -126,6 +137,26 @@ TEST(PsfKernel, SumsToOneWhateverTheCells) {
   }
 }
 
+TEST(PsfKernel, ShiftsByPartsOfACellAndKeepsTheLight) {
+  Kernel kernel(3);
+  kernel.at(0, 0) = 0.5;
+  kernel.at(1, -1) = 0.3;
+  kernel.at(-2, 2) = 0.2;
+  const std::array<double, 2> before = kernel.centroid();
+  for (const std::array<double, 2> by : {std::array{0.25, -0.4}, {-0.25, 0.4}, {0.0, 0.5}}) {
+    Kernel moved = kernel;
+    moved.shift(by);
+    EXPECT_NEAR(moved.sum(), 1, 1e-15);
+    EXPECT_NEAR(moved.centroid()[0], before[0] + by[0], 1e-15);
+    EXPECT_NEAR(moved.centroid()[1], before[1] + by[1], 1e-15);
+    EXPECT_GE(*std::min_element(moved.weights.begin(), moved.weights.end()), 0);
+  }
+  kernel.shift({0.25, -0.4});
+  EXPECT_NEAR(kernel.at(0, 0), 0.5 * 0.75 * 0.6 + 0.3 * 0.25 * 0.4, 1e-15);
+  EXPECT_NEAR(kernel.at(0, 1), 0.5 * 0.25 * 0.6, 1e-15);
+  EXPECT_NEAR(kernel.at(-1, 0), 0.5 * 0.75 * 0.4, 1e-15);
+}
+
 TEST(PsfKernel, SamplesCoarserThanCellsAreSquares) {
   // One sample of 4 µm on cells of 1 µm: a square of 4 × 4 cells about the middle of a cell, so that the two
   // outer rows hold half.
@@ -154,6 +185,11 @@ TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
   add(table.psf[table.index(2, 0)], 0.75 * 0.8, {0, 1}, 2.0, expected);
   add(table.psf[table.index(3, 0)], 0.75 * 0.2, {0, 1}, 2.0, expected);
   add(table.psf[table.index(2, 1)], 0.25, {0, 1}, 2.0, expected);
+  // The mixture is at (0, centroid of the spots), and the tail of a window in float adds 1e-5.
+  const double centroid_um = 0.75 * (0.8 * 10 + 0.2 * 15) / 4 + 0.25 * 10.0 / 4;
+  EXPECT_NEAR(kernel.centroid()[1], centroid_um / 2.0, 1e-4);
+  expected.shift(
+      {kernel.centroid()[0] - expected.centroid()[0], kernel.centroid()[1] - expected.centroid()[1]});
   // PSFs are stored in float.
   for (std::size_t i = 0; i < kernel.weights.size(); ++i)
     EXPECT_NEAR(kernel.weights[i], expected.weights[i], 1e-8);

@@ -87,13 +87,48 @@ double Kernel::sum() const {
   return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
+std::array<double, 2> Kernel::centroid() const {
+  double column_moment = 0, row_moment = 0, total = 0;
+  for (int row = -radius; row <= radius; ++row)
+    for (int column = -radius; column <= radius; ++column) {
+      const double weight = at(row, column);
+      column_moment += column * weight;
+      row_moment += row * weight;
+      total += weight;
+    }
+  return {column_moment / total, row_moment / total};
+}
+
+void Kernel::shift(const std::array<double, 2>& by) {
+  // Against the direction of the shift, so that what was handed on is not handed on again.
+  const auto move = [&](double share, const auto& cell) {
+    const int towards = share < 0 ? -1 : 1;
+    const double part = std::abs(share);
+    for (int across = -radius; across <= radius; ++across)
+      for (int along = radius - 1; along >= -radius; --along) {
+        double& from = cell(across, towards * along);
+        cell(across, towards * (along + 1)) += part * from;
+        from *= 1 - part;
+      }
+  };
+  move(by[0], [&](int row, int column) -> double& { return at(row, column); });
+  move(by[1], [&](int column, int row) -> double& { return at(row, column); });
+}
+
 RunningPsf::RunningPsf(const Psf& psf) : size_(psf.size), spacing_um_(psf.spacing_um) {
   const auto size = static_cast<std::size_t>(size_);
   sums_.reserve(size * (size + 1));
   for (std::size_t i = 0; i < size; ++i) {
     double sum = 0;
     sums_.push_back(0);
-    for (std::size_t j = 0; j < size; ++j) sums_.push_back(sum += double(psf.values[i * size + j]));
+    const double t_um = (double(i) - double(size / 2)) * spacing_um_;
+    for (std::size_t j = 0; j < size; ++j) {
+      const double value = double(psf.values[i * size + j]);
+      first_moment_um_[0] += value * (double(j) - double(size / 2)) * spacing_um_;
+      first_moment_um_[1] += value * t_um;
+      sums_.push_back(sum += value);
+    }
+    sum_ += sum;
   }
 }
 

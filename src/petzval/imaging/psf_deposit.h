@@ -24,6 +24,11 @@ struct Kernel {
   double& at(int row, int column) { return weights[index(row, column)]; }
   double at(int row, int column) const { return weights[index(row, column)]; }
   double sum() const;
+  /// Mean position of the weights from the middle cell: {column, row}. Needs a positive sum.
+  std::array<double, 2> centroid() const;
+  /// Moves the centroid by less than a cell along each axis, by handing that share of every weight to the
+  /// next cell; at the rim it stays. The sum is kept and nothing becomes negative.
+  void shift(const std::array<double, 2>& by);
 
  private:
   std::size_t index(int row, int column) const {
@@ -38,6 +43,9 @@ class RunningPsf {
 
   int size() const { return size_; }
   double spacing_um() const { return spacing_um_; }
+  double sum() const { return sum_; }
+  /// Σ of sample × position from the chief ray [µm]: {s, t}.
+  const std::array<double, 2>& first_moment_um() const { return first_moment_um_; }
   /// Whether two PSFs have their samples in the same places.
   bool same_grid(const RunningPsf& other) const {
     return size_ == other.size_ && spacing_um_ == other.spacing_um_;
@@ -51,6 +59,8 @@ class RunningPsf {
  private:
   int size_;
   double spacing_um_;
+  double sum_ = 0;
+  std::array<double, 2> first_moment_um_{};
   std::vector<double> sums_;  ///< size rows of size + 1
 };
 

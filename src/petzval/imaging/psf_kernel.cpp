@@ -80,7 +80,7 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
     for (std::size_t field = 0; field < table.fields.size(); ++field) {
       const Psf& psf = table.psf.at(table.index(field, wavelength));
       check(psf, table.wavelengths_nm[wavelength]);
-      const double radius = std::ceil((reach_um(psf) + psf.spacing_um / 2) / cell_um - 0.5);
+      const double radius = std::ceil((reach_um(psf) + psf.spacing_um / 2) / cell_um);
       if (!(radius <= max_radius))
         throw InputError(
             fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
@@ -105,7 +105,25 @@ Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
                                                           : interpolated_otf(direction, height_mm);
   const double sum = kernel.sum();
   for (double& weight : kernel.weights) weight /= sum;
+  const std::array<double, 2> wanted = centroid_at(direction, height_mm), deposited = kernel.centroid();
+  kernel.shift({wanted[0] - deposited[0], wanted[1] - deposited[1]});
   return kernel;
+}
+
+std::array<double, 2> PsfField::centroid_at(const std::array<double, 2>& direction, double height_mm) const {
+  double light = 0, moment_s_um = 0, moment_t_um = 0;
+  for (const Layer& layer : layers_) {
+    const Pair pair = pair_at(layer, height_mm);
+    const double high = layer.weight * pair.weight_high;
+    for (const auto& [psf, weight] : {std::pair{pair.low, layer.weight - high}, {pair.high, high}}) {
+      light += weight * psf->sum();
+      moment_s_um += weight * psf->first_moment_um()[0];
+      moment_t_um += weight * psf->first_moment_um()[1];
+    }
+  }
+  // Picture columns run along −x', rows along +y'.
+  const double s = moment_s_um / (light * cell_um_), t = moment_t_um / (light * cell_um_);
+  return {-direction[0] * t - direction[1] * s, direction[1] * t - direction[0] * s};
 }
 
 PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {

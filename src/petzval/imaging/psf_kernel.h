@@ -24,6 +24,9 @@ enum class PsfInterpolation {
 /// cells and normalised to sum 1 (Maeda, Catrysse & Wandell 2005, section 2.2.3; the sum is the OTF at zero
 /// frequency). Integrated: each fine sample is spread evenly over a square of its own spacing, which the
 /// cells under it share by area, so that the energy is exact and nothing is missed between sampling points.
+/// What a cell receives is blind to where within the cell it arrives, so that a PSF narrower than a cell
+/// would lose the offset of its centroid, and with it the divergence by which g_sensor differs from g_source;
+/// the kernel is shifted by the rest (Kernel::shift), and has the PSF's own centroid whatever the cells are.
 /// Beyond the heights of the table its last PSF holds.
 class PsfField {
  public:
@@ -57,6 +60,8 @@ class PsfField {
     double weight_high;
   };
   static Pair pair_at(const Layer& layer, double height_mm);
+  /// Of the PSF at this height, in cells: {column, row}.
+  std::array<double, 2> centroid_at(const std::array<double, 2>& direction, double height_mm) const;
   Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
   Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
 

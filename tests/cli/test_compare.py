@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""petzval compare: the numbers of differing pictures, and what cannot be compared."""
+
+import math
+import struct
+import unittest
+
+from petzval_cli import ProgramTest
+
+
+def npy(rows, columns, values, kind="<f4"):
+    """The bytes of a NumPy array of one band."""
+    header = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': ({rows}, {columns}), }}"
+    header += " " * (63 - (10 + len(header)) % 64) + "\n"
+    packed = struct.pack(f"<{len(values)}{'f' if kind == '<f4' else 'd'}", *values)
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() + packed
+
+
+class Compare(ProgramTest):
+    def array(self, name, rows, columns, values, kind="<f4"):
+        (self.folder / name).write_bytes(npy(rows, columns, values, kind))
+
+    def test_numbers_worked_out_by_hand(self):
+        self.array("a.npy", 2, 2, [3, 5, -2, -12])
+        self.array("b.npy", 2, 2, [3, 4, 0, -12], "<f8")
+        said = self.json_of("compare", "a.npy", "b.npy")
+        self.assertAlmostEqual(said["relative_l2"], math.sqrt(5) / 13, delta=1e-15)
+        self.assertAlmostEqual(said["max_error_over_peak"], 2 / 12, delta=1e-15)
+        self.assertAlmostEqual(said["psnr_db"], 20 * math.log10(12 / math.sqrt(5 / 4)), delta=1e-12)
+        self.assertEqual(len(said["rows"]), 1)
+        self.assertIn("relative L2 error", self.assert_succeeds("compare", "a.npy", "b.npy"))
+
+    def test_a_picture_against_itself(self):
+        self.assert_succeeds("scene", "convert", "colorchecker", "a.exr")
+        said = self.json_of("compare", "a.exr", "a.exr")
+        self.assertEqual((said["relative_l2"], said["max_error_over_peak"], said["psnr_db"]), (0, 0, None))
+        self.assertTrue(said["identical"])
+        self.assertEqual(said["rows"][0]["wavelength_nm"], 400)
+
+    def test_every_format_that_image_writes(self):
+        image = ["image", "wall", "--lens", "edmund-54852", "--wavelengths", "450,550,650", "--sensor", "32x24@25"]
+        self.assert_succeeds(*image, *(word for name in ("a.exr", "a.npy", "a.png") for word in ("-o", name)))
+        for name in ("a.exr", "a.npy", "a.png"):
+            self.assertEqual(self.json_of("compare", name, name)["relative_l2"], 0)
+        self.assertEqual(self.json_of("compare", "a.exr", "a.npy")["relative_l2"], 0)
+        self.assert_refused("compare", "a.exr", "a.png", words=["a.png", "display"])
+
+    def test_refuses_what_cannot_be_compared(self):
+        self.array("a.npy", 2, 2, [1, 2, 3, 4])
+        self.array("wide.npy", 1, 4, [1, 2, 3, 4])
+        self.array("nan.npy", 2, 2, [1, 2, math.nan, 4])
+        self.assert_refused("compare", "a.npy", "wide.npy", words=["2 × 2", "4 × 1"])
+        self.assert_refused("compare", "a.npy", "nan.npy", words=["nan.npy", "row 1"])
+        self.assert_refused("compare", "a.npy", "missing.npy", words=["missing.npy"])
+        self.assert_refused("compare", "a.npy", "a.txt", words=["a.txt", ".exr"])
+        self.assert_refused("compare", "a.npy")
+
+
+if __name__ == "__main__":
+    unittest.main()
