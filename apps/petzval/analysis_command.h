@@ -13,6 +13,9 @@ struct AnalysisCommand {
   LensChoice lens;
   FieldChoice fields;
   std::string plot;
+
+  /// The lens as the analysis sees it: read, set, with apertures as asked.
+  Lens prepare(const Shared& shared) const { return fields.prepare(lens.read(shared), shared); }
 };
 
 /// Adds a subcommand with LENS, fields, wavelengths, apertures and --plot FILE.svg around `work`.

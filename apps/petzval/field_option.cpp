@@ -94,10 +94,6 @@ nlohmann::ordered_json field_definition(Fields::Kind kind) {
   return {{"type", to_string(kind)}, {"meaning", meaning}};
 }
 
-const char* field_unit(Fields::Kind kind) {
-  return kind == Fields::Kind::angle_deg ? "deg" : "mm";
-}
-
 std::string field_heading(Fields::Kind kind) {
   const std::string name = to_string(kind);
   return fmt::format("{} [{}]", name.substr(0, name.rfind('_')), field_unit(kind));

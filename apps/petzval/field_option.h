@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/analysis/field_tables.h>
+#include <petzval/analysis/field_values.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -28,8 +29,6 @@ struct FieldChoice {
 
 /// What the numbers in `field` are: {"type": "angle_deg", "meaning": "…"}.
 nlohmann::ordered_json field_definition(Fields::Kind kind);
-/// "deg" or "mm".
-const char* field_unit(Fields::Kind kind);
 /// "field [deg]" and the like, for table headings.
 std::string field_heading(Fields::Kind kind);
 

@@ -15,7 +15,13 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_psf(*lens, shared);
   add_lens_spots(*lens, shared);
   add_lens_wavefront(*lens, shared);
+  add_lens_fans(*lens, shared);
+  add_lens_zernike(*lens, shared);
   add_lens_seidel(*lens, shared);
+  add_lens_field_curvature(*lens, shared);
+  add_lens_colour(*lens, shared);
+  add_lens_vignetting(*lens, shared);
+  add_lens_chief_ray_angle(*lens, shared);
   add_lens_mtf(*lens, shared);
   add_lens_convert(*lens, shared);
 }

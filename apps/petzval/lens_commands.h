@@ -18,5 +18,11 @@ void add_lens_spots(CLI::App& lens, Shared& shared);
 void add_lens_wavefront(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);
 void add_lens_mtf(CLI::App& lens, Shared& shared);
+void add_lens_fans(CLI::App& lens, Shared& shared);
+void add_lens_zernike(CLI::App& lens, Shared& shared);
+void add_lens_field_curvature(CLI::App& lens, Shared& shared);
+void add_lens_colour(CLI::App& lens, Shared& shared);
+void add_lens_vignetting(CLI::App& lens, Shared& shared);
+void add_lens_chief_ray_angle(CLI::App& lens, Shared& shared);
 
 }  // namespace petzval::app

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/report/colours.h>
-#include <petzval/report/svg_plot.h>
+#include <petzval/report/analysis_plots.h>
 
 #include "analysis_command.h"
 #include "lens_commands.h"
@@ -25,35 +24,8 @@ std::string wavelength_text(double wavelength_nm) {
   return wavelength_nm > 0 ? fmt::format("{:g}", wavelength_nm) : "all";
 }
 
-/// One pair of curves for each field and wavelength: tangential drawn through, sagittal dashed.
-void write_plot(const std::string& path, const Lens& lens, const FieldTableRequest& request,
-                const std::vector<MtfRow>& rows, std::size_t frequencies) {
-  Plot plot;
-  plot.title = lens.name + ": MTF, tangential solid, sagittal dashed";
-  plot.x = {"spatial frequency", "cycles/mm"};
-  plot.y = {"modulation transfer", "", PlotScale::linear, 0.0, 1.0};
-  for (std::size_t first = 0; first < rows.size(); first += frequencies) {
-    std::vector<double> frequency, tangential, sagittal;
-    for (std::size_t k = first; k < first + frequencies; ++k) {
-      frequency.push_back(rows[k].frequency_cpmm);
-      tangential.push_back(rows[k].tangential);
-      sagittal.push_back(rows[k].sagittal);
-    }
-    const std::string colour = series_colour(first / frequencies).hex();
-    const std::string wavelength =
-        rows[first].wavelength_nm > 0 ? fmt::format(", {:g} nm", rows[first].wavelength_nm) : "";
-    plot.line(fmt::format("{:g} {}{}", rows[first].field, field_unit(request.field_kind), wavelength),
-              frequency, tangential)
-        .colour = colour;
-    PlotSeries& dashed = plot.line("", frequency, sagittal);
-    dashed.colour = colour;
-    dashed.stroke = PlotStroke::dashed;
-  }
-  write_whole_file(path, plot.svg());
-}
-
 void mtf(const MtfCommand& options, const Shared& shared) {
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens lens = options.prepare(shared);
   const FieldTableRequest request = options.fields.request(lens);
   MtfOptions chosen = options.mtf;
   if (chosen.frequencies_cpmm.empty()) chosen.frequencies_cpmm = default_frequencies;
@@ -61,7 +33,10 @@ void mtf(const MtfCommand& options, const Shared& shared) {
     chosen.weights.assign(request.wavelengths_nm.size(), 1);
   if (options.as_psf) chosen.model = {PupilModel::Amplitude::light, PupilModel::Phase::plane_waves};
   const std::vector<MtfRow> rows = mtf_table(lens, request, chosen);
-  if (!options.plot.empty()) write_plot(options.plot, lens, request, rows, chosen.frequencies_cpmm.size());
+  if (!options.plot.empty()) {
+    const Plot plot = mtf_plot(request.field_kind, rows, chosen.frequencies_cpmm.size());
+    write_whole_file(options.plot, plot_grid_svg({plot}, 1, lens.name));
+  }
   if (shared.json) {
     nlohmann::ordered_json json = analysis_json(lens, request);
     json["method"] = chosen.geometric ? "geometric" : "diffraction";

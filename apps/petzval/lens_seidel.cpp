@@ -4,7 +4,7 @@
 #include <petzval/analysis/seidel.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/report/svg_plot.h>
+#include <petzval/report/analysis_plots.h>
 
 #include <memory>
 
@@ -43,26 +43,13 @@ void print_terms(const std::string& name, const SeidelTerms& values, double unit
   fmt::print("\n");
 }
 
-void write_plot(const std::string& path, const Lens& lens, const SeidelSums& sums) {
-  Plot plot;
-  plot.title = lens.name + ": Seidel coefficients by surface";
-  plot.x = {"surface", ""};
-  plot.y = {"coefficient", "mm"};
-  for (const Term& term : terms) {
-    std::vector<double> surface, value;
-    for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
-      surface.push_back(static_cast<double>(i));
-      value.push_back(sums.surfaces[i].*term.value);
-    }
-    plot.line(term.label, surface, value).marker = PlotMarker::dot;
-  }
-  write_whole_file(path, plot.svg());
-}
-
 void seidel(const SeidelCommand& options, const Shared& shared) {
   const Lens lens = options.lens.read(shared);
   const SeidelSums sums = seidel_sums(lens);
-  if (!options.plot.empty()) write_plot(options.plot, lens, sums);
+  if (!options.plot.empty()) {
+    const Plot plot = seidel_plot(sums);
+    write_whole_file(options.plot, plot_grid_svg({plot}, 1, lens.name));
+  }
   if (shared.json) {
     nlohmann::ordered_json json = {
         {"lens", lens.name},

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens spots: spot sizes and spot diagrams.
 #include <fmt/format.h>
-#include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/spots.h>
-#include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/report/colours.h>
-#include <petzval/report/svg_plot.h>
-
-#include <algorithm>
-#include <cmath>
+#include <petzval/report/pupil_plots.h>
 
 #include "analysis_command.h"
 #include "lens_commands.h"
@@ -25,91 +19,15 @@ struct SpotsCommand : AnalysisCommand {
 /// Rings of rays in a spot diagram: 3·8·9 = 216 points.
 constexpr int diagram_rings = 8;
 
-struct Diagram {
-  double field = 0, wavelength_nm = 0;
-  std::vector<double> x_um, y_um;  ///< from the chief ray's point of the same wavelength
-  double height_um = 0;            ///< of that point
-};
-
-std::vector<Diagram> diagrams(const Lens& lens, const FieldTableRequest& request) {
-  return field_rows<Diagram>(lens, request,
-                             [](const FieldTracer& tracer, const ChiefRay& chief) -> std::optional<Diagram> {
-                               Diagram diagram;
-                               diagram.height_um = chief.image_height_mm * um_per_mm;
-                               for (const PupilRay& ray : ring_rays(tracer, chief, diagram_rings)) {
-                                 diagram.x_um.push_back(ray.x_mm * um_per_mm);
-                                 diagram.y_um.push_back(ray.y_mm * um_per_mm);
-                               }
-                               return diagram;
-                             });
-}
-
-void draw_circle(Plot& plot, double x, double y, double radius) {
-  std::vector<double> xs, ys;
-  constexpr int steps = 72;
-  for (int i = 0; i <= steps; ++i) {
-    xs.push_back(x + radius * std::cos(2 * pi * i / steps));
-    ys.push_back(y + radius * std::sin(2 * pi * i / steps));
-  }
-  PlotSeries& circle = plot.line("", xs, ys);
-  circle.colour = "#000000";
-  circle.width_px = 1.2;
-}
-
-/// Fields side by side, each about the chief ray of its first wavelength, with that wavelength's Airy circle.
-void write_plot(const std::string& path, const Lens& lens, const FieldTableRequest& request,
-                const std::vector<SpotRow>& rows) {
-  const std::vector<Diagram> all = diagrams(lens, request);
-  const std::size_t wavelengths = request.wavelengths_nm.size();
-  const auto above_um = [&](std::size_t i) {
-    return all[i].height_um - all[i - i % wavelengths].height_um;  // lateral colour
-  };
-  double reach = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    reach = std::max({reach, rows[i].airy_radius_um,
-                      rows[i].max_radius_um + std::abs(rows[i].centroid_um) + std::abs(above_um(i))});
-  Plot plot;
-  plot.title = lens.name + ": spots and Airy circle";
-  plot.x = {"sagittal, fields side by side", "µm"};
-  plot.y = {"from the chief ray", "µm"};
-  plot.y.from = -1.3 * reach;
-  plot.y.to = 1.1 * reach;
-  plot.equal_aspect = true;
-  plot.width_px = 1000;
-  const double pitch = 2.2 * reach;
-  constexpr double stroke_px = 1.3;
-  const double stroke = stroke_px * pitch * static_cast<double>(request.fields.size()) / plot.width_px;
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    std::vector<double> xs, ys;
-    for (std::size_t f = 0; f < request.fields.size(); ++f) {
-      const Diagram& diagram = all[f * wavelengths + w];
-      for (std::size_t k = 0; k < diagram.x_um.size(); ++k) {
-        // A stroke as short as it is thick: markers of the plot would hide each other.
-        const double x = diagram.x_um[k] + pitch * static_cast<double>(f);
-        const double y = diagram.y_um[k] + above_um(f * wavelengths + w);
-        xs.insert(xs.end(), {x - 0.5 * stroke, x + 0.5 * stroke, std::nan("")});
-        ys.insert(ys.end(), {y, y, y});
-      }
-    }
-    PlotSeries& dots = plot.line(fmt::format("{:g} nm", request.wavelengths_nm[w]), xs, ys);
-    dots.colour = wavelength_colour(request.wavelengths_nm[w]).hex();
-    dots.width_px = stroke_px;
-  }
-  for (std::size_t f = 0; f < request.fields.size(); ++f) {
-    const double x = pitch * static_cast<double>(f);
-    draw_circle(plot, x, 0, rows[f * wavelengths].airy_radius_um);
-    plot.notes.push_back({x - 0.9 * reach, -1.15 * reach,
-                          fmt::format("{:g} {}", request.fields[f], field_unit(request.field_kind))});
-  }
-  write_whole_file(path, plot.svg());
-}
-
 void spots(const SpotsCommand& options, const Shared& shared) {
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens lens = options.prepare(shared);
   const FieldTableRequest request = options.fields.request(lens);
   const std::vector<SpotRow> rows =
       spot_table(lens, request, options.by_light ? RayWeight::light : RayWeight::stop_area);
-  if (!options.plot.empty()) write_plot(options.plot, lens, request, rows);
+  if (!options.plot.empty()) {
+    const Plot plot = spot_plot(request.field_kind, spot_diagrams(lens, request, diagram_rings), rows);
+    write_whole_file(options.plot, plot_grid_svg({plot}, 1, lens.name));
+  }
   if (shared.json) {
     nlohmann::ordered_json json = analysis_json(lens, request);
     for (const SpotRow& row : rows)

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/report/colours.h>
-#include <petzval/report/svg_plot.h>
+#include <petzval/report/pupil_plots.h>
 
 #include "analysis_command.h"
 #include "lens_commands.h"
@@ -13,31 +12,30 @@ namespace petzval::app {
 
 namespace {
 
-void write_plot(const std::string& path, const Lens& lens, const FieldTableRequest& request,
-                const std::vector<WavefrontRow>& rows) {
-  Plot plot;
-  plot.title = lens.name + ": RMS wavefront aberration, piston removed";
-  plot.x = {"field", field_unit(request.field_kind)};
-  plot.y = {"RMS wavefront aberration", "waves", PlotScale::linear, 0.0, {}};
-  const std::size_t wavelengths = request.wavelengths_nm.size();
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    std::vector<double> fields, waves;
-    for (std::size_t i = w; i < rows.size(); i += wavelengths) {
-      fields.push_back(rows[i].field);
-      waves.push_back(rows[i].rms_waves);
-    }
-    PlotSeries& line = plot.line(fmt::format("{:g} nm", request.wavelengths_nm[w]), fields, waves);
-    line.colour = wavelength_colour(request.wavelengths_nm[w]).hex();
-    line.marker = PlotMarker::dot;
-  }
-  write_whole_file(path, plot.svg());
+struct WavefrontCommand : AnalysisCommand {
+  std::string map;
+  int samples = 65;
+};
+
+void write_map(const WavefrontCommand& options, const Lens& lens, FieldTableRequest request) {
+  const std::vector<WavefrontMap> maps = wavefront_maps(lens, request, options.samples);
+  if (options.map.ends_with(".csv"))
+    return write_whole_file(options.map, to_csv(tabulate(request.field_kind, maps)));
+  const auto across = static_cast<int>(std::max<std::size_t>(request.wavelengths_nm.size(), 3));
+  write_whole_file(options.map, plot_grid_svg(wavefront_map_plots(request.field_kind, maps), across,
+                                              lens.name + ": wavefront over the stop"));
 }
 
-void wavefront(const AnalysisCommand& options, const Shared& shared) {
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+void wavefront(const WavefrontCommand& options, const Shared& shared) {
+  if (!options.map.empty()) require_extension(options.map, {".svg", ".csv"}, "a wavefront map");
+  const Lens lens = options.prepare(shared);
   const FieldTableRequest request = options.fields.request(lens);
   const std::vector<WavefrontRow> rows = wavefront_table(lens, request);
-  if (!options.plot.empty()) write_plot(options.plot, lens, request, rows);
+  if (!options.plot.empty()) {
+    const Plot plot = wavefront_plot(request.field_kind, rows);
+    write_whole_file(options.plot, plot_grid_svg({plot}, 1, lens.name));
+  }
+  if (!options.map.empty()) write_map(options, lens, request);
   if (shared.json) {
     nlohmann::ordered_json json = analysis_json(lens, request);
     for (const WavefrontRow& row : rows)
@@ -65,10 +63,14 @@ void wavefront(const AnalysisCommand& options, const Shared& shared) {
 }  // namespace
 
 void add_lens_wavefront(CLI::App& lens, Shared& shared) {
-  add_analysis_command(
+  auto options = std::make_shared<WavefrontCommand>();
+  CLI::App* command = add_analysis_command(
       lens, shared, "wavefront", "Wavefront aberration and Strehl ratio by field and wavelength",
-      "petzval lens wavefront double-gauss --plot wavefront.svg", std::make_shared<AnalysisCommand>(),
-      [](const AnalysisCommand& chosen, const Shared& all) { wavefront(chosen, all); });
+      "petzval lens wavefront double-gauss --wavelengths 587.56 --map map.svg --plot wavefront.svg", options,
+      [](const WavefrontCommand& chosen, const Shared& all) { wavefront(chosen, all); });
+  command->add_option("--map", options->map,
+                      "Also write the wavefront over the stop, as pictures (.svg) or numbers (.csv)");
+  command->add_option("--samples", options->samples, "Samples a side of a map")->check(CLI::Range(3, 1025));
 }
 
 }  // namespace petzval::app

@@ -24,6 +24,19 @@ const char* to_string(Fields::Kind kind) {
   return "angle_deg";
 }
 
+const char* field_unit(Fields::Kind kind) {
+  return kind == Fields::Kind::angle_deg ? "deg" : "mm";
+}
+
+std::vector<double> even_fields(const std::vector<double>& fields, int count) {
+  double last = 0;
+  for (const double field : fields)
+    if (std::abs(field) > std::abs(last)) last = field;
+  std::vector<double> even;
+  for (int i = 0; i < count; ++i) even.push_back(last * i / (count - 1));
+  return even;
+}
+
 double object_field(const Lens& lens, Fields::Kind kind, double value) {
   const bool finite = lens.object_distance_mm.has_value();
   switch (kind) {

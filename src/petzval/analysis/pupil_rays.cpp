@@ -27,6 +27,7 @@ class Launcher {
   PupilRay at_image(const Tracer::Clearance& traced) const {
     const Ray& ray = traced.ray;
     PupilRay result;
+    result.stop_x_mm = traced.stop_x_mm;
     result.stop_y_mm = traced.stop_y_mm;
     result.x_mm = ray.point_mm[0];
     result.y_mm = ray.point_mm[1] - chief_.image_height_mm;

@@ -12,11 +12,11 @@ namespace petzval {
 /// A ray of the half pupil u ≥ 0 at the image surface. Its three weights are the areas that it stands for,
 /// both halves counted, so that sums over rays are integrals over the pupil; rays on the rim have none.
 struct PupilRay {
-  double x_mm = 0, y_mm = 0;       ///< on the image surface, from the chief ray's point
-  double alpha = 0, beta = 0;      ///< direction cosines along x and y
-  double path_mm = 0;              ///< optical path to the image surface, minus the chief ray's
-  double stop_y_mm = 0;            ///< height at which it crosses the stop
-  double stop_area_mm2 = 0;        ///< on the real stop surface
+  double x_mm = 0, y_mm = 0;            ///< on the image surface, from the chief ray's point
+  double alpha = 0, beta = 0;           ///< direction cosines along x and y
+  double path_mm = 0;                   ///< optical path to the image surface, minus the chief ray's
+  double stop_x_mm = 0, stop_y_mm = 0;  ///< where it crosses the stop
+  double stop_area_mm2 = 0;             ///< on the real stop surface
   double entrance_measure = 0;     ///< du dv of Pencil, proportional to the light: mm² of the beam, or sr
   double exit_solid_angle_sr = 0;  ///< dα dβ
 };

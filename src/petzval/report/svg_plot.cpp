@@ -209,6 +209,14 @@ void draw_legend(XmlWriter& xml, const Plot& plot, const PlotLayout& layout) {
   }
 }
 
+void draw_plot(XmlWriter& xml, const Plot& plot, const PlotLayout& layout) {
+  draw_grid_and_ticks(xml, plot, layout);
+  draw_lines(xml, plot, layout);
+  draw_frame_and_captions(xml, plot, layout);
+  draw_markers_and_notes(xml, plot, layout);
+  draw_legend(xml, plot, layout);
+}
+
 }  // namespace
 
 PlotSeries& Plot::line(std::string label, std::vector<double> x_values, std::vector<double> y_values) {
@@ -231,11 +239,43 @@ std::string Plot::svg() const {
   XmlWriter xml;
   open_svg(xml, layout.total_width, layout.total_height,
            title.empty() ? y.label + " against " + x.label : title);
-  draw_grid_and_ticks(xml, *this, layout);
-  draw_lines(xml, *this, layout);
-  draw_frame_and_captions(xml, *this, layout);
-  draw_markers_and_notes(xml, *this, layout);
-  draw_legend(xml, *this, layout);
+  draw_plot(xml, *this, layout);
+  return std::move(xml).finish();
+}
+
+std::string plot_grid_svg(const std::vector<Plot>& plots, int columns, const std::string& title) {
+  const double title_px = title.empty() ? 0 : 34;
+  const std::size_t across = static_cast<std::size_t>(std::max(columns, 1));
+  std::vector<PlotLayout> layouts;
+  std::vector<double> column_x{0}, row_y{title_px};
+  for (const Plot& plot : plots) layouts.push_back(lay_out(plot));
+  for (std::size_t c = 0; c < std::min(across, plots.size()); ++c) {
+    double widest = 0;
+    for (std::size_t i = c; i < plots.size(); i += across) widest = std::max(widest, layouts[i].total_width);
+    column_x.push_back(column_x.back() + widest);
+  }
+  for (std::size_t first = 0; first < plots.size(); first += across) {
+    double tallest = 0;
+    for (std::size_t i = first; i < std::min(first + across, plots.size()); ++i)
+      tallest = std::max(tallest, layouts[i].total_height);
+    row_y.push_back(row_y.back() + tallest);
+  }
+  XmlWriter xml;
+  constexpr double px_a_character = 9.2;
+  const double title_width = 24 + px_a_character * static_cast<double>(character_count(title));
+  open_svg(xml, std::max(column_x.back(), title_width), row_y.back(), title);
+  if (!title.empty())
+    xml.text("text",
+             {{"class", "pz-ink"}, {"x", 12.0}, {"y", 24.0}, {"font-size", 16.0}, {"font-weight", "600"}},
+             title);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    xml.open("svg", {{"x", column_x[i % across]},
+                     {"y", row_y[i / across]},
+                     {"width", layouts[i].total_width},
+                     {"height", layouts[i].total_height}});
+    draw_plot(xml, plots[i], layouts[i]);
+    xml.close();
+  }
   return std::move(xml).finish();
 }
 

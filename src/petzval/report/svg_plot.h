@@ -85,4 +85,7 @@ struct Plot {
   std::string svg() const;
 };
 
+/// Plots side by side in rows of `columns`, under one title, as one drawing.
+std::string plot_grid_svg(const std::vector<Plot>& plots, int columns, const std::string& title);
+
 }  // namespace petzval

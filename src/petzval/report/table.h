@@ -12,6 +12,7 @@ struct TableColumn {
   std::string name;
   std::string unit{};  ///< empty: none
   int decimals = 3;    ///< shown to people; CSV files get every digit
+  std::string key{};   ///< for programs: "rms_radius_um"
 };
 
 /// A number or a piece of text. A number that is not finite is a gap.

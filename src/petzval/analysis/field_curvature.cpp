@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/field_curvature.h>
+#include <petzval/analysis/field_rows.h>
+#include <petzval/lens/first_order.h>
+
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double distance_along(const Vector& from, const Vector& to, const Vector& direction) {
+  return dot({to[0] - from[0], to[1] - from[1], to[2] - from[2]}, direction);
+}
+
+/// Principal curvatures of a surface of revolution z(r), in its meridian and across it.
+struct PrincipalCurvatures {
+  double meridional, sagittal;
+};
+
+PrincipalCurvatures principal_curvatures(const Tracer::PreparedSurface& surface, double r) {
+  const double c = surface.curvature, square = 1 - (1 + surface.conic) * c * c * r * r;
+  double slope = c * r / std::sqrt(square), bend = c / std::pow(square, 1.5);
+  for (std::size_t p = 1; p < surface.polynomial.size(); ++p) {
+    const double power = static_cast<double>(p), a = surface.polynomial[p];
+    if (a == 0) continue;
+    slope += a * power * std::pow(r, power - 1);
+    if (p > 1) bend += a * power * (power - 1) * std::pow(r, power - 2);
+  }
+  const double length = std::sqrt(1 + slope * slope);
+  // On the axis both are the same; a cone (p = 1) has no curvature there to speak of.
+  if (r == 0) return {bend, bend};
+  return {bend / (length * length * length), slope / (r * length)};
+}
+
+/// n/distance to the two foci, measured along the ray from where it is now.
+struct Vergence {
+  double tangential, sagittal;
+
+  void travel(double distance_mm, double index) {
+    tangential /= 1 - distance_mm * tangential / index;
+    sagittal /= 1 - distance_mm * sagittal / index;
+  }
+};
+
+}  // namespace
+
+AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief) {
+  const Tracer& glass = tracer.tracer();
+  const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
+  const Ray launched = *pencil.ray(0, chief.v);
+  std::vector<Intersection> path;
+  glass.trace(launched, Tracer::Clip::none, &path);
+
+  Vergence bundle{0, 0};
+  Vector at = launched.point_mm, direction = launched.direction;
+  if (!pencil.object_at_infinity()) {
+    const double distance = distance_along(at, path[0].point_mm, direction);
+    bundle = {-glass.object_index() / distance, -glass.object_index() / distance};
+    at = path[0].point_mm;
+  }
+  for (std::size_t i = 0; i < glass.surface_count(); ++i) {
+    const Tracer::PreparedSurface& surface = glass.surfaces()[i];
+    const Intersection& hit = path[i];
+    if (i > 0) bundle.travel(distance_along(at, hit.point_mm, direction), surface.index_before);
+    const double cosine = dot(direction, hit.normal), cosine_after = dot(hit.direction_after, hit.normal);
+    const PrincipalCurvatures curvature =
+        principal_curvatures(surface, std::hypot(hit.point_mm[0], hit.point_mm[1]));
+    const double power = surface.index_after * cosine_after - surface.index_before * cosine;
+    bundle.tangential =
+        (bundle.tangential * cosine * cosine + power * curvature.meridional) / (cosine_after * cosine_after);
+    bundle.sagittal += power * curvature.sagittal;
+    at = hit.point_mm;
+    direction = hit.direction_after;
+  }
+  const double to_image = distance_along(at, chief.at_image.point_mm, direction), n = glass.image_index();
+  return {n / bundle.tangential - to_image, n / bundle.sagittal - to_image};
+}
+
+std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const FieldTableRequest& request) {
+  return field_rows<FieldCurvatureRow>(
+      lens, request,
+      [&](const FieldTracer& tracer, const ChiefRay& chief) -> std::optional<FieldCurvatureRow> {
+        const double wavelength = tracer.tracer().wavelength_nm();
+        const AstigmaticFoci foci = astigmatic_foci(tracer, chief);
+        const FirstOrder paraxial = first_order(lens, wavelength);
+        const double height = ideal_image_height_mm(lens, chief.object_field, wavelength);
+        FieldCurvatureRow row;
+        row.object_field = chief.object_field;
+        row.real_image_height_mm = chief.image_height_mm;
+        row.tangential_mm = foci.tangential_mm * chief.at_image.direction[2];
+        row.sagittal_mm = foci.sagittal_mm * chief.at_image.direction[2];
+        const bool has_height = lens.object_distance_mm || std::abs(chief.object_field) < 90;
+        row.petzval_mm = has_height ? paraxial.paraxial_image_mm - lens.surfaces.back().thickness_mm +
+                                          height * height / (2 * paraxial.petzval_radius_mm)
+                                    : std::numeric_limits<double>::quiet_NaN();
+        return row;
+      });
+}
+
+}  // namespace petzval

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/report/analysis_plots.h>
+#include <petzval/report/field_curves.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Curves along x with the field upwards, and the axis x = 0 between them.
+Plot upright_plot(const std::string& title, const PlotAxis& x, const PlotAxis& y) {
+  Plot plot;
+  plot.title = title;
+  plot.x = x;
+  plot.y = y;
+  plot.y.from = 0;
+  plot.width_px = 380;
+  plot.height_px = 420;
+  plot.guides.push_back({PlotGuide::At::x, 0});
+  return plot;
+}
+
+}  // namespace
+
+Plot seidel_plot(const SeidelSums& sums) {
+  struct Term {
+    const char* label;
+    double SeidelTerms::*value;
+  };
+  constexpr Term terms[] = {{"S1 spherical", &SeidelTerms::s1},     {"S2 coma", &SeidelTerms::s2},
+                            {"S3 astigmatism", &SeidelTerms::s3},   {"S4 Petzval", &SeidelTerms::s4},
+                            {"S5 distortion", &SeidelTerms::s5},    {"CL axial colour", &SeidelTerms::cl},
+                            {"CT lateral colour", &SeidelTerms::ct}};
+  constexpr double bar = 0.11;  // of the room of a surface
+  Plot plot;
+  plot.title = "Seidel coefficients by surface";
+  plot.x = {"surface", "", PlotScale::linear, -0.7, static_cast<double>(sums.surfaces.size()) + 1.7};
+  plot.y = {"coefficient", "mm"};
+  plot.width_px = 900;
+  plot.height_px = 380;
+  plot.guides = {{PlotGuide::At::y, 0}, {PlotGuide::At::x, static_cast<double>(sums.surfaces.size()), "sum"}};
+  const double room_px = 0.9 * plot.width_px / static_cast<double>(sums.surfaces.size() + 2);
+  for (std::size_t t = 0; t < std::size(terms); ++t) {
+    std::vector<double> x, y;
+    const auto add = [&](double place, const SeidelTerms& values) {
+      const double at = place + bar * (static_cast<double>(t) - 3);
+      x.insert(x.end(), {at, at, at});
+      y.insert(y.end(), {0, values.*terms[t].value, std::nan("")});
+    };
+    for (std::size_t i = 0; i < sums.surfaces.size(); ++i) add(static_cast<double>(i), sums.surfaces[i]);
+    add(static_cast<double>(sums.surfaces.size()) + 1, sums.sum);
+    plot.line(terms[t].label, x, y).width_px = std::clamp(0.6 * bar * room_px, 1.2, 4.0);
+  }
+  return plot;
+}
+
+Plot mtf_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t frequencies) {
+  Plot plot;
+  plot.title = "MTF, tangential solid, sagittal dashed";
+  plot.x = {"spatial frequency", "cycles/mm"};
+  plot.y = {"modulation transfer", "", PlotScale::linear, 0.0, 1.0};
+  for (std::size_t first = 0; first + frequencies <= rows.size(); first += frequencies) {
+    std::vector<double> frequency, tangential, sagittal;
+    for (std::size_t k = first; k < first + frequencies; ++k) {
+      frequency.push_back(rows[k].frequency_cpmm);
+      tangential.push_back(rows[k].tangential);
+      sagittal.push_back(rows[k].sagittal);
+    }
+    const std::string colour = series_colour(first / frequencies).hex();
+    const double wavelength = rows[first].wavelength_nm;
+    plot.line(
+            field_text(kind, rows[first].field) + (wavelength > 0 ? ", " + wavelength_text(wavelength) : ""),
+            frequency, tangential)
+        .colour = colour;
+    PlotSeries& dashed = plot.line("", frequency, sagittal);
+    dashed.colour = colour;
+    dashed.stroke = PlotStroke::dashed;
+  }
+  return plot;
+}
+
+Plot mtf_field_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t frequencies) {
+  Plot plot;
+  plot.title = "MTF over the field, tangential solid, sagittal dashed";
+  plot.x = field_axis(kind);
+  plot.y = {"modulation transfer", "", PlotScale::linear, 0.0, 1.0};
+  const std::size_t per_field = wavelengths_of(rows);  // wavelengths × frequencies
+  for (std::size_t curve = 0; curve < per_field && frequencies > 0; ++curve) {
+    std::vector<double> field, tangential, sagittal;
+    for (std::size_t i = curve; i < rows.size(); i += per_field) {
+      field.push_back(rows[i].field);
+      tangential.push_back(rows[i].tangential);
+      sagittal.push_back(rows[i].sagittal);
+    }
+    const std::string colour = series_colour(curve).hex();
+    const double wavelength = rows[curve].wavelength_nm;
+    plot.line(fmt::format("{:g} cycles/mm{}", rows[curve].frequency_cpmm,
+                          wavelength > 0 ? ", " + wavelength_text(wavelength) : ""),
+              field, tangential)
+        .colour = colour;
+    PlotSeries& dashed = plot.line("", field, sagittal);
+    dashed.colour = colour;
+    dashed.stroke = PlotStroke::dashed;
+  }
+  return plot;
+}
+
+Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows) {
+  Plot plot = upright_plot("Longitudinal aberration", {"focus from the image surface", "mm"},
+                           {"height at the stop", "radii", PlotScale::linear, 0.0, 1.0});
+  std::size_t wavelengths = 0;
+  while (wavelengths < rows.size() && rows[wavelengths].zone == rows[0].zone) ++wavelengths;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    std::vector<double> focus, zone;
+    for (std::size_t i = w; i < rows.size(); i += wavelengths) {
+      focus.push_back(rows[i].focus_mm);
+      zone.push_back(rows[i].zone);
+    }
+    plot.line(wavelength_text(rows[w].wavelength_nm), focus, zone).colour =
+        wavelength_colour(rows[w].wavelength_nm).hex();
+  }
+  return plot;
+}
+
+Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows) {
+  Plot plot = upright_plot("Field curves: T solid, S dashed", {"focus from the image surface", "mm"},
+                           field_axis(kind));
+  const auto field = [](const FieldCurvatureRow& row) { return row.field; };
+  add_curves(
+      plot, rows, [](const FieldCurvatureRow& row) { return row.tangential_mm; }, field);
+  add_curves(
+      plot, rows, [](const FieldCurvatureRow& row) { return row.sagittal_mm; }, field, PlotStroke::dashed,
+      false);
+  std::vector<double> petzval, fields;
+  for (std::size_t i = 0; i < rows.size(); i += wavelengths_of(rows)) {
+    petzval.push_back(rows[i].petzval_mm);
+    fields.push_back(rows[i].field);
+  }
+  PlotSeries& parabola = plot.line("Petzval", petzval, fields);
+  parabola.colour = "#777777";
+  parabola.stroke = PlotStroke::dotted;
+  return plot;
+}
+
+Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
+  Plot plot = upright_plot("Distortion", {"distortion", "%"}, field_axis(kind));
+  add_curves(
+      plot, rows, [](const DistortionRow& row) { return row.distortion_percent; },
+      [](const DistortionRow& row) { return row.field; });
+  return plot;
+}
+
+Plot lateral_colour_plot(Fields::Kind kind, const std::vector<LateralColourRow>& rows) {
+  Plot plot;
+  plot.title = "Lateral colour against the reference wavelength";
+  plot.x = field_axis(kind);
+  plot.y = {"height of the chief ray, less the reference", "µm"};
+  plot.guides.push_back({PlotGuide::At::y, 0});
+  add_curves(
+      plot, rows, [](const LateralColourRow& row) { return row.field; },
+      [](const LateralColourRow& row) { return row.lateral_colour_um; });
+  return plot;
+}
+
+Plot illumination_plot(const std::vector<IlluminationRow>& rows) {
+  Plot plot;
+  plot.title = "Relative illumination";
+  plot.x = {"real image height", "mm"};
+  plot.y = {"g_sensor / g_sensor on axis", "", PlotScale::linear, 0.0, {}};
+  add_curves(
+      plot, rows, [](const IlluminationRow& row) { return row.real_image_height_mm; },
+      [](const IlluminationRow& row) { return row.relative_illumination; });
+  return plot;
+}
+
+Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows) {
+  Plot plot;
+  plot.title = "Share of the stop that the light fills";
+  plot.x = field_axis(kind);
+  plot.y = {"share of the stop's area", "", PlotScale::linear, 0.0, 1.05};
+  add_curves(
+      plot, rows, [](const VignettingRow& row) { return row.field; },
+      [](const VignettingRow& row) { return row.open_share; });
+  return plot;
+}
+
+Plot chief_ray_angle_plot(const std::vector<ChiefRayAngleRow>& rows) {
+  Plot plot;
+  plot.title = "Chief-ray angle at the sensor";
+  plot.x = {"real image height", "mm"};
+  plot.y = {"angle against the normal", "deg"};
+  add_curves(
+      plot, rows, [](const ChiefRayAngleRow& row) { return row.real_image_height_mm; },
+      [](const ChiefRayAngleRow& row) { return row.chief_ray_angle_deg; });
+  return plot;
+}
+
+}  // namespace petzval

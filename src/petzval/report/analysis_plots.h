@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots of analyses over field and frequency, the same for the program's --plot and for report pages.
+#pragma once
+
+#include <petzval/report/analysis_tables.h>
+#include <petzval/report/svg_plot.h>
+
+#include <vector>
+
+namespace petzval {
+
+// Rows of all of these are in the order fields × wavelengths, as the analyses give them.
+
+Plot seidel_plot(const SeidelSums& sums);
+
+/// A pair of curves a field and wavelength over frequency, tangential drawn through, sagittal dashed.
+Plot mtf_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t frequencies);
+/// A pair of curves a frequency over the field.
+Plot mtf_field_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t frequencies);
+
+/// The three curves by which designers know a lens: field upwards, aberration to the right.
+Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows);
+Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
+Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows);
+
+Plot lateral_colour_plot(Fields::Kind kind, const std::vector<LateralColourRow>& rows);
+Plot illumination_plot(const std::vector<IlluminationRow>& rows);
+Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows);
+Plot chief_ray_angle_plot(const std::vector<ChiefRayAngleRow>& rows);
+
+}  // namespace petzval

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/report/analysis_tables.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+
+template <class Row>
+struct Column {
+  TableColumn column;
+  std::function<TableCell(const Row&)> value;
+};
+
+TableColumn field_column(Fields::Kind kind) {
+  const std::string name = to_string(kind);
+  return {name.substr(0, name.rfind('_')), field_unit(kind), 3, "field"};
+}
+
+const TableColumn wavelength_column{"wavelength", "nm", 2, "wavelength_nm"};
+const TableColumn height_column{"image height", "mm", 5, "real_image_height_mm"};
+
+template <class Row>
+Table make(Fields::Kind kind, const std::vector<Row>& rows, const std::vector<Column<Row>>& columns) {
+  Table table{{field_column(kind), wavelength_column}, {}};
+  for (const Column<Row>& each : columns) table.columns.push_back(each.column);
+  for (const Row& row : rows) {
+    std::vector<TableCell> cells{row.field, row.wavelength_nm > 0 ? row.wavelength_nm : gap};
+    for (const Column<Row>& each : columns) cells.push_back(each.value(row));
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+std::string surface_text(int surface) {
+  return surface < 0 ? "" : fmt::format("{}", surface);
+}
+
+}  // namespace
+
+Table tabulate(Fields::Kind kind, const std::vector<SpotRow>& rows) {
+  using Row = SpotRow;
+  return make<Row>(
+      kind, rows,
+      {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+       {{"centroid", "µm", 3, "centroid_um"}, [](const Row& row) { return row.centroid_um; }},
+       {{"RMS radius", "µm", 3, "rms_radius_um"}, [](const Row& row) { return row.rms_radius_um; }},
+       {{"RMS x", "µm", 3, "rms_x_um"}, [](const Row& row) { return row.rms_x_um; }},
+       {{"RMS y", "µm", 3, "rms_y_um"}, [](const Row& row) { return row.rms_y_um; }},
+       {{"100 % radius", "µm", 3, "max_radius_um"}, [](const Row& row) { return row.max_radius_um; }},
+       {{"Airy radius", "µm", 3, "airy_radius_um"}, [](const Row& row) { return row.airy_radius_um; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<WavefrontRow>& rows) {
+  using Row = WavefrontRow;
+  return make<Row>(kind, rows,
+                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"RMS", "waves", 4, "rms_waves"}, [](const Row& row) { return row.rms_waves; }},
+                    {{"RMS without tilt", "waves", 4, "rms_without_tilt_waves"},
+                     [](const Row& row) { return row.rms_without_tilt_waves; }},
+                    {{"PV", "waves", 4, "pv_waves"}, [](const Row& row) { return row.pv_waves; }},
+                    {{"Strehl", "", 4, "strehl"}, [](const Row& row) { return row.strehl; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows) {
+  using Row = MtfRow;
+  return make<Row>(
+      kind, rows,
+      {{{"frequency", "cycles/mm", 2, "frequency_cpmm"}, [](const Row& row) { return row.frequency_cpmm; }},
+       {{"tangential", "", 4, "tangential"}, [](const Row& row) { return row.tangential; }},
+       {{"sagittal", "", 4, "sagittal"}, [](const Row& row) { return row.sagittal; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
+  using Row = DistortionRow;
+  return make<Row>(
+      kind, rows,
+      {{{"image height", "mm", 5, "image_height_mm"}, [](const Row& row) { return row.image_height_mm; }},
+       {{"paraxial height", "mm", 5, "paraxial_image_height_mm"},
+        [](const Row& row) { return row.paraxial_image_height_mm; }},
+       {{"distortion", "%", 3, "distortion_percent"}, [](const Row& row) { return row.distortion_percent; }},
+       {{"against f·θ", "%", 3, "distortion_ftheta_percent"},
+        [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows) {
+  using Row = IlluminationRow;
+  return make<Row>(kind, rows,
+                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"g_sensor", "sr", 5, "g_sensor_sr"}, [](const Row& row) { return row.g_sensor_sr; }},
+                    {{"g_source", "sr", 5, "g_source_sr"}, [](const Row& row) { return row.g_source_sr; }},
+                    {{"relative illumination", "", 4, "relative_illumination"},
+                     [](const Row& row) { return row.relative_illumination; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows) {
+  using Row = FieldCurvatureRow;
+  return make<Row>(
+      kind, rows,
+      {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+       {{"tangential focus", "mm", 5, "tangential_mm"}, [](const Row& row) { return row.tangential_mm; }},
+       {{"sagittal focus", "mm", 5, "sagittal_mm"}, [](const Row& row) { return row.sagittal_mm; }},
+       {{"astigmatism", "mm", 5, "astigmatism_mm"},
+        [](const Row& row) { return row.tangential_mm - row.sagittal_mm; }},
+       {{"Petzval", "mm", 5, "petzval_mm"}, [](const Row& row) { return row.petzval_mm; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows) {
+  using Row = LateralColourRow;
+  return make<Row>(kind, rows,
+                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"lateral colour", "µm", 4, "lateral_colour_um"},
+                     [](const Row& row) { return row.lateral_colour_um; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<VignettingRow>& rows) {
+  using Row = VignettingRow;
+  return make<Row>(
+      kind, rows,
+      {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+       {{"open share", "", 4, "open_share"}, [](const Row& row) { return row.open_share; }},
+       {{"pupil low", "", 4, "pupil_low"}, [](const Row& row) { return row.pupil_low; }},
+       {{"pupil high", "", 4, "pupil_high"}, [](const Row& row) { return row.pupil_high; }},
+       {{"half width", "", 4, "pupil_half_width"}, [](const Row& row) { return row.pupil_half_width; }},
+       {{"low end at surface", "", 0, "low_surface"},
+        [](const Row& row) { return surface_text(row.low_surface); }},
+       {{"high end at surface", "", 0, "high_surface"},
+        [](const Row& row) { return surface_text(row.high_surface); }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<ChiefRayAngleRow>& rows) {
+  using Row = ChiefRayAngleRow;
+  return make<Row>(kind, rows,
+                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"chief-ray angle", "deg", 4, "chief_ray_angle_deg"},
+                     [](const Row& row) { return row.chief_ray_angle_deg; }},
+                    {{"mean angle of the light", "deg", 4, "mean_ray_angle_deg"},
+                     [](const Row& row) { return row.mean_ray_angle_deg; }}});
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<AberrationFans>& rows) {
+  Table table{{field_column(kind),
+               wavelength_column,
+               {"fan", "", 0, "fan"},
+               {"pupil", "", 4, "pupil"},
+               {"x", "µm", 4, "x_um"},
+               {"y", "µm", 4, "y_um"},
+               {"OPD", "waves", 5, "opd_waves"}},
+              {}};
+  for (const AberrationFans& row : rows)
+    for (const bool tangential : {true, false})
+      for (const FanPoint& point : tangential ? row.tangential : row.sagittal)
+        table.rows.push_back({row.field, row.wavelength_nm,
+                              std::string(tangential ? "tangential" : "sagittal"), point.pupil, point.x_um,
+                              point.y_um, point.opd_waves});
+  return table;
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<SpotDiagram>& rows) {
+  Table table{{field_column(kind),
+               wavelength_column,
+               {"chief ray's height", "µm", 3, "height_um"},
+               {"x", "µm", 4, "x_um"},
+               {"y", "µm", 4, "y_um"}},
+              {}};
+  for (const SpotDiagram& row : rows)
+    for (std::size_t i = 0; i < row.x_um.size(); ++i)
+      table.rows.push_back({row.field, row.wavelength_nm, row.height_um, row.x_um[i], row.y_um[i]});
+  return table;
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<WavefrontMap>& rows) {
+  Table table{{field_column(kind),
+               wavelength_column,
+               {"x", "stop radii", 5, "x"},
+               {"y", "stop radii", 5, "y"},
+               {"W", "waves", 5, "waves"}},
+              {}};
+  for (const WavefrontMap& row : rows)
+    for (std::size_t i = 0; i < row.waves.size(); ++i) {
+      if (!std::isfinite(row.waves[i])) continue;
+      const auto size = static_cast<std::size_t>(row.size);
+      const auto at = [&](std::size_t k) { return 2.0 * static_cast<double>(k) / (row.size - 1) - 1; };
+      table.rows.push_back({row.field, row.wavelength_nm, at(i % size), at(i / size), row.waves[i]});
+    }
+  return table;
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<WavefrontZernikeRow>& rows, ZernikeOrder order) {
+  Table table{{field_column(kind),
+               wavelength_column,
+               {"term", "", 0, "index"},
+               {"n", "", 0, "n"},
+               {"m", "", 0, "m"},
+               {"name", "", 0, "name"},
+               {"coefficient", "waves", 5, "coefficient_waves"}},
+              {}};
+  for (const WavefrontZernikeRow& row : rows)
+    for (std::size_t j = 0; j < row.coefficients.size(); ++j) {
+      const int index = static_cast<int>(j) + 1;
+      const ZernikeTerm term = zernike_term(order, index);
+      table.rows.push_back({row.field, row.wavelength_nm, static_cast<double>(index),
+                            static_cast<double>(term.n), static_cast<double>(term.m), zernike_name(term),
+                            row.coefficients[j]});
+    }
+  return table;
+}
+
+Table tabulate(const std::vector<AxialFocusRow>& rows) {
+  Table table{{{"zone", "stop radii", 3, "zone"}, wavelength_column, {"focus", "mm", 5, "focus_mm"}}, {}};
+  for (const AxialFocusRow& row : rows) table.rows.push_back({row.zone, row.wavelength_nm, row.focus_mm});
+  return table;
+}
+
+Table tabulate(const SeidelSums& sums) {
+  Table table{{{"surface", "", 0, "surface"},
+               {"S1 spherical", "mm", 6, "s1"},
+               {"S2 coma", "mm", 6, "s2"},
+               {"S3 astigmatism", "mm", 6, "s3"},
+               {"S4 Petzval", "mm", 6, "s4"},
+               {"S5 distortion", "mm", 6, "s5"},
+               {"CL axial colour", "mm", 6, "cl"},
+               {"CT lateral colour", "mm", 6, "ct"}},
+              {}};
+  const auto add = [&](const std::string& name, const SeidelTerms& terms) {
+    table.rows.push_back({name, terms.s1, terms.s2, terms.s3, terms.s4, terms.s5, terms.cl, terms.ct});
+  };
+  for (std::size_t i = 0; i < sums.surfaces.size(); ++i) add(fmt::format("{}", i), sums.surfaces[i]);
+  add("sum", sums.sum);
+  return table;
+}
+
+}  // namespace petzval
