@@ -9,6 +9,7 @@
 
 #include "field_option.h"
 #include "lens_commands.h"
+#include "loss_option.h"
 
 namespace petzval::app {
 
@@ -17,12 +18,14 @@ namespace {
 struct TableCommand {
   LensChoice lens;
   FieldChoice fields;
+  LossChoice losses;  ///< illumination only
   std::string plot;
 };
 
-std::shared_ptr<TableCommand> add_table_command(CLI::App& parent, Shared& shared, const std::string& name,
-                                                const std::string& description, const std::string& example,
-                                                void (*work)(const TableCommand&, const Shared&)) {
+/// \param counts_light  whether reflection and absorption matter to it.
+void add_table_command(CLI::App& parent, Shared& shared, const std::string& name,
+                       const std::string& description, const std::string& example, bool counts_light,
+                       void (*work)(const TableCommand&, const Shared&)) {
   auto options = std::make_shared<TableCommand>();
   CLI::App* command = add_command(parent, shared, name, description, example, true, [=, &shared] {
     if (!options->plot.empty()) require_extension(options->plot, {".svg"}, "a plot");
@@ -31,7 +34,7 @@ std::shared_ptr<TableCommand> add_table_command(CLI::App& parent, Shared& shared
   options->lens.add_to(*command);
   options->fields.add_to(*command);
   command->add_option("--plot", options->plot, "Also draw the table into this SVG file");
-  return options;
+  if (counts_light) options->losses.add_to(*command);
 }
 
 nlohmann::ordered_json table_json(const Lens& lens, const FieldTableRequest& request) {
@@ -97,7 +100,8 @@ void distortion(const TableCommand& options, const Shared& shared) {
 
 void illumination(const TableCommand& options, const Shared& shared) {
   const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
-  const FieldTableRequest request = options.fields.request(lens);
+  FieldTableRequest request = options.fields.request(lens);
+  request.losses = options.losses.losses(lens, shared);
   const std::vector<IlluminationRow> rows = illumination_table(lens, request);
   if (!options.plot.empty()) {
     Plot plot;
@@ -137,13 +141,14 @@ void illumination(const TableCommand& options, const Shared& shared) {
 
 void add_lens_distortion(CLI::App& lens, Shared& shared) {
   add_table_command(lens, shared, "distortion", "Real and paraxial image heights by field and wavelength",
-                    "petzval lens distortion edmund-54852 --fields 0,2.1,3 --wavelengths 587.56", distortion);
+                    "petzval lens distortion edmund-54852 --fields 0,2.1,3 --wavelengths 587.56", false,
+                    distortion);
 }
 
 void add_lens_illumination(CLI::App& lens, Shared& shared) {
   add_table_command(lens, shared, "illumination",
                     "Absolute and relative illumination by field and wavelength",
-                    "petzval lens illumination edmund-54852 --plot illumination.svg", illumination);
+                    "petzval lens illumination edmund-54852 --plot illumination.svg", true, illumination);
 }
 
 }  // namespace petzval::app

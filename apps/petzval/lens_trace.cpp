@@ -13,6 +13,7 @@
 
 #include "field_option.h"
 #include "lens_commands.h"
+#include "loss_option.h"
 
 namespace petzval::app {
 
@@ -25,6 +26,7 @@ struct TraceCommand {
   LensChoice lens;
   std::string rays, output;
   bool ignore_apertures = false;
+  LossChoice losses;
 };
 
 struct RayLine {
@@ -103,22 +105,38 @@ std::vector<RayLine> read_rays(const std::string& file) {
   return rays;
 }
 
+/// What the rays of one wavelength need.
+struct Prepared {
+  Tracer tracer;
+  LensTransmittance transmittance;
+};
+
+std::string result_line(const RayLine& line, const Prepared& prepared, Tracer::Clip clip, bool with_losses) {
+  std::vector<Intersection> path;
+  const Ray ray = prepared.tracer.trace(line.ray, clip, with_losses ? &path : nullptr);
+  if (ray.status != RayStatus::ok)
+    return fmt::format("{},nan,nan,nan,nan,nan,nan,nan{}\n", to_string(ray.status),
+                       with_losses ? ",nan" : "");
+  std::string text = fmt::format("ok,{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
+                                 ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0],
+                                 ray.direction[1], ray.direction[2], ray.opl_mm);
+  if (with_losses) text += fmt::format(",{:.17g}", prepared.transmittance.along(line.ray, path));
+  return text + "\n";
+}
+
 void trace(const TraceCommand& options, const Shared& shared) {
   const Lens lens = options.lens.read(shared);
   const Tracer::Clip clip = options.ignore_apertures ? Tracer::Clip::none : Tracer::Clip::apertures;
-  std::map<double, Tracer> tracers;
-  std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm\n";
+  const Losses losses = options.losses.losses(lens, shared);
+  std::map<double, Prepared> prepared;
+  std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm";
+  csv += losses.any() ? ",transmittance\n" : "\n";
   for (const RayLine& line : read_rays(options.rays)) {
-    auto tracer = tracers.find(line.wavelength_nm);
-    if (tracer == tracers.end())
-      tracer = tracers.emplace(line.wavelength_nm, Tracer(lens, line.wavelength_nm)).first;
-    const Ray ray = tracer->second.trace(line.ray, clip);
-    if (ray.status == RayStatus::ok)
-      csv += fmt::format("ok,{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", ray.point_mm[0],
-                         ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
-                         ray.direction[2], ray.opl_mm);
-    else
-      csv += fmt::format("{},nan,nan,nan,nan,nan,nan,nan\n", to_string(ray.status));
+    const double nm = line.wavelength_nm;
+    auto at = prepared.find(nm);
+    if (at == prepared.end())
+      at = prepared.emplace(nm, Prepared{Tracer(lens, nm), LensTransmittance(lens, nm, losses)}).first;
+    csv += result_line(line, at->second, clip, losses.any());
   }
   if (options.output.empty())
     fmt::print("{}", csv);
@@ -138,6 +156,7 @@ void add_lens_trace(CLI::App& lens, Shared& shared) {
       ->required();
   command->add_option("-o,--output", options->output, "CSV to write; default: standard output");
   command->add_flag("--ignore-apertures", options->ignore_apertures, "Clip no ray");
+  options->losses.add_to(*command);
 }
 
 }  // namespace petzval::app

@@ -37,6 +37,7 @@ std::vector<Row> tabulate(const Lens& lens, const FieldTableRequest& request, Ma
   std::vector<Row> rows(fields.size() * wavelengths);
   parallel_for(wavelengths, [&](std::size_t w) {
     FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip);
+    tracer.set_losses(request.losses);
     for (std::size_t f = 0; f < fields.size(); ++f) {
       Row row = make(tracer, request.fields[f], fields[f]);
       row.field = request.fields[f];
@@ -51,7 +52,7 @@ std::vector<Row> tabulate(const Lens& lens, const FieldTableRequest& request, Ma
 }  // namespace
 
 FieldTableRequest FieldTableRequest::of(const Lens& lens) {
-  return {lens.fields.kind, lens.fields.values, lens.wavelengths_nm, Tracer::Clip::apertures};
+  return {lens.fields.kind, lens.fields.values, lens.wavelengths_nm, Tracer::Clip::apertures, {}};
 }
 
 std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request) {

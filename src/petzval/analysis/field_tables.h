@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/lens/lens.h>
+#include <petzval/trace/losses.h>
 #include <petzval/trace/tracer.h>
 
 #include <optional>
@@ -16,6 +17,7 @@ struct FieldTableRequest {
   std::vector<double> fields;
   std::vector<double> wavelengths_nm;
   Tracer::Clip clip = Tracer::Clip::apertures;
+  Losses losses = {};  ///< that illumination counts
 
   /// The lens's own field kind, fields and wavelengths.
   static FieldTableRequest of(const Lens& lens);

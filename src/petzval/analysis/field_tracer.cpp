@@ -53,12 +53,22 @@ std::optional<PupilBoundary> FieldTracer::image_pupil(const ChiefRay& chief, int
 double FieldTracer::g_sensor_sr(const ChiefRay& chief) const {
   const std::optional<PupilBoundary> pupil = image_pupil(chief);
   const double n = tracer_.image_index();
-  return pupil ? n * n * pupil->area() : 0.0;
+  return pupil ? n * n * lit_area(Pencil::from_image(tracer_, chief.image_height_mm), *pupil) : 0.0;
 }
 
 double FieldTracer::g_source_sr(const ChiefRay& chief) {
   const std::optional<PupilBoundary> pupil = object_pupil(chief);
-  return pupil ? pupil->area() * object_area_per_image_area(chief) : 0.0;
+  if (!pupil) return 0.0;
+  return lit_area(Pencil::from_object(lens_, chief.object_field), *pupil) * object_area_per_image_area(chief);
+}
+
+void FieldTracer::set_losses(const Losses& losses) {
+  transmittance_.reset();
+  if (losses.any()) transmittance_.emplace(lens_, tracer_.wavelength_nm(), losses);
+}
+
+double FieldTracer::lit_area(const Pencil& pencil, const PupilBoundary& pupil) const {
+  return transmittance_ ? transmitted_area(tracer_, pencil, pupil, *transmittance_) : pupil.area();
 }
 
 double FieldTracer::object_area_per_image_area(const ChiefRay& chief) {

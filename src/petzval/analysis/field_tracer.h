@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/lens/lens.h>
+#include <petzval/trace/losses.h>
 #include <petzval/trace/pencil.h>
 #include <petzval/trace/pupil.h>
 #include <petzval/trace/tracer.h>
@@ -28,6 +29,9 @@ class FieldTracer {
   FieldTracer(const Lens& lens, double wavelength_nm, Tracer::Clip clip = Tracer::Clip::apertures);
   FieldTracer(const FieldTracer&) = delete;
   FieldTracer& operator=(const FieldTracer&) = delete;
+
+  /// From now on g_sensor and g_source count these losses. \throws InputError as LensTransmittance.
+  void set_losses(const Losses& losses);
 
   const Lens& lens() const { return lens_; }
   const Tracer& tracer() const { return tracer_; }
@@ -58,10 +62,14 @@ class FieldTracer {
   static constexpr int default_azimuths = 256;
 
  private:
+  /// ∬ T du dv.
+  double lit_area(const Pencil& pencil, const PupilBoundary& pupil) const;
+
   Lens lens_;
   Tracer tracer_;
   Tracer::Clip clip_;
   ChiefRayMarch march_;
+  std::optional<LensTransmittance> transmittance_;  ///< nothing: no loss
 };
 
 }  // namespace petzval

@@ -119,6 +119,13 @@ double Material::index(double wavelength_nm) const {
   return std::visit([&](const auto& known) { return index_in(known, wavelength_nm); }, kind_);
 }
 
+std::optional<double> Material::extinction(double wavelength_nm) const {
+  if (is_air()) return 0.0;
+  const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&kind_);
+  if (!glass || (*glass)->k_table.empty()) return {};
+  return (*glass)->extinction(wavelength_nm);
+}
+
 std::string Material::description() const {
   return std::visit([](const auto& known) { return describe(known); }, kind_);
 }

@@ -64,6 +64,9 @@ class Material {
   bool is_air() const { return std::holds_alternative<Air>(kind_); }
   /// Refractive index relative to air. \throws InputError where it is not known.
   double index(double wavelength_nm) const;
+  /// Extinction coefficient k; 0 for air, nothing where no data says (a catalogue glass without a table, a
+  /// model glass, a given index).
+  std::optional<double> extinction(double wavelength_nm) const;
   /// "air", "SCHOTT:N-BK7", "nd 1.6 Vd 60", "n 1.67", "table": for people and reports.
   std::string description() const;
 

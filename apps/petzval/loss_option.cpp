@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loss_option.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace petzval::app {
+
+namespace {
+
+constexpr const char* table_form = "wavelength_nm,air_glass or wavelength_nm,surfaces[0],surfaces[3]…";
+
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) {
+    const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
+    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+/// The coating that a column of the table fills.
+CoatingReflectance& column(Losses& losses, const std::string& name, const std::string& file, int line) {
+  if (name == "air_glass") return losses.air_glass ? *losses.air_glass : losses.air_glass.emplace();
+  std::size_t surface = 0;
+  const char* const digits = name.data() + std::string_view("surfaces[").size();
+  if (name.starts_with("surfaces[") && name.ends_with("]")) {
+    const auto [end, error] = std::from_chars(digits, name.data() + name.size() - 1, surface);
+    if (error == std::errc() && end == name.data() + name.size() - 1) return losses.surfaces[surface];
+  }
+  throw InputError(file, line, fmt::format("a column '{}'; the header must be {}", name, table_form));
+}
+
+void read_table(const std::string& file, Losses& losses) {
+  std::istringstream in(read_whole_file(file));
+  std::vector<std::string> header;
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    const std::vector<std::string> cells = cells_of(text);
+    if (cells.empty() || cells[0].empty() || cells[0].front() == '#') continue;
+    if (header.empty()) {
+      if (cells.size() < 2 || cells[0] != "wavelength_nm")
+        throw InputError(file, line,
+                         fmt::format("no table of reflectances; its header must be {}", table_form));
+      if (std::set<std::string>(cells.begin(), cells.end()).size() != cells.size())
+        throw InputError(file, line, "a column stands twice in the header; once would be right");
+      header = cells;
+      continue;
+    }
+    if (cells.size() != header.size())
+      throw InputError(file, line, fmt::format("{} values under {} columns", cells.size(), header.size()));
+    for (std::size_t c = 1; c < header.size(); ++c) {
+      const std::optional<double> wavelength = number(cells[0]), reflectance = number(cells[c]);
+      if (!wavelength || !reflectance || *reflectance < 0 || *reflectance > 1)
+        throw InputError(
+            file, line,
+            fmt::format("'{}' at '{}' nm; a reflectance from 0 to 1 would be right", cells[c], cells[0]));
+      auto& table = column(losses, header[c], file, line).table;
+      if (!table.empty() && !(*wavelength > table.back().first))
+        throw InputError(file, line, "the wavelengths of a coating must increase");
+      table.emplace_back(*wavelength, *reflectance);
+    }
+  }
+  if (!losses.air_glass && losses.surfaces.empty())
+    throw InputError(file,
+                     fmt::format("holds no reflectances; {} and rows of numbers would be right", table_form));
+}
+
+}  // namespace
+
+void LossChoice::add_to(CLI::App& command) {
+  command.add_flag("--fresnel", fresnel, "Count reflection at bare glass surfaces (Fresnel)");
+  command.add_option(
+      "--coating", coating,
+      "Reflectance of coated surfaces: a number for all between air and glass, or a CSV file with "
+      "columns wavelength_nm and air_glass or surfaces[0], surfaces[3]…");
+  command.add_flag("--absorption", absorption, "Count absorption in the glass, by the catalogue's k");
+}
+
+Losses LossChoice::losses(const Lens& lens, const Shared& shared) const {
+  Losses losses;
+  losses.fresnel = fresnel;
+  losses.absorption = absorption;
+  if (const std::optional<double> reflectance = number(coating))
+    losses.air_glass = CoatingReflectance::constant(*reflectance);
+  else if (!coating.empty())
+    read_table(coating, losses);
+  losses.validate(lens);
+  if (absorption) {
+    std::set<std::string> clear;
+    for (const Surface& surface : lens.surfaces)
+      if (!surface.material.extinction(lens.reference_wavelength_nm))
+        clear.insert(surface.material.description());
+    for (const std::string& name : clear)
+      note(shared, fmt::format("no absorption data for {}: taken as perfectly clear", name));
+  }
+  return losses;
+}
+
+}  // namespace petzval::app

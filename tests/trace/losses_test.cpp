@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Losses against Fresnel's and Lambert's laws worked by hand.
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/glass/catalogue.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/trace/losses.h>
+
+#include <cmath>
+
+#include "trace/sample_lenses.h"
+
+namespace petzval {
+namespace {
+
+constexpr double lambda_nm = 587.5618;
+
+/// A plane-parallel plate, the stop in front.
+Lens plate(Material material, double thickness_mm) {
+  Lens lens;
+  lens.name = "plate";
+  lens.surfaces = {sample::surface(0, thickness_mm, 1), sample::surface(0, 10, 1)};
+  lens.surfaces[0].material = std::move(material);
+  lens.surfaces[0].stop = true;
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 100};
+  return lens;
+}
+
+Ray tilted(double angle, double roll = 0) {
+  return {{0, 0, -1}, {std::sin(angle) * std::sin(roll), std::sin(angle) * std::cos(roll), std::cos(angle)}};
+}
+
+double transmittance(const Lens& lens, const Losses& losses, const Ray& ray) {
+  const Tracer tracer(lens, lambda_nm);
+  std::vector<Intersection> path;
+  EXPECT_EQ(tracer.trace(ray, Tracer::Clip::none, &path).status, RayStatus::ok);
+  return LensTransmittance(lens, lambda_nm, losses).along(ray, path);
+}
+
+Losses fresnel_only() {
+  Losses losses;
+  losses.fresnel = true;
+  return losses;
+}
+
+TEST(Losses, NormalIncidenceReflectsTheSquareOfTheIndexStep) {
+  const double n = 1.5, reflectance = 0.04;  // (0.5/2.5)²
+  EXPECT_NEAR(transmittance(plate(Material(Material::Constant{n}), 5), fresnel_only(), tilted(0)),
+              (1 - reflectance) * (1 - reflectance), 1e-15);
+}
+
+TEST(Losses, ATiltedPlatePolarises) {
+  // Fresnel in the forms of sines and tangents (Born & Wolf 1.5.2, eq. 21), which the code does not use:
+  // Rs = sin²(a−b)/sin²(a+b), Rp = tan²(a−b)/tan²(a+b). Two surfaces: (Ts² + Tp²)/2, not ((Ts + Tp)/2)².
+  const double n = 1.6;
+  for (const double degrees : {20.0, 45.0, 70.0})
+    for (const double roll : {0.0, 0.7, 2.0}) {
+      const double a = degrees * M_PI / 180, b = std::asin(std::sin(a) / n);
+      const double ts = 1 - std::pow(std::sin(a - b) / std::sin(a + b), 2);
+      const double tp = 1 - std::pow(std::tan(a - b) / std::tan(a + b), 2);
+      EXPECT_NEAR(transmittance(plate(Material(Material::Constant{n}), 5), fresnel_only(), tilted(a, roll)),
+                  0.5 * (ts * ts + tp * tp), 1e-14)
+          << degrees;
+    }
+}
+
+TEST(Losses, BrewstersAngleReflectsOneOfTwoPolarisations) {
+  const double n = 1.6, brewster = std::atan(n);
+  const double ts = 1 - std::pow((n * n - 1) / (n * n + 1), 2);  // of one surface, exactly
+  EXPECT_NEAR(transmittance(plate(Material(Material::Constant{n}), 5), fresnel_only(), tilted(brewster)),
+              0.5 * (ts * ts + 1), 1e-14);
+}
+
+TEST(Losses, AbsorptionIsLamberts) {
+  Glass glass;
+  glass.catalogue = "TEST";
+  glass.name = "GREY";
+  glass.formula = 5;
+  glass.coefficients = {1.5};
+  glass.shortest_nm = 300;
+  glass.longest_nm = 2000;
+  glass.k_table = {{300, 1e-6}, {2000, 1e-6}};
+  Losses losses;
+  losses.absorption = true;
+  const Lens lens = plate(Material(std::make_shared<const Glass>(glass)), 8);
+  const double per_mm = 4 * M_PI * 1e-6 / (lambda_nm * 1e-6);
+  EXPECT_NEAR(transmittance(lens, losses, tilted(0)), std::exp(-8 * per_mm), 1e-14);
+  const double inside = std::asin(std::sin(0.5) / 1.5);
+  EXPECT_NEAR(transmittance(lens, losses, tilted(0.5)), std::exp(-8 * per_mm / std::cos(inside)), 1e-14);
+}
+
+TEST(Losses, GlassOfTheCatalogueAbsorbsByItsTable) {
+  // SCHOTT:SF6 in the refractiveindex.info database: k = 2.8412e-7 at 400 nm, so exp(−4π k 10 mm/400 nm).
+  const Lens lens = plate(Material(GlassCatalogue::bundled().find("SCHOTT:SF6")), 10);
+  Losses losses;
+  losses.absorption = true;
+  const Tracer tracer(lens, 400);
+  std::vector<Intersection> path;
+  tracer.trace(tilted(0), Tracer::Clip::none, &path);
+  EXPECT_NEAR(LensTransmittance(lens, 400, losses).along(tilted(0), path), std::exp(-0.0892589), 1e-6);
+}
+
+TEST(Losses, CoatingsBySurfaceTakeTheirShare) {
+  Losses losses;
+  losses.fresnel = true;
+  losses.air_glass = CoatingReflectance{{{400, 0.03}, {600, 0.01}}};  // 0.011244 at 587.5618 nm
+  losses.surfaces[1] = CoatingReflectance::constant(0.25);
+  const double first = 0.03 - 0.02 * (lambda_nm - 400) / 200;
+  EXPECT_NEAR(transmittance(plate(Material(Material::Constant{1.6}), 5), losses, tilted(0.3)),
+              (1 - first) * 0.75, 1e-14);
+  EXPECT_EQ(losses.air_glass->at(300), 0.03);
+  EXPECT_EQ(losses.air_glass->at(900), 0.01);
+}
+
+TEST(Losses, AirGlassCoatingLeavesCementedSurfacesBare) {
+  Lens lens;
+  lens.surfaces = {sample::surface(0, 2, 1.5), sample::surface(0, 2, 1.7), sample::surface(0, 10, 1)};
+  lens.surfaces[0].stop = true;
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 10};
+  Losses losses = fresnel_only();
+  losses.air_glass = CoatingReflectance::constant(0);
+  EXPECT_NEAR(transmittance(lens, losses, tilted(0)), 1 - std::pow(0.2 / 3.2, 2), 1e-15);
+}
+
+TEST(Losses, TheSameForwardsAndBackwards) {
+  // Reciprocity: a skew ray through a real lens and the same ray back lose the same.
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const Tracer tracer(lens, lambda_nm);
+  Losses losses;
+  losses.fresnel = losses.absorption = true;
+  const LensTransmittance transmittance(lens, lambda_nm, losses);
+  const Ray there{{6, -4, -5}, {0.1, 0.15, std::sqrt(1 - 0.0325)}};
+  std::vector<Intersection> path, path_back;
+  const Ray end = tracer.trace(there, Tracer::Clip::none, &path);
+  ASSERT_EQ(end.status, RayStatus::ok);
+  Ray back = end;
+  for (double& cosine : back.direction) cosine = -cosine;
+  ASSERT_EQ(tracer.trace_backward(back, Tracer::Clip::none, &path_back).status, RayStatus::ok);
+  const double forward = transmittance.along(there, path);
+  EXPECT_NEAR(transmittance.along(back, path_back, true), forward, 1e-13);
+  EXPECT_LT(forward, 0.7) << "ten air-glass surfaces";
+  EXPECT_GT(forward, 0.4);
+}
+
+TEST(Losses, RefusesNonsense) {
+  const Lens lens = plate(Material(Material::Constant{1.5}), 5);
+  Losses losses;
+  losses.surfaces[2] = CoatingReflectance::constant(0.1);
+  EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
+  losses.surfaces.clear();
+  losses.air_glass = CoatingReflectance::constant(1.1);
+  EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
+  losses.air_glass = CoatingReflectance{{{500, 0.1}, {400, 0.1}}};
+  EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
+  losses.air_glass = CoatingReflectance{};
+  EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
+}
+
+TEST(Losses, SayWhatIsNotKnown) {
+  Losses losses;
+  losses.absorption = true;
+  const Lens lens = plate(Material(Material::Constant{1.5}), 5);
+  EXPECT_EQ(LensTransmittance(lens, lambda_nm, losses).clear_for_want_of_data().size(), 1u);
+}
+
+}  // namespace
+}  // namespace petzval
