@@ -6,7 +6,9 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/product_blur.h>
 
+#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -98,5 +100,104 @@ void checkerboard_768x576_blended(benchmark::State& state) {
   run(state, BlurMethod::blended, {587.5618}, {768, 576, 6.25}, 0);
 }
 BENCHMARK(checkerboard_768x576_blended)->Unit(benchmark::kMillisecond);
+
+/// A lens whose PSFs fill 32 (or as many as asked for) pixels: a comatic core with a wide skirt.
+LensDataTable wide_table(const std::vector<double>& wavelengths_nm, double pixels, double pitch_um,
+                         double half_diagonal_mm) {
+  LensDataTable table;
+  table.wavelengths_nm = wavelengths_nm;
+  for (int step = 0; step <= 20; ++step) {
+    const double share = step / 20.0;
+    table.fields.push_back(31 * share);
+    for (const double nm : wavelengths_nm) {
+      Psf psf;
+      psf.size = 4 * static_cast<int>(pixels / std::sqrt(2.0));  // its corners reach `pixels` / 2
+      psf.spacing_um = pitch_um / 4;
+      double sum = 0;
+      for (int i = 0; i < psf.size; ++i)
+        for (int j = 0; j < psf.size; ++j) {
+          const double s = (j - psf.size / 2) * psf.spacing_um / pitch_um,
+                       t = (i - psf.size / 2) * psf.spacing_um / pitch_um - share * share;
+          const double width = (1.0 + share * share + t * share * share / 10) * nm / 550;
+          const double value = std::exp(-(s * s + t * t) / (2 * width * width)) + 0.002 / (1 + s * s + t * t);
+          psf.values.push_back(static_cast<float>(value));
+          sum += value;
+        }
+      for (float& value : psf.values) value = static_cast<float>(value / sum);
+      table.real_image_height_mm.push_back(half_diagonal_mm * 1.1 * share);
+      table.g_source_sr.push_back(0.22);
+      table.g_sensor_sr.push_back(0.22);
+      table.psf.push_back(std::move(psf));
+    }
+  }
+  return table;
+}
+
+CellPlane texture(const SensorGeometry& grid) {
+  CellPlane plane(grid);
+  unsigned state = 1;
+  for (float& value : plane.values) {
+    state = state * 1664525U + 1013904223U;
+    value = float(state >> 8) / float(1 << 24);
+  }
+  return plane;
+}
+
+/// Filtering alone, transfer functions made: 768 × 576 pixels, PSFs of 32 pixels, at the tolerance 10^-range.
+void product_768x576(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const double pitch_um = 6.25;
+  const LensDataTable table = wide_table({550}, 32, pitch_um, 3);
+  const PsfField psfs(table, 550, pitch_um);
+  const CellPlane source = texture(grown({768, 576, pitch_um}, psfs.radius()));
+  const auto plan = plan_product(psfs, source.grid, {std::pow(10.0, -double(state.range(0)))});
+  if (!plan) return state.SkipWithError("no plan");
+  const ProductBlur blur(psfs, source.grid, *plan);
+  for (auto _ : state) benchmark::DoNotOptimize(blur.blur(source, psfs.radius()));
+  state.counters["nodes"] = plan->nodes;
+  state.counters["tile"] = plan->tile;
+  state.counters["transform"] = plan->transform;
+  state.counters["radius"] = psfs.radius();
+  state.counters["model_ms"] = plan->filter_ns * 1e-6;
+  state.counters["error"] = plan->estimated_error;
+}
+BENCHMARK(product_768x576)->Arg(2)->Arg(3)->Arg(4)->Unit(benchmark::kMillisecond);
+
+/// The same light through plain sections of 16 pixels with FFTW, kernels included.
+void sections_768x576(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const double pitch_um = 6.25;
+  const LensDataTable table = wide_table({550}, 32, pitch_um, 3);
+  const PsfField psfs(table, 550, pitch_um);
+  const CellPlane source = texture(grown({768, 576, pitch_um}, psfs.radius()));
+  for (auto _ : state) benchmark::DoNotOptimize(blur_sections(source, psfs, psfs.radius(), {16, 0}));
+}
+BENCHMARK(sections_768x576)->Unit(benchmark::kMillisecond);
+
+/// What the cost model says of one layout, and what it takes: filtering, and making the kernels.
+void layout(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const double pitch_um = 6.25;
+  const auto transform = static_cast<int>(state.range(0)), nodes = static_cast<int>(state.range(1));
+  const LensDataTable table = wide_table({550}, transform / 2.5, pitch_um, 3);
+  const PsfField psfs(table, 550, pitch_um);
+  const CellPlane source = texture(grown({768, 576, pitch_um}, psfs.radius()));
+  const int tile = transform - 2 * psfs.radius();
+  ProductOptions options;
+  options.tile = tile;
+  options.nodes = nodes;
+  const auto plan = plan_product(psfs, source.grid, options);
+  if (!plan) return state.SkipWithError("no plan");
+  const auto start = std::chrono::steady_clock::now();
+  const ProductBlur blur(psfs, source.grid, *plan);
+  state.counters["kernels_ms"] =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  for (auto _ : state) benchmark::DoNotOptimize(blur.blur(source, psfs.radius()));
+  state.counters["transform"] = plan->transform;
+  state.counters["tile"] = tile;
+  state.counters["model_ms"] = plan->filter_ns * 1e-6;
+  state.counters["kernels_model_ms"] = plan->kernels_ns * 1e-6;
+}
+BENCHMARK(layout)->ArgsProduct({{16, 32, 64, 128, 256}, {2, 3, 4}})->Unit(benchmark::kMillisecond);
 
 }  // namespace

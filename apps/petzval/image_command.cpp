@@ -34,9 +34,10 @@ struct ImageCommand {
   LensChoice lens;
   FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
   std::string optics, sensor;
-  std::string focus = "auto", method = "blended", interpolate = "psf", fit = "monotone", surround = "error";
+  std::string focus = "auto", method = "product", interpolate = "psf", fit = "monotone", surround = "error";
   std::optional<double> f_number;
   SectionOptions sections;
+  ProductOptions product;
   int supersample = 1, bits = 8;
   std::vector<std::string> outputs;
 };
@@ -57,12 +58,35 @@ void check_outputs(const std::vector<std::string>& outputs) {
   }
 }
 
+/// Options of one method with another would do nothing.
+void check_method(const ImageCommand& command) {
+  const bool by_sections = command.method == "sections" || command.method == "blended";
+  const SectionOptions sections;
+  const ProductOptions product;
+  const auto refuse = [&](bool given, const char* option, const char* methods) {
+    if (given)
+      throw InputError(
+          fmt::format("{} has no effect on --method {}; it belongs to {}", option, command.method, methods));
+  };
+  refuse(!by_sections && command.sections.section != sections.section, "--section",
+         "--method sections and blended");
+  refuse(!by_sections && command.sections.transform != sections.transform, "--transform",
+         "--method sections and blended");
+  const bool by_product = command.method == "product";
+  refuse(!by_product && command.product.tolerance != product.tolerance, "--tolerance", "--method product");
+  refuse(!by_product && command.product.nodes != product.nodes, "--nodes", "--method product");
+  refuse(!by_product && command.product.tile != product.tile, "--tile", "--method product");
+}
+
 ImagingOptions imaging_options(const ImageCommand& command) {
+  check_method(command);
   ImagingOptions options;
   options.method = command.method == "none"       ? BlurMethod::none
                    : command.method == "exact"    ? BlurMethod::exact
                    : command.method == "sections" ? BlurMethod::sections
-                                                  : BlurMethod::blended;
+                   : command.method == "blended"  ? BlurMethod::blended
+                                                  : BlurMethod::product;
+  options.product = command.product;
   options.sections = command.sections;
   options.interpolation = command.interpolate == "otf" ? PsfInterpolation::otf : PsfInterpolation::psf;
   options.fit = RadialFit::parse(command.fit);
@@ -190,6 +214,14 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
   const std::string between = options.interpolation == PsfInterpolation::otf ? "OTFs" : "PSFs";
   if (options.method == BlurMethod::exact)
     return fmt::format("exact, every cell its own PSF; {} interpolated", between);
+  if (options.method == BlurMethod::product) {
+    const ProductPlan& plan = report.product;
+    const std::string error = fmt::format("estimated error {:.1e} of {:g}; {} interpolated",
+                                          plan.estimated_error, options.product.tolerance, between);
+    if (plan.transform == 0) return fmt::format("blended sections of {0} x {0} cells, {1}", plan.tile, error);
+    return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, transforms of {2} x {2}, {3}",
+                       plan.nodes, plan.tile, plan.transform, error);
+  }
   return fmt::format("{3}sections of {0} x {0} cells, transforms of {1} x {1}; {2} interpolated",
                      options.sections.section, report.transform_size, between,
                      options.method == BlurMethod::blended ? "blended " : "");
@@ -218,8 +250,10 @@ nlohmann::ordered_json summary_json(const SpectralImage& image, const Scene& sce
           {"irradiance_unit", "W.m^-2.nm^-1"},
           {"irradiance_min", report.darkest},
           {"irradiance_max", report.brightest},
+          {"estimated_error", report.product.estimated_error},
           {"distortion_seconds", report.distortion_seconds},
           {"blur_seconds", report.blur_seconds},
+          {"kernel_seconds", report.kernel_seconds},
           {"notes", report.notes},
           {"outputs", outputs}};
 }
@@ -322,11 +356,20 @@ void add_lens_options(CLI::App& command, ImageCommand& options) {
 
 void add_method_options(CLI::App& command, ImageCommand& options) {
   command
-      .add_option("--method", options.method,
-                  "Blur: one PSF a section, which fades into the next (blended) or does not (sections, as in "
-                  "the 2005 paper); one PSF a cell (exact, slow); none")
-      ->check(CLI::IsMember({"blended", "sections", "exact", "none"}))
+      .add_option(
+          "--method", options.method,
+          "Blur: as many PSFs as --tolerance needs (product); one PSF a section, which fades into the "
+          "next (blended) or does not (sections, as in the 2005 paper); one PSF a cell (exact, slow); "
+          "none")
+      ->check(CLI::IsMember({"product", "blended", "sections", "exact", "none"}))
       ->capture_default_str();
+  command
+      .add_option("--tolerance", options.product.tolerance,
+                  "Relative L2 error of product against exact, at most (of an image of points)")
+      ->capture_default_str();
+  command.add_option("--nodes", options.product.nodes,
+                     "PSFs along a side of a tile of product; 0: as --tolerance needs");
+  command.add_option("--tile", options.product.tile, "Cells along a side of a tile of product; 0: chosen");
   command.add_option("--section", options.sections.section, "Cells along a side of a section")
       ->capture_default_str();
   command

@@ -69,8 +69,13 @@ class Image(ProgramTest):
         self.assert_refused("image", "studio", *SMALL, "-o", "a.png", words=["--lens", "--optics"])
         self.assert_refused(*lens, "--optics", "t.h5", "-o", "a.png", words=["either"])
         self.assert_refused(*lens, "--focus", "sideways", "-o", "a.png", words=["sideways", "auto"])
-        self.assert_refused(*lens, "--section", "0", "-o", "a.png", words=["sections of 0"])
-        self.assert_refused(*lens, "--transform", "18", "-o", "a.png", words=["transforms of 18"])
+        self.assert_refused(*lens, "--method", "sections", "--section", "0", "-o", "a.png", words=["sections of 0"])
+        self.assert_refused(*lens, "--method", "blended", "--transform", "18", "-o", "a.png",
+                            words=["transforms of 18"])
+        self.assert_refused(*lens, "--transform", "64", "-o", "a.png", words=["--transform", "--method sections"])
+        self.assert_refused(*lens, "--method", "exact", "--tolerance", "1e-4", "-o", "a.png",
+                            words=["--tolerance", "product"])
+        self.assert_refused(*lens, "--tolerance", "0", "-o", "a.png", words=["tolerance of 0"])
         self.assert_refused(*lens, "--supersample", "99", "-o", "a.png", words=["99"])
         self.assert_refused(*lens, "--fit", "17", "-o", "a.png", words=["17"])
         self.assert_refused(*lens, "--f-number", "0.5", "-o", "a.png", words=["0.5"])

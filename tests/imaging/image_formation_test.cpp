@@ -223,6 +223,7 @@ TEST(FormImage, RefusesWhatDoesNotFitTogether) {
   near.set_distance_m(2);
   EXPECT_NE(message(near).find("2 m"), std::string::npos) << message(near);
   ImagingOptions options;
+  options.method = BlurMethod::sections;
   options.sections.transform = 17;
   EXPECT_NE(message(wall(1), options).find("transforms of 17"), std::string::npos);
   options = {};

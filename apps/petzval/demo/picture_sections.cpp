@@ -152,7 +152,7 @@ void checkerboard_section(Demo& demo, const LensDataTable& table) {
   add_profile(ideal_profile, before, row, "");
   profile.title = "Through the lens";
   add_profile(profile, after.image, row, "sections, as in the paper");
-  add_profile(profile, seamless.image, row, "blended sections, the default here");
+  add_profile(profile, seamless.image, row, "product convolution, the default here");
   demo.write("fig11-profile.svg", profile.svg());
 
   demo.page.section("A checkerboard through the lens (figures 10 and 11)", "Checkerboard")

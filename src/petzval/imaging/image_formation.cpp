@@ -5,6 +5,7 @@
 #include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/exact_blur.h>
 #include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/product_blur.h>
 
 #include <algorithm>
 #include <chrono>
@@ -94,17 +95,50 @@ int points_per_cell(const std::vector<BandPlan>& plans, const SensorGeometry& fr
   return static_cast<int>(std::min<double>(most, std::ceil(samples - rounding)));
 }
 
-CellPlane blur(const CellPlane& source, const LensDataTable& table, double wavelength_nm, int margin,
-               const ImagingOptions& options, const ProgressCallback& progress) {
-  if (options.method == BlurMethod::none) return source;
-  const PsfField psfs(table, wavelength_nm, source.grid.pitch_um, options.interpolation);
-  if (options.method == BlurMethod::exact) return blur_exact(source, psfs, margin, progress);
-  return blur_sections(source, psfs, margin, options.section_options(), progress);
-}
-
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// Blurs the bands of one image, one after the other.
+class BandBlur {
+ public:
+  BandBlur(const LensDataTable& table, const ImagingOptions& options, ImagingReport& report)
+      : table_(table), options_(options), report_(report) {}
+
+  CellPlane operator()(CellPlane source, double wavelength_nm, int margin, const ProgressCallback& progress) {
+    if (options_.method == BlurMethod::none) return source;
+    const PsfField psfs(table_, wavelength_nm, source.grid.pitch_um, options_.interpolation);
+    if (options_.method == BlurMethod::exact) return blur_exact(source, psfs, margin, progress);
+    if (options_.by_sections()) return sections(source, psfs, margin, options_.section_options(), progress);
+    return product(source, psfs, margin, progress);
+  }
+
+ private:
+  CellPlane sections(const CellPlane& source, const PsfField& psfs, int margin, const SectionOptions& options,
+                     const ProgressCallback& progress) {
+    report_.transform_size = std::max(report_.transform_size, transform_size(options, psfs.radius()));
+    return blur_sections(source, psfs, margin, options, progress);
+  }
+
+  CellPlane product(const CellPlane& source, const PsfField& psfs, int margin,
+                    const ProgressCallback& progress) {
+    const auto start = std::chrono::steady_clock::now();
+    plan_ = plan_product(psfs, source.grid, options_.product, plan_);
+    const ProductPlan plan = plan_ ? *plan_ : plan_blended(psfs, source.grid, options_.product);
+    if (report_.product.tile == 0 || plan.estimated_error > report_.product.estimated_error)
+      report_.product = plan;
+    if (!plan_) return sections(source, psfs, margin, {plan.tile, 0, true}, progress);
+    const ProductBlur blur(psfs, source.grid, plan);
+    report_.transform_size = std::max(report_.transform_size, plan.transform);
+    report_.kernel_seconds += seconds_since(start);
+    return blur.blur(source, margin);
+  }
+
+  const LensDataTable& table_;
+  const ImagingOptions& options_;
+  ImagingReport& report_;
+  std::optional<ProductPlan> plan_;  ///< of the last band
+};
 
 void finish(ImagingReport& report, const SpectralImage& image, const ImagingOptions& options) {
   const auto [darkest, brightest] = std::minmax_element(image.values().begin(), image.values().end());
@@ -114,8 +148,9 @@ void finish(ImagingReport& report, const SpectralImage& image, const ImagingOpti
   if (report.darkest < -worth_a_note * report.brightest)
     report.notes.push_back(
         fmt::format("irradiance goes down to {:.3g}, {:.2g} of the brightest pixel: negative lobes "
-                    "of interpolated OTFs",
-                    report.darkest, -report.darkest / report.brightest));
+                    "of interpolated {}",
+                    report.darkest, -report.darkest / report.brightest,
+                    options.interpolation == PsfInterpolation::otf ? "OTFs" : "PSFs"));
   if (report.least_captured < 0.99)
     report.notes.push_back(
         fmt::format("the PSF windows of the lens data table hold {:.2f} % of the light and more; "
@@ -138,6 +173,7 @@ void ImagingOptions::validate() const {
   constexpr int most = 16;
   if (supersample < 1 || supersample > most)
     throw InputError(fmt::format("supersampling of {}: 1 to {} is right", supersample, most));
+  product.validate();
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
 
@@ -165,11 +201,12 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
   note_dark_corners(plans, frame, says.notes);
   says.scene_points_per_cell = points_per_cell(plans, frame);
 
+  BandBlur blur(table, options, says);
   for (int band = 0; band < scene.bands(); ++band) {
     const BandPlan& plan = plans[static_cast<std::size_t>(band)];
     const auto start = std::chrono::steady_clock::now();
-    const CellPlane ideal = ideal_irradiance(scene, band, plan.map, grown(frame, plan.margin),
-                                             says.scene_points_per_cell, options.surround);
+    CellPlane ideal = ideal_irradiance(scene, band, plan.map, grown(frame, plan.margin),
+                                       says.scene_points_per_cell, options.surround);
     says.distortion_seconds += seconds_since(start);
 
     const auto start_of_blur = std::chrono::steady_clock::now();
@@ -177,16 +214,13 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     const auto within_band = [&](double fraction, const std::string& what) {
       if (progress) progress((band + fraction) / scene.bands(), what);
     };
-    const CellPlane blurred = blur(ideal, table, wavelength_nm, plan.margin, options, within_band);
+    const CellPlane blurred = blur(std::move(ideal), wavelength_nm, plan.margin, within_band);
     says.blur_seconds += seconds_since(start_of_blur);
 
     const CellPlane pixels = averaged(blurred, options.supersample);
     std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
     says.margin_cells = std::max(says.margin_cells, plan.margin);
     says.least_captured = std::min(says.least_captured, plan.least_captured);
-    if (options.by_sections())
-      says.transform_size =
-          std::max(says.transform_size, transform_size(options.section_options(), plan.margin));
     if (progress) progress((band + 1.0) / scene.bands(), "image");
   }
   finish(says, image, options);

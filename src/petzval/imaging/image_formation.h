@@ -5,6 +5,7 @@
 #include <petzval/base/progress.h>
 #include <petzval/image/spectral_image.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/product_plan.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/imaging/section_blur.h>
 #include <petzval/optics/lens_data_table.h>
@@ -19,13 +20,15 @@ namespace petzval {
 
 enum class BlurMethod {
   none,      ///< distortion and illumination alone
+  product,   ///< mixtures of kernels by tiles, as many as the tolerance needs: fast, the default
   sections,  ///< one PSF a section, by Fourier transform: the paper's
   blended,   ///< the same with sections that fade into each other: no seams
   exact      ///< one PSF a cell, added up directly
 };
 
 struct ImagingOptions {
-  BlurMethod method = BlurMethod::blended;
+  BlurMethod method = BlurMethod::product;
+  ProductOptions product;
   SectionOptions sections;  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
   RadialFit fit;        ///< of distortion and g_source over image height
@@ -44,12 +47,16 @@ struct ImagingReport {
   /// Things a user should know, one line each: how the edges were treated, dark corners, light outside the
   /// PSF windows, undershoot.
   std::vector<std::string> notes;
-  int margin_cells = 0;           ///< how far light may come in from outside the frame, the most of all bands
-  int transform_size = 0;         ///< the largest, of `sections`
-  int scene_points_per_cell = 1;  ///< scene samples averaged in a cell: this squared
-  double least_captured = 1;      ///< the least share of light that a PSF window in use holds
+  int margin_cells = 0;    ///< how far light may come in from outside the frame, the most of all bands
+  int transform_size = 0;  ///< the largest, of `sections`
+  /// Of `product`: what was chosen, for the band whose estimated error is the largest; a plan without a
+  /// transform stands for blended sections of `tile` cells, which PSFs beyond its transforms need.
+  ProductPlan product;
+  int scene_points_per_cell = 1;      ///< scene samples averaged in a cell: this squared
+  double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
   double distortion_seconds = 0, blur_seconds = 0;
+  double kernel_seconds = 0;  ///< of `blur_seconds`, what `product` took to plan and to make its kernels
 };
 
 /// Forms the image, band by band (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source,
@@ -59,9 +66,9 @@ struct ImagingReport {
 /// 2. Each cell takes the scene's radiance at the object point whose chief ray lands on its centre, times
 /// g_source:
 ///    ideal_irradiance().
-/// 3. Its light is spread by the PSF of its place, integrated over the cells: blur_sections() or
+/// 3. Its light is spread by the PSF of its place, integrated over the cells: ProductBlur, blur_sections() or
 /// blur_exact().
-///    The light of a cell starts from its centre, so that PSFs much smaller than a cell want S > 1.
+///    The light of a cell starts from its centre, so that scenes much finer than a cell want S > 1.
 ///    Light may come in from outside the frame; light that leaves it is lost.
 /// 4. S × S cells are averaged into a pixel: mean irradiance over a box of one pitch (PixelAperture::box).
 ///

@@ -97,6 +97,15 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
   }
 }
 
+double PsfField::deposited_samples() const {
+  double samples = 0;
+  for (const Layer& layer : layers_) {
+    const RunningPsf& psf = layer.psfs[layer.psfs.size() / 2];
+    samples += 2.0 * psf.size() * psf.size();
+  }
+  return samples;
+}
+
 Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
   const double height_mm = std::hypot(x_mm, y_mm);
   const std::array<double, 2> direction =

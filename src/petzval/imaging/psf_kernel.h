@@ -38,6 +38,8 @@ class PsfField {
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
   int radius() const { return radius_; }
   double cell_um() const { return cell_um_; }
+  /// Samples of the table that a kernel is made of, about.
+  double deposited_samples() const;
   /// Whether all PSFs are the same left and right of the tangential plane, as those of a centred lens are;
   /// then mirrored places have mirrored kernels.
   bool mirror_symmetric() const { return mirror_symmetric_; }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How tiles cover a grid of cells, from the optical axis outwards, and where their kernels are taken.
+#pragma once
+
+#include <vector>
+
+namespace petzval {
+
+/// Cells along one axis of a grid, counted from the optical axis outwards on both sides. With an odd number
+/// of cells the one in the middle belongs to both sides, half of its light to each.
+class OutwardAxis {
+ public:
+  explicit OutwardAxis(int cells) : cells_(cells) {}
+  /// On one side.
+  int count() const { return (cells_ + 1) / 2; }
+  /// Distance of a cell's centre from the axis [cells].
+  double position(double outward) const { return odd() ? outward : outward + 0.5; }
+  /// Of the cell in the grid, on the side of growing or falling numbers; beyond the grid too.
+  int cell(int outward, bool growing) const {
+    return growing ? cells_ / 2 + outward : (cells_ - 1) / 2 - outward;
+  }
+  float share(int outward) const { return odd() && outward == 0 ? 0.5F : 1.0F; }
+
+ private:
+  bool odd() const { return cells_ % 2 != 0; }
+  int cells_;
+};
+
+/// Chebyshev-Lobatto nodes on [0, 1]: the ends and, between them, (1 − cos(πa/(n − 1)))/2. Neighbouring tiles
+/// share the nodes between them, so that a kernel is made once for all of them, and mixtures of kernels go on
+/// without a jump from one tile to the next.
+std::vector<double> lobatto_nodes(int count);
+
+/// The Lagrange polynomials of these nodes at `at`; they sum to 1.
+std::vector<double> lagrange_weights(const std::vector<double>& nodes, double at);
+
+}  // namespace petzval

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/imaging/lane_blur.h>
+#include <petzval/imaging/product_layout.h>
+#include <petzval/imaging/product_plan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace petzval {
+
+namespace {
+
+constexpr int most_nodes = 6;
+/// Places at which the error of kernels is looked at, and what their mean may miss of the whole grid's: the
+/// estimate must stay below the tolerance by this factor.
+constexpr int places = 24;
+constexpr double caution = 0.7;
+/// Transfer functions of a band may take this much memory.
+constexpr double most_otf_bytes = 768e6;
+
+/// Digit reversal: spreads `index` = 1, 2, … evenly over (0, 1).
+double radical_inverse(int index, int base) {
+  double value = 0, digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
+  return value;
+}
+
+/// Σ of squares of what interpolation along one axis adds to the kernel at a place. \param at  of the place,
+/// in cells of the axis. \param kernel_there  the kernel at a place of the axis.
+template <typename KernelThere>
+double squared_error(const Kernel& exact, int at, int tile, const std::vector<double>& nodes,
+                     const KernelThere& kernel_there) {
+  const int first = at / tile * tile;
+  const std::vector<double> weights = lagrange_weights(nodes, double(at - first) / tile);
+  std::vector<double> difference = exact.weights;
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    if (weights[a] == 0) continue;
+    const Kernel kernel = kernel_there(first + tile * nodes[a]);
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= weights[a] * kernel.weights[i];
+  }
+  double sum = 0;
+  for (const double value : difference) sum += value * value;
+  return sum;
+}
+
+/// A layout that might do, and what it would cost.
+ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int transform, int tile, int nodes) {
+  // Measured on one core of an AVX-512 machine with bench/imaging: nanoseconds of a lane.
+  constexpr double transform_ns = 0.042;  // per element and halving of a transform along a line
+  constexpr double filter_ns = 0.12;      // per element of a spectrum and kernel
+  constexpr double move_ns = 1.0;         // per cell that is read, and per cell that is added to the result
+  constexpr double deposit_ns = 2.5;      // per sample of a table's PSF and cell of a kernel
+  ProductPlan plan;
+  plan.tile = tile;
+  plan.nodes = nodes;
+  plan.transform = transform;
+  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(tile)),
+               down = std::ceil(OutwardAxis(grid.rows).count() / double(tile));
+  const double lanes = double(lane_count()), extent = tile + 2 * psfs.radius();
+  const double batches = std::ceil((across + 1) * down / lanes);
+  const double lines = nodes * tile + (nodes * nodes + 1) * transform + extent;
+  const double per_pair = lines * transform * std::log2(transform) * transform_ns +
+                          double(nodes) * nodes * transform * transform * filter_ns +
+                          2 * move_ns * (double(tile) * tile + extent * extent);
+  plan.filter_ns = 2 * batches * lanes * per_pair;
+  const double sets = psfs.mirror_symmetric() ? 1 : 2;
+  const double kernels = sets * ((nodes - 1) * across + 1) * ((nodes - 1) * down + 1);
+  plan.kernels_ns = kernels * (deposit_ns * (psfs.deposited_samples() + double(transform) * transform) +
+                               2.0 * transform * transform * std::log2(transform) * transform_ns);
+  return plan;
+}
+
+double otf_bytes(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
+  const double across = OutwardAxis(grid.columns).count() / double(plan.tile) + 2,
+               down = OutwardAxis(grid.rows).count() / double(plan.tile) + 2;
+  const double phases = double(plan.nodes - 1) * (plan.nodes - 1), sets = psfs.mirror_symmetric() ? 1 : 2;
+  return sets * phases * (across * down + double(lane_count())) * plan.transform * plan.transform * 8;
+}
+
+std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& grid,
+                                    const ProductOptions& options) {
+  std::vector<ProductPlan> plans;
+  const int widest = std::max(OutwardAxis(grid.columns).count(), OutwardAxis(grid.rows).count());
+  for (int transform = LaneTransform::smallest; transform <= LaneTransform::largest; transform *= 2) {
+    const int room = std::min(transform - 2 * psfs.radius(), widest);
+    std::vector<int> tiles;
+    if (options.tile != 0)
+      tiles = {options.tile};
+    else
+      for (int tile = room; tile >= 2; tile = tile * 2 / 3) tiles.push_back(tile);
+    for (const int tile : tiles)
+      for (int nodes = 2; nodes <= most_nodes; ++nodes)
+        if (tile <= room && nodes <= tile + 1 && (options.nodes == 0 || nodes == options.nodes))
+          plans.push_back(candidate(psfs, grid, transform, tile, nodes));
+  }
+  std::erase_if(plans, [&](const ProductPlan& plan) { return otf_bytes(psfs, grid, plan) > most_otf_bytes; });
+  std::sort(plans.begin(), plans.end(), [](const ProductPlan& a, const ProductPlan& b) {
+    return a.filter_ns + a.kernels_ns < b.filter_ns + b.kernels_ns;
+  });
+  return plans;
+}
+
+}  // namespace
+
+void ProductOptions::validate() const {
+  if (!(tolerance >= 1e-6 && tolerance <= 1))
+    throw InputError(fmt::format("a tolerance of {}: 1e-6 to 1 is right", tolerance));
+  if (nodes != 0 && (nodes < 2 || nodes > most_nodes))
+    throw InputError(
+        fmt::format("{} nodes along a tile: 2 to {} are right, or 0 to choose", nodes, most_nodes));
+  if (tile < 0 || tile == 1 || tile > LaneTransform::largest)
+    throw InputError(
+        fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, LaneTransform::largest));
+}
+
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
+  const OutwardAxis across(grid.columns), down(grid.rows);
+  const std::vector<double> lobatto = lobatto_nodes(nodes);
+  const double cell_mm = psfs.cell_um() * 1e-3;
+  const auto kernel = [&](double column, double row) {
+    return psfs.kernel_at(-across.position(column) * cell_mm, down.position(row) * cell_mm);
+  };
+  double total = 0;
+  for (int place = 1; place <= places; ++place) {
+    const int column = static_cast<int>(radical_inverse(place, 2) * across.count());
+    const int row = static_cast<int>(radical_inverse(place, 3) * down.count());
+    const Kernel exact = kernel(column, row);
+    double square = 0;
+    for (const double weight : exact.weights) square += weight * weight;
+    total += (squared_error(exact, column, tile, lobatto, [&](double at) { return kernel(at, row); }) +
+              squared_error(exact, row, tile, lobatto, [&](double at) { return kernel(column, at); })) /
+             (1 + square);
+  }
+  return std::sqrt(total / places);
+}
+
+std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
+                                        const ProductOptions& options,
+                                        const std::optional<ProductPlan>& hint) {
+  options.validate();
+  const auto serves = [&](ProductPlan& plan) {
+    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes);
+    return plan.estimated_error <= caution * options.tolerance || (options.tile != 0 && options.nodes != 0);
+  };
+  if (hint && hint->tile + 2 * psfs.radius() <= hint->transform) {
+    ProductPlan plan = candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
+    if (serves(plan)) return plan;
+  }
+  std::vector<ProductPlan> failed;
+  for (ProductPlan& plan : candidates(psfs, grid, options)) {
+    // A coarser layout than one that failed fails too.
+    const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
+      return plan.tile >= other.tile && plan.nodes <= other.nodes;
+    });
+    if (hopeless) continue;
+    if (serves(plan)) return plan;
+    failed.push_back(plan);
+  }
+  return {};
+}
+
+ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options) {
+  options.validate();
+  ProductPlan plan;
+  plan.tile = std::max(LaneTransform::largest, psfs.radius());
+  while (true) {
+    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes);
+    if (plan.estimated_error <= caution * options.tolerance || plan.tile == 1) return plan;
+    plan.tile /= 2;
+  }
+}
+
+}  // namespace petzval

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How fine the product convolution must be for the error that the user allows.
+#pragma once
+
+#include <petzval/imaging/psf_kernel.h>
+#include <petzval/sensor/sensor.h>
+
+#include <optional>
+
+namespace petzval {
+
+/// Tiles, nodes and transforms of a product convolution.
+struct ProductPlan {
+  int tile = 0;       ///< cells along a side
+  int nodes = 2;      ///< along a side of a tile
+  int transform = 0;  ///< cells along a side; tile + 2 · kernel radius fit into it
+  /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
+  /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
+  /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
+  double estimated_error = 0;
+  /// By the cost model [ns of one core of the machine that it was measured on]: filtering, and making the
+  /// transfer functions.
+  double filter_ns = 0, kernels_ns = 0;
+};
+
+struct ProductOptions {
+  double tolerance = 1e-3;  ///< relative L2 error, 1e-6 to 1
+  int nodes = 0;            ///< along a side of a tile, 2 to 6; 0: chosen
+  int tile = 0;             ///< cells along a side; 0: chosen
+
+  /// \throws InputError saying what would be right.
+  void validate() const;
+};
+
+/// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
+/// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
+/// kernels differs from it.
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes);
+
+/// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
+/// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the
+/// source. \param hint  what served a neighbouring band: it is kept if it serves.
+std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
+                                        const ProductOptions& options,
+                                        const std::optional<ProductPlan>& hint = {});
+
+/// Sections that fade into each other (SectionOptions::blend), which take PSFs of any size, with transforms
+/// by FFTW: the largest whose estimated error is within the tolerance. `transform` stays 0.
+ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options);
+
+}  // namespace petzval

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Product convolution against the exact method, at the tolerance that was asked for.
+#include "imaging/synthetic_table.h"
+
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/imaging/exact_blur.h>
+#include <petzval/imaging/product_blur.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace petzval {
+namespace {
+
+using namespace testing;
+
+constexpr double pitch_um = 6.25;
+
+CellPlane blurred(const PsfField& psfs, const CellPlane& source, int margin, const ProductPlan& plan) {
+  return ProductBlur(psfs, source.grid, plan).blur(source, margin);
+}
+
+TEST(LobattoNodes, ReachBothEndsAndTheirPolynomialsSumToOne) {
+  for (int count = 2; count <= 6; ++count) {
+    const std::vector<double> nodes = lobatto_nodes(count);
+    EXPECT_EQ(nodes.front(), 0);
+    EXPECT_NEAR(nodes.back(), 1, 1e-15);
+    for (const double at : {0.0, 0.1, 0.5, 0.77, 1.0}) {
+      double sum = 0, power = 0;
+      const std::vector<double> weights = lagrange_weights(nodes, at);
+      for (std::size_t a = 0; a < nodes.size(); ++a) {
+        sum += weights[a];
+        power += weights[a] * std::pow(nodes[a], count - 1);
+      }
+      EXPECT_NEAR(sum, 1, 1e-13);
+      EXPECT_NEAR(power, std::pow(at, count - 1), 1e-13) << "interpolation is exact up to this power";
+    }
+  }
+}
+
+// Where the PSF is the same everywhere, tiles of any size are a plain convolution: any difference is a fault
+// of layout, lanes, flips, margins or wrap-around. Rounding of float transforms: 5e-7 of the image's norm.
+TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
+  TableRecipe recipe;
+  recipe.psf = [](double, double) { return Psf{1, 20.0, {1.0F}, 1.0}; };  // a square at any azimuth
+  const PsfField psfs(make_table(recipe), 550, pitch_um);
+  for (const SensorGeometry grid :
+       {SensorGeometry{96, 64, pitch_um}, {77, 51, pitch_um}, {5, 90, pitch_um}, {1, 1, pitch_um}}) {
+    const CellPlane source = random_plane(grid);
+    const CellPlane expected = blur_exact(source, psfs, 0);
+    for (const auto& [tile, nodes, transform] : {std::tuple{8, 2, 16},
+                                                 {3, 3, 16},
+                                                 {16, 2, 32},
+                                                 {20, 4, 32},
+                                                 {50, 2, 64},
+                                                 {40, 5, 128},
+                                                 {200, 2, 256}})
+      EXPECT_LT(relative_l2(blurred(psfs, source, 0, {tile, nodes, transform}), expected), 5e-7)
+          << grid.columns << " x " << grid.rows << " in tiles of " << tile << ", " << nodes << " nodes";
+  }
+}
+
+class ProductAgainstExact : public ::testing::TestWithParam<double> {};
+
+// Tiles of two cells with nodes in both (and the next tile's first): every cell has the kernel of its own
+// place, at every azimuth, for PSFs that lean to one side too.
+TEST_P(ProductAgainstExact, AgreesToRoundingWhenEveryCellIsANode) {
+  const PsfField psfs(make_table(comatic_recipe(GetParam())), 550, 25.0);
+  for (const SensorGeometry grid : {SensorGeometry{60, 44, 25.0}, {53, 37, 25.0}}) {
+    const CellPlane source = random_plane(grid);
+    EXPECT_LT(relative_l2(blurred(psfs, source, 2, {2, 3, 16}), blur_exact(source, psfs, 2)), 5e-7);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lean, ProductAgainstExact, ::testing::Values(0.0, 0.6));
+
+/// A table whose PSF changes from a sharp point to a strong coma over half the frame of 120 × 91 cells.
+TableRecipe strong_recipe(double lean) {
+  TableRecipe recipe = comatic_recipe(lean);
+  recipe.fields.clear();
+  for (int field = 0; field <= 20; ++field) recipe.fields.push_back(field);
+  recipe.height_mm = [](double field, double) { return 1.3 * std::tan(radians(field)); };
+  recipe.psf = [lean](double field, double) {
+    const double share = field / 20, tail_um = 12 * share;
+    return psf_of_spots({{0, 0, 3, 3, 1},
+                         {lean * tail_um / 2, tail_um / 2, 3 + 2 * share, 3 + 2 * share, 0.8},
+                         {lean * tail_um, tail_um, 3 + 4 * share, 3 + 3 * share, 0.5}},
+                        49, 1.5);
+  };
+  return recipe;
+}
+
+/// Every cell from black to white at random, as fine as a texture can be.
+CellPlane texture(const SensorGeometry& grid) {
+  CellPlane plane(grid);
+  std::mt19937 random(1857);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (float& value : plane.values) value = uniform(random);
+  return plane;
+}
+
+CellPlane tilted_checkerboard(const SensorGeometry& grid) {
+  CellPlane plane(grid);
+  for (std::size_t row = 0; row < plane.rows(); ++row)
+    for (std::size_t column = 0; column < plane.columns(); ++column) {
+      const double u = 0.97 * double(column) - 0.25 * double(row),
+                   v = 0.25 * double(column) + 0.97 * double(row);
+      plane.row(row)[column] = (std::lround(u / 9) + std::lround(v / 9)) % 2 == 0 ? 1.0F : 0.02F;
+    }
+  return plane;
+}
+
+TEST(ProductBlur, KeepsTheToleranceAskedFor) {
+  for (const double lean : {0.0, 0.6}) {
+    const PsfField psfs(make_table(strong_recipe(lean)), 550, pitch_um);
+    for (const CellPlane& source : {texture({120, 91, pitch_um}), tilted_checkerboard({120, 91, pitch_um})}) {
+      const CellPlane exact = blur_exact(source, psfs, 0);
+      for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+        const auto plan = plan_product(psfs, source.grid, {tolerance});
+        ASSERT_TRUE(plan) << tolerance;
+        const double error = relative_l2(blurred(psfs, source, 0, *plan), exact);
+        std::printf("tolerance %g: %d nodes, tiles of %d, transforms of %d, estimated %.2e, measured %.2e\n",
+                    tolerance, plan->nodes, plan->tile, plan->transform, plan->estimated_error, error);
+        EXPECT_LE(error, tolerance);
+        EXPECT_LE(plan->estimated_error, tolerance);
+      }
+    }
+  }
+}
+
+// Kernels go on without a jump from tile to tile, and so does the error: the difference image steps as much
+// across the borders of tiles as within them.
+TEST(ProductBlur, HasNoSeams) {
+  const PsfField psfs(make_table(strong_recipe(0.6)), 550, pitch_um);
+  const CellPlane source = texture({200, 120, pitch_um});
+  const CellPlane exact = blur_exact(source, psfs, 0);
+  constexpr int tile = 10;
+  const CellPlane image = blurred(psfs, source, 0, {tile, 2, 32});
+  double across = 0, inside = 0;
+  int borders = 0, others = 0;
+  for (int row = 0; row < 120; ++row)
+    for (int column = 1; column < 200; ++column) {
+      const auto at = static_cast<std::size_t>(row * 200 + column);
+      const double step = (double(image.values[at]) - double(exact.values[at])) -
+                          (double(image.values[at - 1]) - double(exact.values[at - 1]));
+      const bool border = (column - 100) % tile == 0;  // tiles begin at the axis
+      (border ? across : inside) += step * step;
+      ++(border ? borders : others);
+    }
+  const double ratio = std::sqrt((across / borders) / (inside / others));
+  std::printf("RMS step across borders / within tiles: %.3f\n", ratio);
+  EXPECT_GT(inside, 0);
+  EXPECT_LT(ratio, 1.5);
+}
+
+TEST(ProductBlur, KeepsTheEnergyOfLightThatStaysInside) {
+  const PsfField psfs(make_table(strong_recipe(0.6)), 550, pitch_um);
+  CellPlane source = texture({100, 75, pitch_um});
+  const auto radius = static_cast<std::size_t>(psfs.radius());
+  for (std::size_t row = 0; row < source.rows(); ++row)
+    for (std::size_t column = 0; column < source.columns(); ++column)
+      if (row < radius || column < radius || row + radius >= source.rows() ||
+          column + radius >= source.columns())
+        source.row(row)[column] = 0;
+  // Weights and kernels sum to 1 to float rounding, at random.
+  for (const int nodes : {2, 3, 5})
+    EXPECT_NEAR(sum_of(blurred(psfs, source, 0, {12, nodes, 32})) / sum_of(source), 1, 1e-6) << nodes;
+}
+
+TEST(ProductBlur, GivesTheSameBytesForAnyNumberOfThreads) {
+  const PsfField psfs(make_table(comatic_recipe(0.6)), 550, pitch_um);
+  const CellPlane source = random_plane({411, 260, pitch_um});
+  const auto with_threads = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return blurred(psfs, source, 3, {12, 3, 32}).values;
+  };
+  EXPECT_EQ(with_threads(1), with_threads(2));
+}
+
+TEST(ProductBlur, LeavesWhatIsTooLargeForItsTransformsToSections) {
+  const PsfField psfs(make_table(comatic_recipe()), 550, 0.34);  // kernels of 269 cells
+  ASSERT_GT(2 * psfs.radius(), LaneTransform::largest);
+  const SensorGeometry grid{40, 30, 0.34};
+  EXPECT_FALSE(plan_product(psfs, grid, {1e-3}));
+  const ProductPlan plan = plan_blended(psfs, grid, {1e-3});
+  EXPECT_EQ(plan.transform, 0);
+  EXPECT_LE(plan.estimated_error, 1e-3);
+}
+
+TEST(ProductOptions, RefusesNonsense) {
+  for (const ProductOptions& options : {ProductOptions{0},
+                                        {1e-7},
+                                        {2},
+                                        {NAN},
+                                        {1e-3, 1},
+                                        {1e-3, 9},
+                                        {1e-3, 0, 1},
+                                        {1e-3, 0, 300},
+                                        {1e-3, -2}})
+    EXPECT_THROW(options.validate(), InputError);
+}
+
+}  // namespace
+}  // namespace petzval
