@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval optics build, petzval optics info: the lens data table.
 #include <fmt/format.h>
+#include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
@@ -78,6 +79,20 @@ void note_short_table(const LensDataTable& table, double wanted_mm, const Shared
                     table.lens_name, reached_mm, wanted_mm));
 }
 
+/// Windows that lose light are said: they were widened as far as they go.
+void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
+  std::size_t cut = 0;
+  double least = 1;
+  for (const Psf& psf : table.psf) {
+    if (psf.captured < PsfOptions{}.wanted_share) ++cut;
+    least = std::min(least, psf.captured);
+  }
+  if (cut > 0)
+    note(shared,
+         fmt::format("{}: {} of {} PSFs hold less than {:g} % of their light, the least {:.3g} %",
+                     table.lens_name, cut, table.psf.size(), 100 * PsfOptions{}.wanted_share, 100 * least));
+}
+
 void build(const BuildCommand& command, const Shared& shared) {
   const TableOptions options = table_options(command);
   Camera camera(command.apertures.prepare(command.lens.read(shared), shared));
@@ -86,6 +101,7 @@ void build(const BuildCommand& command, const Shared& shared) {
   ProgressBar bar(!shared.quiet);
   const LensDataTable table = build_lens_data_table(camera.lens(), options, bar.callback());
   note_short_table(table, options.max_image_height_mm, shared);
+  note_cut_psfs(table, shared);
   write_table(table, command.output);
 }
 

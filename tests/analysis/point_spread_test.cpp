@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/analysis/point_spread.h>
+#include <petzval/analysis/pupil_fit.h>
+#include <petzval/analysis/pupil_rays.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
 
@@ -43,8 +45,8 @@ TEST(PointSpread, OfAnAberrationFreeLensIsTheAiryDisc) {
     for (int j = 20; j < 41; j += 2) {
       const double x = pi * 0.25 * (j - 20);
       const double airy = x == 0 ? 1 : std::pow(2 * std::cyl_bessel_j(1.0, x) / x, 2);
-      // This lens does not meet the sine condition: rays at height h leave at tan U' ≈ h/40 (1 + …(h/40)²), which
-      // tilts the amplitude over the pupil by a few times NA².
+      // This lens does not meet the sine condition: rays at height h leave at tan U' ≈ h/40 (1 + …(h/40)²),
+      // which tilts the amplitude over the pupil by a few times NA².
       EXPECT_NEAR(psf.at(20, j) / peak, airy, 2 * std::pow(semi / 40, 2)) << semi << " " << j;
       EXPECT_NEAR(psf.at(j, 20) / peak, psf.at(20, j) / peak, 1e-4) << "round";
     }
@@ -84,7 +86,10 @@ TEST(PointSpread, ChosenQuadratureHasConverged) {
   for (const double height : {0.0, 2.4}) {
     const ChiefRay chief = *tracer.chief_ray(*tracer.object_field_at_image_height(height));
     const PsfPlan plan = *plan_psf(tracer, chief);
-    const Psf chosen = *point_spread(tracer, chief);
+    PsfOptions window;
+    window.size = plan.size;
+    window.spacing_um = plan.spacing_um;
+    const Psf chosen = *point_spread(tracer, chief, window);
     const Psf finer = sum_plane_waves(*pupil_waves(tracer, chief, plan.radial_nodes * 2, plan.azimuths * 2),
                                       plan.size, plan.spacing_um);
     float peak = 0, worst = 0;
@@ -104,6 +109,130 @@ TEST(PointSpread, SamplesAtOrBelowHalfLambdaN) {
   const ChiefRay chief = *tracer.chief_ray(0);
   const double sine = std::sqrt(tracer.g_sensor_sr(chief) / pi);
   EXPECT_LE(plan_psf(tracer, chief)->spacing_um, 0.5 * 0.55 / (2 * sine));
+}
+
+/// Second moment of the PSF about its centroid, as a radius [µm].
+double rms_radius_um(const Psf& psf) {
+  double centroid = 0, moment = 0;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j) centroid += psf.at(i, j) * (i - psf.size / 2) * psf.spacing_um;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j)
+      moment += psf.at(i, j) * (std::pow((i - psf.size / 2) * psf.spacing_um - centroid, 2) +
+                                std::pow((j - psf.size / 2) * psf.spacing_um, 2));
+  return std::sqrt(moment);
+}
+
+TEST(PointSpread, OfADefocusedLensIsTheDiscOfSimilarTriangles) {
+  // All rays of a stigmatic lens cross in one point; a sensor δ behind it sees the exit pupil's shadow. Both
+  // ways of summing: 60 and 730 λN wide.
+  for (const double behind_mm : {3.0, 40.0}) {
+    Lens lens = perfect_lens(2);
+    lens.surfaces.back().thickness_mm += behind_mm;
+    const Psf psf = axial_psf(lens);
+    EXPECT_GE(psf.captured, 0.99);
+    // The rim ray leaves parallel to the axis at 2 mm and crosses it 40 mm behind the vertex of the
+    // hyperboloid, which bends it (2² / 40) / 2 mm before: a quarter of a per cent that does not show.
+    const double radius_um = 2.0 / 40 * behind_mm * um_per_mm;
+    // A uniform disc has an rms radius of R/√2; the light is uniform over the beam, not over the exit angles:
+    // 2 NA². Wings up to 18 λN beyond add (2·1.2 R/π²)/(R²/2) in λN: 1 % of the moment at 60 λN.
+    EXPECT_NEAR(rms_radius_um(psf) / (radius_um / std::sqrt(2.0)), 1, 0.012) << behind_mm;
+    // Beyond 1.3 radii there are wings only: 2λN/(π² 0.3 R), 2.5 % for the small disc, of the light that was
+    // summed.
+    double inside = 0;
+    for (int i = 0; i < psf.size; ++i)
+      for (int j = 0; j < psf.size; ++j)
+        if (std::hypot(i - psf.size / 2, j - psf.size / 2) * psf.spacing_um < 1.3 * radius_um)
+          inside += psf.at(i, j);
+    EXPECT_GT(inside, 0.98) << behind_mm;
+  }
+}
+
+TEST(PointSpread, IsAsWideAsTheRaySpotWhenAberrationsAreLarge) {
+  // Focused at infinity, object at 2 m: the fault that once cut a disc of 0.7 mm to its inner 5 %.
+  Lens lens = read_lens("dgauss-50mm").lens;
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, stop_radius_mm(lens)};
+  lens.object_distance_mm = 2000;
+  FieldTracer tracer(lens, 550);
+  for (const double object_mm : {0.0, -300.0, -600.0}) {
+    const ChiefRay chief = *tracer.chief_ray(object_mm);
+    const Psf psf = *point_spread(tracer, chief);
+    EXPECT_LE(psf.size, PsfOptions{}.largest_size);
+    EXPECT_GE(psf.captured, 0.99) << object_mm;
+    // Rays of another quadrature, each weighing as its light.
+    double weight = 0, mean = 0, square = 0;
+    for (const PupilRay& ray : pupil_rays(tracer, chief)) {
+      weight += ray.entrance_measure;
+      mean += ray.entrance_measure * ray.y_mm;
+      square += ray.entrance_measure * (ray.x_mm * ray.x_mm + ray.y_mm * ray.y_mm);
+    }
+    mean /= weight;
+    const double rays_um = std::sqrt(square / weight - mean * mean) * um_per_mm;
+    EXPECT_GT(rays_um, 150);
+    EXPECT_NEAR(rms_radius_um(psf) / rays_um, 1, 0.006) << object_mm;  // wings: 0.4 % of a disc of 600 λN
+  }
+}
+
+TEST(PointSpread, OfCoarseCellsIsTheFineOneSummed) {
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  FieldTracer tracer(lens, 550);
+  const ChiefRay chief = *tracer.chief_ray(14);  // vignetted, 80 µm wide
+  PsfOptions coarse;
+  coarse.size = 31;
+  coarse.spacing_um = 3.0;
+  const Psf cells = *point_spread(tracer, chief, coarse);
+  // The full sum over traced nodes at 0.3 λN.
+  const int side = 9;
+  PsfOptions fine;
+  fine.size = 31 * side;
+  fine.spacing_um = 3.0 / side;
+  const PsfPlan plan = *plan_psf(tracer, chief, fine);
+  const Psf full = sum_plane_waves(*pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths), plan.size,
+                                   plan.spacing_um);
+  EXPECT_NEAR(cells.captured, full.captured, 1e-3);  // the nodes cut the vignetted pupil's corners
+  double difference = 0, norm = 0;
+  for (int i = 0; i < cells.size; ++i)
+    for (int j = 0; j < cells.size; ++j) {
+      double sum = 0;
+      for (int k = 0; k < side; ++k)
+        for (int l = 0; l < side; ++l) sum += full.at(i * side + k, j * side + l);
+      difference += std::pow(sum - cells.at(i, j), 2);
+      norm += sum * sum;
+    }
+  EXPECT_LT(std::sqrt(difference / norm), 3e-3);  // what samples at 0.6 λN leave
+}
+
+TEST(PointSpread, HoldsTheWantedShareOfTheLight) {
+  for (const char* name : {"edmund-54852", "dgauss-50mm", "wide-22mm", "telephoto-250mm", "tessar"}) {
+    const Lens lens = read_lens(name).lens;
+    FieldTracer tracer(lens, lens.reference_wavelength_nm);
+    double field = 0;
+    for (const double value : lens.fields.values) field = std::max(field, value);
+    for (const double at : {0.0, 0.7 * field}) {
+      PsfOptions small;
+      small.size = 64;
+      EXPECT_GE(point_spread(tracer, *tracer.chief_ray(at))->captured, 0.99) << name << " " << at;
+      EXPECT_GE(point_spread(tracer, *tracer.chief_ray(at), small)->captured, 0.99) << name << " " << at;
+      small.wanted_share = 0.997;
+      EXPECT_GE(point_spread(tracer, *tracer.chief_ray(at), small)->captured, 0.997) << name << " " << at;
+    }
+  }
+}
+
+TEST(PupilFit, MeetsTheTracedPupil) {
+  // Vignetted by two or three apertures: corners.
+  for (const auto& [name, field] :
+       {std::pair{"dgauss-50mm", 20.0}, {"wide-22mm", 30.0}, {"fisheye-10mm", 70.0}}) {
+    const Lens lens = read_lens(name).lens;
+    FieldTracer tracer(lens, lens.reference_wavelength_nm);
+    const ChiefRay chief = *tracer.chief_ray(field);
+    const std::optional<SmoothPupil> pupil = fit_pupil(tracer, chief);
+    ASSERT_TRUE(pupil) << name;
+    EXPECT_FALSE(pupil->corners.empty()) << name;
+    EXPECT_LT(pupil->phase_waves.max_residual(), 2e-3) << name;
+    // The boundary's area, du dv, is the same flux; 2048 azimuths cut its corners by (2π/2048)².
+    EXPECT_NEAR(pupil->flux / tracer.object_pupil(chief, 2048)->area(), 1, 3e-5) << name;
+  }
 }
 
 }  // namespace

@@ -3,36 +3,14 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/numeric/quadrature.h>
 #include <petzval/wave/angle_characteristic.h>
 
 #include <cmath>
-#include <functional>
+
+#include "wave/analytic_pupils.h"
 
 namespace petzval {
 namespace {
-
-constexpr double lambda_nm = 550;
-
-/// A circular pupil of numerical aperture `na` with uniform amplitude and a phase [waves] over (α, β).
-PupilWaves disc(double na, const std::function<double(double, double)>& phase, int radial = 64,
-                int azimuths = 200) {
-  PupilWaves waves;
-  waves.wavelength_nm = lambda_nm;
-  const QuadratureRule rule = gauss_legendre(radial, 0, na);
-  for (int i = 0; i < azimuths / 2; ++i) {
-    const double azimuth = 2 * pi * (i + 0.5) / azimuths;
-    for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
-      const double a = rule.nodes[k] * std::sin(azimuth), b = rule.nodes[k] * std::cos(azimuth);
-      waves.alpha.push_back(a);
-      waves.beta.push_back(b);
-      waves.phase_waves.push_back(phase(a, b));
-      waves.amplitude.push_back(rule.nodes[k] * rule.weights[k] * 2 * pi / azimuths);
-      waves.flux += 2 * waves.amplitude.back();
-    }
-  }
-  return waves;
-}
 
 double no_phase(double, double) {
   return 0;

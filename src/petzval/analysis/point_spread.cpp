@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/analysis/point_spread.h>
+#include <petzval/analysis/pupil_fit.h>
+#include <petzval/analysis/wave_rays.h>
 #include <petzval/base/units.h>
+#include <petzval/wave/ray_density.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,51 +13,65 @@ namespace petzval {
 namespace {
 
 constexpr double spacing_per_lambda_n = 0.45;
+/// Cells wider than λN/2 hold the sum over samples of this spacing at most, wide ones (as spots of a hundred
+/// λN have them) over coarser ones: the error is a few thousandths of the cells' rms, less for wide spots.
+constexpr double sample_per_lambda_n = 0.4, coarse_sample_per_lambda_n = 0.6;
+constexpr double coarse_cell_lambda_n = 2;
+/// Samples a side in all that nodes in any order are summed for: their cost goes with the fourth power.
+constexpr int most_node_samples = 320;
+/// Around the ray spot, and at least in all: the square that holds 99 % of an Airy pattern.
 constexpr double margin_lambda_n = 12;
+constexpr double least_half_width_lambda_n = 18.5;
+/// A window that holds too little is widened by this until it does, so many times at most.
+constexpr double window_growth = 1.25;
+constexpr int most_growths = 8;
 constexpr int smallest_size = 32;
 constexpr int size_step = 8;
 constexpr int scout_radial = 6, scout_azimuths = 24;
-/// Finite differences of the exit direction, as a share of the pupil: truncation and rounding both near 1e-8.
-constexpr double nudge_per_radius = 1e-6;
-
-struct ExitRay {
-  double alpha, beta, x_mm, y_mm, opl_mm;
-};
-
-std::optional<ExitRay> exit_ray(const FieldTracer& tracer, const Pencil& pencil, double u, double v) {
-  const std::optional<Ray> launched = pencil.ray(u, v);
-  if (!launched) return {};
-  const Ray ray = tracer.tracer().trace(*launched, Tracer::Clip::none);
-  if (ray.status != RayStatus::ok) return {};
-  return ExitRay{ray.direction[0], ray.direction[1], ray.point_mm[0], ray.point_mm[1], ray.opl_mm};
-}
 
 /// Extent of the light at the image point.
 struct Extent {
-  double alpha_width = 0, beta_width = 0;  ///< of the pupil in direction cosines
-  double transverse_mm = 0;                ///< largest distance of a ray from the chief ray's image
+  double widest = 0, narrowest = 0;                    ///< of the pupil in direction cosines
+  double reach_s_mm = 0, low_t_mm = 0, high_t_mm = 0;  ///< of the rays about the chief ray's image
+  double lambda_mm = 0;                                ///< in the image space
+
+  double lambda_n_mm() const { return lambda_mm / widest; }
+  /// The largest distance of a ray from the chief ray, along s or t.
+  double reach_mm() const { return std::max({reach_s_mm, -low_t_mm, high_t_mm}); }
+  /// How much of a window lies around the rays.
+  double margin_mm() const {
+    const double airy_mm = lambda_mm / narrowest;
+    return std::max(margin_lambda_n * airy_mm, least_half_width_lambda_n * airy_mm - reach_mm());
+  }
 };
+
+Extent extent_of(const SmoothPupil& pupil) {
+  return {pupil.widest(), pupil.narrowest(), pupil.reach_s_mm,
+          pupil.low_t_mm, pupil.high_t_mm,   pupil.lambda_n_mm() * pupil.widest()};
+}
 
 std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, scout_azimuths);
   if (!pupil) return {};
-  const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
-  Extent extent;
-  double low = 2, high = -2;
   std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, scout_radial);
   for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i)  // the rim itself
     nodes.push_back({pupil->radius[i] * std::sin(pupil->azimuth(i)),
                      pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i)), 0});
-  for (const PupilNode& node : nodes)
-    if (const auto ray = exit_ray(tracer, pencil, node.u, node.v)) {
-      low = std::min(low, ray->beta);
-      high = std::max(high, ray->beta);
-      extent.alpha_width = std::max(extent.alpha_width, 2 * std::abs(ray->alpha));
-      extent.transverse_mm =
-          std::max(extent.transverse_mm, std::hypot(ray->x_mm, ray->y_mm - chief.image_height_mm));
-    }
-  extent.beta_width = high - low;
-  if (!(extent.beta_width > 0) || !(extent.alpha_width > 0)) return {};
+  Extent extent;
+  double low = 2, high = -2, alpha_width = 0;
+  for (const WaveRay& ray : trace_wave_rays(tracer, chief, *pupil, nodes)) {
+    if (!ray.passes) continue;
+    low = std::min(low, ray.beta);
+    high = std::max(high, ray.beta);
+    alpha_width = std::max(alpha_width, 2 * std::abs(ray.alpha));
+    extent.reach_s_mm = std::max(extent.reach_s_mm, std::abs(ray.s_mm));
+    extent.low_t_mm = std::min(extent.low_t_mm, ray.t_mm);
+    extent.high_t_mm = std::max(extent.high_t_mm, ray.t_mm);
+  }
+  if (!(high > low) || !(alpha_width > 0)) return {};
+  extent.widest = std::max(alpha_width, high - low);
+  extent.narrowest = std::min(alpha_width, high - low);
+  extent.lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm / tracer.tracer().image_index();
   return extent;
 }
 
@@ -67,98 +84,134 @@ int radial_for(double phase) {
   return static_cast<int>(std::ceil(0.5 * phase + 3 * std::cbrt(phase) + 12));
 }
 
-/// A node's ray and its neighbours at u − nudge and v − nudge.
-constexpr std::size_t rays_per_node = 3;
-
-RayBatch trace_with_neighbours(const FieldTracer& tracer, const Pencil& pencil,
-                               const std::vector<PupilNode>& nodes, double nudge) {
-  RayBatch rays;
-  const auto launch = [&](double u, double v) {
-    // Labels outside the unit disc have no ray; a ray along the axis' perpendicular fails in the trace.
-    const Ray ray = pencil.ray(u, v).value_or(Ray{{0, 0, 0}, {1, 0, 0}});
-    rays.push_back(ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
-                   ray.direction[2]);
-  };
-  for (const PupilNode& node : nodes) {
-    launch(node.u, node.v);
-    launch(node.u - nudge, node.v);
-    launch(node.u, node.v - nudge);
-  }
-  tracer.tracer().trace(rays, Tracer::Clip::none);
-  return rays;
+int samples_per_cell(double cell_lambda_n) {
+  constexpr double rounding = 1e-9;
+  if (cell_lambda_n <= 0.5 + rounding) return 1;
+  const double most = cell_lambda_n < coarse_cell_lambda_n ? sample_per_lambda_n : coarse_sample_per_lambda_n;
+  return static_cast<int>(std::ceil(cell_lambda_n / most - rounding));
 }
 
-/// |∂(α, β)/∂(u, v)| from a ray and its two neighbours; 0 where one of them fails.
-double exit_jacobian(const RayBatch& rays, std::size_t ray, double nudge) {
-  if (rays.status[ray + 1] != RayStatus::ok || rays.status[ray + 2] != RayStatus::ok) return 0;
-  const double du_alpha = rays.l[ray] - rays.l[ray + 1], du_beta = rays.m[ray] - rays.m[ray + 1];
-  const double dv_alpha = rays.l[ray] - rays.l[ray + 2], dv_beta = rays.m[ray] - rays.m[ray + 2];
-  return std::abs(du_alpha * dv_beta - du_beta * dv_alpha) / (nudge * nudge);
+/// \param growth  of a chosen window.
+PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double growth) {
+  const double lambda_n_um = extent.lambda_n_mm() * um_per_mm;
+  const double margin_mm = growth * extent.margin_mm();
+  const double width_um = 2 * (extent.reach_mm() + margin_mm) * um_per_mm;
+  const int most = options.size > 0 ? options.size : std::max(options.largest_size, smallest_size);
+  PsfPlan plan;
+  plan.spacing_um = options.spacing_um > 0 ? options.spacing_um
+                                           : std::max(spacing_per_lambda_n * lambda_n_um, width_um / most);
+  if (options.size > 0) {
+    plan.size = options.size;
+  } else {
+    const double cells = std::ceil(width_um / plan.spacing_um / size_step) * size_step;
+    plan.size = static_cast<int>(std::clamp(cells, double(smallest_size), double(most)));
+  }
+  plan.samples_per_cell = samples_per_cell(plan.spacing_um / lambda_n_um);
+  plan.last_row = plan.size - 1;
+  plan.reach = plan.size / 2;
+  if (options.size == 0 || options.spacing_um == 0) {  // a chosen window: no farther than the rays need
+    const auto cells = [&](double mm) { return mm * um_per_mm / plan.spacing_um; };
+    plan.first_row =
+        std::max(0, plan.size / 2 + static_cast<int>(std::floor(cells(extent.low_t_mm - margin_mm))));
+    plan.last_row = std::min(
+        plan.size - 1, plan.size / 2 + static_cast<int>(std::ceil(cells(extent.high_t_mm + margin_mm))));
+    plan.reach = std::min(plan.size / 2, static_cast<int>(std::ceil(cells(extent.reach_s_mm + margin_mm))));
+  }
+  const double corner_mm = std::sqrt(0.5) * plan.size * plan.spacing_um * mm_per_um;
+  const double phase =
+      2 * pi / extent.lambda_mm * 0.5 * extent.widest * (corner_mm + std::sqrt(2.0) * extent.reach_mm());
+  plan.azimuths = options.azimuths > 0 ? options.azimuths : azimuths_for(phase);
+  plan.radial_nodes = options.radial_nodes > 0 ? options.radial_nodes : radial_for(phase);
+  return plan;
+}
+
+/// The sum over the chords of a smooth pupil, or its rays where the window is wide.
+Psf sum_smooth(const SmoothPupil& pupil, const PsfPlan& plan, const PsfOptions& options) {
+  const double window_lambda_n = plan.size * plan.spacing_um * mm_per_um / pupil.lambda_n_mm();
+  return window_lambda_n > options.widest_wave_window_lambda_n ? sum_rays(pupil, plan.grid())
+                                                               : sum_chords(pupil, plan.grid());
+}
+
+/// The sum over traced nodes in the plan's cells, an odd number of samples a side in each, so that the middle
+/// one is at the cell's middle. The window shrinks to what nodes can be summed for.
+Psf sum_nodes(const PupilWaves& waves, const PsfPlan& plan) {
+  if (plan.samples_per_cell == 1 && plan.size <= most_node_samples)
+    return sum_plane_waves(waves, plan.size, plan.spacing_um);
+  const int side = plan.samples_per_cell | 1,
+            size = std::min(plan.size, std::max(1, most_node_samples / side)) | 1;
+  const Psf fine = sum_plane_waves(waves, size * side, plan.spacing_um / side);
+  Psf psf;
+  psf.size = size;
+  psf.spacing_um = plan.spacing_um;
+  psf.captured = fine.captured;
+  psf.values.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0F);
+  for (int i = 0; i < fine.size; ++i)
+    for (int j = 0; j < fine.size; ++j)
+      psf.values[static_cast<std::size_t>(i / side) * static_cast<std::size_t>(size) +
+                 static_cast<std::size_t>(j / side)] += fine.at(i, j);
+  return psf;
+}
+
+/// Sums in a window that grows until it holds the wanted share, if the window is to be chosen.
+template <class Sum>
+std::optional<Psf> sum_in_window(const Extent& extent, const PsfOptions& options, const Sum& sum) {
+  const bool fixed = options.size > 0 && options.spacing_um > 0;
+  double growth = 1;
+  std::optional<Psf> psf = sum(plan_window(extent, options, growth));
+  for (int i = 0; i < most_growths && psf && !fixed && psf->captured < options.wanted_share; ++i) {
+    growth *= window_growth;
+    psf = sum(plan_window(extent, options, growth));
+  }
+  return psf;
 }
 
 }  // namespace
 
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
-  const std::optional<Extent> extent = scout(tracer, chief);
-  if (!extent) return {};
-  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm / tracer.tracer().image_index();
-  const double widest = std::max(extent->alpha_width, extent->beta_width);
-  const double narrowest = std::min(extent->alpha_width, extent->beta_width);
-  PsfPlan plan;
-  plan.spacing_um =
-      options.spacing_um > 0 ? options.spacing_um : spacing_per_lambda_n * lambda_mm / widest * um_per_mm;
-  const double half_width_um = (extent->transverse_mm + margin_lambda_n * lambda_mm / narrowest) * um_per_mm;
-  if (options.size > 0) {
-    plan.size = options.size;
-  } else {
-    const int needed =
-        size_step * static_cast<int>(std::ceil(2 * half_width_um / plan.spacing_um / size_step));
-    plan.size = std::clamp(needed, smallest_size, std::max(options.largest_size, smallest_size));
-  }
-  const double corner_mm = std::sqrt(0.5) * plan.size * plan.spacing_um * mm_per_um;
-  const double phase = 2 * pi / lambda_mm * 0.5 * widest * (corner_mm + extent->transverse_mm);
-  plan.azimuths = options.azimuths > 0 ? options.azimuths : azimuths_for(phase);
-  plan.radial_nodes = options.radial_nodes > 0 ? options.radial_nodes : radial_for(phase);
-  return plan;
+  if (const std::optional<Extent> extent = scout(tracer, chief)) return plan_window(*extent, options, 1);
+  return {};
 }
 
 std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay& chief, int radial_nodes,
                                       int azimuths) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, azimuths);
   if (!pupil) return {};
-  const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
-  const double outwards = chief.image_height_mm < 0 ? -1.0 : 1.0;
-  const double index = tracer.tracer().image_index();
-  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
-
   const std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, radial_nodes);
-  const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
-  const RayBatch rays = trace_with_neighbours(tracer, pencil, nodes, nudge);
-
+  const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *pupil, nodes);
   PupilWaves waves;
   waves.wavelength_nm = tracer.tracer().wavelength_nm();
-  waves.image_index = index;
+  waves.image_index = tracer.tracer().image_index();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
-    const std::size_t ray = rays_per_node * node;
-    if (rays.status[ray] != RayStatus::ok) continue;
-    const double alpha = rays.l[ray], beta = rays.m[ray];
-    const double to_foot_mm = -rays.x_mm[ray] * alpha + (chief.image_height_mm - rays.y_mm[ray]) * beta;
-    waves.alpha.push_back(alpha);
-    waves.beta.push_back(outwards * beta);
-    waves.phase_waves.push_back((rays.opl_mm[ray] + index * to_foot_mm - chief.at_image.opl_mm) / lambda_mm);
-    waves.amplitude.push_back(nodes[node].weight * std::sqrt(exit_jacobian(rays, ray, nudge)));
+    const WaveRay& ray = rays[node];
+    if (!ray.passes) continue;
+    waves.alpha.push_back(ray.alpha);
+    waves.beta.push_back(ray.beta);
+    waves.phase_waves.push_back(ray.phase_waves);
+    // a dα dβ = du dv / a.
+    waves.amplitude.push_back(ray.amplitude > 0 ? nodes[node].weight / ray.amplitude : 0);
     waves.flux += 2 * nodes[node].weight;
   }
   if (waves.size() == 0) return {};
   return waves;
 }
 
+Psf point_spread(const SmoothPupil& pupil, const PsfOptions& options) {
+  return *sum_in_window(extent_of(pupil), options, [&](const PsfPlan& plan) -> std::optional<Psf> {
+    return sum_smooth(pupil, plan, options);
+  });
+}
+
 std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
-  const std::optional<PsfPlan> plan = plan_psf(tracer, chief, options);
-  if (!plan) return {};
-  const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan->radial_nodes, plan->azimuths);
-  if (!waves) return {};
-  return sum_plane_waves(*waves, plan->size, plan->spacing_um);
+  const bool own_nodes = options.radial_nodes > 0 || options.azimuths > 0;
+  if (const auto pupil = own_nodes ? std::nullopt : fit_pupil(tracer, chief))
+    return point_spread(*pupil, options);
+  const std::optional<Extent> extent = scout(tracer, chief);
+  if (!extent) return {};
+  return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
+    const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths);
+    if (!waves) return {};
+    return sum_nodes(*waves, plan);
+  });
 }
 
 }  // namespace petzval

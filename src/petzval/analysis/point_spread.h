@@ -4,6 +4,7 @@
 
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/wave/angle_characteristic.h>
+#include <petzval/wave/chord_sum.h>
 
 #include <optional>
 
@@ -11,17 +12,25 @@ namespace petzval {
 
 /// Grid and quadrature of one PSF.
 struct PsfPlan {
-  int size = 0;           ///< samples a side
-  double spacing_um = 0;  ///< at or below λN/2
-  int radial_nodes = 0, azimuths = 0;
+  int size = 0;              ///< cells a side
+  double spacing_um = 0;     ///< of the cells
+  int samples_per_cell = 1;  ///< a side; 1 at or below λN/2, where samples say everything
+  int first_row = 0, last_row = -1,
+      reach = -1;                      ///< as in PsfGrid: a chosen window is dark where no ray is near
+  int radial_nodes = 0, azimuths = 0;  ///< of pupil_waves(), to rounding in the whole window
+
+  PsfGrid grid() const { return {size, spacing_um, samples_per_cell, first_row, last_row, reach}; }
 };
 
-/// What the caller fixes; zeros are chosen: the window from the ray spot plus twelve λN, the spacing 0.45 λN,
-/// the quadrature from the largest phase that the window and the aberration put on the pupil's rim.
+/// What the caller fixes; zeros are chosen. The window holds the ray spot and twelve λN around it, or more
+/// until `wanted_share` of the light is inside. The spacing is 0.45 λN, or wider when `largest_size` (or
+/// `size`) cells of that do not span the window: then each value is the light of its cell.
 struct PsfOptions {
   int size = 0;
   double spacing_um = 0;
-  int largest_size = 256;  ///< of a chosen size; a spot that needs more is cut, and `Psf::captured` tells
+  int largest_size = 256;      ///< of a chosen size
+  double wanted_share = 0.99;  ///< of the light, inside a chosen window
+  double widest_wave_window_lambda_n = 500;
   int radial_nodes = 0, azimuths = 0;
 };
 
@@ -34,8 +43,12 @@ std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief
 std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay& chief, int radial_nodes,
                                       int azimuths);
 
-/// Plan, rays and sum in one. Nothing when no ray passes.
+/// Plan, rays and sum in one: by chords of a smooth pupil (fit_pupil), or by traced nodes where the pupil is
+/// not smooth. Nothing when no ray passes.
 std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief,
                                 const PsfOptions& options = {});
+
+/// The same of a pupil that has been fitted already.
+Psf point_spread(const SmoothPupil& pupil, const PsfOptions& options = {});
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
+#include <petzval/analysis/pupil_fit.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
@@ -157,12 +158,17 @@ TableOptions completed(const Lens& lens, TableOptions options) {
 void fill_entry(FieldTracer& tracer, double object_field, const PsfOptions& options, LensDataTable& table,
                 std::size_t entry) {
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
-  const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options) : std::nullopt;
+  const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief) : std::nullopt;
+  std::optional<Psf> psf;
+  if (pupil) psf = point_spread(*pupil, options);
+  if (chief && !psf) psf = point_spread(tracer, *chief, options);
   if (!psf)
     throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", tracer.lens().name,
                                  object_field, tracer.tracer().wavelength_nm()));
   table.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
-  table.g_source_sr[entry] = tracer.g_source_sr(*chief);
+  // The fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
+  table.g_source_sr[entry] =
+      pupil ? pupil->flux * tracer.object_area_per_image_area(*chief) : tracer.g_source_sr(*chief);
   table.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
   table.psf[entry] = *psf;
 }

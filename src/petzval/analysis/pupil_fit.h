@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The vignetted pupil of a field as smooth functions of the exit direction.
+#pragma once
+
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/wave/smooth_pupil.h>
+
+#include <optional>
+
+namespace petzval {
+
+/// How well a pupil must be met by its polynomials to be used.
+struct PupilFitLimits {
+  int lowest_degree = 12, highest_degree = 20;          ///< in steps of 4, until both residuals are met
+  double phase_rms_waves = 1e-5, amplitude_rms = 1e-4;  ///< the latter relative to the largest
+  /// What the best of them may leave at most: 1e-3 of the PSF's peak.
+  double largest_phase_rms_waves = 2e-4, largest_amplitude_rms = 3e-3;
+};
+
+/// A few hundred real rays inside the boundary and on it, and polynomials through their phase and amplitude.
+/// \returns nothing when no ray passes, or when the pupil is not that smooth: rays that fail inside the
+/// boundary, an outline that is no function of β, or residuals beyond the limits. Its nodes must be traced
+/// then.
+std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
+                                     const PupilFitLimits& limits = {});
+
+}  // namespace petzval

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/error.h>
+#include <petzval/numeric/even_surface.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Directions that the points tell apart less than this, against the best one, are rounding.
+constexpr double least_pivot = 1e-13;
+
+/// T_0 … T_{count−1} at t.
+void chebyshev(double t, std::size_t count, double* values) {
+  values[0] = 1;
+  if (count > 1) values[1] = t;
+  for (std::size_t n = 2; n < count; ++n) values[n] = 2 * t * values[n - 1] - values[n - 2];
+}
+
+void require_points(std::span<const double> x, std::span<const double> y,
+                    std::span<const std::span<const double>> values) {
+  bool good = x.size() == y.size() && !x.empty();
+  const auto finite = [](std::span<const double> list) {
+    return std::all_of(list.begin(), list.end(), [](double value) { return std::isfinite(value); });
+  };
+  good = good && finite(x) && finite(y);
+  for (const auto& list : values) good = good && list.size() == x.size() && finite(list);
+  if (!good) throw InputError("a surface fit needs as many finite values as points, and at least one point");
+}
+
+}  // namespace
+
+std::size_t EvenSurface::unknowns(int degree) {
+  std::size_t count = 0;
+  for (int m = 0; 2 * m <= degree; ++m) count += static_cast<std::size_t>(degree - 2 * m + 1);
+  return count;
+}
+
+std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<const double> y,
+                                          std::span<const std::span<const double>> values, int degree) {
+  require_points(x, y, values);
+  const auto [low, high] = std::minmax_element(y.begin(), y.end());
+  EvenSurface frame;
+  frame.degree_ = std::max(degree, 0);
+  frame.y_middle_ = 0.5 * (*low + *high);
+  frame.y_scale_ = 0.5 * (*high - *low);
+  frame.x_scale_ = 0;
+  for (const double value : x) frame.x_scale_ = std::max(frame.x_scale_, std::abs(value));
+  if (!(frame.x_scale_ > 0) || !(frame.y_scale_ > 0) || x.size() < unknowns(degree)) return {};
+
+  const auto rows = static_cast<Eigen::Index>(x.size()),
+             columns = static_cast<Eigen::Index>(unknowns(degree));
+  Eigen::MatrixXd basis(columns, rows);  // a column a point
+  std::vector<double> of_u(frame.terms()), of_v(static_cast<std::size_t>(frame.degree_) + 1);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double ratio = x[static_cast<std::size_t>(i)] / frame.x_scale_;
+    chebyshev(2 * ratio * ratio - 1, of_u.size(), of_u.data());
+    chebyshev((y[static_cast<std::size_t>(i)] - frame.y_middle_) / frame.y_scale_, of_v.size(), of_v.data());
+    double* to = basis.col(i).data();
+    for (std::size_t m = 0; m < of_u.size(); ++m)
+      for (std::size_t n = 0; n + 2 * m < of_v.size(); ++n) *to++ = of_u[m] * of_v[n];
+  }
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(columns, columns);
+  normal.selfadjointView<Eigen::Lower>().rankUpdate(basis);
+  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(normal);
+  const auto pivots = solver.vectorD();
+  if (solver.info() != Eigen::Success || !(pivots.minCoeff() > least_pivot * pivots.maxCoeff())) return {};
+
+  std::vector<EvenSurface> surfaces;
+  for (const auto& list : values) {
+    const Eigen::Map<const Eigen::VectorXd> wanted(list.data(), rows);
+    Eigen::VectorXd solution = solver.solve(basis * wanted);
+    Eigen::VectorXd residual = wanted - basis.transpose() * solution;
+    solution += solver.solve(basis * residual);  // gives back what the squared condition number took
+    residual = wanted - basis.transpose() * solution;
+    EvenSurface surface = frame;
+    surface.coefficients_.assign(solution.begin(), solution.end());
+    surface.rms_residual_ = residual.norm() / std::sqrt(static_cast<double>(rows));
+    surface.max_residual_ = residual.lpNorm<Eigen::Infinity>();
+    surfaces.push_back(std::move(surface));
+  }
+  return surfaces;
+}
+
+void EvenSurface::series(double y, std::span<double> series) const {
+  const auto order = static_cast<std::size_t>(degree_) + 1;
+  std::vector<double> of_v(order);
+  chebyshev((y - y_middle_) / y_scale_, order, of_v.data());
+  const double* from = coefficients_.data();
+  for (std::size_t m = 0; m < terms(); ++m) {
+    series[m] = 0;
+    for (std::size_t n = 0; n + 2 * m < order; ++n) series[m] += *from++ * of_v[n];
+  }
+}
+
+double EvenSurface::operator()(double x, double y) const {
+  std::vector<double> of_x(terms());
+  series(y, of_x);
+  const double ratio = x / x_scale_;
+  return chebyshev_sum(of_x, 2 * ratio * ratio - 1);
+}
+
+double chebyshev_sum(std::span<const double> series, double u) {
+  double later = 0, latest = 0;
+  for (std::size_t m = series.size() - 1; m > 0; --m) {
+    const double next = 2 * u * latest - later + series[m];
+    later = latest;
+    latest = next;
+  }
+  return u * latest - later + series[0];
+}
+
+}  // namespace petzval

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A smooth function of two variables, even in the first, known at scattered points.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace petzval {
+
+/// p(x, y) = Σ C_mn T_m(u) T_n(v) over 2m + n ≤ degree, with Chebyshev polynomials T of u = 2(x/x_scale)² − 1
+/// and v = (y − y_middle)/y_scale: what is mirror symmetric in x, fitted over the bounding box of its points.
+class EvenSurface {
+ public:
+  EvenSurface() = default;
+
+  /// One surface for each list of values at the points (x, y), by least squares. The points share their
+  /// normal equations. Empty when the points do not determine the polynomial. \throws InputError if sizes
+  /// differ or a number is not finite.
+  static std::vector<EvenSurface> fit(std::span<const double> x, std::span<const double> y,
+                                      std::span<const std::span<const double>> values, int degree);
+  /// Coefficients of a polynomial of this degree.
+  static std::size_t unknowns(int degree);
+
+  double operator()(double x, double y) const;
+  /// The length of a series().
+  std::size_t terms() const { return static_cast<std::size_t>(degree_ / 2 + 1); }
+  double x_scale() const { return x_scale_; }
+  /// p(·, y) = Σ series[m] T_m(2(x/x_scale)² − 1). \param series  terms() numbers.
+  void series(double y, std::span<double> series) const;
+
+  /// Of the values that were fitted.
+  double rms_residual() const { return rms_residual_; }
+  double max_residual() const { return max_residual_; }
+
+ private:
+  int degree_ = 0;
+  double x_scale_ = 1, y_middle_ = 0, y_scale_ = 1;
+  std::vector<double> coefficients_{0.0};  ///< m-major, n = 0 … degree − 2m
+  double rms_residual_ = 0, max_residual_ = 0;
+};
+
+/// Σ series[m] T_m(u), by Clenshaw's recurrence; at least one term.
+double chebyshev_sum(std::span<const double> series, double u);
+
+}  // namespace petzval

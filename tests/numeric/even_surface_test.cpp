@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/numeric/even_surface.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+namespace {
+
+struct Points {
+  std::vector<double> x, y, value;
+};
+
+/// Rings over half a disc about (0, 3).
+template <class F>
+Points sample(const F& f) {
+  Points points;
+  for (int ring = 1; ring <= 8; ++ring)
+    for (int i = 0; i < 24; ++i) {
+      const double r = 0.25 * ring, azimuth = (i + 0.5) * 3.14159265358979 / 24;
+      points.x.push_back(r * std::sin(azimuth));
+      points.y.push_back(3 + r * std::cos(azimuth));
+      points.value.push_back(f(points.x.back(), points.y.back()));
+    }
+  return points;
+}
+
+EvenSurface fit_one(const Points& points, int degree) {
+  const std::array<std::span<const double>, 1> values{points.value};
+  const std::vector<EvenSurface> surfaces = EvenSurface::fit(points.x, points.y, values, degree);
+  return surfaces.empty() ? EvenSurface() : surfaces.front();
+}
+
+TEST(EvenSurface, MeetsPolynomialsOfItsDegreeEverywhere) {
+  const auto f = [](double x, double y) {
+    return 2 - y + 0.5 * y * y * x * x + x * x * x * x - std::pow(y, 4);
+  };
+  const EvenSurface surface = fit_one(sample(f), 4);
+  EXPECT_LT(surface.max_residual(), 1e-12);  // rounding of values up to 600
+  for (const double x : {-1.3, 0.0, 0.7})
+    for (const double y : {1.5, 3.0, 4.4}) EXPECT_NEAR(surface(x, y), f(x, y), 1e-11) << x << " " << y;
+}
+
+TEST(EvenSurface, ConvergesOnSmoothFunctions) {
+  const auto f = [](double x, double y) { return std::exp(0.3 * y) * std::cos(0.5 * x); };
+  double last = 1;
+  for (const int degree : {4, 8, 12}) {
+    const EvenSurface surface = fit_one(sample(f), degree);
+    EXPECT_LT(surface.rms_residual(), 0.02 * last) << degree;  // each four degrees gain far more than that
+    EXPECT_GE(surface.max_residual(), surface.rms_residual());
+    last = surface.rms_residual();
+    EXPECT_NEAR(surface(0.4, 3.3), f(0.4, 3.3), 3 * surface.max_residual());
+  }
+}
+
+TEST(EvenSurface, GivesItsSeriesAlongX) {
+  const EvenSurface surface = fit_one(sample([](double x, double y) { return x * x * y + y * y; }), 6);
+  std::vector<double> series(surface.terms());
+  surface.series(3.5, series);
+  for (const double x : {0.0, 0.9, -1.6}) {
+    const double ratio = x / surface.x_scale();
+    EXPECT_NEAR(chebyshev_sum(series, 2 * ratio * ratio - 1), x * x * 3.5 + 3.5 * 3.5, 1e-11);
+  }
+}
+
+TEST(EvenSurface, SaysWhenPointsDoNotDetermineIt) {
+  Points line = sample([](double, double y) { return y; });
+  for (double& y : line.y) y = 1;
+  const std::array<std::span<const double>, 1> on_line{line.value};
+  EXPECT_TRUE(EvenSurface::fit(line.x, line.y, on_line, 4).empty());
+  const Points few{{0.1, 0.2}, {1, 2}, {3, 4}};
+  const std::array<std::span<const double>, 1> values{few.value};
+  EXPECT_TRUE(EvenSurface::fit(few.x, few.y, values, 4).empty());
+  Points bad = few;
+  bad.x[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(EvenSurface::fit(bad.x, bad.y, values, 1), InputError);
+}
+
+}  // namespace
+}  // namespace petzval
