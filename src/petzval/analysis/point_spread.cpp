@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/analysis/point_spread.h>
 #include <petzval/analysis/pupil_fit.h>
+#include <petzval/analysis/traced_spot.h>
 #include <petzval/analysis/wave_rays.h>
 #include <petzval/base/units.h>
 #include <petzval/wave/ray_density.h>
@@ -17,8 +18,9 @@ constexpr double spacing_per_lambda_n = 0.45;
 /// λN have them) over coarser ones: the error is a few thousandths of the cells' rms, less for wide spots.
 constexpr double sample_per_lambda_n = 0.4, coarse_sample_per_lambda_n = 0.6;
 constexpr double coarse_cell_lambda_n = 2;
-/// Samples a side in all that nodes in any order are summed for: their cost goes with the fourth power.
-constexpr int most_node_samples = 320;
+/// Nodes in any order are summed in windows up to this: their cost goes with the fourth power. Beyond it the
+/// rays of a pupil that is not smooth are counted.
+constexpr double widest_node_window_lambda_n = 64;
 /// Around the ray spot, and at least in all: the square that holds 99 % of an Airy pattern.
 constexpr double margin_lambda_n = 12;
 constexpr double least_half_width_lambda_n = 18.5;
@@ -133,12 +135,10 @@ Psf sum_smooth(const SmoothPupil& pupil, const PsfPlan& plan, const PsfOptions& 
 }
 
 /// The sum over traced nodes in the plan's cells, an odd number of samples a side in each, so that the middle
-/// one is at the cell's middle. The window shrinks to what nodes can be summed for.
+/// one is at the cell's middle.
 Psf sum_nodes(const PupilWaves& waves, const PsfPlan& plan) {
-  if (plan.samples_per_cell == 1 && plan.size <= most_node_samples)
-    return sum_plane_waves(waves, plan.size, plan.spacing_um);
-  const int side = plan.samples_per_cell | 1,
-            size = std::min(plan.size, std::max(1, most_node_samples / side)) | 1;
+  if (plan.samples_per_cell == 1) return sum_plane_waves(waves, plan.size, plan.spacing_um);
+  const int side = plan.samples_per_cell | 1, size = plan.size | 1;
   const Psf fine = sum_plane_waves(waves, size * side, plan.spacing_um / side);
   Psf psf;
   psf.size = size;
@@ -208,6 +208,9 @@ std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief
   const std::optional<Extent> extent = scout(tracer, chief);
   if (!extent) return {};
   return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
+    const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();
+    if (width_mm > 2 * widest_node_window_lambda_n * extent->lambda_n_mm())
+      return traced_spot(tracer, chief, plan.grid());
     const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths);
     if (!waves) return {};
     return sum_nodes(*waves, plan);
