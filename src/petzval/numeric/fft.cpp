@@ -129,6 +129,73 @@ void RealFft2<Real>::inverse(AlignedVector<std::complex<Real>>& spectrum, Aligne
 template class RealFft2<float>;
 template class RealFft2<double>;
 
+struct LineFft::Plans {
+  fftw_plan forward, inverse, forward_real, inverse_real;
+
+  explicit Plans(int size) {
+    AlignedVector<std::complex<double>> line(static_cast<std::size_t>(size) + 1);
+    auto* complex = reinterpret_cast<fftw_complex*>(line.data());
+    auto* real = reinterpret_cast<double*>(line.data());
+    // Lines of an array need not be aligned one by one.
+    const unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
+    forward = fftw_plan_dft_1d(size, complex, complex, FFTW_FORWARD, flags);
+    inverse = fftw_plan_dft_1d(size, complex, complex, FFTW_BACKWARD, flags);
+    forward_real = fftw_plan_dft_r2c_1d(size, real, complex, flags);
+    inverse_real = fftw_plan_dft_c2r_1d(size, complex, real, flags);
+    if (!forward || !inverse || !forward_real || !inverse_real) {
+      release();
+      throw Failure(fmt::format("no Fourier transform of {} could be planned", size));
+    }
+  }
+  ~Plans() {
+    const std::lock_guard lock(planner_mutex());
+    release();
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+
+  static std::shared_ptr<const Plans> of_size(int size) {
+    planner_mutex();
+    static std::map<int, std::shared_ptr<const Plans>> known;
+    const std::lock_guard lock(planner_mutex());
+    std::shared_ptr<const Plans>& plans = known[size];
+    if (!plans) plans = std::make_shared<const Plans>(size);
+    return plans;
+  }
+
+ private:
+  void release() {
+    for (const fftw_plan plan : {forward, inverse, forward_real, inverse_real})
+      if (plan != nullptr) fftw_destroy_plan(plan);
+  }
+};
+
+LineFft::LineFft(int size) : size_(size) {
+  if (size < 1 || size > (1 << 26))
+    throw InputError(fmt::format("a Fourier transform of {}: 1 to 2^26 is right", size));
+  plans_ = Plans::of_size(size);
+}
+
+void LineFft::forward(std::complex<double>* line) const {
+  auto* complex = reinterpret_cast<fftw_complex*>(line);
+  fftw_execute_dft(plans_->forward, complex, complex);
+}
+
+void LineFft::inverse(std::complex<double>* line) const {
+  auto* complex = reinterpret_cast<fftw_complex*>(line);
+  fftw_execute_dft(plans_->inverse, complex, complex);
+}
+
+void LineFft::forward_real(std::complex<double>* line) const {
+  fftw_execute_dft_r2c(plans_->forward_real, reinterpret_cast<double*>(line),
+                       reinterpret_cast<fftw_complex*>(line));
+}
+
+void LineFft::inverse_real(std::complex<double>* line) const {
+  fftw_execute_dft_c2r(plans_->inverse_real, reinterpret_cast<fftw_complex*>(line),
+                       reinterpret_cast<double*>(line));
+}
+
 int good_fft_size(int at_least) {
   for (int size = at_least + at_least % 2;; size += 2) {
     int rest = size;

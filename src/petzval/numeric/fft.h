@@ -65,6 +65,29 @@ class RealFft2 {
 extern template class RealFft2<float>;
 extern template class RealFft2<double>;
 
+/// Transforms of one line in double precision, in place. Plans are shared and estimated as those of RealFft2.
+///
+/// Complex lines hold size() numbers. A real line of size() numbers lies in the same memory as its spectrum
+/// of size()/2 + 1 complex numbers: it is addressed through a pointer to the latter.
+class LineFft {
+ public:
+  /// \throws InputError unless 1 ≤ size ≤ 2^26.
+  explicit LineFft(int size);
+
+  int size() const { return size_; }
+  /// Σ line[j] exp(−2πi jk/size).
+  void forward(std::complex<double>* line) const;
+  /// Exponent +, not normalised.
+  void inverse(std::complex<double>* line) const;
+  void forward_real(std::complex<double>* line) const;
+  void inverse_real(std::complex<double>* line) const;
+
+ private:
+  struct Plans;
+  int size_;
+  std::shared_ptr<const Plans> plans_;
+};
+
 /// The smallest even size of at least `at_least` (≥ 1) that transforms fast: 2^a·3^b·5^c, a ≥ 1.
 int good_fft_size(int at_least);
 
