@@ -41,6 +41,9 @@ void check(const TargetOptions& options, const Otf& otf) {
                     cutoff, widest_cpp));
 }
 
+/// The lowest height of the far kernel in the margin: what the kernel leaves goes as the sixth power of it.
+constexpr double heights_in_margin = 5;
+
 /// About what one place of the far field costs.
 double far_field_ns(const std::vector<Region>& regions, double height_px) {
   double sum = 0;
@@ -57,15 +60,15 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
   const double cutoff = otf.cutoff_cpmm() * options.pitch_um * 1e-3;
   const PsfTail tail = otf.tail();
   const bool has_tail = tail.k3_um != 0;
-  // Heights of a quarter of the margin; the tail must hold at the margin: eight times the geometric blur.
+  // The tail must hold at the margin: eight times the geometric blur.
   const double least = has_tail ? std::max(64.0, 8 * reach) : reach + 2;
   double best_margin = least, best_cost = 0;
   for (double margin = least; has_tail && margin <= 16 * least; margin *= 1.3) {
-    const double spacing = margin / 20;
+    const double spacing = margin / (5 * heights_in_margin);
     const double cells = (options.columns + 2 * margin) * (options.rows + 2 * margin);
     const double transform_ns = 60 * cells * 4.5 * cutoff * cutoff;
     const double far_ns =
-        150 * static_cast<double>(edges) * (options.columns / spacing + 10) * (options.rows / spacing + 10);
+        far_field_ns(regions, margin / heights_in_margin) * (options.columns / spacing + 10) * (options.rows / spacing + 10);
     const double cost = transform_ns + far_ns;
     if (margin == least || cost < best_cost) best_cost = cost, best_margin = margin;
   }
@@ -82,7 +85,7 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
   around.period = {fitted(options.columns), fitted(options.rows), {}};
   around.period.origin = {-static_cast<double>((around.period.columns - options.columns) / 2),
                           -static_cast<double>((around.period.rows - options.rows) / 2)};
-  if (has_tail) around.far = far_kernel(tail, options.pitch_um, best_margin / 4);
+  if (has_tail) around.far = far_kernel(tail, options.pitch_um, best_margin / heights_in_margin);
   return around;
 }
 

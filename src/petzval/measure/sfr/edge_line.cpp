@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/measure/sfr/edge_line.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+using Vector5 = Eigen::Matrix<double, 5, 1>;
+using Matrix5 = Eigen::Matrix<double, 5, 5>;
+
+/// Mean place and value, and the plane through the values.
+struct Overview {
+  double x = 0, y = 0, value = 0, slope_x = 0, slope_y = 0, radius = 0;
+};
+
+Overview overview_of(std::span<const EdgeSample> samples) {
+  Overview o;
+  const double n = static_cast<double>(samples.size());
+  for (const EdgeSample& s : samples) o.x += s.x / n, o.y += s.y / n, o.value += s.value / n;
+  double xx = 0, xy = 0, yy = 0, xv = 0, yv = 0;
+  for (const EdgeSample& s : samples) {
+    const double x = s.x - o.x, y = s.y - o.y, v = s.value - o.value;
+    xx += x * x, xy += x * y, yy += y * y, xv += x * v, yv += y * v;
+    o.radius = std::max(o.radius, std::hypot(x, y));
+  }
+  const double determinant = xx * yy - xy * xy;
+  if (determinant > 0) {
+    o.slope_x = (xv * yy - yv * xy) / determinant;
+    o.slope_y = (yv * xx - xv * xy) / determinant;
+  }
+  return o;
+}
+
+/// Direction in which the values change most: of the structure tensor of differences to the right and lower
+/// neighbour. Samples come row by row.
+double gradient_direction(std::span<const EdgeSample> samples, double spacing, const Overview& o) {
+  double xx = 0, xy = 0, yy = 0;
+  std::size_t below = 0;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    const EdgeSample& s = samples[i];
+    const EdgeSample& right = samples[i + 1];
+    if (right.y != s.y || right.x - s.x > 1.5 * spacing) continue;
+    while (below < samples.size() && (samples[below].y < s.y + 0.5 * spacing ||
+                                      (samples[below].y < s.y + 1.5 * spacing && samples[below].x < s.x)))
+      ++below;
+    if (below == samples.size() || samples[below].x != s.x) continue;
+    const double gx = right.value - s.value, gy = samples[below].value - s.value;
+    xx += gx * gx, xy += gx * gy, yy += gy * gy;
+  }
+  double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  if (std::cos(angle) * o.slope_x + std::sin(angle) * o.slope_y < 0) angle += pi;
+  return angle;
+}
+
+/// Parameters: offset from the mean place along the normal, direction, log of the scale, dark, bright.
+class LogisticFit {
+ public:
+  LogisticFit(std::span<const EdgeSample> samples, const Overview& o) : samples_(samples), o_(o) {}
+
+  double cost(const Vector5& p) const { return accumulate(p, nullptr, nullptr); }
+
+  Vector5 run(Vector5 p) const {
+    double damping = 1e-3, best = cost(p);
+    for (int step = 0; step < 80; ++step) {
+      Matrix5 normal = Matrix5::Zero();
+      Vector5 gradient = Vector5::Zero();
+      accumulate(p, &normal, &gradient);
+      bool improved = false;
+      double gain = 0;
+      for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
+        Matrix5 damped = normal;
+        damped.diagonal() *= 1 + damping;
+        damped.diagonal().array() += 1e-300;
+        const Vector5 next = p + damped.ldlt().solve(gradient);
+        const double value = next.allFinite() && std::abs(next[2]) < 12 ? cost(next) : HUGE_VAL;
+        if (value < best) {
+          gain = best - value;
+          p = next, best = value, damping *= 0.2, improved = true;
+        } else {
+          damping *= 6;
+        }
+      }
+      if (!improved || gain < 1e-12 * best) break;
+    }
+    return p;
+  }
+
+ private:
+  double accumulate(const Vector5& p, Matrix5* normal, Vector5* gradient) const {
+    const double c = std::cos(p[1]), s = std::sin(p[1]), scale = std::exp(p[2]);
+    double sum = 0;
+    for (const EdgeSample& sample : samples_) {
+      const double x = sample.x - o_.x, y = sample.y - o_.y;
+      const double z = (x * c + y * s - p[0]) / scale, profile = 1 / (1 + std::exp(-z));
+      const double residual = sample.value - p[3] - (p[4] - p[3]) * profile;
+      sum += residual * residual;
+      if (normal == nullptr) continue;
+      const double slope = (p[4] - p[3]) * profile * (1 - profile);
+      Vector5 j;
+      j << -slope / scale, slope * (y * c - x * s) / scale, -slope * z, 1 - profile, profile;
+      normal->selfadjointView<Eigen::Lower>().rankUpdate(j);
+      *gradient += residual * j;
+    }
+    if (normal != nullptr) *normal = normal->selfadjointView<Eigen::Lower>();
+    return sum;
+  }
+
+  std::span<const EdgeSample> samples_;
+  const Overview& o_;
+};
+
+/// Enough samples for a guess, evenly taken.
+std::vector<EdgeSample> thinned(std::span<const EdgeSample> samples) {
+  constexpr std::size_t enough = 20000;
+  const std::size_t stride = 1 + samples.size() / enough;
+  std::vector<EdgeSample> few;
+  for (std::size_t i = 0; i < samples.size(); i += stride) few.push_back(samples[i]);
+  return few;
+}
+
+}  // namespace
+
+double EdgeLine::along(double x, double y) const {
+  return ((y - centre_y) * std::cos(normal_rad) - (x - centre_x) * std::sin(normal_rad)) / half_length;
+}
+
+double EdgeLine::distance(double x, double y) const {
+  const double straight = (x - centre_x) * std::cos(normal_rad) + (y - centre_y) * std::sin(normal_rad);
+  if (bend.empty()) return straight;
+  const double t = along(x, y);
+  double offset = 0, slope = 0, power = 1;
+  for (std::size_t k = 0; k < bend.size(); ++k) {
+    slope += static_cast<double>(k + 1) * bend[k] * power / half_length;
+    offset += bend[k] * (power *= t);
+  }
+  return (straight - offset) / std::sqrt(1 + slope * slope);
+}
+
+double EdgeLine::angle_deg() const {
+  const double slope = bend.empty() ? 0 : std::atan(bend[0] / half_length);
+  double angle = (normal_rad - slope) * 180 / pi;
+  angle -= 90 * std::round(angle / 90);
+  return angle;
+}
+
+EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
+  const Overview o = overview_of(samples);
+  const std::vector<EdgeSample> few = thinned(samples);
+  std::vector<double> values;
+  for (const EdgeSample& s : few) values.push_back(s.value);
+  std::sort(values.begin(), values.end());
+  const double dark = values[values.size() / 20], bright = values[values.size() - 1 - values.size() / 20];
+  if (!(values.back() > values.front())) throw InputError("all values are equal: there is no edge");
+
+  const LogisticFit fit(few, o);
+  Vector5 best = Vector5::Zero();
+  double best_cost = HUGE_VAL;
+  for (const double direction : {gradient_direction(samples, spacing, o), std::atan2(o.slope_y, o.slope_x)})
+    for (const double scale : {0.5, 4.0}) {
+      Vector5 start;
+      start << 0, direction, std::log(scale * spacing), dark, bright;
+      const Vector5 end = fit.run(start);
+      const double cost = fit.cost(end);
+      if (cost < best_cost) best_cost = cost, best = end;
+    }
+  if (best[4] < best[3]) {
+    std::swap(best[3], best[4]);
+    best[0] = -best[0];
+    best[1] += pi;
+  }
+  EdgeGuess guess;
+  guess.line.normal_rad = std::remainder(best[1], 2 * pi);
+  guess.line.centre_x = o.x + best[0] * std::cos(best[1]);
+  guess.line.centre_y = o.y + best[0] * std::sin(best[1]);
+  guess.dark = best[3];
+  guess.bright = best[4];
+  guess.scale_px = std::exp(best[2]);
+  guess.rms_residual = std::sqrt(best_cost / static_cast<double>(few.size()));
+  if (!(guess.bright - guess.dark > 4 * guess.rms_residual))
+    throw InputError(fmt::format("no edge stands out: a step of {:.3g} among differences of {:.3g} from it",
+                                 guess.bright - guess.dark, guess.rms_residual));
+  double low = 0, high = 0;
+  for (const EdgeSample& s : samples) {
+    const double d = guess.line.distance(s.x, s.y);
+    low = std::min(low, d), high = std::max(high, d);
+    guess.line.half_length =
+        std::max(guess.line.half_length, std::abs(guess.line.along(s.x, s.y) * guess.line.half_length));
+  }
+  if (std::min(-low, high) < 2 * spacing)
+    throw InputError("the edge runs along the rim; there must be pixels on both of its sides");
+  return guess;
+}
+
+}  // namespace petzval

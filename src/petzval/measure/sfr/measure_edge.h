@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spatial frequency response of one slanted edge.
+#pragma once
+
+#include <petzval/measure/sfr/edge_line.h>
+#include <petzval/measure/sfr/edge_samples.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+struct SfrOptions {
+  int edge_order = 1;                   ///< 1 (a straight line) to 5
+  std::vector<double> frequencies_cpp;  ///< empty: 0, 0.01, … 1
+  /// Contrast that the PSF's far tail takes away or adds where the target is not a half-plane: at (x, y), the
+  /// sum of ∬ r⁻³ dA [1/pixel] over what is bright beyond the half-plane minus what is missing from it.
+  /// Empty: the target is a half-plane.
+  std::function<double(double x, double y)> missing_target;
+  /// Pixel values from which on the sensor clips, or up to which it does: such pixels spoil an edge.
+  std::optional<double> clip_low, clip_high;
+};
+
+/// Contrast at which SFR falls below a level for the first time.
+struct MtfLevel {
+  double level = 0.5;
+  double frequency_cpp = 0;  ///< NaN if the table ends before
+  double deviation_cpp = 0;  ///< standard deviation from the noise
+};
+
+struct EdgeMeasurement {
+  EdgeLine line;
+  double dark = 0, bright = 0;              ///< levels far away, the tail extrapolated
+  double noise_dark = 0, noise_bright = 0;  ///< standard deviations of the values about the profile
+  double tail_px = 0;  ///< what the profile misses of a level at a distance d is tail/d of the step
+  double rise_px = 0;  ///< 10 % to 90 %
+  double overshoot = 0, undershoot = 0;  ///< beyond bright and dark, over the step
+  std::vector<double> frequencies_cpp, sfr;
+  std::vector<double> phase_rad;
+  std::vector<double> sfr_deviation;          ///< standard deviation from the noise
+  std::vector<MtfLevel> mtf;                  ///< at 0.9, 0.8, … 0.1
+  std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
+  std::size_t samples = 0;
+  std::vector<std::string> notes;
+
+  const MtfLevel& mtf50() const { return mtf[4]; }
+};
+
+/// Measures one edge: guess → edge line and profile fitted in turn until the line rests (EdgeSpreadModel
+/// holds how the profile is fitted and transformed). Nothing is tapered, binned or smoothed. \param
+/// lattice_step  spacing of the samples [pixels]. \throws InputError when there is no edge, its samples are
+/// clipped, or it is too short to be measured.
+EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_step, const SfrOptions& options);
+
+}  // namespace petzval
