@@ -43,7 +43,7 @@ double worst_error(const Case& c, double* mtf50_error) {
 
 TEST(MeasureEdge, ExactEdges) {
   for (const double f_number : {4.0, 8.0, 16.0})
-    for (const double angle : {0.5, 3.0, 5.0, 12.0, 30.0, 43.0})
+    for (const double angle : {0.5, 5.0, 43.0})
       for (const auto& [w020, w040] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.75}, {2.0, -2.0}, {0.0, 2.0}, {2.0, 0.0}}) {
         double mtf50 = 0;
         const double worst = worst_error({angle, f_number, w020, w040, 100, angle < 1 ? 130 : 100}, &mtf50);

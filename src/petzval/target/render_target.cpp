@@ -67,8 +67,8 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
     const double spacing = margin / (5 * heights_in_margin);
     const double cells = (options.columns + 2 * margin) * (options.rows + 2 * margin);
     const double transform_ns = 60 * cells * 4.5 * cutoff * cutoff;
-    const double far_ns =
-        far_field_ns(regions, margin / heights_in_margin) * (options.columns / spacing + 10) * (options.rows / spacing + 10);
+    const double far_ns = far_field_ns(regions, margin / heights_in_margin) *
+                          (options.columns / spacing + 10) * (options.rows / spacing + 10);
     const double cost = transform_ns + far_ns;
     if (margin == least || cost < best_cost) best_cost = cost, best_margin = margin;
   }

@@ -136,6 +136,14 @@ std::vector<Region> visible_regions(const TargetScene& scene) {
   return regions;
 }
 
+std::vector<Contour> wound_outline(const std::vector<Contour>& contours) {
+  ClipperLib::Clipper clipper;
+  clipper.AddPaths(to_clipper(contours), ClipperLib::ptSubject, true);
+  ClipperLib::Paths outline;
+  clipper.Execute(ClipperLib::ctUnion, outline, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
+  return from_clipper(outline);
+}
+
 Contour clip_to_box(const Contour& contour, Vertex low, Vertex high) {
   Contour current = contour;
   for (int side = 0; side < 4 && !current.empty(); ++side) {

@@ -20,6 +20,10 @@ struct Region {
 /// which rounds corners to 2^-24 of a pixel.
 std::vector<Region> visible_regions(const TargetScene& scene);
 
+/// The same area as contours that do not cross, for the even-odd rule, of contours under the non-zero rule: a
+/// place is inside if they wind about it at all. Corners are rounded as by visible_regions.
+std::vector<Contour> wound_outline(const std::vector<Contour>& contours);
+
 /// The part of a contour inside a box, as one contour; where the box is left it runs along its border
 /// (Sutherland & Hodgman, Commun. ACM 17 (1974) 32). Empty if nothing is inside.
 Contour clip_to_box(const Contour& contour, Vertex low, Vertex high);

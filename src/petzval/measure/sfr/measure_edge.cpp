@@ -82,8 +82,8 @@ EdgeSpreadOptions model_options(const Profile& profile, double scale_px, double 
   options.core_px = std::min(8 + 4 * rise, 0.7 * std::min(-profile.low, profile.high));
   options.blur_px = std::max(1.0, 0.5 * rise);
   options.noise = noise;
-  // A wide blur needs no fine splines.
-  options.knot_px = std::clamp(rise / 12, 0.25, 1.0);
+  // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
+  options.knot_px = options.core_px > 45 ? 0.5 : 0.25;
   return options;
 }
 

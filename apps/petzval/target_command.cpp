@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval target: synthetic targets of exactly known sharpness.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/error.h>
+#include <petzval/base/staged_files.h>
+#include <petzval/base/units.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/numeric/random.h>
+#include <petzval/target/formats/polygon_file.h>
+#include <petzval/target/formats/svg_shapes.h>
+#include <petzval/target/render_target.h>
+#include <petzval/target/test_charts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "command.h"
+#include "field_option.h"
+#include "target_optics.h"
+#include "target_output.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct TargetCommand {
+  TargetOptics optics;
+  TargetOutput output;
+  std::string rectangle, polygons, chart, at, size, bayer, exact_sfr, plot;
+  std::optional<double> half_plane_deg;
+  double noise = 0;
+};
+
+/// "100x80@5", the angle being optional.
+Contour rectangle_of(const std::string& text, Vertex centre) {
+  const std::size_t sign = text.find('@');
+  const auto [width, height] = pair_of(text.substr(0, sign), 'x', "--rectangle");
+  const double angle =
+      sign == std::string::npos ? 0 : pair_of(text.substr(sign + 1) + "@0", '@', "--rectangle").first;
+  return rectangle(centre, width, height, angle);
+}
+
+struct Frame {
+  int columns = 0, rows = 0;
+};
+
+std::optional<Frame> frame_of(const std::string& size) {
+  if (size.empty()) return std::nullopt;
+  const auto [columns, rows] = pair_of(size, 'x', "--size");
+  if (columns != std::floor(columns) || rows != std::floor(rows) || !(columns >= 1 && rows >= 1) ||
+      !(columns * rows <= static_cast<double>(1 << 28)))
+    throw InputError(
+        fmt::format("--size {}: whole numbers of pixels, 1x1 to 2^28 pixels in all, are right", size));
+  return Frame{static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+/// Around polygons: from the origin to their far corner and as far again as their near corner lies from it.
+Frame frame_around(const TargetScene& scene) {
+  double left = HUGE_VAL, top = HUGE_VAL, right = 0, bottom = 0;
+  for (const Polygon& polygon : scene.polygons)
+    for (const Contour& contour : polygon.contours)
+      for (const Vertex& v : contour) {
+        left = std::min(left, v.x), right = std::max(right, v.x);
+        top = std::min(top, v.y), bottom = std::max(bottom, v.y);
+      }
+  constexpr double largest = 16384;
+  const auto side = [=](double from, double to) {
+    return static_cast<int>(std::clamp(std::ceil(to + std::max(from, 20.0)), 1.0, largest));
+  };
+  return {side(left, right), side(top, bottom)};
+}
+
+struct Picture {
+  TargetScene scene;
+  Frame frame;
+};
+
+Picture picture_of(const TargetCommand& command) {
+  const int given = !command.rectangle.empty() + !command.polygons.empty() + !command.chart.empty() +
+                    command.half_plane_deg.has_value();
+  if (given != 1)
+    throw InputError(
+        "give one target: --rectangle WxH@DEG, --half-plane DEG, --polygons FILE or --chart NAME");
+  Picture picture;
+  const std::optional<Frame> asked = frame_of(command.size);
+  if (!command.polygons.empty()) {
+    if (!command.at.empty())
+      throw InputError("--at places a rectangle or half-plane; polygons say where they stand");
+    const bool svg = std::filesystem::path(command.polygons).extension() == ".svg";
+    picture.scene = svg ? read_svg_shapes(command.polygons) : read_polygon_file(command.polygons);
+    picture.frame = asked ? *asked : frame_around(picture.scene);
+    return picture;
+  }
+  Frame usual{240, 240};
+  if (!command.chart.empty()) {
+    if (!command.at.empty())
+      throw InputError("--at places a rectangle or half-plane; a chart stands in the middle");
+    usual = {640, 640};
+  } else if (!command.rectangle.empty()) {
+    const auto [width, height] =
+        pair_of(command.rectangle.substr(0, command.rectangle.find('@')), 'x', "--rectangle");
+    const int side = static_cast<int>(std::clamp(2.4 * std::max(width, height), 64.0, 16384.0));
+    usual = {side, side};
+  }
+  picture.frame = asked.value_or(usual);
+  if (!command.chart.empty()) {
+    picture.scene = test_chart(command.chart, picture.frame.columns, picture.frame.rows);
+    return picture;
+  }
+  Vertex centre{0.5 * picture.frame.columns, 0.5 * picture.frame.rows};
+  if (!command.at.empty()) std::tie(centre.x, centre.y) = pair_of(command.at, ',', "--at");
+  picture.scene.polygons.push_back({{command.half_plane_deg ? half_plane(centre, *command.half_plane_deg)
+                                                            : rectangle_of(command.rectangle, centre)},
+                                    0,
+                                    0});
+  return picture;
+}
+
+void add_noise(std::vector<double>& values, double sigma, std::uint64_t seed) {
+  if (!(sigma >= 0) || !std::isfinite(sigma))
+    throw InputError(fmt::format("--noise {}: zero or more is right", sigma));
+  constexpr std::uint32_t purpose = 0x7a26e7;  // of this noise alone
+  if (sigma > 0)
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] += sigma * RandomStream(seed, purpose, i).normal();
+}
+
+/// One picture a wavelength, and of each the pixels whose filter has that colour.
+TargetImage mosaic(const TargetCommand& command, const TargetScene& scene, const TargetOptions& options) {
+  static const std::map<char, std::size_t> colours{{'r', 0}, {'g', 1}, {'b', 2}};
+  std::string pattern = command.bayer;
+  std::transform(pattern.begin(), pattern.end(), pattern.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (pattern != "rggb" && pattern != "bggr" && pattern != "grbg" && pattern != "gbrg")
+    throw InputError(fmt::format("--bayer {}: rggb, bggr, grbg or gbrg is right", command.bayer));
+  if (command.optics.wavelengths_nm.size() != 3)
+    throw InputError("--bayer takes three wavelengths, for red, green and blue: --wavelength 620,540,460");
+  TargetImage result;
+  for (std::size_t colour = 0; colour < 3; ++colour) {
+    TargetImage one =
+        render_target(scene, *command.optics.at_wavelength(command.optics.wavelengths_nm[colour]), options);
+    if (colour == 0) result = one;
+    for (int row = 0; row < one.rows; ++row)
+      for (int column = 0; column < one.columns; ++column) {
+        const auto filter = static_cast<std::size_t>(row % 2 * 2 + column % 2);
+        if (colours.at(pattern[filter]) == colour)
+          result.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(one.columns) +
+                        static_cast<std::size_t>(column)] = one.at(column, row);
+      }
+  }
+  return result;
+}
+
+void run(const TargetCommand& command, const Shared& shared) {
+  command.optics.validate();
+  command.output.validate();
+  Picture picture = picture_of(command);
+  for (const auto& [path, what, extension] :
+       {std::tuple{command.exact_sfr, "a table of exact SFRs", ".csv"}, {command.plot, "a plot", ".svg"}})
+    if (!path.empty()) require_extension(path, {extension}, what);
+  TargetOptions options;
+  options.columns = picture.frame.columns;
+  options.rows = picture.frame.rows;
+  options.pitch_um = command.optics.pitch_um;
+  options.photosite = command.optics.site();
+
+  const std::shared_ptr<const Otf> otf = command.optics.mixed();
+  TargetImage image = command.bayer.empty() ? render_target(picture.scene, *otf, options)
+                                            : mosaic(command, picture.scene, options);
+  command.output.to_levels(image);
+  add_noise(image.values, command.noise, shared.seed);
+
+  StagedFiles files;
+  for (const std::string& path : command.output.paths)
+    command.output.write(files.stage(path), image, command.optics);
+  if (!command.exact_sfr.empty())
+    write_exact_sfr(files.stage(command.exact_sfr), picture.scene, *otf, options);
+  if (!command.plot.empty()) write_target_plot(files.stage(command.plot), command.optics, *otf, options);
+  files.commit();
+  print_target_summary(command.optics, *otf, options, picture.scene, image, shared);
+}
+
+}  // namespace
+
+void add_target_command(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<TargetCommand>();
+  CLI::App* command =
+      add_command(app, shared, "target",
+                  "Synthetic targets of exactly known sharpness: polygons through diffraction and photosites",
+                  "petzval target --rectangle 100x100@5 --psf airy --f-number 8 --wavelength 550 "
+                  "--pixel-pitch 4.73 -o target.png",
+                  true, [=, &shared] { run(*options, shared); });
+  command->add_option("--rectangle", options->rectangle,
+                      "A dark rectangle WxH@DEG [pixels, degrees clockwise]");
+  command->add_option("--half-plane", options->half_plane_deg,
+                      "A dark half-plane; DEG: from +x towards +y, the direction into it");
+  command->add_option("--polygons", options->polygons,
+                      "Polygons: MTF Mapper's text format, or the shapes of an .svg");
+  command->add_option("--chart", options->chart,
+                      fmt::format("A chart: {}", fmt::join(test_chart_names(), ", ")));
+  command->add_option("--at", options->at,
+                      "Where X,Y the rectangle's centre or the half-plane's edge is [pixels]; "
+                      "default: the middle");
+  command->add_option("--size", options->size,
+                      "Size WxH of the picture [pixels]; default: what the target needs");
+  options->optics.add_to(*command);
+  options->output.add_to(*command);
+  command->add_option("--bayer", options->bayer,
+                      "A mosaic, rggb and so on, with a wavelength for each colour");
+  command->add_option("--noise", options->noise,
+                      "Standard deviation of Gaussian noise, on the scale of --white");
+  command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv");
+  command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg");
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "target_optics.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace petzval::app {
+
+std::pair<double, double> pair_of(const std::string& text, char separator, const std::string& option) {
+  const std::size_t at = text.find(separator);
+  double first = 0, second = 0;
+  const auto whole = [](const char* from, const char* to, double& value) {
+    const auto [end, error] = std::from_chars(from, to, value);
+    return error == std::errc() && end == to && std::isfinite(value);
+  };
+  if (at == std::string::npos || !whole(text.data(), text.data() + at, first) ||
+      !whole(text.data() + at + 1, text.data() + text.size(), second))
+    throw InputError(
+        fmt::format("{} {}: two numbers with '{}' between them are right", option, text, separator));
+  return {first, second};
+}
+
+void TargetOptics::add_to(CLI::App& command) {
+  command.add_option("--psf", psf, "airy, wavefront (with --w020 and so on) or gaussian (with --sigma)")
+      ->check(CLI::IsMember({"airy", "wavefront", "gaussian"}));
+  command.add_option("--f-number", f_number, "Working f-number")->capture_default_str();
+  command
+      .add_option("--wavelength", wavelengths_nm,
+                  "Wavelength [nm]; several, separated by commas, are mixed by --weights")
+      ->delimiter(',');
+  command.add_option("--weights", weights, "Light of each wavelength; default: equal")->delimiter(',');
+  command.add_option("--pixel-pitch", pitch_um, "Pixel pitch [um]")->capture_default_str();
+  command.add_option("--w020", w020, "Defocus at the rim of the pupil [waves of the first wavelength]");
+  command.add_option("--w040", w040, "Spherical aberration at the rim [waves]");
+  command.add_option("--w060", w060, "Term in the sixth power of the radius [waves]");
+  command.add_option("--w080", w080, "Term in the eighth power of the radius [waves]");
+  command.add_option("--obstruction", obstruction, "Radius of a central obstruction over the pupil's");
+  command.add_option("--sigma", sigma_um, "Standard deviation of a Gaussian PSF along each axis [um]");
+  command
+      .add_option(
+          "--photosite", photosite,
+          "square, none (a point), rectangle:WxH, circle:D, ellipse:WxH or polygon:x,y,x,y,... in pixels")
+      ->capture_default_str();
+  command.add_option("--fill-factor", fill_factor, "Area of a square photosite over that of the pixel");
+  command.add_option("--low-pass", low_pass,
+                     "Separation XxY of the four dots of an optical low-pass filter [pixels]");
+}
+
+void TargetOptics::validate() const {
+  const bool aberrated = w020 || w040 || w060 || w080;
+  if (psf != "wavefront" && aberrated)
+    throw InputError(fmt::format(
+        "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080", psf));
+  if ((psf == "gaussian") != (sigma_um != 0))
+    throw InputError("--psf gaussian and --sigma [um] belong together; give both or neither");
+  if (psf == "gaussian" && obstruction != 0) throw InputError("a Gaussian PSF has no --obstruction");
+  if (wavelengths_nm.empty()) throw InputError("--wavelength: at least one is needed");
+  if (!weights.empty() && weights.size() != wavelengths_nm.size())
+    throw InputError(fmt::format("--weights: {} for {} wavelengths; give one a wavelength", weights.size(),
+                                 wavelengths_nm.size()));
+  if (fill_factor != 1 && photosite != "square")
+    throw InputError("--fill-factor belongs to --photosite square");
+  if (!(pitch_um > 0) || !std::isfinite(pitch_um))
+    throw InputError(fmt::format("--pixel-pitch {}: a positive number [um] is right", pitch_um));
+  site().validate();
+}
+
+RadialPupil TargetOptics::pupil() const {
+  return {{w020.value_or(0), w040.value_or(0), w060.value_or(0), w080.value_or(0)}, obstruction};
+}
+
+std::shared_ptr<const Otf> TargetOptics::at_wavelength(double wavelength_nm) const {
+  if (psf == "gaussian") return gaussian_otf(sigma_um);
+  RadialPupil scaled = pupil();
+  for (double& w : scaled.w_waves) w *= wavelengths_nm.front() / wavelength_nm;
+  return radial_pupil_otf(scaled, wavelength_nm, f_number);
+}
+
+std::shared_ptr<const Otf> TargetOptics::mixed() const {
+  if (wavelengths_nm.size() == 1) return at_wavelength(wavelengths_nm.front());
+  std::vector<MixedOtf::Part> parts;
+  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i)
+    parts.push_back({weights.empty() ? 1.0 : weights[i], at_wavelength(wavelengths_nm[i])});
+  return std::make_shared<MixedOtf>(std::move(parts));
+}
+
+Photosite TargetOptics::site() const {
+  Photosite result;
+  const std::size_t colon = photosite.find(':');
+  const std::string kind = photosite.substr(0, colon);
+  const std::string sizes = colon == std::string::npos ? "" : photosite.substr(colon + 1);
+  if (photosite == "square") {
+    result = Photosite::square(fill_factor);
+  } else if (photosite == "none") {
+    result.shape = Photosite::Shape::none;
+  } else if (kind == "rectangle" || kind == "ellipse") {
+    result.shape = kind == "ellipse" ? Photosite::Shape::ellipse : Photosite::Shape::rectangle;
+    std::tie(result.width, result.height) = pair_of(sizes, 'x', "--photosite");
+  } else if (kind == "circle") {
+    result.shape = Photosite::Shape::ellipse;
+    std::tie(result.width, result.height) = pair_of(sizes + "x" + sizes, 'x', "--photosite");
+  } else if (kind == "polygon") {
+    result.shape = Photosite::Shape::polygon;
+    std::string rest = sizes;
+    while (!rest.empty()) {
+      std::size_t end = rest.find(',');
+      end = end == std::string::npos ? end : rest.find(',', end + 1);
+      result.vertices.push_back(pair_of(rest.substr(0, end), ',', "--photosite"));
+      rest = end == std::string::npos ? "" : rest.substr(end + 1);
+    }
+  } else {
+    throw InputError(fmt::format(
+        "--photosite {}: square, none, rectangle:WxH, circle:D, ellipse:WxH or polygon:x,y,... is right",
+        photosite));
+  }
+  if (!low_pass.empty())
+    std::tie(result.separation_x, result.separation_y) = pair_of(low_pass, 'x', "--low-pass");
+  return result;
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The optics of a synthetic target on the command line.
+#pragma once
+
+#include <petzval/wave/otf.h>
+#include <petzval/wave/photosite.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval::app {
+
+/// --psf, --f-number, --wavelength, --weights, the aberrations, --sigma, --pixel-pitch and the photosite.
+struct TargetOptics {
+  std::string psf = "airy", photosite = "square", low_pass;
+  double f_number = 8, pitch_um = 4.73, sigma_um = 0, obstruction = 0, fill_factor = 1;
+  std::vector<double> wavelengths_nm{550}, weights;
+  std::optional<double> w020, w040, w060, w080;
+
+  void add_to(CLI::App& command);
+  /// \throws InputError for options that contradict each other.
+  void validate() const;
+  RadialPupil pupil() const;
+  /// Of one wavelength: the aberrations are waves of the first wavelength.
+  std::shared_ptr<const Otf> at_wavelength(double wavelength_nm) const;
+  /// Of all wavelengths with their weights.
+  std::shared_ptr<const Otf> mixed() const;
+  Photosite site() const;
+};
+
+/// "3.5x2" → two numbers. \throws InputError naming the option.
+std::pair<double, double> pair_of(const std::string& text, char separator, const std::string& option);
+
+}  // namespace petzval::app

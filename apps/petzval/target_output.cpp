@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "target_output.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/colour/display.h>
+#include <petzval/image/formats/irradiance.h>
+#include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/png.h>
+#include <petzval/image/formats/tiff.h>
+#include <petzval/report/svg_plot.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "field_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// Code values; values outside 0 … 1 are clipped.
+std::vector<std::uint16_t> code_values(const TargetImage& image, int bits, bool linear) {
+  std::vector<std::uint16_t> codes;
+  codes.reserve(image.values.size());
+  for (const double value : image.values) {
+    const double encoded = linear ? value : srgb_encoded(value);
+    codes.push_back(bits == 8 ? quantised_8(encoded) : quantised_16(encoded));
+  }
+  return codes;
+}
+
+void write_picture_png(const std::string& path, const TargetImage& image, int bits, bool linear) {
+  PngImage png;
+  png.columns = image.columns, png.rows = image.rows, png.channels = 1, png.bits = bits;
+  png.transfer = linear ? PngTransfer::linear : PngTransfer::srgb;
+  png.samples = code_values(image, bits, linear);
+  write_png(path, png);
+}
+
+void write_picture_tiff(const std::string& path, const TargetImage& image, int bits, bool linear) {
+  TiffImage tiff;
+  tiff.columns = image.columns, tiff.rows = image.rows, tiff.channels = 1;
+  tiff.description = linear ? "petzval target, linear" : "petzval target, sRGB";
+  const std::vector<std::uint16_t> codes = code_values(image, bits, linear);
+  if (bits == 8)
+    tiff.samples = std::vector<std::uint8_t>(codes.begin(), codes.end());
+  else
+    tiff.samples = codes;
+  write_tiff(path, tiff);
+}
+
+void write_exr(const std::string& path, const TargetImage& image, const TargetOptics& optics) {
+  const Photosite site = optics.site();
+  const bool point = site.shape == Photosite::Shape::none;
+  const bool box = site.shape == Photosite::Shape::rectangle && site.width == 1 && site.height == 1;
+  if ((!point && !box) || optics.wavelengths_nm.size() != 1)
+    throw InputError(path,
+                     "an .exr holds the irradiance of one wavelength on full square photosites or at points; "
+                     "write .npy or .tif");
+  SpectralImage spectral(image.columns, image.rows, {optics.wavelengths_nm.front()}, optics.pitch_um,
+                         point ? PixelAperture::point : PixelAperture::box);
+  std::transform(image.values.begin(), image.values.end(), spectral.band(0).begin(),
+                 [](double value) { return static_cast<float>(value); });
+  spectral.provenance =
+      fmt::format("petzval target, relative irradiance; psf {}, f/{}", optics.psf, optics.f_number);
+  write_irradiance(path, spectral);
+}
+
+/// Real OTF along the x axis through optics and photosite.
+double modulation(const Otf& otf, const TargetOptions& options, double cpp, double angle_rad) {
+  return std::abs(transfer(otf, options, cpp * std::cos(angle_rad), cpp * std::sin(angle_rad)));
+}
+
+struct NamedEdge {
+  std::size_t polygon, edge;
+  double angle_deg, length;
+};
+
+std::vector<NamedEdge> edges_of(const TargetScene& scene) {
+  std::vector<NamedEdge> edges;
+  for (std::size_t p = 0; p < scene.polygons.size(); ++p) {
+    std::size_t index = 0;
+    for (const Contour& contour : scene.polygons[p].contours)
+      for (std::size_t i = 0; i < contour.size(); ++i) {
+        const Vertex &a = contour[i], &b = contour[(i + 1) % contour.size()];
+        edges.push_back(
+            {p + 1, ++index, std::atan2(b.y - a.y, b.x - a.x) * 180 / pi, std::hypot(b.x - a.x, b.y - a.y)});
+      }
+  }
+  return edges;
+}
+
+}  // namespace
+
+void TargetOutput::add_to(CLI::App& command) {
+  command
+      .add_option("-o,--output", paths,
+                  "Picture to write, repeatable: .png, .tif, .npy (float64), .exr (float)")
+      ->required()
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--black", black, "Linear level of dark areas, 1 being full scale")
+      ->capture_default_str();
+  command.add_option("--white", white, "Linear level of the light ground")->capture_default_str();
+  command.add_option("--bits", bits, "Bits of .png and .tif")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str();
+  command.add_flag("--linear", linear, "Code values of .png and .tif are linear in light; default: sRGB");
+}
+
+void TargetOutput::validate() const {
+  for (const std::string& path : paths)
+    require_extension(path, {".png", ".tif", ".tiff", ".npy", ".exr"}, "a target");
+  if (!std::isfinite(black) || !std::isfinite(white) || black == white)
+    throw InputError(fmt::format("--black {} and --white {}: two different numbers are right", black, white));
+}
+
+void TargetOutput::to_levels(TargetImage& image) const {
+  if (black == 0 && white == 1) return;
+  for (double& value : image.values) value = black + value * (white - black);
+}
+
+void TargetOutput::write(const std::string& path, const TargetImage& image,
+                         const TargetOptics& optics) const {
+  const std::string extension = extension_of(path);
+  if (extension == ".png") return write_picture_png(path, image, bits, linear);
+  if (extension == ".exr") return write_exr(path, image, optics);
+  if (extension != ".npy") return write_picture_tiff(path, image, bits, linear);
+  const std::size_t shape[] = {static_cast<std::size_t>(image.rows), static_cast<std::size_t>(image.columns),
+                               1};
+  write_npy(path, shape, std::span<const double>(image.values));
+}
+
+void write_exact_sfr(const std::string& path, const TargetScene& scene, const Otf& otf,
+                     const TargetOptions& options) {
+  constexpr std::size_t most_edges = 20000;
+  const std::vector<NamedEdge> edges = edges_of(scene);
+  if (edges.size() > most_edges)
+    throw InputError(path, fmt::format("{} edges would make a table of {} rows; up to {} edges are right",
+                                       edges.size(), 101 * edges.size(), most_edges));
+  std::string text = "polygon,edge,angle_deg,length_px,frequency_cpp,sfr\n";
+  for (const NamedEdge& edge : edges)
+    for (int i = 0; i <= 100; ++i) {
+      const double cpp = i / 100.0, normal = (edge.angle_deg - 90) * pi / 180;
+      const std::complex<double> value =
+          transfer(otf, options, cpp * std::cos(normal), cpp * std::sin(normal));
+      // Symmetric optics have a real transfer function, whose sign tells reversed contrast.
+      const double sfr = std::abs(value.imag()) < 1e-12 ? value.real() : std::abs(value);
+      text += fmt::format("{},{},{:.6f},{:.4f},{:.2f},{:.10f}\n", edge.polygon, edge.edge, edge.angle_deg,
+                          edge.length, cpp, sfr);
+    }
+  write_whole_file(path, text);
+}
+
+void write_target_plot(const std::string& path, const TargetOptics& optics, const Otf& otf,
+                       const TargetOptions& options) {
+  Plot mtf;
+  mtf.title = fmt::format("MTF: {} PSF{}, {} photosite, {:g} um pixels", optics.psf,
+                          optics.psf == "gaussian" ? "" : fmt::format(" at f/{:g}", optics.f_number),
+                          optics.photosite, optics.pitch_um);
+  mtf.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
+  mtf.y = {"modulation", "", PlotScale::linear, 0.0, 1.0};
+  const auto curve = [&](const std::string& label, auto&& value) {
+    std::vector<double> x, y;
+    for (int i = 0; i <= 400; ++i) {
+      x.push_back(i / 400.0);
+      y.push_back(value(x.back()));
+    }
+    return &mtf.line(label, x, y);
+  };
+  curve("whole chain, edges along the pixels", [&](double f) { return modulation(otf, options, f, 0); });
+  curve("whole chain, edges at 45 deg", [&](double f) {
+    return modulation(otf, options, f, pi / 4);
+  })->stroke = PlotStroke::dashed;
+  curve("optics alone", [&](double f) { return std::abs(otf.at(f * 1e3 / options.pitch_um, 0)); })->stroke =
+      PlotStroke::dotted;
+  mtf.guides.push_back({PlotGuide::At::x, 0.5, "Nyquist"});
+  write_whole_file(path, mtf.svg());
+}
+
+void print_target_summary(const TargetOptics& optics, const Otf& otf, const TargetOptions& options,
+                          const TargetScene& scene, const TargetImage& image, const Shared& shared) {
+  const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
+  double mtf50 = 0;
+  while (mtf50 < 4 && modulation(otf, options, mtf50, 0) > 0.5) mtf50 += 1e-4;
+  const double cutoff = otf.cutoff_cpmm() * options.pitch_um * 1e-3;
+  const double blur =
+      geometric_radius(optics.pupil()) * 2 * optics.wavelengths_nm.front() * 1e-3 * optics.f_number;
+  if (shared.json) {
+    nlohmann::ordered_json json = {
+        {"columns", image.columns}, {"rows", image.rows}, {"polygons", scene.polygons.size()}};
+    json["rows_unit"] = "pixels";
+    json["cutoff_cpp"] = cutoff;
+    json["cutoff_cpmm"] = otf.cutoff_cpmm();
+    json["mtf50_cpp"] = mtf50;
+    json["geometric_blur_diameter_um"] = optics.psf == "gaussian" ? 0 : blur;
+    json["least_value"] = *low;
+    json["greatest_value"] = *high;
+    return print_json(json);
+  }
+  fmt::print("{} x {} pixels of {:g} um, {} polygon{}\n", image.columns, image.rows, options.pitch_um,
+             scene.polygons.size(), scene.polygons.size() == 1 ? "" : "s");
+  fmt::print("  cut-off of the optics        {:10.4f} cycles/pixel, {:.2f} cycles/mm\n", cutoff,
+             otf.cutoff_cpmm());
+  fmt::print("  MTF50, edges along the grid  {:10.4f} cycles/pixel\n", mtf50);
+  if (optics.psf == "wavefront") fmt::print("  geometric blur diameter      {:10.4f} um\n", blur);
+  fmt::print("  values                       {:10.6f} to {:.6f}\n", *low, *high);
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/target/test_charts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+struct Frame {
+  double width, height;
+  Vertex centre() const { return {0.5 * width, 0.5 * height}; }
+  double side() const { return std::min(width, height); }
+};
+
+void add(TargetScene& scene, Contour contour) {
+  scene.polygons.push_back({{std::move(contour)}, 0, 0});
+}
+
+Vertex polar(Vertex centre, double radius, double angle) {
+  return {centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)};
+}
+
+TargetScene slanted_edges(const Frame& frame) {
+  TargetScene scene;
+  const double pitch = frame.side() / 3, side = 0.55 * pitch;
+  const int across = static_cast<int>(frame.width / pitch + 1e-9),
+            down = static_cast<int>(frame.height / pitch + 1e-9);
+  for (int row = 0; row < down; ++row)
+    for (int column = 0; column < across; ++column)
+      add(scene, rectangle({frame.width / 2 + (column - 0.5 * (across - 1)) * pitch,
+                            frame.height / 2 + (row - 0.5 * (down - 1)) * pitch},
+                           side, side, 5));
+  return scene;
+}
+
+/// Corners of an arc that stays within 1e-4 pixels of its chords.
+int arc_pieces(double radius, double angle) {
+  return std::max(1, static_cast<int>(std::ceil(std::abs(angle) * std::sqrt(radius / (8 * 1e-4)))));
+}
+
+TargetScene sectors(const Frame& frame, int count, double first_deg) {
+  TargetScene scene;
+  const double radius = 0.45 * frame.side(), width = pi / count;
+  // The tips stay apart, so that no two sectors touch.
+  const double inner = std::max(1.0, 0.02 * radius);
+  for (int i = 0; i < count; ++i) {
+    const double from = first_deg * pi / 180 + 2 * width * i;
+    const int outer_pieces = arc_pieces(radius, width), inner_pieces = arc_pieces(inner, width);
+    Contour contour;
+    for (int j = 0; j <= outer_pieces; ++j)
+      contour.push_back(polar(frame.centre(), radius, from + width * j / outer_pieces));
+    for (int j = inner_pieces; j >= 0; --j)
+      contour.push_back(polar(frame.centre(), inner, from + width * j / inner_pieces));
+    add(scene, std::move(contour));
+  }
+  return scene;
+}
+
+TargetScene checkerboard(const Frame& frame) {
+  TargetScene scene;
+  constexpr int fields = 8;
+  const double side = 0.8 * frame.side() / fields, c = std::cos(5 * pi / 180), s = std::sin(5 * pi / 180);
+  for (int row = 0; row < fields; ++row)
+    for (int column = row % 2; column < fields; column += 2) {
+      const double u = (column - 0.5 * (fields - 1)) * side, v = (row - 0.5 * (fields - 1)) * side;
+      add(scene,
+          rectangle({frame.centre().x + u * c - v * s, frame.centre().y + u * s + v * c}, side, side, 5));
+    }
+  return scene;
+}
+
+TargetScene pinch(const Frame& frame) {
+  TargetScene scene;
+  constexpr int bars = 9;
+  const double top = 0.08 * frame.height, bottom = 0.92 * frame.height;
+  const double wide = std::min(8.0, frame.width / (2.5 * bars)), narrow = 0.9;
+  for (int i = 0; i < bars; ++i) {
+    const double place = 2 * (i - bars / 2);
+    const auto x = [&](double half_bars, double width) { return frame.centre().x + half_bars * width; };
+    add(scene, {{x(place - 0.5, wide), top},
+                {x(place + 0.5, wide), top},
+                {x(place + 0.5, narrow), bottom},
+                {x(place - 0.5, narrow), bottom}});
+  }
+  return scene;
+}
+
+TargetScene zone_plate(const Frame& frame) {
+  // The phase is π r²/(2R): its frequency r/(2R) is 0.5 cycles/pixel at the rim R. Dark where the cosine is
+  // negative.
+  TargetScene scene;
+  const double rim = 0.45 * frame.side();
+  const auto radius_at = [&](double half_turns) { return std::sqrt(2 * rim * half_turns); };
+  for (int ring = 0;; ++ring) {
+    const double inner = radius_at(2 * ring + 0.5), outer = radius_at(2 * ring + 1.5);
+    if (outer > rim) break;
+    const auto circle = [&](double radius) {
+      return regular_polygon(frame.centre(), radius, std::max(12, arc_pieces(radius, 2 * pi)), 0);
+    };
+    scene.polygons.push_back({{circle(outer), circle(inner)}, 0, 0});
+  }
+  return scene;
+}
+
+}  // namespace
+
+std::vector<std::string> test_chart_names() {
+  return {"checkerboard", "pinch", "siemens", "slanted-edges", "slanted-star", "zone-plate"};
+}
+
+TargetScene test_chart(const std::string& name, int columns, int rows) {
+  constexpr int least = 64;
+  if (columns < least || rows < least)
+    throw InputError(
+        fmt::format("a chart of {} x {} pixels: at least {} a side are right", columns, rows, least));
+  const Frame frame{static_cast<double>(columns), static_cast<double>(rows)};
+  if (name == "slanted-edges") return slanted_edges(frame);
+  if (name == "slanted-star") return sectors(frame, 12, 3);
+  if (name == "siemens") return sectors(frame, 36, 0);
+  if (name == "checkerboard") return checkerboard(frame);
+  if (name == "pinch") return pinch(frame);
+  if (name == "zone-plate") return zone_plate(frame);
+  throw InputError(fmt::format("no chart '{}'; the nearest are {}", name,
+                               fmt::join(nearest_names(name, test_chart_names()), ", ")));
+}
+
+}  // namespace petzval
