@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   app::add_image_command(program, shared);
   app::add_compare_command(program, shared);
   app::add_target_command(program, shared);
+  app::add_sfr_command(program, shared);
   app::add_demo_command(program, shared);
   try {
     app::refuse_unknown_command(program, argc, argv);

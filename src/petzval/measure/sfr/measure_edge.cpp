@@ -125,8 +125,7 @@ void turn_by_bend(EdgeLine& line) {
   line.bend[0] = 0;
 }
 
-void refuse_clipped(const Profile& profile, const EdgeSpreadModel& model, const SfrOptions& options,
-                    double rise_px) {
+void refuse_clipped(const Profile& profile, const SfrOptions& options, double rise_px) {
   // A level that is reached exactly within one rise of the edge, before a profile can have come to rest.
   for (const bool high : {false, true}) {
     const std::optional<double> clip = high ? options.clip_high : options.clip_low;
@@ -138,7 +137,6 @@ void refuse_clipped(const Profile& profile, const EdgeSpreadModel& model, const 
       ++near;
       if (high ? point.value >= *clip : point.value <= *clip) ++clipped;
     }
-    (void)model;
     if (near > 0 && clipped * 2 > near)
       throw InputError(
           fmt::format("the edge is clipped: its {} side has reached the limit of the pixel values within the "
@@ -165,10 +163,25 @@ double rise_of(const EdgeSpreadModel& model, double low, double high) {
   return end - start;
 }
 
+/// Where the profile passes one half nearest to the line, by bisection in a range that holds the passage.
+double middle_of(const EdgeSpreadModel& model, double low, double high) {
+  const double half = model.dark() + 0.5 * model.step();
+  double from = low, to = high;
+  for (double reach = 0.25; reach < std::min(-low, high); reach *= 2)
+    if (model.value(-reach) < half && model.value(reach) > half) {
+      from = -reach, to = reach;
+      break;
+    }
+  for (int i = 0; i < 60; ++i) {
+    const double at = 0.5 * (from + to);
+    (model.value(at) < half ? from : to) = at;
+  }
+  return 0.5 * (from + to);
+}
+
 MtfLevel find_level(const EdgeSpreadModel& model, double level, double highest_cpp) {
   MtfLevel result{level, NAN, NAN};
   constexpr double step = 1.0 / 512;
-  double previous = 1;
   for (double f = step; f <= highest_cpp + 1e-9; f += step) {
     const double here = std::abs(model.transform(f));
     if (here < level) {
@@ -180,9 +193,7 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, double highest_c
       result.frequency_cpp = 0.5 * (low + high);
       break;
     }
-    previous = here;
   }
-  (void)previous;
   return result;
 }
 
@@ -266,8 +277,9 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
   result.dark = model->dark();
   result.bright = model->dark() + model->step();
   result.tail_px = model->tail_px();
+  result.middle_px = middle_of(*model, profile.low, profile.high);
   result.rise_px = rise_of(*model, profile.low, profile.high);
-  refuse_clipped(profile, *model, options, result.rise_px);
+  refuse_clipped(profile, options, result.rise_px);
   const Noise spread = noise_about(profile, *model);
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);

@@ -35,8 +35,9 @@ struct EdgeMeasurement {
   EdgeLine line;
   double dark = 0, bright = 0;              ///< levels far away, the tail extrapolated
   double noise_dark = 0, noise_bright = 0;  ///< standard deviations of the values about the profile
-  double tail_px = 0;  ///< what the profile misses of a level at a distance d is tail/d of the step
-  double rise_px = 0;  ///< 10 % to 90 %
+  double tail_px = 0;    ///< what the profile misses of a level at a distance d is tail/d of the step
+  double middle_px = 0;  ///< where the profile passes one half, from `line`
+  double rise_px = 0;    ///< 10 % to 90 %
   double overshoot = 0, undershoot = 0;  ///< beyond bright and dark, over the step
   std::vector<double> frequencies_cpp, sfr;
   std::vector<double> phase_rad;

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sfr_output.h"
+
+#include <fmt/format.h>
+#include <petzval/base/units.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/colour/display.h>
+#include <petzval/report/data_uri.h>
+#include <petzval/report/heat_map.h>
+#include <petzval/report/svg_plot.h>
+#include <petzval/report/xml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "field_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+constexpr std::size_t most_curves = 12;
+
+std::string name_of(const MeasuredEdge& edge, std::size_t index) {
+  return edge.channel.empty() ? fmt::format("edge {}", index + 1)
+                              : fmt::format("edge {}, {}", index + 1, edge.channel);
+}
+
+nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& report) {
+  nlohmann::ordered_json json = {{"angle_deg", edge.angle_deg()},
+                                 {"mtf50_cpp", number_or_null(edge.mtf50())}};
+  if (report.pitch_um) json["mtf50_lpmm"] = number_or_null(edge.mtf50() * 1e3 / *report.pitch_um);
+  json["mtf50_lwph"] = number_or_null(2 * edge.mtf50() * report.rows);
+  if (!edge.iso) json["mtf50_deviation_cpp"] = number_or_null(edge.exact.mtf50().deviation_cpp);
+  if (!edge.channel.empty()) json["channel"] = edge.channel;
+  if (edge.lateral_offset_px) json["lateral_offset_px"] = *edge.lateral_offset_px;
+  if (!edge.iso) {
+    for (const MtfLevel& level : edge.exact.mtf)
+      json[fmt::format("mtf{:.0f}_cpp", 100 * level.level)] = number_or_null(level.frequency_cpp);
+    json["dark"] = edge.exact.dark;
+    json["bright"] = edge.exact.bright;
+    json["noise_dark"] = edge.exact.noise_dark;
+    json["noise_bright"] = edge.exact.noise_bright;
+    json["rise_10_90_px"] = edge.exact.rise_px;
+    json["overshoot"] = edge.exact.overshoot;
+    json["undershoot"] = edge.exact.undershoot;
+    json["tail_px"] = edge.exact.tail_px;
+    json["samples"] = edge.exact.samples;
+  }
+  json["roi"] = {edge.roi.x, edge.roi.y, edge.roi.width, edge.roi.height};
+  json["frequencies_cpp"] = edge.frequencies();
+  json["sfr"] = edge.sfr();
+  if (!edge.iso) json["sfr_deviation"] = edge.exact.sfr_deviation;
+  return json;
+}
+
+}  // namespace
+
+void print_sfr(const SfrReport& report, const Shared& shared) {
+  if (shared.json) {
+    nlohmann::ordered_json json = {
+        {"image", report.image}, {"columns", report.columns}, {"rows", report.rows}};
+    json["edges"] = nlohmann::ordered_json::array();
+    for (const MeasuredEdge& edge : report.edges) json["edges"].push_back(edge_json(edge, report));
+    return print_json(json);
+  }
+  fmt::print("{}: {} x {} pixels, {} edge{}\n", report.image, report.columns, report.rows,
+             report.edges.size(), report.edges.size() == 1 ? "" : "s");
+  fmt::print("{:>4} {:>9} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10}{}\n", "edge", "channel", "angle [deg]",
+             "MTF50 [c/p]", "+- [c/p]", "MTF50[lw/ph]", "MTF20[c/p]", "rise [px]",
+             report.pitch_um ? "  MTF50 [lp/mm]" : "");
+  for (std::size_t i = 0; i < report.edges.size(); ++i) {
+    const MeasuredEdge& e = report.edges[i];
+    fmt::print("{:>4} {:>9} {:>12.4f} {:>11.5f} {:>10.5f} {:>12.1f} {:>10.5f} {:>10.3f}", i + 1,
+               e.channel.empty() ? "-" : e.channel, e.angle_deg(), e.mtf50(),
+               e.iso ? NAN : e.exact.mtf50().deviation_cpp, 2 * e.mtf50() * report.rows,
+               e.iso ? NAN : e.exact.mtf[7].frequency_cpp, e.iso ? NAN : e.exact.rise_px);
+    if (report.pitch_um) fmt::print("{:>15.3f}", e.mtf50() * 1e3 / *report.pitch_um);
+    if (e.lateral_offset_px) fmt::print("  {:+.4f} px from green", *e.lateral_offset_px);
+    fmt::print("\n");
+  }
+}
+
+void write_sfr_csv(const std::string& path, const SfrReport& report) {
+  std::string text = fmt::format("edge,channel,frequency_cpp,{}frequency_lwph,sfr,deviation\n",
+                                 report.pitch_um ? "frequency_lpmm," : "");
+  for (std::size_t i = 0; i < report.edges.size(); ++i) {
+    const MeasuredEdge& edge = report.edges[i];
+    for (std::size_t k = 0; k < edge.sfr().size(); ++k) {
+      const double f = edge.frequencies()[k];
+      text += fmt::format("{},{},{:.6f},{}{:.3f},{:.8f},{}\n", i + 1, edge.channel, f,
+                          report.pitch_um ? fmt::format("{:.4f},", f * 1e3 / *report.pitch_um) : "",
+                          2 * f * report.rows, edge.sfr()[k],
+                          edge.iso ? "" : fmt::format("{:.8f}", edge.exact.sfr_deviation[k]));
+    }
+  }
+  write_whole_file(path, text);
+}
+
+void write_profile_csv(const std::string& path, const SfrReport& report) {
+  std::string text = "edge,channel,distance_px,esf,lsf_per_px\n";
+  for (std::size_t i = 0; i < report.edges.size(); ++i) {
+    const MeasuredEdge& edge = report.edges[i];
+    for (std::size_t k = 0; k < edge.exact.esf.size(); ++k)
+      text += fmt::format("{},{},{:.4f},{:.8f},{:.8f}\n", i + 1, edge.channel, edge.exact.distance_px[k],
+                          edge.exact.esf[k], edge.exact.lsf[k]);
+  }
+  write_whole_file(path, text);
+}
+
+void write_sfr_plot(const std::string& path, const SfrReport& report) {
+  Plot plot;
+  plot.title = "Spatial frequency response";
+  plot.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
+  plot.y = {"SFR", "", PlotScale::linear, 0.0, std::nullopt};
+  for (std::size_t i = 0; i < std::min(most_curves, report.edges.size()); ++i)
+    plot.line(fmt::format("{}: {:.2f} deg", name_of(report.edges[i], i), report.edges[i].angle_deg()),
+              report.edges[i].frequencies(), report.edges[i].sfr());
+  plot.guides.push_back({PlotGuide::At::x, 0.5, "Nyquist"});
+  write_whole_file(path, plot.svg());
+}
+
+void write_profile_plot(const std::string& path, const SfrReport& report) {
+  Plot plot;
+  plot.title = "Edge spread";
+  plot.x = {"distance from the edge", "pixels", PlotScale::linear, -10.0, 10.0};
+  plot.y = {"level over the step", ""};
+  for (std::size_t i = 0; i < std::min(most_curves, report.edges.size()); ++i) {
+    std::vector<double> x, y;
+    const EdgeMeasurement& edge = report.edges[i].exact;
+    for (std::size_t k = 0; k < edge.esf.size(); ++k)
+      if (std::abs(edge.distance_px[k]) <= 10) x.push_back(edge.distance_px[k]), y.push_back(edge.esf[k]);
+    plot.line(name_of(report.edges[i], i), x, y);
+  }
+  write_whole_file(path, plot.svg());
+}
+
+void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane) {
+  std::vector<float> levels;
+  for (const double value : plane.values) levels.push_back(static_cast<float>(srgb_encoded(value)));
+  const std::string png = heat_map_png(levels, plane.columns, plane.rows, {});
+  XmlWriter xml;
+  open_svg(xml, plane.columns, plane.rows, "The picture with its edges and their MTF50 in cycles/pixel");
+  xml.leaf("image", {{"width", static_cast<double>(plane.columns)},
+                     {"height", static_cast<double>(plane.rows)},
+                     {"href", data_uri("image/png", png)}});
+  for (const MeasuredEdge& edge : report.edges) {
+    const EdgeLine& line = edge.exact.line;
+    const double ux = -std::sin(line.normal_rad) * line.half_length,
+                 uy = std::cos(line.normal_rad) * line.half_length;
+    xml.leaf("line", {{"x1", line.centre_x - ux},
+                      {"y1", line.centre_y - uy},
+                      {"x2", line.centre_x + ux},
+                      {"y2", line.centre_y + uy},
+                      {"stroke", "#e6550d"},
+                      {"stroke-width", 1.5}});
+    xml.text("text",
+             {{"x", line.centre_x + 4},
+              {"y", line.centre_y},
+              {"fill", "#e6550d"},
+              {"font-size", 12.0},
+              {"font-family", "sans-serif"}},
+             fmt::format("{:.3f}", edge.mtf50()));
+  }
+  write_whole_file(path, std::move(xml).finish());
+}
+
+}  // namespace petzval::app

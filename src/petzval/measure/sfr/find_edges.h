@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Straight edges in a picture, and what stands around them.
+#pragma once
+
+#include <petzval/measure/sfr/edge_line.h>
+#include <petzval/measure/sfr/level_contours.h>
+
+#include <memory>
+#include <vector>
+
+namespace petzval {
+
+/// The outlines of a target, as corners joined by straight lines, the bright side to the same hand all along.
+struct TargetOutline {
+  std::vector<std::vector<ContourPoint>> corners;
+  std::vector<bool> closed;
+};
+
+/// A straight stretch of an outline.
+struct FoundEdge {
+  ContourPoint from, to;       ///< its ends, at the corners
+  bool corner_at_from = true;  ///< false: it runs out of the picture there
+  bool corner_at_to = true;
+  double reach_dark_px = 0, reach_bright_px = 0;  ///< free of other edges so far on either side
+  std::size_t outline = 0, side = 0;              ///< which line of TargetOutline it is
+  double length_px() const;
+};
+
+struct FoundEdges {
+  TargetOutline outline;
+  std::vector<FoundEdge> edges;
+};
+
+struct EdgeSearchOptions {
+  double least_length_px = 30;
+  double greatest_reach_px = 80;  ///< how far from an edge samples are taken
+};
+
+/// Edges of rectangles, checkerboards, stars and anything else that stands out by its brightness: contours at
+/// the level halfway between dark and bright, divided into straight lines (Ramer 1972; Douglas & Peucker
+/// 1973, within 0.75 pixels or what noise and blur make of it). Edges of blurred targets have rounded
+/// corners; what is rounded is left out. \throws InputError if there is none.
+FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options = {});
+
+/// The samples about a found edge: as far along it as corners do not disturb it, and as far to both sides as
+/// it is free.
+std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
+                                      const PixelLattice& lattice = {});
+
+/// The found edge that runs through samples like a measured line; nothing if none does within 2 pixels and 2
+/// degrees.
+const FoundEdge* edge_along(const FoundEdges& found, const EdgeLine& line);
+
+/// At (x, y): ∬ r⁻³ dA over what is bright beyond the edge's half-plane, minus that over what is missing from
+/// it [1/pixel]; see SfrOptions::missing_target.
+double missing_target_at(const FoundEdges& found, const FoundEdge& edge, double x, double y);
+
+}  // namespace petzval
