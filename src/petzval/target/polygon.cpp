@@ -45,9 +45,19 @@ class PolygonCheck {
         fail(fmt::format("corner ({}, {}) is not a number within {:g} pixels", v.x, v.y, target_reach_px));
       extent = std::max({extent, std::abs(v.x - contour[0].x), std::abs(v.y - contour[0].y)});
     }
-    // An area that rounding alone could have made is none.
-    if (std::abs(signed_area(contour)) <= 1e-12 * extent * extent || extent < 1e-9)
+    if (extent < 1e-9 || on_one_line(contour, extent))
       fail("a contour has no area: its corners lie on one line or on one point");
+  }
+  /// Whether no corner leaves the line from the first corner to the farthest by more than rounding.
+  static bool on_one_line(const Contour& contour, double extent) {
+    const Vertex& o = contour[0];
+    Vertex far = o;
+    for (const Vertex& v : contour)
+      if (std::hypot(v.x - o.x, v.y - o.y) > std::hypot(far.x - o.x, far.y - o.y)) far = v;
+    for (const Vertex& v : contour)
+      if (std::abs((far.x - o.x) * (v.y - o.y) - (v.x - o.x) * (far.y - o.y)) > 1e-12 * extent * extent)
+        return false;
+    return true;
   }
   [[noreturn]] void fail(const std::string& what) const {
     const Polygon& polygon = scene_.polygons[index_];

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace petzval {
 
@@ -38,6 +39,74 @@ void divide(const std::vector<ContourPoint>& points, std::size_t first, std::siz
   }
 }
 
+/// A line through the middle of a stretch of points: a point and a direction. Nothing for short stretches.
+struct Fitted {
+  ContourPoint at;
+  double ux = 0, uy = 0;
+};
+
+std::optional<Fitted> line_through(const std::vector<ContourPoint>& points, std::size_t first,
+                                   std::size_t last) {
+  constexpr std::size_t least = 16;
+  if (last < first + least) return std::nullopt;
+  const std::size_t trim = (last - first) / 6;
+  Fitted line;
+  double n = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = first + trim; i <= last - trim; ++i)
+    n += 1, line.at.x += points[i].x, line.at.y += points[i].y;
+  line.at.x /= n, line.at.y /= n;
+  for (std::size_t i = first + trim; i <= last - trim; ++i) {
+    const double x = points[i].x - line.at.x, y = points[i].y - line.at.y;
+    xx += x * x, xy += x * y, yy += y * y;
+  }
+  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
+  line.ux = std::cos(angle), line.uy = std::sin(angle);
+  return line;
+}
+
+/// The corners of a contour: where the lines through its stretches meet, since blur has rounded the contour
+/// itself.
+std::vector<ContourPoint> sharpened(const std::vector<ContourPoint>& points,
+                                    const std::vector<std::size_t>& kept, bool closed) {
+  const std::size_t sides = closed ? kept.size() : kept.size() - 1;
+  std::vector<std::optional<Fitted>> lines;
+  for (std::size_t s = 0; s < sides; ++s)
+    lines.push_back(line_through(points, kept[s], s + 1 < kept.size() ? kept[s + 1] : points.size() - 1));
+  // Blur cuts corners: a short stretch between two straight ones stands for the corner where these meet.
+  const auto meeting_of = [&](std::size_t before, std::size_t after,
+                              const ContourPoint& near) -> std::optional<ContourPoint> {
+    const std::optional<Fitted>&a = lines[before % sides], &b = lines[after % sides];
+    if (!a || !b) return std::nullopt;
+    const double turn = a->ux * b->uy - a->uy * b->ux;
+    if (std::abs(turn) < 0.25) return std::nullopt;
+    const double t = ((b->at.x - a->at.x) * b->uy - (b->at.y - a->at.y) * b->ux) / turn;
+    const ContourPoint meeting{a->at.x + t * a->ux, a->at.y + t * a->uy};
+    constexpr double farthest = 40;  // lines that meet farther away than any blur's rounding make no corner
+    if (std::hypot(meeting.x - near.x, meeting.y - near.y) > farthest) return std::nullopt;
+    return meeting;
+  };
+  std::vector<ContourPoint> corners;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const ContourPoint corner = points[kept[i]];
+    const bool inner = closed || (i > 0 && i + 1 < kept.size());
+    const std::size_t before = i + sides - 1;  // the side that ends here; side i begins here
+    if (inner && i < sides && !lines[i]) {
+      // This corner and the next are one, if the sides beyond them meet; the next then falls to the branch
+      // below.
+      if (const auto meeting = meeting_of(before, i + 1, corner);
+          meeting && (closed || i + 2 < kept.size())) {
+        corners.push_back(*meeting);
+        continue;
+      }
+    }
+    if (inner && !lines[before % sides] && meeting_of(before + sides - 1, i, corner) && (closed || i > 1))
+      continue;
+    const auto meeting = inner ? meeting_of(before, i, corner) : std::nullopt;
+    corners.push_back(meeting.value_or(corner));
+  }
+  return corners;
+}
+
 std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance) {
   std::vector<ContourPoint> points = contour.points;
   std::vector<std::size_t> kept;
@@ -62,9 +131,7 @@ std::vector<ContourPoint> straightened(const LevelContour& contour, double toler
     divide(points, 0, points.size() - 1, tolerance, kept);
   }
   std::sort(kept.begin(), kept.end());
-  std::vector<ContourPoint> corners;
-  for (const std::size_t i : kept) corners.push_back(points[i]);
-  return corners;
+  return sharpened(points, kept, contour.closed);
 }
 
 struct Axis {
@@ -90,9 +157,10 @@ double trim_of(const FoundEdge& edge) {
   return std::clamp(0.12 * edge.length_px(), 3.0, 20.0);
 }
 
+/// Sets how far the edge is free on either side, over the part of it that is sampled.
 void limit_reach(FoundEdge& edge, const TargetOutline& outline) {
   const Axis axis = axis_of(edge);
-  const double half = axis.half - trim_of(edge);
+  const double low = edge.sampled_from, high = edge.sampled_to;
   for (std::size_t o = 0; o < outline.corners.size(); ++o) {
     const auto& corners = outline.corners[o];
     const std::size_t sides = corners.size() - (outline.closed[o] ? 0 : 1);
@@ -100,20 +168,34 @@ void limit_reach(FoundEdge& edge, const TargetOutline& outline) {
       if (o == edge.outline && s == edge.side) continue;
       const ContourPoint &a = corners[s], &b = corners[(s + 1) % corners.size()];
       // The part of that side abreast of this edge.
-      double ta = axis.along(a), tb = axis.along(b), da = axis.across(a), db = axis.across(b);
-      if (std::max(ta, tb) < -half || std::min(ta, tb) > half) continue;
-      for (const double end : {-half, half})
-        if ((ta < end) != (tb < end)) {
-          const double d = da + (end - ta) / (tb - ta) * (db - da);
-          if (std::abs(ta) > half && (ta < end) == (end < 0)) ta = end, da = d;
-          if (std::abs(tb) > half && (tb < end) == (end < 0)) tb = end, db = d;
-        }
-      for (const double d : {da, db}) {
+      const double ta = axis.along(a), tb = axis.along(b), da = axis.across(a), db = axis.across(b);
+      if (std::max(ta, tb) < low || std::min(ta, tb) > high) continue;
+      const auto across_at = [&](double t) { return ta == tb ? da : da + (t - ta) / (tb - ta) * (db - da); };
+      for (const double d :
+           {across_at(std::clamp(ta, low, high)), across_at(std::clamp(tb, low, high)), ta == tb ? db : da}) {
+        if (ta != tb && d == da && (ta < low || ta > high)) continue;
         if (d > 0) edge.reach_bright_px = std::min(edge.reach_bright_px, 0.6 * d);
         if (d < 0) edge.reach_dark_px = std::min(edge.reach_dark_px, -0.6 * d);
       }
     }
   }
+}
+
+/// Samples over all of the edge, or, where it runs into another edge at one end, over the part that is free.
+void choose_part(FoundEdge& edge, const TargetOutline& outline, double greatest_reach) {
+  constexpr double enough = 10;
+  const double half = 0.5 * edge.length_px() - trim_of(edge);
+  FoundEdge best = edge;
+  double best_reach = -1;
+  for (const auto& [from, to] : {std::pair{-1.0, 1.0}, {-0.3, 1.0}, {-1.0, 0.3}, {0.2, 1.0}, {-1.0, -0.2}}) {
+    FoundEdge part = edge;
+    part.sampled_from = from * half, part.sampled_to = to * half;
+    part.reach_dark_px = part.reach_bright_px = greatest_reach;
+    limit_reach(part, outline);
+    const double reach = std::min({part.reach_dark_px, part.reach_bright_px, enough});
+    if (reach > best_reach) best = part, best_reach = reach;
+  }
+  edge = best;
 }
 
 /// ∫ (x·n)/r³ ds along a straight line seen from p, n to the left of its way in the picture (the dark side).
@@ -126,7 +208,7 @@ double flux_through(const ContourPoint& p, const ContourPoint& a, const ContourP
   // s/(d ρ) = sign(s) (1/d − d/(ρ(ρ + |s|))), so that nothing cancels on the line's extension.
   const auto rest = [&](double s) {
     const double rho = std::hypot(d, s);
-    return std::copysign(d / (rho * (rho + std::abs(s))), s);
+    return (s < 0 ? -d : d) / (rho * (rho + std::abs(s)));
   };
   double sum = rest(s1) - rest(s2);
   if ((s1 < 0) != (s2 < 0)) sum += std::abs(d) > 1e-9 ? 2 / d : 0;
@@ -160,9 +242,8 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
       edge.corner_at_from = closed || s > 0;
       edge.corner_at_to = closed || s + 1 < sides;
       edge.outline = o, edge.side = s;
-      edge.reach_dark_px = edge.reach_bright_px = options.greatest_reach_px;
       if (edge.length_px() < options.least_length_px) continue;
-      limit_reach(edge, found.outline);
+      choose_part(edge, found.outline, options.greatest_reach_px);
       if (std::min(edge.reach_dark_px, edge.reach_bright_px) >= 4) found.edges.push_back(edge);
     }
   }
@@ -176,8 +257,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
 std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
                                       const PixelLattice& lattice) {
   const Axis axis = axis_of(edge);
-  const double half = axis.half - trim_of(edge);
-  const double reach = std::max(edge.reach_dark_px, edge.reach_bright_px) + half;
+  const double reach = std::max(edge.reach_dark_px, edge.reach_bright_px) + axis.half;
   const auto range = [&](double middle, int size) {
     return std::pair{std::clamp(static_cast<int>(middle - reach) - 1, 0, size),
                      std::clamp(static_cast<int>(middle + reach) + 2, 0, size)};
@@ -189,8 +269,9 @@ std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
     for (int column = left; column < right; ++column) {
       if (column % lattice.step != lattice.column || row % lattice.step != lattice.row) continue;
       const ContourPoint p{column + 0.5, row + 0.5};
-      const double d = axis.across(p);
-      if (std::abs(axis.along(p)) <= half && d <= edge.reach_bright_px && d >= -edge.reach_dark_px)
+      const double d = axis.across(p), t = axis.along(p);
+      if (t >= edge.sampled_from && t <= edge.sampled_to && d <= edge.reach_bright_px &&
+          d >= -edge.reach_dark_px)
         samples.push_back({p.x, p.y, plane.at(column, row)});
     }
   return samples;

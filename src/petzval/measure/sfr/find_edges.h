@@ -23,6 +23,8 @@ struct FoundEdge {
   bool corner_at_to = true;
   double reach_dark_px = 0, reach_bright_px = 0;  ///< free of other edges so far on either side
   std::size_t outline = 0, side = 0;              ///< which line of TargetOutline it is
+  /// Where samples are taken, from the middle of the edge towards `to` [pixels].
+  double sampled_from = 0, sampled_to = 0;
   double length_px() const;
 };
 

@@ -87,24 +87,36 @@ EdgeSpreadOptions model_options(const Profile& profile, double scale_px, double 
   return options;
 }
 
+/// A profile as alignment sees it.
+struct Spread {
+  std::function<double(double)> value, slope;
+};
+
+Spread logistic(const EdgeGuess& guess) {
+  const double step = guess.bright - guess.dark, scale = guess.scale_px;
+  const auto share = [=](double d) { return 1 / (1 + std::exp(-d / scale)); };
+  return {[=](double d) { return guess.dark + step * share(d); },
+          [=](double d) { return step / scale * share(d) * (1 - share(d)); }};
+}
+
 /// One Gauss-Newton step for direction and bends: residual ≈ −E′(d) ∂d/∂p δp. An offset is left to the
 /// profile. \returns the largest shift of the line anywhere [pixels].
 double align(EdgeLine& line, const Profile& profile, const std::vector<EdgeSample>& samples,
-             const EdgeSpreadModel& model) {
+             const Spread& spread) {
   const auto unknowns = static_cast<Eigen::Index>(line.bend.size());
   const Eigen::Index n = unknowns + 1;  // bend[0] … and an offset, which the profile takes
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < profile.points.size(); ++i) {
     const EdgePoint& point = profile.points[i];
-    const double slope = model.slope(point.distance);
+    const double slope = spread.slope(point.distance);
     const EdgeSample& sample = samples[profile.sample[i]];
     const double t = line.along(sample.x, sample.y);
     Eigen::VectorXd row(n);
     double power = 1;
     for (Eigen::Index k = 0; k < n; ++k, power *= t) row[k] = -slope * power;
     normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    right += row * (point.value - model.value(point.distance));
+    right += row * (point.value - spread.value(point.distance));
   }
   normal = normal.selfadjointView<Eigen::Lower>();
   normal.diagonal() *= 1 + 1e-12;
@@ -249,6 +261,11 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
 
   std::optional<EdgeSpreadModel> model;
   Profile profile;
+  // A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
+  // scatters.
+  constexpr int rounds_of_guess = 12;
+  for (int round = 0; round < rounds_of_guess && options.edge_order > 1; ++round)
+    align(line, profile_along(samples, line), samples, logistic(guess));
   double noise = 1e-4 * (guess.bright - guess.dark), missing_scale = 0;
   constexpr int most_rounds = 40;
   // Half a thousandth of a pixel over the length of an edge changes no SFR by 1e-6; noise-free edges get
@@ -266,7 +283,9 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
     noise = std::sqrt(noise_about(profile, *model).all);
     // K₃ of the PSF is half the edge's tail.
     missing_scale = options.missing_target ? 0.5 * model->tail_px() * model->step() : 0;
-    const double shift = align(line, profile, samples, *model);
+    const double shift =
+        align(line, profile, samples,
+              {[&](double d) { return model->value(d); }, [&](double d) { return model->slope(d); }});
     turn_by_bend(line);
     if (round > 2 && shift < std::max(at_rest_px, 1e-3 * noise / model->step())) break;
   }
