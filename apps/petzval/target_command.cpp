@@ -155,7 +155,8 @@ TargetImage mosaic(const TargetCommand& command, const TargetScene& scene, const
   return result;
 }
 
-void run(const TargetCommand& command, const Shared& shared) {
+void run(TargetCommand& command, const Shared& shared) {
+  command.optics.prepare(shared);
   command.optics.validate();
   command.output.validate();
   Picture picture = picture_of(command);

@@ -2,8 +2,12 @@
 #include "target_optics.h"
 
 #include <fmt/format.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/wave/sampled_otf.h>
 
 #include <charconv>
 #include <cmath>
@@ -25,8 +29,12 @@ std::pair<double, double> pair_of(const std::string& text, char separator, const
 }
 
 void TargetOptics::add_to(CLI::App& command) {
-  command.add_option("--psf", psf, "airy, wavefront (with --w020 and so on) or gaussian (with --sigma)")
-      ->check(CLI::IsMember({"airy", "wavefront", "gaussian"}));
+  command
+      .add_option("--psf", psf, "airy, wavefront (with --w020 and so on), gaussian (with --sigma) or lens")
+      ->check(CLI::IsMember({"airy", "wavefront", "gaussian", "lens"}));
+  lens.add_to(command, false, false);
+  command.add_option("--field", field,
+                     "Field of the --lens, as its file defines fields; its image lies below the middle");
   command.add_option("--f-number", f_number, "Working f-number")->capture_default_str();
   command
       .add_option("--wavelength", wavelengths_nm,
@@ -48,6 +56,13 @@ void TargetOptics::add_to(CLI::App& command) {
   command.add_option("--fill-factor", fill_factor, "Area of a square photosite over that of the pixel");
   command.add_option("--low-pass", low_pass,
                      "Separation XxY of the four dots of an optical low-pass filter [pixels]");
+}
+
+void TargetOptics::prepare(const Shared& shared) {
+  if ((psf == "lens") != !lens.path_or_name.empty())
+    throw InputError("--psf lens and --lens LENS belong together; give both or neither");
+  if (psf != "lens" && field) throw InputError("--field belongs to --psf lens");
+  if (psf == "lens") lens_ = lens.read(shared);
 }
 
 void TargetOptics::validate() const {
@@ -75,6 +90,16 @@ RadialPupil TargetOptics::pupil() const {
 
 std::shared_ptr<const Otf> TargetOptics::at_wavelength(double wavelength_nm) const {
   if (psf == "gaussian") return gaussian_otf(sigma_um);
+  if (psf == "lens") {
+    FieldTracer tracer(*lens_, wavelength_nm);
+    const std::optional<ChiefRay> chief =
+        tracer.chief_ray(object_field(*lens_, lens_->fields.kind, field.value_or(0)));
+    const std::optional<Psf> spread = chief ? point_spread(tracer, *chief, {}) : std::nullopt;
+    if (!spread)
+      throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens_->name,
+                                   field.value_or(0), wavelength_nm));
+    return std::make_shared<SampledOtf>(*spread);
+  }
   RadialPupil scaled = pupil();
   for (double& w : scaled.w_waves) w *= wavelengths_nm.front() / wavelength_nm;
   return radial_pupil_otf(scaled, wavelength_nm, f_number);

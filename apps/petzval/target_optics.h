@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
+
 namespace petzval::app {
 
 /// --psf, --f-number, --wavelength, --weights, the aberrations, --sigma, --pixel-pitch and the photosite.
@@ -18,8 +20,11 @@ struct TargetOptics {
   std::string psf = "airy", photosite = "square", low_pass;
   double f_number = 8, pitch_um = 4.73, sigma_um = 0, obstruction = 0, fill_factor = 1;
   std::vector<double> wavelengths_nm{550}, weights;
-  std::optional<double> w020, w040, w060, w080;
+  std::optional<double> w020, w040, w060, w080, field;
+  LensChoice lens;
 
+  /// Reads the lens, if one is named. Call it before the others.
+  void prepare(const Shared& shared);
   void add_to(CLI::App& command);
   /// \throws InputError for options that contradict each other.
   void validate() const;
@@ -29,6 +34,9 @@ struct TargetOptics {
   /// Of all wavelengths with their weights.
   std::shared_ptr<const Otf> mixed() const;
   Photosite site() const;
+
+ private:
+  std::optional<Lens> lens_;
 };
 
 /// "3.5x2" → two numbers. \throws InputError naming the option.
