@@ -180,7 +180,8 @@ const SigmoidReflectance& ReflectanceTable::node(int largest, int level, int fir
 }
 
 // The table is split by the largest component, whose value is one axis (finer towards black and white, where
-// coefficients change fast); the other two, relative to it, are the others (Jakob & Hanika 2019, section 3.2).
+// coefficients change fast); the other two, relative to it, are the others (Jakob & Hanika 2019,
+// section 3.2).
 ReflectanceTable::ReflectanceTable() {
   for (int i = 0; i < nodes; ++i)
     levels_[static_cast<std::size_t>(i)] =
@@ -233,7 +234,8 @@ SigmoidReflectance ReflectanceTable::operator()(LinearRgb colour) const {
   const double t = place(rgb[static_cast<std::size_t>((largest + 2) % 3)] / value * (nodes - 1), second);
   const auto above = std::upper_bound(levels_.begin(), levels_.end(), value);
   const int level = std::clamp(static_cast<int>(above - levels_.begin()) - 1, 0, nodes - 2);
-  const double low = levels_[static_cast<std::size_t>(level)], high = levels_[static_cast<std::size_t>(level) + 1];
+  const double low = levels_[static_cast<std::size_t>(level)],
+               high = levels_[static_cast<std::size_t>(level) + 1];
   const double u = std::clamp((value - low) / (high - low), 0.0, 1.0);
 
   SigmoidReflectance sum;

@@ -9,18 +9,18 @@
 
 namespace petzval {
 
-/// Reflectance s(c2 + c1 t + c0 t²) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 380 nm) / 350 nm: smooth, and
-/// between 0 and 1 at every wavelength, so that no surface gives back more light than it gets.
-/// (Jakob & Hanika, "A low-dimensional function space for efficient spectral upsampling", Eurographics 2019.)
+/// Reflectance s(c2 + c1 t + c0 t²) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 380 nm) / 350 nm: smooth,
+/// and between 0 and 1 at every wavelength, so that no surface gives back more light than it gets. (Jakob &
+/// Hanika, "A low-dimensional function space for efficient spectral upsampling", Eurographics 2019.)
 struct SigmoidReflectance {
   double c0 = 0, c1 = 0, c2 = 0;
 
   double at(double wavelength_nm) const;
 };
 
-/// The reflectance that has this linear sRGB colour under D65, by Gauss-Newton on the difference in CIELAB; a grey is
-/// constant over wavelength, exactly. Components are clamped to [0, 1]. Colours within 1e-3 of the gamut's corners
-/// are met as nearly as the sigmoid can (about one unit of ΔE).
+/// The reflectance that has this linear sRGB colour under D65, by Gauss-Newton on the difference in CIELAB; a
+/// grey is constant over wavelength, exactly. Components are clamped to [0, 1]. Colours within 1e-3 of the
+/// gamut's corners are met as nearly as the sigmoid can (about one unit of ΔE).
 SigmoidReflectance reflectance_of(LinearRgb colour);
 
 /// reflectance_of() by interpolation in a table, for pictures: about 30 ns a pixel instead of some ten µs.

@@ -10,8 +10,8 @@ constexpr double unit = 0x1p-32;
 
 using DirectionNumbers = std::array<std::uint32_t, 32>;
 
-/// Degree and coefficients of the primitive polynomials and the first odd numbers m of dimensions 2 to 4 (Joe & Kuo,
-/// SIAM J. Sci. Comput. 30 (2008) 2635: new-joe-kuo-6).
+/// Degree and coefficients of the primitive polynomials and the first odd numbers m of dimensions 2 to 4 (Joe
+/// & Kuo, SIAM J. Sci. Comput. 30 (2008) 2635: new-joe-kuo-6).
 struct Primitive {
   int degree;
   std::uint32_t coefficients;
@@ -70,7 +70,8 @@ constexpr std::uint32_t reversed_bits(std::uint32_t x) {
 
 std::uint32_t sobol(std::uint32_t index, int dimension) {
   const auto& table = byte_tables[static_cast<std::size_t>(dimension)];
-  return table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^ table[3][index >> 24];
+  return table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
+         table[3][index >> 24];
 }
 
 std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed) {

@@ -7,7 +7,8 @@
 
 namespace petzval {
 
-/// Coordinate 0 … 3 of point `index` of the Sobol sequence, as a fixed-point number of 32 bits (Joe & Kuo 2008).
+/// Coordinate 0 … 3 of point `index` of the Sobol sequence, as a fixed-point number of 32 bits (Joe & Kuo
+/// 2008).
 std::uint32_t sobol(std::uint32_t index, int dimension);
 
 /// Nested uniform (Owen) scrambling of the 32 binary digits, the permutations taken from a hash of `seed`
@@ -17,9 +18,9 @@ std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed);
 /// A well mixed 32-bit hash of two numbers, for making seeds.
 std::uint32_t hashed(std::uint32_t a, std::uint32_t b);
 
-/// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four dimensions are
-/// Sobol points stratified together; different sets are independent permutations of the same samples (Burley,
-/// "Practical hash-based Owen scrambling", JCGT 9 (2020) 4).
+/// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four
+/// dimensions are Sobol points stratified together; different sets are independent permutations of the same
+/// samples (Burley, "Practical hash-based Owen scrambling", JCGT 9 (2020) 4).
 ///
 ///     SobolSample sample(hashed(pixel, seed), index);   // the index-th of the samples of that pixel
 ///     const auto [u, v] = sample.next2();

@@ -24,8 +24,8 @@ double balanced(double pdf, double other) {
 struct PathTracer::Path {
   Vector3 origin, direction;
   Lanes throughput = Lanes::all(1);
-  double pdf = 0;        ///< of the last scattering; 0 after a mirror or at the camera
-  bool alone = false;    ///< dispersed: only the hero wavelength is left
+  double pdf = 0;      ///< of the last scattering; 0 after a mirror or at the camera
+  bool alone = false;  ///< dispersed: only the hero wavelength is left
   int hero = 0, depth = 0;
   double index_scale = 1;  ///< what refraction has done to radiance so far, undone for Russian roulette
   Vector3 scattered_at;
@@ -65,8 +65,8 @@ void PathTracer::add_sky(Path& path, int group) const {
   add(path, weight * world_.lights.sky(path.direction, group));
 }
 
-void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
-                                   Vector3 wo, int group, SobolSample& sample) const {
+void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
+                                   const Bsdf& bsdf, Vector3 wo, int group, SobolSample& sample) const {
   const auto [choice, u, v, unused] = sample.next4();
   (void)unused;
   if (bsdf.is_mirror()) return;
@@ -82,12 +82,13 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   const Vector3 origin = point.origin_towards(light->direction);
   if (world_.intersector->blocked(origin, light->direction, light->distance)) return;
   double weight = std::abs(wi.z) / light->pdf;
-  if (!light->small && options_.lights == PathOptions::Lights::both) weight *= balanced(light->pdf, bsdf.pdf(wo, wi));
+  if (!light->small && options_.lights == PathOptions::Lights::both)
+    weight *= balanced(light->pdf, bsdf.pdf(wo, wi));
   add(path, weight * (f * light->light));
 }
 
-bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo,
-                         int hero, SobolSample& sample) const {
+bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
+                         Vector3 wo, int hero, SobolSample& sample) const {
   const auto [choice, u, v, roulette] = sample.next4();
   const std::optional<BsdfSample> chosen = bsdf.sample(wo, choice, u, v);
   if (!chosen || chosen->weight.is_black()) return false;
@@ -110,8 +111,8 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
   return true;
 }
 
-PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample, double limit,
-                            FirstSurface* first) const {
+PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
+                            double limit, FirstSurface* first) const {
   Path path;
   path.origin = origin, path.direction = direction, path.hero = hero;
   int interfaces = 0;
@@ -123,7 +124,8 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       break;
     }
     const Geometry& geometry = world_.geometries[static_cast<std::size_t>(hit->geometry)];
-    const SurfacePoint point = surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
+    const SurfacePoint point =
+        surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
     add_emitted(path, *hit, point, group);
     const TexturePoint texture_point{point.position, point.u, point.v};
     const Material& material =
@@ -136,7 +138,8 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       continue;
     }
     const Bsdf bsdf = material.bsdf(texture_point, group, hero);
-    if (first && !first->met) *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
+    if (first && !first->met)
+      *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
     // A rough surface that disperses sends each wavelength its own way from here on.
     if (bsdf.disperses() && !bsdf.is_mirror()) path.alone = true;
     if (path.depth++ >= options_.max_depth) break;

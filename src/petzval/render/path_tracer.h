@@ -19,7 +19,7 @@ struct PathOptions {
 /// Radiance along one ray [W·m⁻²·sr⁻¹·nm⁻¹].
 struct PathLight {
   Lanes shared = Lanes::all(0);  ///< over paths that all wavelengths of the group could have taken
-  float alone = 0;               ///< of the hero wavelength, over paths through dispersing glass, which only it takes
+  float alone = 0;  ///< of the hero wavelength, over paths through dispersing glass, which only it takes
 };
 
 /// The first surface along a ray, as pictures of depth, normals and albedo need it.
@@ -29,8 +29,8 @@ struct FirstSurface {
   Lanes albedo = Lanes::all(0);
 };
 
-/// Spectral path tracing with next-event estimation, multiple importance sampling (Veach 1997, balance heuristic) and
-/// Russian roulette.
+/// Spectral path tracing with next-event estimation, multiple importance sampling (Veach 1997, balance
+/// heuristic) and Russian roulette.
 class PathTracer {
  public:
   /// `world` must outlive this.
@@ -38,17 +38,18 @@ class PathTracer {
 
   /// \param limit  far clipping distance. \param first  if given, is told of the first surface.
   PathLight trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
-                  double limit = std::numeric_limits<double>::infinity(), FirstSurface* first = nullptr) const;
+                  double limit = std::numeric_limits<double>::infinity(),
+                  FirstSurface* first = nullptr) const;
 
  private:
   struct Path;
   void add(Path& path, const Lanes& light) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
-  void add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo,
-                         int group, SobolSample& sample) const;
-  bool scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo, int hero,
-               SobolSample& sample) const;
+  void add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
+                         Vector3 wo, int group, SobolSample& sample) const;
+  bool scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo,
+               int hero, SobolSample& sample) const;
 
   const World& world_;
   PathOptions options_;

@@ -30,9 +30,16 @@ struct TileResult {
 class TileRenderer {
  public:
   TileRenderer(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
-               const SensorGeometry& sensor, const RenderOptions& options, const PixelWindow& tile, Film& film)
-      : world_(world), camera_(camera), world_from_camera_(world_from_camera), sensor_(sensor), options_(options),
-        tracer_(world, options.path), tile_(tile), film_(film) {}
+               const SensorGeometry& sensor, const RenderOptions& options, const PixelWindow& tile,
+               Film& film)
+      : world_(world),
+        camera_(camera),
+        world_from_camera_(world_from_camera),
+        sensor_(sensor),
+        options_(options),
+        tracer_(world, options.path),
+        tile_(tile),
+        film_(film) {}
 
   TileResult run(int first_index, int samples_per_pixel) {
     const int groups = world_.groups.count();
@@ -70,7 +77,10 @@ class TileRenderer {
   }
 
   void trace_camera(int group) {
-    if (!camera_.disperses()) return camera_.trace(group, 0, places_, rays_);
+    const PixelWindow& window = film_.window;
+    const FilmArea sampled{static_cast<double>(window.left), static_cast<double>(window.top),
+                           static_cast<double>(window.right), static_cast<double>(window.bottom)};
+    if (!camera_.disperses()) return camera_.trace(group, 0, sampled, places_, rays_);
     std::vector<FilmSample> places;
     std::vector<CameraRay> rays;
     std::vector<std::size_t> from;
@@ -79,7 +89,7 @@ class TileRenderer {
       for (std::size_t i = 0; i < heroes_.size(); ++i)
         if (heroes_[i] == hero) places.push_back(places_[i]), from.push_back(i);
       rays.assign(places.size(), {});
-      if (!places.empty()) camera_.trace(group, hero, places, rays);
+      if (!places.empty()) camera_.trace(group, hero, sampled, places, rays);
       for (std::size_t k = 0; k < from.size(); ++k) rays_[from[k]] = rays[k];
     }
   }
@@ -92,8 +102,9 @@ class TileRenderer {
     const Vector3 origin = world_from_camera_.point(ray.origin);
     const Vector3 direction = normalised(world_from_camera_.direction(ray.direction));
     FirstSurface first;
-    const PathLight light = tracer_.trace(origin, direction, group, heroes_[i], samples_[i], options_.far_distance,
-                                          film_.has_first_surfaces() ? &first : nullptr);
+    const PathLight light =
+        tracer_.trace(origin, direction, group, heroes_[i], samples_[i], options_.far_distance,
+                      film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, share, light);
     if (first.met) add_first(i, group, first);
   }
@@ -110,14 +121,15 @@ class TileRenderer {
         column = static_cast<double>(ray.column[static_cast<std::size_t>(lane)]);
         row = static_cast<double>(ray.row[static_cast<std::size_t>(lane)]);
       }
-      add(static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row)), world_.groups.band(group, lane),
-          share * value);
+      add(static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row)),
+          world_.groups.band(group, lane), share * value);
     }
   }
 
   void add(int column, int row, int band, double value) {
     if (!film_.window.contains(column, row)) return;
-    const std::size_t at = static_cast<std::size_t>(band) * film_.window.size() + film_.window.index(column, row);
+    const std::size_t at =
+        static_cast<std::size_t>(band) * film_.window.size() + film_.window.index(column, row);
     if (tile_.contains(column, row))
       film_.light[at] += value;
     else
@@ -156,7 +168,8 @@ std::vector<PixelWindow> tiles_of(const PixelWindow& window) {
   std::vector<PixelWindow> tiles;
   for (int top = window.top; top < window.bottom; top += tile_side)
     for (int left = window.left; left < window.right; left += tile_side)
-      tiles.push_back({left, top, std::min(left + tile_side, window.right), std::min(top + tile_side, window.bottom)});
+      tiles.push_back(
+          {left, top, std::min(left + tile_side, window.right), std::min(top + tile_side, window.bottom)});
   return tiles;
 }
 
@@ -172,7 +185,8 @@ PixelWindow checked_window(const SensorGeometry& sensor, const RenderOptions& op
 Rendering developed(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
                     double samples_of_pixel) {
   Rendering result;
-  result.irradiance = SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um);
+  result.irradiance =
+      SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um);
   const std::size_t pixels = film.window.size();
   for (int band = 0; band < result.irradiance.bands(); ++band) {
     const std::span<float> plane = result.irradiance.band(band);
@@ -194,7 +208,8 @@ Rendering developed(const Film& film, const WavelengthGroups& groups, const Sens
     first.normal[3 * i + 2] = static_cast<float>(normal.z);
     for (std::size_t band = 0; band * pixels < film.albedo.size(); ++band)
       // Each band is in one group of `count`, which saw as large a share of the samples.
-      first.albedo[band * pixels + i] = static_cast<float>(film.albedo[band * pixels + i] * groups.count() / met);
+      first.albedo[band * pixels + i] =
+          static_cast<float>(film.albedo[band * pixels + i] * groups.count() / met);
   }
   return result;
 }
@@ -206,7 +221,8 @@ int effective_samples(const WavelengthGroups& groups, int samples_per_pixel) {
 }
 
 Rendering render_picture(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
-                         const SensorGeometry& sensor, const RenderOptions& options, const ProgressCallback& progress) {
+                         const SensorGeometry& sensor, const RenderOptions& options,
+                         const ProgressCallback& progress) {
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
   const PixelWindow window = checked_window(sensor, options);
   Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), options.first_surfaces);
@@ -225,7 +241,8 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       results[i] = TileRenderer(world, camera, world_from_camera, sensor, options, tiles[i], film)
                        .run(film.passes * indices_a_pass, samples);
       if (progress)
-        progress((film.passes + static_cast<double>(++done) / static_cast<double>(tiles.size())) / passes, "light");
+        progress((film.passes + static_cast<double>(++done) / static_cast<double>(tiles.size())) / passes,
+                 "light");
     });
     // In the order of the tiles, whoever finished first.
     for (TileResult& tile : results) {
@@ -235,8 +252,8 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
     ++film.passes;
     if (options.after_pass) go_on = options.after_pass(film.passes, passes);
     const auto now = std::chrono::steady_clock::now();
-    const bool save = film.passes < passes &&
-                      (!go_on || std::chrono::duration<double>(now - saved).count() >= options.checkpoint_seconds);
+    const bool save = film.passes < passes && (!go_on || std::chrono::duration<double>(now - saved).count() >=
+                                                             options.checkpoint_seconds);
     if (!options.checkpoint.empty() && save) {
       write_checkpoint(options.checkpoint, film, options.fingerprint);
       saved = now;

@@ -26,7 +26,8 @@ Matrix4 plain(const Matrix& m) {
   return result;
 }
 
-/// Rows and columns are brought to a common size before the condition is judged: a scene in µm is not singular.
+/// Rows and columns are brought to a common size before the condition is judged: a scene in µm is not
+/// singular.
 bool can_be_inverted(const Matrix& m) {
   const Eigen::Matrix3d upper = m.topLeftCorner<3, 3>();
   Eigen::Matrix3d scaled = upper;

@@ -14,7 +14,8 @@ bool is_mesh(const std::string& type) {
 /// Puts the pieces of a world together.
 class WorldBuilder {
  public:
-  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, Unsupported& unsupported, World& world)
+  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, Unsupported& unsupported,
+               World& world)
       : scene_(scene), options_(options), unsupported_(unsupported), world_(world) {}
 
   GeometryRange add(const std::vector<ShapeDescription>& shapes) {

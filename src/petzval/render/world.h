@@ -12,8 +12,9 @@
 namespace petzval::render {
 
 struct WorldOptions {
-  /// pbrt-v4 scales every light so that a strength of 1 is a luminance (or luminous intensity) of 1 in the unit of ∫ L ȳ dλ. If
-  /// set, spectra of lights given as tables, files or black bodies are radiances [W·m⁻²·sr⁻¹·nm⁻¹] as they stand.
+  /// pbrt-v4 scales every light so that a strength of 1 is a luminance (or luminous intensity) of 1 in the
+  /// unit of ∫ L ȳ dλ. If set, spectra of lights given as tables, files or black bodies are radiances
+  /// [W·m⁻²·sr⁻¹·nm⁻¹] as they stand.
   bool absolute_spectra = false;
 };
 

@@ -32,39 +32,51 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   if (lens.surfaces.back().material.index(lens.reference_wavelength_nm) != 1)
     throw InputError(fmt::format("{}: the film does not stand in air, which rendering needs", lens.name));
   if (!(lens.surfaces.back().thickness_mm > 0))
-    throw InputError(fmt::format("{}: the film stands {:g} mm behind the last surface; a positive distance would be right",
-                                 lens.name, lens.surfaces.back().thickness_mm));
+    throw InputError(
+        fmt::format("{}: the film stands {:g} mm behind the last surface; a positive distance would be right",
+                    lens.name, lens.surfaces.back().thickness_mm));
   const double stop_radius = stop_radius_mm(lens);
   const std::vector<double>& nm = groups.wavelengths_nm();
   disperses_ = any_dispersion(lens, nm);
-  for (std::size_t i = 0; i < (disperses_ ? nm.size() : 1); ++i) tracers_.emplace_back(lens, nm[i], stop_radius);
+  for (std::size_t i = 0; i < (disperses_ ? nm.size() : 1); ++i)
+    tracers_.emplace_back(lens, nm[i], stop_radius);
 
-  std::vector<const Tracer*> ends{&tracers_.front()};
-  if (disperses_) ends = {&tracers_.front(), &tracers_[tracers_.size() / 2], &tracers_.back()};
-  const double corner = film.half_diagonal_mm() * corner_margin;
-  if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_.emplace(lens, ends, corner);
+  if (options.sampling == LensCameraOptions::Sampling::exit_pupil) find_regions(lens);
 
   const Surface& last = lens.surfaces.back();
   rear_distance_mm_ = last.thickness_mm;
   if (options.sampling == LensCameraOptions::Sampling::rear_disk) {
     if (!last.semi_diameter_mm)
-      throw InputError(fmt::format("{}: the last surface has no aperture to aim at; --sampling exit-pupil needs none",
-                                   lens.name));
+      throw InputError(fmt::format(
+          "{}: the last surface has no aperture to aim at; --sampling exit-pupil needs none", lens.name));
     rear_radius_mm_ = *last.semi_diameter_mm;
   }
 }
 
+/// The pupils of the ends and the middle of the spectrum hold those between.
+void LensCamera::find_regions(const Lens& lens) {
+  std::vector<Tracer> ends{tracers_.front()};
+  if (disperses_) ends = {tracers_.front(), tracers_[tracers_.size() / 2], tracers_.back()};
+  const double corner_mm = film_.half_diagonal_mm();
+  regions_.emplace(ends, corner_mm * corner_margin);
+  constexpr int probes = 64;
+  for (int i = 0; i <= probes; ++i)
+    if (regions_->area_sr(0, corner_mm * i / probes) > 0) return;
+  throw InputError(
+      fmt::format("{}: no light reaches the film, {:.4g} mm behind the lens and {:.4g} mm from corner to "
+                  "corner; another film distance or a wider stop would be right",
+                  lens.name, lens.surfaces.back().thickness_mm, 2 * corner_mm));
+}
+
 const Tracer& LensCamera::tracer(int group, int lane) const {
-  return disperses_ ? tracers_[static_cast<std::size_t>(std::max(0, groups_.band(group, lane)))] : tracers_.front();
+  return disperses_ ? tracers_[static_cast<std::size_t>(std::max(0, groups_.band(group, lane)))]
+                    : tracers_.front();
 }
 
 LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v) const {
   if (regions_) {
-    const double radius = std::hypot(x_mm, y_mm);
-    const PupilRegions::Direction direction = regions_->sample(radius, u, v);
-    // t points away from the axis; s as (y', −x')/r', which is +x at (0, +r').
-    const double tx = radius > 0 ? x_mm / radius : 0, ty = radius > 0 ? y_mm / radius : 1;
-    return {direction.s * ty + direction.t * tx, -direction.s * tx + direction.t * ty, direction.area};
+    const std::optional<ExitPupilRegions::Sample> sample = regions_->sample(x_mm, y_mm, u, v);
+    return sample ? Start{sample->alpha, sample->beta, sample->area_sr} : Start{};
   }
   const double r = rear_radius_mm_ * std::sqrt(u), phi = 2 * pi * v;
   const double dx = x_mm - r * std::cos(phi), dy = y_mm - r * std::sin(phi);
@@ -74,20 +86,17 @@ LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v
 }
 
 double LensCamera::density(double x_mm, double y_mm, double alpha, double beta) const {
-  if (std::abs(x_mm) > film_.width_mm() / 2 || std::abs(y_mm) > film_.height_mm() / 2) return 0;
-  if (regions_) {
-    const double radius = std::hypot(x_mm, y_mm);
-    const double tx = radius > 0 ? x_mm / radius : 0, ty = radius > 0 ? y_mm / radius : 1;
-    return regions_->density(radius, alpha * ty - beta * tx, alpha * tx + beta * ty);
-  }
+  if (regions_) return regions_->density_per_sr(x_mm, y_mm, alpha, beta);
   const double cos = std::sqrt(std::max(0.0, 1 - alpha * alpha - beta * beta));
   if (!(cos > 0)) return 0;
   const double x = x_mm - alpha / cos * rear_distance_mm_, y = y_mm - beta / cos * rear_distance_mm_;
   if (x * x + y * y > rear_radius_mm_ * rear_radius_mm_) return 0;
-  return rear_distance_mm_ * rear_distance_mm_ / (pi * rear_radius_mm_ * rear_radius_mm_ * cos * cos * cos * cos);
+  return rear_distance_mm_ * rear_distance_mm_ /
+         (pi * rear_radius_mm_ * rear_radius_mm_ * cos * cos * cos * cos);
 }
 
-void LensCamera::trace(int group, int hero, std::span<const FilmSample> samples, std::span<CameraRay> rays) const {
+void LensCamera::trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+                       std::span<CameraRay> rays) const {
   const Tracer& leading = tracer(group, hero);
   RayBatch batch(samples.size());
   std::vector<double> densities(samples.size());
@@ -119,10 +128,11 @@ void LensCamera::trace(int group, int hero, std::span<const FilmSample> samples,
     ray.weight = Lanes::all(1 / densities[i]);
     ray.weight_alone = static_cast<float>(lanes / densities[i]);
   }
-  if (disperses_) share_among_wavelengths(group, hero, rays, batch, densities);
+  if (disperses_) share_among_wavelengths(group, hero, sampled, rays, batch, densities);
 }
 
-void LensCamera::share_among_wavelengths(int group, int hero, std::span<CameraRay> rays, const RayBatch& scene_side,
+void LensCamera::share_among_wavelengths(int group, int hero, const FilmArea& sampled,
+                                         std::span<CameraRay> rays, const RayBatch& scene_side,
                                          std::span<const double> hero_density) const {
   const int lanes = groups_.lanes(group);
   std::vector<std::size_t> passing;
@@ -141,17 +151,20 @@ void LensCamera::share_among_wavelengths(int group, int hero, std::span<CameraRa
     }
     batch = RayBatch();
     for (const std::size_t i : passing)
-      batch.push_back(scene_side.x_mm[i], scene_side.y_mm[i], scene_side.z_mm[i], -scene_side.l[i], -scene_side.m[i],
-                      -scene_side.n[i]);
+      batch.push_back(scene_side.x_mm[i], scene_side.y_mm[i], scene_side.z_mm[i], -scene_side.l[i],
+                      -scene_side.m[i], -scene_side.n[i]);
     tracer(group, lane).trace(batch);
     for (std::size_t k = 0; k < passing.size(); ++k) {
       CameraRay& ray = rays[passing[k]];
       ray.weight[lane] = 0;
       if (batch.status[k] != RayStatus::ok) continue;
-      sum[k] += density(batch.x_mm[k], batch.y_mm[k], batch.l[k], batch.m[k]);
+      const double column = film_.columns / 2.0 - batch.x_mm[k] / pitch_mm;
+      const double row = film_.rows / 2.0 + batch.y_mm[k] / pitch_mm;
+      if (column >= sampled.left && column < sampled.right && row >= sampled.top && row < sampled.bottom)
+        sum[k] += density(batch.x_mm[k], batch.y_mm[k], batch.l[k], batch.m[k]);
       ray.weight[lane] = 1;
-      ray.column[static_cast<std::size_t>(lane)] = static_cast<float>(film_.columns / 2.0 - batch.x_mm[k] / pitch_mm);
-      ray.row[static_cast<std::size_t>(lane)] = static_cast<float>(film_.rows / 2.0 + batch.y_mm[k] / pitch_mm);
+      ray.column[static_cast<std::size_t>(lane)] = static_cast<float>(column);
+      ray.row[static_cast<std::size_t>(lane)] = static_cast<float>(row);
     }
   }
   // Balance heuristic: each wavelength divides by the mean of what all of them might have led here with.

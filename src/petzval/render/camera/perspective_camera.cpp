@@ -38,7 +38,8 @@ PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : option
     left_ = window[0], right_ = window[1], bottom_ = window[2], top_ = window[3];
 }
 
-void PerspectiveCamera::trace(int, int, std::span<const FilmSample> samples, std::span<CameraRay> rays) const {
+void PerspectiveCamera::trace(int, int, const FilmArea&, std::span<const FilmSample> samples,
+                              std::span<CameraRay> rays) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FilmSample& sample = samples[i];
     const double x = left_ + (right_ - left_) * sample.column / options_.columns;

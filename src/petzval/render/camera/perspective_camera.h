@@ -15,12 +15,14 @@ struct PerspectiveOptions {
   std::array<double, 4> screen_window{0, 0, 0, 0};
 };
 
-/// Pinhole and thin lens have no film distance, so no irradiance either: the picture holds radiance times 1 sr.
+/// Pinhole and thin lens have no film distance, so no irradiance either: the picture holds radiance times 1
+/// sr.
 class PerspectiveCamera final : public FilmCamera {
  public:
   /// \throws InputError for a field of view outside (0°, 180°) or sizes that are not positive.
   explicit PerspectiveCamera(const PerspectiveOptions& options);
-  void trace(int group, int hero, std::span<const FilmSample> samples, std::span<CameraRay> rays) const override;
+  void trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+             std::span<CameraRay> rays) const override;
 
  private:
   PerspectiveOptions options_;

@@ -26,7 +26,8 @@ struct CheckpointHead {
 
 /// Takes bytes from the front of a text, checking that they are there.
 void take(std::string_view& bytes, void* to, std::size_t count, const std::string& path) {
-  if (bytes.size() < count) throw InputError(path, "is a damaged checkpoint: it ends early; delete it to start afresh");
+  if (bytes.size() < count)
+    throw InputError(path, "is a damaged checkpoint: it ends early; delete it to start afresh");
   if (count > 0) std::memcpy(to, bytes.data(), count);
   bytes.remove_prefix(count);
 }
@@ -40,9 +41,10 @@ std::vector<std::vector<double>*> sums_of(Film& film) {
 Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces) : window(pixels) {
   const double values = static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + 5);
   if (values > most_values)
-    throw InputError(fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
-                                 "pixels or bands would fit",
-                                 pixels.columns(), pixels.rows(), bands, values * 8 / 1073741824));
+    throw InputError(
+        fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
+                    "pixels or bands would fit",
+                    pixels.columns(), pixels.rows(), bands, values * 8 / 1073741824));
   light.assign(pixels.size() * static_cast<std::size_t>(bands), 0.0);
   if (!first_surfaces) return;
   met.assign(pixels.size(), 0.0);
@@ -73,11 +75,14 @@ bool read_checkpoint(const std::string& path, Film& film, const std::string& fin
   CheckpointHead head{};
   take(bytes, &head, sizeof head, path);
   if (head.fingerprint_size != fingerprint.size() || bytes.substr(0, fingerprint.size()) != fingerprint)
-    throw InputError(path, "is the checkpoint of another picture, or of other options; delete it or name another file");
+    throw InputError(
+        path, "is the checkpoint of another picture, or of other options; delete it or name another file");
   bytes.remove_prefix(fingerprint.size());
   Film read = film;
-  for (std::vector<double>* sums : sums_of(read)) take(bytes, sums->data(), sums->size() * sizeof(double), path);
-  if (!bytes.empty()) throw InputError(path, "is a damaged checkpoint: it is too long; delete it to start afresh");
+  for (std::vector<double>* sums : sums_of(read))
+    take(bytes, sums->data(), sums->size() * sizeof(double), path);
+  if (!bytes.empty())
+    throw InputError(path, "is a damaged checkpoint: it is too long; delete it to start afresh");
   read.rays = head.rays, read.passed = head.passed, read.passes = static_cast<int>(head.passes);
   film = std::move(read);
   return true;

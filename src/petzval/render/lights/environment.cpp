@@ -43,7 +43,8 @@ SquareDistribution::SquareDistribution(std::vector<double> weights, int width, i
   rows_.resize(h + 1);
   cells_.resize(h * (w + 1));
   std::vector<double> sums(h);
-  for (std::size_t row = 0; row < h; ++row) sums[row] = accumulate(&weights[row * w], w, &cells_[row * (w + 1)]);
+  for (std::size_t row = 0; row < h; ++row)
+    sums[row] = accumulate(&weights[row * w], w, &cells_[row * (w + 1)]);
   accumulate(sums.data(), h, rows_.data());
 }
 
@@ -53,8 +54,8 @@ SquareDistribution::Point SquareDistribution::sample(double u, double v) const {
   const std::size_t row = find_interval(rows_.data(), h + 1, v, down);
   const double* cells = &cells_[row * (w + 1)];
   const std::size_t cell = find_interval(cells, w + 1, u, across);
-  const double density = (rows_[row + 1] - rows_[row]) * static_cast<double>(h) * (cells[cell + 1] - cells[cell]) *
-                         static_cast<double>(w);
+  const double density = (rows_[row + 1] - rows_[row]) * static_cast<double>(h) *
+                         (cells[cell + 1] - cells[cell]) * static_cast<double>(w);
   return {(static_cast<double>(cell) + across) / static_cast<double>(w),
           (static_cast<double>(row) + down) / static_cast<double>(h), density};
 }
@@ -105,15 +106,18 @@ struct Environment::Sky {
     const int side = picture->width;
     const int column = std::clamp(static_cast<int>(u * side), 0, side - 1);
     const int row = std::clamp(static_cast<int>(v * side), 0, side - 1);
-    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) + static_cast<std::size_t>(column)];
+    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+                  static_cast<std::size_t>(column)];
   }
 };
 
 Environment::Environment(BandSpectrum radiance, Transform world_from_light)
-    : radiance_(std::move(radiance)), world_from_light_(std::move(world_from_light)), mean_(mean_of(radiance_)) {}
+    : radiance_(std::move(radiance)),
+      world_from_light_(std::move(world_from_light)),
+      mean_(mean_of(radiance_)) {}
 
-Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white, const WavelengthGroups& groups,
-                         Transform world_from_light)
+Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white,
+                         const WavelengthGroups& groups, Transform world_from_light)
     : radiance_(std::move(white)), world_from_light_(std::move(world_from_light)) {
   const ReflectanceTable table;
   std::vector<Sky::Pixel> pixels;
@@ -123,7 +127,8 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
     for (int column = 0; column < picture->width; ++column) {
       const float* p = picture->pixel(column, row);
       const bool grey = picture->channels == 1;
-      const LinearRgb rgb{std::max(0.0f, p[0]), std::max(0.0f, p[grey ? 0 : 1]), std::max(0.0f, p[grey ? 0 : 2])};
+      const LinearRgb rgb{std::max(0.0f, p[0]), std::max(0.0f, p[grey ? 0 : 1]),
+                          std::max(0.0f, p[grey ? 0 : 2])};
       const double scale = 2 * std::max({rgb.r, rgb.g, rgb.b});
       Sky::Pixel pixel{{}, static_cast<float>(scale)};
       if (scale > 0) pixel.shape = table({rgb.r / scale, rgb.g / scale, rgb.b / scale});
@@ -132,8 +137,8 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
       sum += weights.back();
     }
   mean_ = mean_of(radiance_) * sum / static_cast<double>(weights.size());
-  sky_ = std::make_shared<const Sky>(Sky{picture, SquareDistribution(weights, picture->width, picture->height),
-                                         std::move(pixels), groups});
+  sky_ = std::make_shared<const Sky>(
+      Sky{picture, SquareDistribution(weights, picture->width, picture->height), std::move(pixels), groups});
 }
 
 Lanes Environment::radiance(Vector3 direction, int group) const {
@@ -144,14 +149,16 @@ Lanes Environment::radiance(Vector3 direction, int group) const {
   const Sky::Pixel& pixel = sky_->at(u, v);
   Lanes result;
   for (int i = 0; i < lane_count; ++i)
-    result[i] = white[i] * pixel.scale * static_cast<float>(pixel.shape.at(sky_->groups.wavelength_nm(group, i)));
+    result[i] =
+        white[i] * pixel.scale * static_cast<float>(pixel.shape.at(sky_->groups.wavelength_nm(group, i)));
   return result;
 }
 
 Environment::Sample Environment::sample(double u, double v) const {
   if (!sky_) return {sphere_from_square(u, v), 1 / (4 * pi)};
   const SquareDistribution::Point point = sky_->distribution.sample(u, v);
-  return {normalised(world_from_light_.direction(sphere_from_square(point.u, point.v))), point.density / (4 * pi)};
+  return {normalised(world_from_light_.direction(sphere_from_square(point.u, point.v))),
+          point.density / (4 * pi)};
 }
 
 double Environment::pdf(Vector3 direction) const {

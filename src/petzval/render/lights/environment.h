@@ -27,7 +27,8 @@ class SquareDistribution {
   std::vector<double> rows_, cells_;  ///< cumulative: of rows, and of each row's cells
 };
 
-/// The directions of a sphere from the unit square and back, areas kept (Clarberg 2008, as pbrt-v4 lays out its sky pictures).
+/// The directions of a sphere from the unit square and back, areas kept (Clarberg 2008, as pbrt-v4 lays out
+/// its sky pictures).
 Vector3 sphere_from_square(double u, double v);
 void square_from_sphere(Vector3 direction, double& u, double& v);
 

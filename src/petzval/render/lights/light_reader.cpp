@@ -9,8 +9,8 @@ namespace petzval::render {
 
 namespace {
 
-/// The spectrum of a light and the factor that makes it a radiance or intensity: pbrt-v4's "scale", and the division
-/// by ∫ ȳ of its shape.
+/// The spectrum of a light and the factor that makes it a radiance or intensity: pbrt-v4's "scale", and the
+/// division by ∫ ȳ of its shape.
 struct Strength {
   SceneSpectrum spectrum;
   double scale = 1;
@@ -20,13 +20,15 @@ struct Strength {
   }
 };
 
-Strength read_strength(const Parameters& parameters, const char* name, bool absolute, Unsupported& unsupported) {
+Strength read_strength(const Parameters& parameters, const char* name, bool absolute,
+                       Unsupported& unsupported) {
   Strength strength;
   strength.scale = parameters.number("scale", 1);
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
   strength.spectrum = given ? *given : white_light();
   const Parameter* parameter = parameters.find(name);
-  const bool as_it_stands = absolute && parameter && (parameter->type == "spectrum" || parameter->type == "blackbody");
+  const bool as_it_stands =
+      absolute && parameter && (parameter->type == "spectrum" || parameter->type == "blackbody");
   if (!as_it_stands) {
     if (!(strength.spectrum.photometric > 0))
       throw scene_error(parameters.location_of(name), "this light has no visible part to scale it by");
@@ -67,7 +69,8 @@ SmallLight read_spot(const LightDescription& description, const WavelengthGroups
   light.direction = normalised(description.world_from_light.direction(to - from));
   const double cone = parameters.number("coneangle", 30), edge = parameters.number("conedeltaangle", 5);
   if (!(cone > 0 && cone <= 180 && edge >= 0))
-    throw scene_error(parameters.location_of("coneangle"), "a spot's cone angle lies above 0 and at most at 180 degrees");
+    throw scene_error(parameters.location_of("coneangle"),
+                      "a spot's cone angle lies above 0 and at most at 180 degrees");
   light.cos_end = std::cos(radians(cone));
   light.cos_begin = std::cos(radians(std::max(0.0, cone - edge)));
   const double solid_angle = 2 * pi * ((1 - light.cos_begin) + (light.cos_begin - light.cos_end) / 2);
@@ -83,7 +86,8 @@ SmallLight read_distant(const LightDescription& description, const WavelengthGro
   light.kind = SmallLight::Kind::distant;
   const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
   light.direction = normalised(description.world_from_light.direction(to - from));
-  if (!(length(light.direction) > 0)) throw scene_error(parameters.location(), "this light shines in no direction");
+  if (!(length(light.direction) > 0))
+    throw scene_error(parameters.location(), "this light shines in no direction");
   const double illuminance = parameters.number("illuminance", -1);
   light.strength = strength.at(groups, illuminance > 0 ? illuminance : 1);
   return light;
@@ -97,17 +101,21 @@ Environment read_infinite(const LightDescription& description, const WavelengthG
   const double factor = illuminance > 0 ? illuminance / pi : 1;
   const std::string name = parameters.string("filename", "");
   if (name.empty()) return {strength.at(groups, factor), description.world_from_light};
-  if (parameters.find("L")) throw scene_error(parameters.location_of("L"), "an infinite light has either \"L\" or a file");
+  if (parameters.find("L"))
+    throw scene_error(parameters.location_of("L"), "an infinite light has either \"L\" or a file");
   std::shared_ptr<const PictureFile> picture;
   try {
-    picture = std::make_shared<const PictureFile>(read_picture_file(resolved_path(parameters.location(), name)));
+    picture =
+        std::make_shared<const PictureFile>(read_picture_file(resolved_path(parameters.location(), name)));
   } catch (const InputError& error) {
     throw scene_error(parameters.location_of("filename"), error.what());
   }
   if (picture->width != picture->height)
-    throw scene_error(parameters.location_of("filename"),
-                      fmt::format("{} has {} x {} pixels; a square picture in the equal-area octahedral layout would be right",
-                                  name, picture->width, picture->height));
+    throw scene_error(
+        parameters.location_of("filename"),
+        fmt::format(
+            "{} has {} x {} pixels; a square picture in the equal-area octahedral layout would be right",
+            name, picture->width, picture->height));
   return {picture, strength.at(groups, factor), groups, description.world_from_light};
 }
 

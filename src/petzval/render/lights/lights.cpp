@@ -42,12 +42,13 @@ void Lights::prepare(const std::vector<Geometry>& geometries, double scene_radiu
   std::vector<double> powers;
   for (const AreaLight& light : areas) {
     const Geometry& geometry = geometries[static_cast<std::size_t>(light.geometry)];
-    powers.push_back(mean_of(area_spectra[static_cast<std::size_t>(light.spectrum)]) * pi * (light.two_sided ? 2 : 1) *
-                     geometry.primitive_area(light.primitive));
+    powers.push_back(mean_of(area_spectra[static_cast<std::size_t>(light.spectrum)]) * pi *
+                     (light.two_sided ? 2 : 1) * geometry.primitive_area(light.primitive));
     Sphere sphere;
     const auto* quadric = std::get_if<Quadric>(&geometry.shape);
-    spheres_.push_back(quadric && quadric->is_round_sphere(sphere.centre, sphere.radius) ? std::optional(sphere)
-                                                                                           : std::nullopt);
+    spheres_.push_back(quadric && quadric->is_round_sphere(sphere.centre, sphere.radius)
+                           ? std::optional(sphere)
+                           : std::nullopt);
   }
   for (const SmallLight& light : smalls) powers.push_back(power_of(light, scene_radius));
   for (const Environment& light : environments)
@@ -63,8 +64,8 @@ void Lights::prepare(const std::vector<Geometry>& geometries, double scene_radiu
   for (double& each : cumulative_) each /= end > 0 ? end : 1;
 }
 
-std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometries, Vector3 to, double choice, double u,
-                                          double v, int group) const {
+std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometries, Vector3 to, double choice,
+                                          double u, double v, int group) const {
   if (empty()) return {};
   const auto above = std::upper_bound(cumulative_.begin() + 1, cumulative_.end(), choice);
   const std::size_t light =
@@ -79,7 +80,8 @@ std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometrie
     const Environment::Sample direction = environment.sample(u, v);
     if (!(direction.pdf > 0)) return {};
     // All skies shine from that direction, and each might have chosen it.
-    return LightSample{direction.direction, infinity, sky(direction.direction, group), sky_pdf(direction.direction)};
+    return LightSample{direction.direction, infinity, sky(direction.direction, group),
+                       sky_pdf(direction.direction)};
   }
   if (sample) sample->pdf *= share(light);
   return sample;
@@ -87,7 +89,8 @@ std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometrie
 
 std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3 to, int group) const {
   const Lanes& strength = light.strength[static_cast<std::size_t>(group)];
-  if (light.kind == SmallLight::Kind::distant) return LightSample{-light.direction, infinity, strength, 1, true};
+  if (light.kind == SmallLight::Kind::distant)
+    return LightSample{-light.direction, infinity, strength, 1, true};
   const Vector3 away = light.position - to;
   const double distance = length(away);
   if (!(distance > 0)) return {};
@@ -98,8 +101,8 @@ std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3
   return LightSample{direction, distance * before_light, share * strength, 1, true};
 }
 
-std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geometries, std::size_t index, Vector3 to,
-                                               double u, double v, int group) const {
+std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geometries, std::size_t index,
+                                               Vector3 to, double u, double v, int group) const {
   const AreaLight& light = areas[index];
   const Geometry& geometry = geometries[static_cast<std::size_t>(light.geometry)];
   SurfacePoint point;
@@ -112,9 +115,11 @@ std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geom
     const double one_less_cos = sin2_max < 1e-4 ? sin2_max / 2 : 1 - std::sqrt(1 - sin2_max);
     const double cos = 1 - u * one_less_cos, sin2 = std::max(0.0, 1 - cos * cos), phi = 2 * pi * v;
     const Frame frame(normalised(sphere->centre - to));
-    const Vector3 direction = frame.from_local({std::sqrt(sin2) * std::cos(phi), std::sqrt(sin2) * std::sin(phi), cos});
+    const Vector3 direction =
+        frame.from_local({std::sqrt(sin2) * std::cos(phi), std::sqrt(sin2) * std::sin(phi), cos});
     const double apart = std::sqrt(apart2);
-    const double along = apart * cos - std::sqrt(std::max(0.0, sphere->radius * sphere->radius - apart2 * sin2));
+    const double along =
+        apart * cos - std::sqrt(std::max(0.0, sphere->radius * sphere->radius - apart2 * sin2));
     point.position = to + along * direction;
     point.normal = normalised(point.position - sphere->centre);
     if (geometry.reversed) point.normal = -point.normal;
@@ -157,7 +162,8 @@ double Lights::area_pdf(const std::vector<Geometry>& geometries, std::size_t are
   const Vector3 away = point.position - from;
   const double cos = std::abs(dot(normalised(away), point.normal));
   if (!(cos > 0)) return 0;
-  return share(area) * primitive_density(geometries[static_cast<std::size_t>(light.geometry)], light.primitive, point) *
+  return share(area) *
+         primitive_density(geometries[static_cast<std::size_t>(light.geometry)], light.primitive, point) *
          dot(away, away) / cos;
 }
 

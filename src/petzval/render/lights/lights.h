@@ -25,13 +25,13 @@ struct SmallLight {
   enum class Kind { point, spot, distant };
   Kind kind = Kind::point;
   BandSpectrum strength;  ///< intensity [W·sr⁻¹·nm⁻¹ per unit²]; distant: irradiance across the direction
-  Vector3 position, direction;  ///< direction in which spot and distant lights shine; unit
+  Vector3 position, direction;        ///< direction in which spot and distant lights shine; unit
   double cos_begin = 1, cos_end = 1;  ///< of a spot: where its edge begins and ends
 };
 
 /// How light arrives at a point.
 struct LightSample {
-  Vector3 direction;   ///< towards the light; unit
+  Vector3 direction;  ///< towards the light; unit
   double distance = 0;
   Lanes light;         ///< radiance, or for small lights what stands for radiance / pdf times pdf
   double pdf = 0;      ///< over solid angle, with the choice of the light
@@ -46,13 +46,14 @@ class Lights {
   std::vector<SmallLight> smalls;
   std::vector<Environment> environments;
 
-  /// Works out how often each is chosen; call when the lists are complete. \param scene_radius  of the scene's sphere.
+  /// Works out how often each is chosen; call when the lists are complete. \param scene_radius  of the
+  /// scene's sphere.
   void prepare(const std::vector<Geometry>& geometries, double scene_radius);
   bool empty() const { return areas.empty() && smalls.empty() && environments.empty(); }
 
   /// Light towards a point. Nothing where the chosen light does not reach.
-  std::optional<LightSample> sample(const std::vector<Geometry>& geometries, Vector3 to, double choice, double u,
-                                    double v, int group) const;
+  std::optional<LightSample> sample(const std::vector<Geometry>& geometries, Vector3 to, double choice,
+                                    double u, double v, int group) const;
   /// Radiance of an area light at a point of it, towards `wo`.
   Lanes emitted(std::size_t area, const SurfacePoint& point, Vector3 wo, int group) const;
   /// The density with which sample() finds a point of an area light from `from`.
@@ -66,8 +67,8 @@ class Lights {
     Vector3 centre;
     double radius = 0;
   };
-  std::optional<LightSample> sample_area(const std::vector<Geometry>& geometries, std::size_t index, Vector3 to,
-                                         double u, double v, int group) const;
+  std::optional<LightSample> sample_area(const std::vector<Geometry>& geometries, std::size_t index,
+                                         Vector3 to, double u, double v, int group) const;
   std::optional<LightSample> sample_small(const SmallLight& light, Vector3 to, int group) const;
   double share(std::size_t light) const { return cumulative_[light + 1] - cumulative_[light]; }
 

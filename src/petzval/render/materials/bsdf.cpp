@@ -29,7 +29,8 @@ Bsdf Bsdf::diffuse(const Lanes& reflectance, const Lanes& transmittance) {
   return bsdf;
 }
 
-Bsdf Bsdf::coated_diffuse(const Lanes& reflectance, double eta, Microfacets facets, const CoatingAlbedo& coating) {
+Bsdf Bsdf::coated_diffuse(const Lanes& reflectance, double eta, Microfacets facets,
+                          const CoatingAlbedo& coating) {
   Bsdf bsdf(Kind::coated, facets);
   bsdf.first_ = reflectance;
   bsdf.eta_ = eta;
@@ -73,7 +74,8 @@ Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
     case Kind::conductor: {
       if (wo.z * wi.z < 0) return Lanes::all(0);
       const Vector3 m = normalised(wo + wi);
-      return facets_.density(m) * facets_.shown(wo, wi) / (4 * std::abs(wo.z * wi.z)) * conductor_at(std::abs(dot(wo, m)));
+      return facets_.density(m) * facets_.shown(wo, wi) / (4 * std::abs(wo.z * wi.z)) *
+             conductor_at(std::abs(dot(wo, m)));
     }
     case Kind::dielectric:
       return dielectric_value(wo, wi);
@@ -216,7 +218,8 @@ std::optional<BsdfSample> Bsdf::sample_conductor(Vector3 wo, double u, double v)
   sample.pdf = facets_.seen_density(wo, m) / (4 * std::abs(dot(wo, m)));
   if (!(sample.pdf > 0)) return {};
   // f cos / pdf = F G2/G1.
-  sample.weight = facets_.shown(wo, sample.wi) * (1 + facets_.lambda(wo)) * conductor_at(std::abs(dot(wo, m)));
+  sample.weight =
+      facets_.shown(wo, sample.wi) * (1 + facets_.lambda(wo)) * conductor_at(std::abs(dot(wo, m)));
   return sample;
 }
 

@@ -12,9 +12,9 @@ namespace petzval::render {
 
 /// One direction chosen by a surface.
 struct BsdfSample {
-  Vector3 wi;              ///< where the light comes from
-  Lanes weight;            ///< f · |cos| / pdf
-  double pdf = 0;          ///< over solid angle; 0 for a mirror direction, which no other way of sampling finds
+  Vector3 wi;      ///< where the light comes from
+  Lanes weight;    ///< f · |cos| / pdf
+  double pdf = 0;  ///< over solid angle; 0 for a mirror direction, which no other way of sampling finds
   bool mirror = false;
   bool transmitted = false;
   double index_ratio = 1;  ///< far side / near side when transmitted: radiance shrinks by its square
@@ -23,14 +23,16 @@ struct BsdfSample {
 /// What a coating reflects as a whole from one direction; see coating_albedo.h.
 class CoatingAlbedo;
 
-/// Scattering at one point for one group of wavelengths. Everything in the frame of the shading normal, z its axis; wo
-/// and wi point away from the surface. Radiance is what travels: transmission carries the factor (near/far index)².
+/// Scattering at one point for one group of wavelengths. Everything in the frame of the shading normal, z its
+/// axis; wo and wi point away from the surface. Radiance is what travels: transmission carries the factor
+/// (near/far index)².
 class Bsdf {
  public:
   static Bsdf diffuse(const Lanes& reflectance, const Lanes& transmittance = Lanes::all(0));
-  /// Lambert's surface under a clear dielectric without thickness: what the boundary lets in is scattered, and
-  /// reflected back at the boundary from below, to all orders.
-  static Bsdf coated_diffuse(const Lanes& reflectance, double eta, Microfacets facets, const CoatingAlbedo& coating);
+  /// Lambert's surface under a clear dielectric without thickness: what the boundary lets in is scattered,
+  /// and reflected back at the boundary from below, to all orders.
+  static Bsdf coated_diffuse(const Lanes& reflectance, double eta, Microfacets facets,
+                             const CoatingAlbedo& coating);
   static Bsdf conductor(const Lanes& eta, const Lanes& k, Microfacets facets);
   /// `eta`: inside / outside for each lane; `hero`: the lane that decides where the light goes.
   static Bsdf dielectric(const Lanes& eta, int hero, Microfacets facets);
@@ -46,7 +48,8 @@ class Bsdf {
   bool is_mirror() const { return mirror_; }
   /// Whether a transmitted path serves the hero wavelength alone.
   bool disperses() const { return disperses_; }
-  /// Share of light reflected as a whole, for albedo pictures: exact for diffuse, facing the surface for others.
+  /// Share of light reflected as a whole, for albedo pictures: exact for diffuse, facing the surface for
+  /// others.
   Lanes albedo() const;
 
  private:

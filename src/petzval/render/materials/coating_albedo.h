@@ -6,10 +6,10 @@
 
 namespace petzval::render {
 
-/// E(cos, alpha): the share of light from one direction that a dielectric boundary of index `eta` and Trowbridge-Reitz
-/// roughness alpha reflects back outside, masking losses included. It takes the place of Fresnel's F in the energy
-/// balance of a coated surface, which then keeps all light when the base does, whatever the roughness (in the manner
-/// of Kelemen & Szirmay-Kalos, Eurographics 2001).
+/// E(cos, alpha): the share of light from one direction that a dielectric boundary of index `eta` and
+/// Trowbridge-Reitz roughness alpha reflects back outside, masking losses included. It takes the place of
+/// Fresnel's F in the energy balance of a coated surface, which then keeps all light when the base does,
+/// whatever the roughness (in the manner of Kelemen & Szirmay-Kalos, Eurographics 2001).
 class CoatingAlbedo {
  public:
   explicit CoatingAlbedo(double eta);

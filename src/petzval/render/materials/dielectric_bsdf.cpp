@@ -9,8 +9,8 @@ namespace petzval::render {
 
 namespace {
 
-/// The direction behind a boundary of relative index `eta` (far/near) with normal m on wo's side; nothing at total
-/// reflection.
+/// The direction behind a boundary of relative index `eta` (far/near) with normal m on wo's side; nothing at
+/// total reflection.
 std::optional<Vector3> refracted(Vector3 wo, Vector3 m, double eta) {
   const double cos = dot(wo, m), sin2_far = (1 - cos * cos) / (eta * eta);
   if (sin2_far >= 1) return {};
@@ -49,7 +49,8 @@ Lanes Bsdf::dielectric_value(Vector3 wo, Vector3 wi) const {
       result[i] = static_cast<float>(common * reflectance / 4);
     } else {
       const double bend = dot(wi, *m) + dot(wo, *m) / eta;
-      result[i] = static_cast<float>(common * (1 - reflectance) * cos_i * cos_o / (bend * bend) / (eta * eta));
+      result[i] =
+          static_cast<float>(common * (1 - reflectance) * cos_i * cos_o / (bend * bend) / (eta * eta));
     }
   }
   return result;
@@ -68,7 +69,8 @@ double Bsdf::dielectric_pdf(Vector3 wo, Vector3 wi) const {
 
 std::optional<BsdfSample> Bsdf::sample_dielectric(Vector3 wo, double choice, double u, double v) const {
   const double eta = wo.z > 0 ? eta_ : 1 / eta_;
-  const Vector3 m = mirror_ ? Vector3{0, 0, std::copysign(1.0, wo.z)} : facing(facets_.sample_seen(wo, u, v), wo);
+  const Vector3 m =
+      mirror_ ? Vector3{0, 0, std::copysign(1.0, wo.z)} : facing(facets_.sample_seen(wo, u, v), wo);
   const double cos = std::abs(dot(wo, m)), reflectance = dielectric_reflectance(cos, eta);
   BsdfSample sample;
   sample.mirror = mirror_;
@@ -78,8 +80,9 @@ std::optional<BsdfSample> Bsdf::sample_dielectric(Vector3 wo, double choice, dou
   };
   if (choice < reflectance) {
     sample.wi = reflected(wo, m);
-    sample.weight = disperses_ ? mapped(first_, [&](float each) { return reflectance_of(each) / reflectance; })
-                               : Lanes::all(1);
+    sample.weight = disperses_
+                        ? mapped(first_, [&](float each) { return reflectance_of(each) / reflectance; })
+                        : Lanes::all(1);
   } else {
     const std::optional<Vector3> wi = refracted(wo, m, eta);
     if (!wi) return {};
@@ -87,7 +90,8 @@ std::optional<BsdfSample> Bsdf::sample_dielectric(Vector3 wo, double choice, dou
     sample.transmitted = true;
     sample.index_ratio = eta;
     // Radiance shrinks by eta²; only the hero wavelength goes exactly this way if the glass disperses.
-    sample.weight = disperses_ ? only(hero_, static_cast<float>(1 / (eta * eta))) : Lanes::all(1 / (eta * eta));
+    sample.weight =
+        disperses_ ? only(hero_, static_cast<float>(1 / (eta * eta))) : Lanes::all(1 / (eta * eta));
   }
   if (mirror_) return sample;
   if (sample.wi.z == 0 || (sample.wi.z * wo.z > 0) == sample.transmitted) return {};

@@ -20,7 +20,8 @@ double conductor_reflectance(double cos_incident, double eta, double k) {
   const std::complex<double> index(eta, k);
   const std::complex<double> cos_far = std::sqrt(1.0 - (1 - cos_incident * cos_incident) / (index * index));
   const std::complex<double> parallel = (index * cos_incident - cos_far) / (index * cos_incident + cos_far);
-  const std::complex<double> perpendicular = (cos_incident - index * cos_far) / (cos_incident + index * cos_far);
+  const std::complex<double> perpendicular =
+      (cos_incident - index * cos_far) / (cos_incident + index * cos_far);
   return (std::norm(parallel) + std::norm(perpendicular)) / 2;
 }
 

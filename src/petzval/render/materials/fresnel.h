@@ -4,8 +4,8 @@
 
 namespace petzval::render {
 
-/// Of unpolarised light on a boundary of relative index `eta` (far side / near side), `cos_incident` ≥ 0; 1 at total
-/// reflection. (Born & Wolf, Principles of Optics, 7th ed., section 1.5.)
+/// Of unpolarised light on a boundary of relative index `eta` (far side / near side), `cos_incident` ≥ 0; 1
+/// at total reflection. (Born & Wolf, Principles of Optics, 7th ed., section 1.5.)
 double dielectric_reflectance(double cos_incident, double eta);
 
 /// The same of a metal of relative index eta + i k.

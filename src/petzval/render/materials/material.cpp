@@ -32,23 +32,27 @@ Lanes clamped_albedo(Lanes value) {
   return value;
 }
 
-void read_diffuse_transmission(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
+void read_diffuse_transmission(const Parameters& parameters, const TextureLibrary& textures,
+                               Material& material) {
   material.kind = Material::Kind::diffuse_transmission;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.25);
-  material.transmittance = textures.spectrum_parameter(parameters, "transmittance", SpectrumRole::albedo, 0.25);
+  material.transmittance =
+      textures.spectrum_parameter(parameters, "transmittance", SpectrumRole::albedo, 0.25);
   material.transmittance_scale = parameters.number("scale", 1);
 }
 
-void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
-                         Material& material) {
+void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures,
+                         Unsupported& unsupported, Material& material) {
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
   read_roughness(parameters, textures, 0, material);
   const double eta = parameters.number("eta", 1.5);
   if (!(eta > 1 && eta < 4))
-    throw scene_error(parameters.location_of("eta"), fmt::format("a coating of index {}; above 1 and below 4 would be right", eta));
+    throw scene_error(parameters.location_of("eta"),
+                      fmt::format("a coating of index {}; above 1 and below 4 would be right", eta));
   material.coating = std::make_shared<CoatingAlbedo>(eta);
-  // A clear coating without thickness: how its light is scattered at random, and how far it travels, do not matter.
+  // A clear coating without thickness: how its light is scattered at random, and how far it travels, do not
+  // matter.
   for (const char* ignored : {"thickness", "maxdepth", "nsamples", "g"}) parameters.find(ignored);
   if (const Parameter* albedo = parameters.find("albedo"))
     if (std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
@@ -65,7 +69,8 @@ void read_conductor(const Parameters& parameters, const TextureLibrary& textures
   if (material.reflectance && (material.eta || material.k))
     throw scene_error(at, "a conductor has either a reflectance or eta and k");
   if (material.reflectance || (material.eta && material.k)) return;
-  if (material.eta || material.k) throw scene_error(at, "a conductor with eta needs k, and the other way round");
+  if (material.eta || material.k)
+    throw scene_error(at, "a conductor with eta needs k, and the other way round");
   Parameters copper;
   copper.add({"spectrum", "eta", at, {}, {"metal-Cu-eta"}, {}});
   copper.add({"spectrum", "k", at, {}, {"metal-Cu-k"}, {}});
@@ -152,10 +157,12 @@ Bsdf Material::bsdf(const TexturePoint& point, int group, int hero) const {
       if (!reflectance) return Bsdf::conductor(eta->at(point, group), k->at(point, group), facets);
       // The k at eta = 1 that reflects as much at normal incidence (pbrt-v4).
       const Lanes r = clamped_albedo(reflectance->at(point, group));
-      return Bsdf::conductor(Lanes::all(1), mapped(r, [](float each) {
-                               const double value = std::min(static_cast<double>(each), 0.9999);
-                               return 2 * std::sqrt(value / (1 - value));
-                             }),
+      return Bsdf::conductor(Lanes::all(1),
+                             mapped(r,
+                                    [](float each) {
+                                      const double value = std::min(static_cast<double>(each), 0.9999);
+                                      return 2 * std::sqrt(value / (1 - value));
+                                    }),
                              facets);
     }
     case Kind::dielectric:
@@ -180,8 +187,8 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
   return materials;
 }
 
-const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point, int group,
-                            double choice) {
+const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point,
+                            int group, double choice) {
   const Material* material = &materials[static_cast<std::size_t>(index)];
   while (material->kind == Material::Kind::mix) {
     const double amount = std::clamp(material->mix_amount->at(point, group), 0.0, 1.0);

@@ -14,7 +14,16 @@ namespace petzval::render {
 
 /// What a surface is made of; fields that a kind does not have are empty.
 struct Material {
-  enum class Kind { diffuse, diffuse_transmission, coated_diffuse, conductor, dielectric, thin_dielectric, none, mix };
+  enum class Kind {
+    diffuse,
+    diffuse_transmission,
+    coated_diffuse,
+    conductor,
+    dielectric,
+    thin_dielectric,
+    none,
+    mix
+  };
   Kind kind = Kind::diffuse;
   SpectrumTexture reflectance, transmittance;
   double transmittance_scale = 1;
@@ -25,7 +34,8 @@ struct Material {
   FloatTexture mix_amount;
   std::array<int, 2> mixed{0, 0};  ///< into the list of materials
 
-  /// Scattering at a point. \param hero  the lane that decides where dispersed light goes. Kinds none and mix have none.
+  /// Scattering at a point. \param hero  the lane that decides where dispersed light goes. Kinds none and mix
+  /// have none.
   Bsdf bsdf(const TexturePoint& point, int group, int hero) const;
 };
 
@@ -34,7 +44,7 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
                                      Unsupported& unsupported);
 
 /// The material that is there at a point: follows mixtures. \param choice  in [0, 1).
-const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point, int group,
-                            double choice);
+const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point,
+                            int group, double choice);
 
 }  // namespace petzval::render

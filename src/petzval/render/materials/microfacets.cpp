@@ -36,7 +36,8 @@ Vector3 Microfacets::sample_seen(Vector3 w, double u, double v) const {
   // Stretched so that the facets are those of a hemisphere.
   Vector3 stretched = normalised(Vector3{alpha_x_ * w.x, alpha_y_ * w.y, w.z});
   if (stretched.z < 0) stretched = -stretched;
-  const Vector3 t1 = stretched.z < 0.99999 ? normalised(cross(Vector3{0, 0, 1}, stretched)) : Vector3{1, 0, 0};
+  const Vector3 t1 =
+      stretched.z < 0.99999 ? normalised(cross(Vector3{0, 0, 1}, stretched)) : Vector3{1, 0, 0};
   const Vector3 t2 = cross(stretched, t1);
   const double r = std::sqrt(u), phi = 2 * pi * v;
   const double x = r * std::cos(phi), half = (1 + stretched.z) / 2;

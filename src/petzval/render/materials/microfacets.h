@@ -6,8 +6,8 @@
 
 namespace petzval::render {
 
-/// The distribution of Trowbridge & Reitz (GGX), with Smith's masking: everything in the frame of the surface, z its
-/// normal. (Walter et al., EGSR 2007; Heitz, JCGT 3 (2014) 2, equations 16, 72, 99.)
+/// The distribution of Trowbridge & Reitz (GGX), with Smith's masking: everything in the frame of the
+/// surface, z its normal. (Walter et al., EGSR 2007; Heitz, JCGT 3 (2014) 2, equations 16, 72, 99.)
 class Microfacets {
  public:
   /// Slopes' widths along x and y. Below `smooth_alpha` the surface counts as a mirror.

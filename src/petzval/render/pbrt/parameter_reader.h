@@ -7,7 +7,8 @@
 
 namespace petzval::render {
 
-/// The whole of `text` as a number; nothing if it is none. Accepts "nan" and "inf": whoever uses it refuses them.
+/// The whole of `text` as a number; nothing if it is none. Accepts "nan" and "inf": whoever uses it refuses
+/// them.
 std::optional<double> parse_scene_number(std::string_view text);
 
 /// All "type name" value pairs from here on. \throws InputError with file, line and column.

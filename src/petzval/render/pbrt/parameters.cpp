@@ -44,8 +44,8 @@ const Parameter* Parameters::single(const std::string& name, std::initializer_li
   const Parameter* parameter = find(name);
   if (!parameter) return nullptr;
   if (!is_one_of(parameter->type, types))
-    throw scene_error(parameter->at, fmt::format("\"{}\" is given as {}; {} would be right", name, parameter->type,
-                                                 fmt::join(types, " or ")));
+    throw scene_error(parameter->at, fmt::format("\"{}\" is given as {}; {} would be right", name,
+                                                 parameter->type, fmt::join(types, " or ")));
   if (parameter->size() != 1)
     throw scene_error(parameter->at,
                       fmt::format("\"{}\" has {} values; one would be right", name, parameter->size()));
@@ -76,8 +76,8 @@ std::string Parameters::choice(const std::string& name, const std::string& other
                                std::initializer_list<const char*> allowed) const {
   const std::string value = string(name, otherwise);
   if (!is_one_of(value, allowed))
-    throw scene_error(location_of(name), fmt::format("\"{}\" cannot be \"{}\"; {} would be right", name, value,
-                                                     fmt::join(allowed, ", ")));
+    throw scene_error(location_of(name), fmt::format("\"{}\" cannot be \"{}\"; {} would be right", name,
+                                                     value, fmt::join(allowed, ", ")));
   return value;
 }
 
@@ -86,19 +86,22 @@ std::optional<std::array<double, 3>> Parameters::triple(const std::string& name)
   if (!parameter) return {};
   if (!is_one_of(parameter->type, {"point3", "point", "vector3", "vector", "normal", "normal3"}) ||
       parameter->numbers.size() != 3)
-    throw scene_error(parameter->at, fmt::format("\"{}\" has {} values of type {}; three of type point3 or vector3 "
-                                                 "would be right",
-                                                 name, parameter->size(), parameter->type));
-  return std::array<double, 3>{finite(*parameter, parameter->numbers[0]), finite(*parameter, parameter->numbers[1]),
+    throw scene_error(parameter->at,
+                      fmt::format("\"{}\" has {} values of type {}; three of type point3 or vector3 "
+                                  "would be right",
+                                  name, parameter->size(), parameter->type));
+  return std::array<double, 3>{finite(*parameter, parameter->numbers[0]),
+                               finite(*parameter, parameter->numbers[1]),
                                finite(*parameter, parameter->numbers[2])};
 }
 
-std::vector<double> Parameters::numbers(const std::string& name, std::initializer_list<const char*> types) const {
+std::vector<double> Parameters::numbers(const std::string& name,
+                                        std::initializer_list<const char*> types) const {
   const Parameter* parameter = find(name);
   if (!parameter) return {};
   if (!is_one_of(parameter->type, types))
-    throw scene_error(parameter->at, fmt::format("\"{}\" is given as {}; {} would be right", name, parameter->type,
-                                                 fmt::join(types, " or ")));
+    throw scene_error(parameter->at, fmt::format("\"{}\" is given as {}; {} would be right", name,
+                                                 parameter->type, fmt::join(types, " or ")));
   for (const double value : parameter->numbers) finite(*parameter, value);
   return parameter->numbers;
 }
@@ -108,7 +111,8 @@ std::vector<int> Parameters::integers(const std::string& name) const {
   std::vector<int> result;
   if (!parameter) return result;
   if (parameter->type != "integer")
-    throw scene_error(parameter->at, fmt::format("\"{}\" is given as {}; integer would be right", name, parameter->type));
+    throw scene_error(parameter->at,
+                      fmt::format("\"{}\" is given as {}; integer would be right", name, parameter->type));
   result.reserve(parameter->numbers.size());
   for (const double value : parameter->numbers) result.push_back(whole(*parameter, value));
   return result;

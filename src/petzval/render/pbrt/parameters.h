@@ -23,7 +23,8 @@ struct Parameter {
   std::size_t size() const { return numbers.size() + strings.size() + bools.size(); }
 };
 
-/// The parameters of one directive. Asking for one marks it as used, so that what nobody asked for can be told.
+/// The parameters of one directive. Asking for one marks it as used, so that what nobody asked for can be
+/// told.
 class Parameters {
  public:
   Parameters() = default;
@@ -36,8 +37,8 @@ class Parameters {
   /// The parameter of this name if it has one of these types (any, if none are given).
   const Parameter* find(const std::string& name, std::initializer_list<const char*> types = {}) const;
 
-  /// One value, or the default. \throws InputError with file, line and column if the parameter has another type or not
-  /// exactly one value, or the number is not finite.
+  /// One value, or the default. \throws InputError with file, line and column if the parameter has another
+  /// type or not exactly one value, or the number is not finite.
   double number(const std::string& name, double otherwise) const;
   int integer(const std::string& name, int otherwise) const;
   bool boolean(const std::string& name, bool otherwise) const;
@@ -46,8 +47,8 @@ class Parameters {
   std::string choice(const std::string& name, const std::string& otherwise,
                      std::initializer_list<const char*> allowed) const;
   std::optional<std::array<double, 3>> triple(const std::string& name) const;
-  /// All values; empty if there is no such parameter. \throws InputError for another type or a number that is not
-  /// finite.
+  /// All values; empty if there is no such parameter. \throws InputError for another type or a number that is
+  /// not finite.
   std::vector<double> numbers(const std::string& name, std::initializer_list<const char*> types) const;
   std::vector<int> integers(const std::string& name) const;
 

@@ -78,11 +78,13 @@ struct SceneDescription {
   std::vector<InstanceDescription> instances;
 };
 
-/// Reads a scene with everything that it includes. \throws InputError with file, line and column for text that is not
-/// a pbrt-v4 scene, a missing or cyclic include, a singular transformation; and through `unsupported`.
+/// Reads a scene with everything that it includes. \throws InputError with file, line and column for text
+/// that is not a pbrt-v4 scene, a missing or cyclic include, a singular transformation; and through
+/// `unsupported`.
 SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported);
 /// The same from text. \param file  for messages, and the folder that relative names start from.
-SceneDescription parse_scene_description(const std::string& text, const std::string& file, Unsupported& unsupported);
+SceneDescription parse_scene_description(const std::string& text, const std::string& file,
+                                         Unsupported& unsupported);
 
 /// A file named in a scene: relative to the folder of the file that names it.
 std::string resolved_path(const Location& at, const std::string& name);

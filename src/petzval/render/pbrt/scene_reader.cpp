@@ -81,7 +81,8 @@ void SceneReader::read_file(const std::string& path, const Location* included_fr
   std::error_code none;
   const std::string canonical = std::filesystem::weakly_canonical(path, none).string();
   if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
-    throw scene_error(*included_from, fmt::format("{} includes itself: {}", path, fmt::join(open_files_, " → ")));
+    throw scene_error(*included_from,
+                      fmt::format("{} includes itself: {}", path, fmt::join(open_files_, " → ")));
   if (open_files_.size() >= deepest_include)
     throw scene_error(*included_from, fmt::format("files are included more than {} deep", deepest_include));
   std::string text;
@@ -107,8 +108,8 @@ void SceneReader::follow(Tokens& tokens) {
     if (token->kind != Token::Kind::word)
       throw scene_error(at, fmt::format("{} stands where a directive would be right", token->text));
     const std::string word(token->text);
-    if (!follow_transform(word, tokens, at) && !follow_block(word, tokens, at) && !follow_option(word, tokens, at) &&
-        !follow_world(word, tokens, at))
+    if (!follow_transform(word, tokens, at) && !follow_block(word, tokens, at) &&
+        !follow_option(word, tokens, at) && !follow_world(word, tokens, at))
       refuse_unknown(word, at);
   }
 }
@@ -127,7 +128,9 @@ bool SceneReader::follow_transform(const std::string& word, Tokens& tokens, cons
     transform(at, [&] { return Transform::rotation(v[0], {v[1], v[2], v[3]}); });
   } else if (word == "LookAt") {
     const auto v = numbers(tokens, at, 9);
-    transform(at, [&] { return Transform::look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}); });
+    transform(at, [&] {
+      return Transform::look_at({v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
+    });
   } else if (word == "Transform" || word == "ConcatTransform") {
     const auto v = numbers(tokens, at, 16);
     Matrix4 m;
@@ -142,7 +145,8 @@ bool SceneReader::follow_transform(const std::string& word, Tokens& tokens, cons
     const std::string name = quoted(tokens, at, "name");
     const auto found = coordinate_systems_.find(name);
     if (found == coordinate_systems_.end())
-      throw scene_error(at, fmt::format("there is no coordinate system \"{}\"; CoordinateSystem names one", name));
+      throw scene_error(
+          at, fmt::format("there is no coordinate system \"{}\"; CoordinateSystem names one", name));
     state_.world_from_object = found->second;
   } else {
     return false;
@@ -248,21 +252,51 @@ bool SceneReader::follow_world(const std::string& word, Tokens& tokens, const Lo
 }
 
 void SceneReader::refuse_unknown(const std::string& word, const Location& at) {
-  static const std::vector<std::string> known{
-      "Identity",     "Translate",     "Scale",         "Rotate",         "LookAt",          "Transform",
-      "CoordinateSystem", "CoordSysTransform", "ConcatTransform", "AttributeBegin", "AttributeEnd",
-      "ObjectBegin",  "ObjectEnd",     "ObjectInstance", "Include",       "Import",          "WorldBegin",
-      "Camera",       "Film",          "Sampler",       "Integrator",     "PixelFilter",     "Accelerator",
-      "ColorSpace",   "Option",        "Shape",         "Material",       "MakeNamedMaterial", "NamedMaterial",
-      "Texture",      "LightSource",   "AreaLightSource", "ReverseOrientation", "Attribute",  "MakeNamedMedium"};
-  throw scene_error(at, fmt::format("\"{}\" is no directive of pbrt-v4; the nearest are {}", word.substr(0, 80),
-                                    fmt::join(nearest_names(word.substr(0, 80), known), ", ")));
+  static const std::vector<std::string> known{"Identity",
+                                              "Translate",
+                                              "Scale",
+                                              "Rotate",
+                                              "LookAt",
+                                              "Transform",
+                                              "CoordinateSystem",
+                                              "CoordSysTransform",
+                                              "ConcatTransform",
+                                              "AttributeBegin",
+                                              "AttributeEnd",
+                                              "ObjectBegin",
+                                              "ObjectEnd",
+                                              "ObjectInstance",
+                                              "Include",
+                                              "Import",
+                                              "WorldBegin",
+                                              "Camera",
+                                              "Film",
+                                              "Sampler",
+                                              "Integrator",
+                                              "PixelFilter",
+                                              "Accelerator",
+                                              "ColorSpace",
+                                              "Option",
+                                              "Shape",
+                                              "Material",
+                                              "MakeNamedMaterial",
+                                              "NamedMaterial",
+                                              "Texture",
+                                              "LightSource",
+                                              "AreaLightSource",
+                                              "ReverseOrientation",
+                                              "Attribute",
+                                              "MakeNamedMedium"};
+  throw scene_error(at,
+                    fmt::format("\"{}\" is no directive of pbrt-v4; the nearest are {}", word.substr(0, 80),
+                                fmt::join(nearest_names(word.substr(0, 80), known), ", ")));
 }
 
 std::string SceneReader::quoted(Tokens& tokens, const Location& at, const char* what) {
   const std::optional<Token> token = tokens.next();
   if (!token || token->kind != Token::Kind::quoted)
-    throw scene_error(token ? tokens.location(*token) : at, fmt::format("the {} in quotes would be right here", what));
+    throw scene_error(token ? tokens.location(*token) : at,
+                      fmt::format("the {} in quotes would be right here", what));
   return std::string(token->text);
 }
 
@@ -282,7 +316,8 @@ std::vector<double> SceneReader::numbers(Tokens& tokens, const Location& at, std
   if (bracketed) {
     const std::optional<Token> token = tokens.next();
     if (!token || token->kind != Token::Kind::close)
-      throw scene_error(token ? tokens.location(*token) : at, fmt::format("a ] after {} numbers would be right", count));
+      throw scene_error(token ? tokens.location(*token) : at,
+                        fmt::format("a ] after {} numbers would be right", count));
   }
   return result;
 }
@@ -369,15 +404,16 @@ void SceneReader::named_material(Tokens& tokens, const Location& at) {
   Entity material;
   material.parameters = read_parameters(tokens, at);
   material.type = material.parameters.string("type", "");
-  if (material.type.empty()) throw scene_error(at, fmt::format("material \"{}\" has no \"string type\"", name));
+  if (material.type.empty())
+    throw scene_error(at, fmt::format("material \"{}\" has no \"string type\"", name));
   scene_.materials.push_back(std::move(material));
   scene_.named_materials[name] = static_cast<int>(scene_.materials.size()) - 1;
 }
 
 void SceneReader::shape(Tokens& tokens, const Location& at) {
   if (!in_world_) throw scene_error(at, "a Shape before WorldBegin");
-  ShapeDescription shape{entity(tokens, at, "shape", "shape"), state_.world_from_object, state_.reverse_orientation,
-                         state_.material, state_.area_light};
+  ShapeDescription shape{entity(tokens, at, "shape", "shape"), state_.world_from_object,
+                         state_.reverse_orientation, state_.material, state_.area_light};
   if (open_object_ < 0) return scene_.shapes.push_back(std::move(shape));
   if (shape.area_light >= 0) {
     unsupported_.report(at, "a light in an object that is placed with ObjectInstance");
@@ -399,8 +435,7 @@ void SceneReader::attribute(Tokens& tokens, const Location& at) {
 void SceneReader::finish() {
   if (!saved_.empty())
     throw scene_error(saved_.back().at, fmt::format("this block is not ended by {}", saved_.back().ended_by));
-  if (!in_world_)
-    throw InputError(scene_.file, "has no WorldBegin; what the scene holds stands after it");
+  if (!in_world_) throw InputError(scene_.file, "has no WorldBegin; what the scene holds stands after it");
 }
 
 }  // namespace
@@ -412,7 +447,8 @@ void Unsupported::report(const Location& at, const std::string& what) {
 
 void Unsupported::report_unused(const Parameters& parameters, const std::string& owner) {
   for (const Parameter* parameter : parameters.unused())
-    report(parameter->at, fmt::format("the parameter \"{} {}\" of {}", parameter->type, parameter->name, owner));
+    report(parameter->at,
+           fmt::format("the parameter \"{} {}\" of {}", parameter->type, parameter->name, owner));
 }
 
 SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported) {
@@ -425,7 +461,8 @@ SceneDescription read_scene_description(const std::string& path, Unsupported& un
   return scene;
 }
 
-SceneDescription parse_scene_description(const std::string& text, const std::string& file, Unsupported& unsupported) {
+SceneDescription parse_scene_description(const std::string& text, const std::string& file,
+                                         Unsupported& unsupported) {
   SceneDescription scene;
   scene.file = file;
   scene.materials.push_back({"diffuse", {}});

@@ -19,14 +19,15 @@ std::array<double, 2> uv_of(const TriangleMesh& mesh, std::uint32_t vertex, std:
 
 /// ∂p/∂u of a triangle; any direction in it where the texture coordinates give none.
 Vector3 triangle_along_u(const std::array<Vector3, 3>& p, const std::array<std::array<double, 2>, 3>& uv) {
-  const double du1 = uv[1][0] - uv[0][0], dv1 = uv[1][1] - uv[0][1], du2 = uv[2][0] - uv[0][0], dv2 = uv[2][1] - uv[0][1];
+  const double du1 = uv[1][0] - uv[0][0], dv1 = uv[1][1] - uv[0][1], du2 = uv[2][0] - uv[0][0],
+               dv2 = uv[2][1] - uv[0][1];
   const double determinant = du1 * dv2 - dv1 * du2;
   if (determinant == 0) return p[1] - p[0];
   return 1 / determinant * (dv2 * (p[1] - p[0]) - dv1 * (p[2] - p[0]));
 }
 
-SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, std::size_t triangle, double b1,
-                            double b2) {
+SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, std::size_t triangle,
+                            double b1, double b2) {
   const auto& index = mesh.triangles[triangle];
   const std::array<Vector3, 3> p = mesh.corners(triangle);
   const std::array<double, 3> b{1 - b1 - b2, b1, b2};

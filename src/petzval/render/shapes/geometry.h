@@ -15,9 +15,9 @@ namespace petzval::render {
 struct Geometry {
   std::variant<TriangleMesh, Quadric> shape;
   int material = 0;
-  bool reversed = false;         ///< ReverseOrientation
-  bool swaps_handedness = false; ///< its transformation is a mirror image
-  int first_light = -1;          ///< of its primitives, which shine one by one; −1: none do
+  bool reversed = false;          ///< ReverseOrientation
+  bool swaps_handedness = false;  ///< its transformation is a mirror image
+  int first_light = -1;           ///< of its primitives, which shine one by one; −1: none do
 
   std::size_t primitives() const;
   double primitive_area(std::size_t primitive) const;
@@ -38,8 +38,8 @@ struct SurfacePoint {
   Vector3 along_u;
   double u = 0, v = 0;
 
-  /// Where a ray to `direction` begins so that it does not meet the point's own surface again, for all that Embree
-  /// computes in single precision.
+  /// Where a ray to `direction` begins so that it does not meet the point's own surface again, for all that
+  /// Embree computes in single precision.
   Vector3 origin_towards(Vector3 direction) const;
 };
 

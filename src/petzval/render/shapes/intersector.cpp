@@ -89,7 +89,8 @@ struct Intersector::Impl {
   void check() const {
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE)
-      throw Failure(fmt::format("Embree reports error {} while the scene is built: {}", static_cast<int>(error),
+      throw Failure(fmt::format("Embree reports error {} while the scene is built: {}",
+                                static_cast<int>(error),
                                 error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "unexpected"));
   }
 
@@ -103,13 +104,14 @@ struct Intersector::Impl {
     RTCGeometry handle;
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape)) {
       handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                   3 * sizeof(float), mesh->positions.size()));
-      auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                     3 * sizeof(unsigned), mesh->triangles.size()));
+      auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+          handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->positions.size()));
+      auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+          handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), mesh->triangles.size()));
       check();
       for (const auto& vertex : mesh->positions) vertices = std::copy(vertex.begin(), vertex.end(), vertices);
-      for (const auto& triangle : mesh->triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+      for (const auto& triangle : mesh->triangles)
+        indices = std::copy(triangle.begin(), triangle.end(), indices);
     } else {
       handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
       rtcSetGeometryUserPrimitiveCount(handle, 1);
@@ -138,7 +140,8 @@ struct Intersector::Impl {
     const Matrix4& m = placed.world_from_object.matrix();
     float columns[12];
     for (std::size_t column = 0; column < 4; ++column)
-      for (std::size_t row = 0; row < 3; ++row) columns[3 * column + row] = static_cast<float>(m[row][column]);
+      for (std::size_t row = 0; row < 3; ++row)
+        columns[3 * column + row] = static_cast<float>(m[row][column]);
     rtcSetGeometryTransform(handle, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(handle);
     rtcAttachGeometryByID(scene, handle, id);

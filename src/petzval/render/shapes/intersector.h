@@ -23,11 +23,11 @@ struct GeometryRange {
 
 class Intersector {
  public:
-  /// \param geometries  must outlive this and stay where they are. \param scene  those that stand in the world by
-  /// themselves. \param objects  those that only appear where they are placed.
-  /// \throws Failure when memory runs out.
-  Intersector(const std::vector<Geometry>& geometries, GeometryRange scene, const std::vector<GeometryRange>& objects,
-              const std::vector<PlacedObject>& placed);
+  /// \param geometries  must outlive this and stay where they are. \param scene  those that stand in the
+  /// world by themselves. \param objects  those that only appear where they are placed. \throws Failure when
+  /// memory runs out.
+  Intersector(const std::vector<Geometry>& geometries, GeometryRange scene,
+              const std::vector<GeometryRange>& objects, const std::vector<PlacedObject>& placed);
   ~Intersector();
   Intersector(const Intersector&) = delete;
   Intersector& operator=(const Intersector&) = delete;

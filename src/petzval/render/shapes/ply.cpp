@@ -189,7 +189,8 @@ class PlyBody {
   int line_;
 };
 
-/// Every element takes at least this many bytes of the file, so that no count is believed before it could be true.
+/// Every element takes at least this many bytes of the file, so that no count is believed before it could be
+/// true.
 std::size_t least_bytes(const PlyElement& element, PlyFormat format) {
   std::size_t bytes = 0;
   for (const PlyProperty& property : element.properties)
@@ -199,7 +200,12 @@ std::size_t least_bytes(const PlyElement& element, PlyFormat format) {
 
 /// Where the value of a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture; −1 nowhere.
 int vertex_slot(const std::string& name) {
-  static const std::vector<std::vector<std::string>> names{{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"},
+  static const std::vector<std::vector<std::string>> names{{"x"},
+                                                           {"y"},
+                                                           {"z"},
+                                                           {"nx"},
+                                                           {"ny"},
+                                                           {"nz"},
                                                            {"u", "s", "texture_u", "texture_s"},
                                                            {"v", "t", "texture_v", "texture_t"}};
   for (std::size_t slot = 0; slot < names.size(); ++slot)
@@ -237,7 +243,8 @@ void read_vertices(const PlyElement& element, PlyBody& body, const std::string& 
 void add_face(const std::vector<std::uint32_t>& corners, const std::string& path, std::size_t face,
               TriangleMesh& mesh) {
   if (corners.size() != 3 && corners.size() != 4)
-    throw InputError(path, fmt::format("face {} has {} corners; 3 or 4 would be right", face, corners.size()));
+    throw InputError(path,
+                     fmt::format("face {} has {} corners; 3 or 4 would be right", face, corners.size()));
   mesh.triangles.push_back({corners[0], corners[1], corners[2]});
   if (corners.size() == 4) mesh.triangles.push_back({corners[0], corners[2], corners[3]});
 }
@@ -286,9 +293,10 @@ TriangleMesh parse_ply(std::string_view bytes, const std::string& path) {
   PlyBody body(bytes, header, path);
   TriangleMesh mesh;
   for (const PlyElement& element : header.elements) {
-    if (element.count > 0 && (element.properties.empty() || element.count > body.left() / least_bytes(element, header.format) + 1))
-      throw InputError(path, fmt::format("says that it has {} of \"{}\", more than it has room for", element.count,
-                                         element.name));
+    if (element.count > 0 &&
+        (element.properties.empty() || element.count > body.left() / least_bytes(element, header.format) + 1))
+      throw InputError(path, fmt::format("says that it has {} of \"{}\", more than it has room for",
+                                         element.count, element.name));
     if (element.name == "vertex")
       read_vertices(element, body, path, mesh);
     else if (element.name == "face")

@@ -39,7 +39,8 @@ double determinant(const Transform& transform) {
 double positive(const Parameters& parameters, const char* name, double otherwise) {
   const double value = parameters.number(name, otherwise);
   if (!(value > 0))
-    throw scene_error(parameters.location_of(name), fmt::format("\"{}\" is {}; above 0 would be right", name, value));
+    throw scene_error(parameters.location_of(name),
+                      fmt::format("\"{}\" is {}; above 0 would be right", name, value));
   return value;
 }
 
@@ -56,7 +57,8 @@ bool Quadric::covers(Vector3 p) const {
 }
 
 std::optional<double> Quadric::hit(Vector3 origin, Vector3 direction, double t_min, double t_max) const {
-  const Vector3 o = world_from_object.inverse_point(origin), d = world_from_object.inverse_direction(direction);
+  const Vector3 o = world_from_object.inverse_point(origin),
+                d = world_from_object.inverse_direction(direction);
   double first, second;
   if (kind == Kind::disk) {
     if (d.z == 0) return {};
@@ -109,8 +111,8 @@ std::array<Vector3, 2> Quadric::bounds() const {
   const double top = kind == Kind::disk ? z_min : z_max, infinity = std::numeric_limits<double>::infinity();
   Vector3 least{infinity, infinity, infinity}, greatest = -least;
   for (int corner = 0; corner < 8; ++corner) {
-    const Vector3 p = world_from_object.point({corner & 1 ? radius : -radius, corner & 2 ? radius : -radius,
-                                               corner & 4 ? top : z_min});
+    const Vector3 p = world_from_object.point(
+        {corner & 1 ? radius : -radius, corner & 2 ? radius : -radius, corner & 4 ? top : z_min});
     least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
     greatest = {std::max(greatest.x, p.x), std::max(greatest.y, p.y), std::max(greatest.z, p.z)};
   }
@@ -139,7 +141,8 @@ Quadric::Sample Quadric::sample(double u, double v) const {
   const double phi = u * phi_max;
   Vector3 p;
   if (kind == Kind::disk) {
-    const double r = std::sqrt(inner_radius * inner_radius + v * (radius * radius - inner_radius * inner_radius));
+    const double r =
+        std::sqrt(inner_radius * inner_radius + v * (radius * radius - inner_radius * inner_radius));
     p = {r * std::cos(phi), r * std::sin(phi), z_min};
   } else {
     const double z = z_min + v * (z_max - z_min);
@@ -163,7 +166,8 @@ bool Quadric::is_round_sphere(Vector3& centre, double& world_radius) const {
                 z = world_from_object.direction({0, 0, 1});
   const double scale = length(x);
   constexpr double even = 1e-9;
-  for (const double each : {length(y) - scale, length(z) - scale, dot(x, y) / scale, dot(y, z) / scale, dot(z, x) / scale})
+  for (const double each :
+       {length(y) - scale, length(z) - scale, dot(x, y) / scale, dot(y, z) / scale, dot(z, x) / scale})
     if (std::abs(each) > even * scale) return false;
   centre = world_from_object.point({0, 0, 0});
   world_radius = scale * radius;
@@ -184,7 +188,8 @@ Quadric read_quadric(const ShapeDescription& shape, Unsupported& unsupported) {
     quadric.inner_radius = parameters.number("innerradius", 0);
     quadric.z_min = quadric.z_max = parameters.number("height", 0);
     if (!(quadric.inner_radius >= 0 && quadric.inner_radius < quadric.radius))
-      throw scene_error(parameters.location_of("innerradius"), "\"innerradius\" must lie from 0 to below the radius");
+      throw scene_error(parameters.location_of("innerradius"),
+                        "\"innerradius\" must lie from 0 to below the radius");
     return quadric;
   }
   const bool sphere = shape.entity.type == "sphere";
@@ -193,7 +198,9 @@ Quadric read_quadric(const ShapeDescription& shape, Unsupported& unsupported) {
   double z1 = parameters.number("zmax", sphere ? quadric.radius : 1);
   if (z0 > z1) std::swap(z0, z1);
   if (sphere) z0 = std::max(z0, -quadric.radius), z1 = std::min(z1, quadric.radius);
-  if (!(z0 < z1)) throw scene_error(parameters.location_of("zmin"), "\"zmin\" must lie below \"zmax\" and inside the shape");
+  if (!(z0 < z1))
+    throw scene_error(parameters.location_of("zmin"),
+                      "\"zmin\" must lie below \"zmax\" and inside the shape");
   quadric.z_min = z0, quadric.z_max = z1;
   return quadric;
 }

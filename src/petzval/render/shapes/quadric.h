@@ -9,8 +9,8 @@
 
 namespace petzval::render {
 
-/// One of pbrt's quadrics in a space of its own, z its axis: a sphere or cylinder of a radius between z_min and z_max, or a disk
-/// at z_min with a hole of inner_radius; all from azimuth 0 to phi_max.
+/// One of pbrt's quadrics in a space of its own, z its axis: a sphere or cylinder of a radius between z_min
+/// and z_max, or a disk at z_min with a hole of inner_radius; all from azimuth 0 to phi_max.
 struct Quadric {
   enum class Kind { sphere, disk, cylinder };
   Kind kind = Kind::sphere;
@@ -18,9 +18,10 @@ struct Quadric {
   Transform world_from_object;  ///< or from the object that is placed
 
   struct Point {
-    Vector3 position;     ///< in world space
-    Vector3 normal;       ///< unit: outwards of sphere and cylinder, +z of the disk, as the transformation takes them
-    Vector3 along_u;      ///< ∂p/∂u, u the azimuth
+    Vector3 position;  ///< in world space
+    Vector3
+        normal;  ///< unit: outwards of sphere and cylinder, +z of the disk, as the transformation takes them
+    Vector3 along_u;  ///< ∂p/∂u, u the azimuth
     double u = 0, v = 0;
   };
 
@@ -31,8 +32,8 @@ struct Quadric {
 
   /// Corners of the box around it in world space: {least, greatest}.
   std::array<Vector3, 2> bounds() const;
-  /// A point with density `per_area` (in world space) over the surface; even over it unless the transformation
-  /// stretches it.
+  /// A point with density `per_area` (in world space) over the surface; even over it unless the
+  /// transformation stretches it.
   struct Sample {
     Point point;
     double per_area = 0;
@@ -40,10 +41,12 @@ struct Quadric {
   Sample sample(double u, double v) const;
   /// The density of sample() at a point.
   double density(const Point& point) const;
-  /// In its own space [unit²]; exact area in world space when the transformation only moves, turns and scales evenly.
+  /// In its own space [unit²]; exact area in world space when the transformation only moves, turns and scales
+  /// evenly.
   double object_area() const;
   double area() const;
-  /// Whether it is a whole sphere moved, turned and scaled evenly; then `centre` and `radius` are those in world space.
+  /// Whether it is a whole sphere moved, turned and scaled evenly; then `centre` and `radius` are those in
+  /// world space.
   bool is_round_sphere(Vector3& centre, double& world_radius) const;
 
  private:

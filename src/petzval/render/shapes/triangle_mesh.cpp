@@ -10,8 +10,8 @@ namespace {
 
 /// Pieces a side of a patch that is not flat.
 constexpr int patch_pieces = 16;
-/// A patch counts as flat when its corners lie this near (relative) to a parallelogram, where a bilinear patch and two
-/// triangles are the same surface with the same texture coordinates.
+/// A patch counts as flat when its corners lie this near (relative) to a parallelogram, where a bilinear
+/// patch and two triangles are the same surface with the same texture coordinates.
 constexpr double flat_patch = 1e-6;
 
 TriangleMesh::Vertex vertex(Vector3 p) {
@@ -23,10 +23,12 @@ std::vector<std::array<float, Size>> tuples(const Parameters& parameters, const 
                                             std::initializer_list<const char*> types) {
   const std::vector<double> numbers = parameters.numbers(name, types);
   if (numbers.size() % Size != 0)
-    throw scene_error(parameters.location_of(name),
-                      fmt::format("\"{}\" has {} numbers; a multiple of {} would be right", name, numbers.size(), Size));
+    throw scene_error(
+        parameters.location_of(name),
+        fmt::format("\"{}\" has {} numbers; a multiple of {} would be right", name, numbers.size(), Size));
   std::vector<std::array<float, Size>> result(numbers.size() / Size);
-  for (std::size_t i = 0; i < numbers.size(); ++i) result[i / Size][i % Size] = static_cast<float>(numbers[i]);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    result[i / Size][i % Size] = static_cast<float>(numbers[i]);
   return result;
 }
 
@@ -34,15 +36,17 @@ std::vector<std::uint32_t> indices(const Parameters& parameters, std::size_t eac
   std::vector<std::uint32_t> result;
   for (const int index : parameters.integers("indices")) {
     if (index < 0 || static_cast<std::size_t>(index) >= vertices)
-      throw scene_error(parameters.location_of("indices"),
-                        fmt::format("\"indices\" names vertex {}; there are {}, counted from 0", index, vertices));
+      throw scene_error(
+          parameters.location_of("indices"),
+          fmt::format("\"indices\" names vertex {}; there are {}, counted from 0", index, vertices));
     result.push_back(static_cast<std::uint32_t>(index));
   }
   if (result.empty() && vertices == each)
     for (std::uint32_t i = 0; i < each; ++i) result.push_back(i);
   if (result.empty() || result.size() % each != 0)
-    throw scene_error(parameters.location(), fmt::format("the mesh has {} indices; a positive multiple of {} would be right",
-                                                         result.size(), each));
+    throw scene_error(parameters.location(),
+                      fmt::format("the mesh has {} indices; a positive multiple of {} would be right",
+                                  result.size(), each));
   return result;
 }
 
@@ -64,7 +68,8 @@ struct Patch {
     return (1 - u) * (1 - v) * p[0] + u * (1 - v) * p[1] + (1 - u) * v * p[2] + u * v * p[3];
   }
   Vector3 normal(double u, double v) const {
-    const Vector3 du = (1 - v) * (p[1] - p[0]) + v * (p[3] - p[2]), dv = (1 - u) * (p[2] - p[0]) + u * (p[3] - p[1]);
+    const Vector3 du = (1 - v) * (p[1] - p[0]) + v * (p[3] - p[2]),
+                  dv = (1 - u) * (p[2] - p[0]) + u * (p[3] - p[1]);
     return normalised(cross(du, dv));
   }
   bool is_flat() const {
@@ -95,7 +100,8 @@ void add_patch(const TriangleMesh& corners, const std::array<std::uint32_t, 4>& 
       if (!corners.uvs.empty()) {
         uv = {};
         for (std::size_t c = 0; c < 4; ++c)
-          for (std::size_t k = 0; k < 2; ++k) uv[k] += share[c] * static_cast<double>(corners.uvs[index[c]][k]);
+          for (std::size_t k = 0; k < 2; ++k)
+            uv[k] += share[c] * static_cast<double>(corners.uvs[index[c]][k]);
       }
       mesh.uvs.push_back({static_cast<float>(uv[0]), static_cast<float>(uv[1])});
     }
@@ -122,7 +128,8 @@ TriangleMesh read_triangles(const Parameters& parameters) {
   TriangleMesh mesh;
   read_vertices(parameters, mesh);
   const std::vector<std::uint32_t> index = indices(parameters, 3, mesh.positions.size());
-  for (std::size_t i = 0; i < index.size(); i += 3) mesh.triangles.push_back({index[i], index[i + 1], index[i + 2]});
+  for (std::size_t i = 0; i < index.size(); i += 3)
+    mesh.triangles.push_back({index[i], index[i + 1], index[i + 2]});
   return mesh;
 }
 
@@ -157,7 +164,8 @@ double TriangleMesh::area(std::size_t triangle) const {
 }
 
 void TriangleMesh::transform(const Transform& to) {
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = vertex(to.point(position(static_cast<std::uint32_t>(i))));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i] = vertex(to.point(position(static_cast<std::uint32_t>(i))));
   for (Vertex& n : normals) n = vertex(normalised(to.normal({n[0], n[1], n[2]})));
   validate();
 }
@@ -166,20 +174,22 @@ void TriangleMesh::validate() const {
   const auto finite = [](const auto& list, const char* what) {
     for (std::size_t i = 0; i < list.size(); ++i)
       for (const float value : list[i])
-        if (!std::isfinite(value))
-          throw InputError(fmt::format("{} {} of the mesh is not finite", what, i));
+        if (!std::isfinite(value)) throw InputError(fmt::format("{} {} of the mesh is not finite", what, i));
   };
   finite(positions, "vertex");
   finite(normals, "normal");
   finite(uvs, "texture coordinate");
-  if ((!normals.empty() && normals.size() != positions.size()) || (!uvs.empty() && uvs.size() != positions.size()))
-    throw InputError(fmt::format("the mesh has {} vertices, {} normals and {} texture coordinates; one or none a vertex "
-                                 "would be right",
-                                 positions.size(), normals.size(), uvs.size()));
+  if ((!normals.empty() && normals.size() != positions.size()) ||
+      (!uvs.empty() && uvs.size() != positions.size()))
+    throw InputError(
+        fmt::format("the mesh has {} vertices, {} normals and {} texture coordinates; one or none a vertex "
+                    "would be right",
+                    positions.size(), normals.size(), uvs.size()));
   for (const auto& triangle : triangles)
     for (const std::uint32_t index : triangle)
       if (index >= positions.size())
-        throw InputError(fmt::format("the mesh names vertex {}; there are {}, counted from 0", index, positions.size()));
+        throw InputError(
+            fmt::format("the mesh names vertex {}; there are {}, counted from 0", index, positions.size()));
 }
 
 TriangleMesh read_triangle_mesh(const ShapeDescription& shape, Unsupported& unsupported) {

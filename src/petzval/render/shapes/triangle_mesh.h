@@ -10,8 +10,8 @@
 
 namespace petzval::render {
 
-/// Triangles in the space of the world (or of the object that is placed). Every vertex may have a normal and texture
-/// coordinates; else their lists are empty.
+/// Triangles in the space of the world (or of the object that is placed). Every vertex may have a normal and
+/// texture coordinates; else their lists are empty.
 struct TriangleMesh {
   using Vertex = std::array<float, 3>;
   std::vector<Vertex> positions, normals;
@@ -24,13 +24,13 @@ struct TriangleMesh {
 
   /// Takes positions and normals to another space. \throws InputError if a place cannot be held as a float.
   void transform(const Transform& to);
-  /// \throws InputError (message only) for indices beyond the vertices, lists of other lengths, or numbers that are not
-  /// finite.
+  /// \throws InputError (message only) for indices beyond the vertices, lists of other lengths, or numbers
+  /// that are not finite.
   void validate() const;
 };
 
-/// pbrt's "trianglemesh", "bilinearmesh" and "plymesh", in world space. Bilinear patches that are not flat become
-/// 2 × 16² triangles with the patch's own normals. \throws InputError with file, line and column.
+/// pbrt's "trianglemesh", "bilinearmesh" and "plymesh", in world space. Bilinear patches that are not flat
+/// become 2 × 16² triangles with the patch's own normals. \throws InputError with file, line and column.
 TriangleMesh read_triangle_mesh(const ShapeDescription& shape, Unsupported& unsupported);
 
 /// A PLY file: ASCII or binary of either byte order; triangles and quads.

@@ -63,7 +63,8 @@ std::optional<SceneSpectrum> named(const std::string& name) {
   if (name.starts_with(standard)) {
     const std::string which = name.substr(standard.size());
     for (const std::string& known : illuminant_names())
-      if (which == known || (which.starts_with("D") && which.size() == 3)) return tabulated(illuminant(which), SpectrumRole::illuminant);
+      if (which == known || (which.starts_with("D") && which.size() == 3))
+        return tabulated(illuminant(which), SpectrumRole::illuminant);
   }
   return {};
 }
@@ -71,7 +72,8 @@ std::optional<SceneSpectrum> named(const std::string& name) {
 /// Pairs of wavelength and value, in nm.
 SceneSpectrum from_pairs(const Location& at, const std::vector<double>& numbers, SpectrumRole role) {
   std::vector<double> nm, values;
-  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) nm.push_back(numbers[i]), values.push_back(numbers[i + 1]);
+  for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+    nm.push_back(numbers[i]), values.push_back(numbers[i + 1]);
   if (numbers.size() % 2 != 0)
     throw scene_error(at, "a spectrum of an odd number of values; pairs of nm and value would be right");
   try {
@@ -103,7 +105,8 @@ SceneSpectrum from_rgb(const Parameter& parameter, SpectrumRole role) {
   const auto& v = parameter.numbers;
   const double largest = v.size() == 3 ? std::max({v[0], v[1], v[2]}) : 0;
   if (v.size() != 3 || !(std::min({v[0], v[1], v[2]}) >= 0) || !std::isfinite(largest))
-    throw scene_error(parameter.at, fmt::format("\"rgb {}\" takes three numbers, none below 0", parameter.name));
+    throw scene_error(parameter.at,
+                      fmt::format("\"rgb {}\" takes three numbers, none below 0", parameter.name));
   if (role == SpectrumRole::albedo) {
     if (largest > 1)
       throw scene_error(parameter.at, fmt::format("\"rgb {}\" is a reflectance; no part of it may exceed 1",
@@ -118,7 +121,8 @@ SceneSpectrum from_rgb(const Parameter& parameter, SpectrumRole role) {
   if (role == SpectrumRole::unbounded)
     return {[shape, scale](double nm) { return scale * shape.at(nm); }, v[0] == v[1] && v[1] == v[2]};
   const SceneSpectrum white = white_light();
-  return {[shape, scale, white](double nm) { return scale * shape.at(nm) * white.at(nm); }, false, white.photometric};
+  return {[shape, scale, white](double nm) { return scale * shape.at(nm) * white.at(nm); }, false,
+          white.photometric};
 }
 
 SceneSpectrum from_blackbody(const Parameter& parameter) {

@@ -4,7 +4,8 @@
 
 namespace petzval::render {
 
-WavelengthGroups::WavelengthGroups(std::vector<double> wavelengths_nm) : wavelengths_nm_(std::move(wavelengths_nm)) {
+WavelengthGroups::WavelengthGroups(std::vector<double> wavelengths_nm)
+    : wavelengths_nm_(std::move(wavelengths_nm)) {
   double last = 0;
   for (const double nm : wavelengths_nm_) {
     if (!(nm > last) || !std::isfinite(nm))

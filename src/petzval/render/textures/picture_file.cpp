@@ -28,7 +28,8 @@ double linear_from_srgb(double value) {
 PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) {
   const PngImage png = read_png(path);
   const int used = png.channels <= 2 ? 1 : 3;  // transparency is not light
-  const bool srgb = encoding == PictureEncoding::srgb || (encoding == PictureEncoding::by_format && png.bits == 8);
+  const bool srgb =
+      encoding == PictureEncoding::srgb || (encoding == PictureEncoding::by_format && png.bits == 8);
   const std::size_t levels = std::size_t{1} << png.bits;
   std::vector<float> linear(levels);
   for (std::size_t i = 0; i < levels; ++i) {
@@ -40,7 +41,8 @@ PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) 
   picture.values.reserve(pixels * static_cast<std::size_t>(used));
   for (std::size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < used; ++c)
-      picture.values.push_back(linear[png.samples[i * static_cast<std::size_t>(png.channels) + static_cast<std::size_t>(c)]]);
+      picture.values.push_back(
+          linear[png.samples[i * static_cast<std::size_t>(png.channels) + static_cast<std::size_t>(c)]]);
   return picture;
 }
 
@@ -50,13 +52,15 @@ PictureFile read_exr_picture(const std::string& path) try {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width * height > most_pixels)
-    throw InputError(path, fmt::format("has {} x {} pixels; at most {} would be right", width, height, most_pixels));
+    throw InputError(
+        path, fmt::format("has {} x {} pixels; at most {} would be right", width, height, most_pixels));
   const Imf::ChannelList& channels = file.header().channels();
   const bool colour = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
   if (!colour && !channels.findChannel("Y"))
     throw InputError(path, "has neither the channels R, G and B nor Y");
   PictureFile picture{static_cast<int>(width), static_cast<int>(height), colour ? 3 : 1, {}};
-  picture.values.resize(static_cast<std::size_t>(width * height) * static_cast<std::size_t>(picture.channels));
+  picture.values.resize(static_cast<std::size_t>(width * height) *
+                        static_cast<std::size_t>(picture.channels));
   const std::array<const char*, 3> names{colour ? "R" : "Y", "G", "B"};
   const std::size_t pixel = sizeof(float) * static_cast<std::size_t>(picture.channels);
   Imf::FrameBuffer buffer;

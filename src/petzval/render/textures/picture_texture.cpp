@@ -28,7 +28,8 @@ void PictureSampler::add_pixel(double weight, int column, int row, std::array<do
     return;
   }
   const float* pixel = picture_->pixel(column, row);
-  for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(pixel[picture_->channels == 3 ? c : 0]);
+  for (std::size_t c = 0; c < 3; ++c)
+    sum[c] += weight * static_cast<double>(pixel[picture_->channels == 3 ? c : 0]);
 }
 
 std::array<double, 3> PictureSampler::at(double s, double t) const {
@@ -44,7 +45,8 @@ std::array<double, 3> PictureSampler::at(double s, double t) const {
   const double dx = x - 0.5 - column, dy = y - 0.5 - row;
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j)
-      add_pixel((i ? dx : 1 - dx) * (j ? dy : 1 - dy), static_cast<int>(column) + i, static_cast<int>(row) + j, sum);
+      add_pixel((i ? dx : 1 - dx) * (j ? dy : 1 - dy), static_cast<int>(column) + i,
+                static_cast<int>(row) + j, sum);
   return sum;
 }
 

@@ -53,7 +53,10 @@ class SpectrumPicture final : public Texture<Lanes> {
  public:
   SpectrumPicture(PictureSampler picture, PictureTextureOptions options, const WavelengthGroups& groups,
                   std::shared_ptr<const ReflectanceTable> table)
-      : picture_(std::move(picture)), options_(std::move(options)), groups_(groups), table_(std::move(table)) {}
+      : picture_(std::move(picture)),
+        options_(std::move(options)),
+        groups_(groups),
+        table_(std::move(table)) {}
   Lanes at(const TexturePoint& point, int group) const override;
 
  private:

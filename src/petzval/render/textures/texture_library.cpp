@@ -30,21 +30,24 @@ template <class Map>
 auto named_texture(const Map& textures, const Parameter& parameter, const char* kind) {
   const auto found = parameter.strings.size() == 1 ? textures.find(parameter.strings[0]) : textures.end();
   if (found == textures.end())
-    throw scene_error(parameter.at, fmt::format("there is no {} texture \"{}\" for \"{}\"", kind,
-                                                parameter.strings.empty() ? "" : parameter.strings[0], parameter.name));
+    throw scene_error(parameter.at,
+                      fmt::format("there is no {} texture \"{}\" for \"{}\"", kind,
+                                  parameter.strings.empty() ? "" : parameter.strings[0], parameter.name));
   return found->second;
 }
 
 }  // namespace
 
-TextureLibrary::TextureLibrary(const SceneDescription& scene, const WavelengthGroups& groups, Unsupported& unsupported)
+TextureLibrary::TextureLibrary(const SceneDescription& scene, const WavelengthGroups& groups,
+                               Unsupported& unsupported)
     : groups_(groups), unsupported_(unsupported) {
   for (const TextureDescription& description : scene.textures) {
     if (description.value_type == "float")
       floats_[description.name] = make_float(description);
     else
       spectra_[description.name] = make_spectrum(description);
-    unsupported_.report_unused(description.entity.parameters, fmt::format("texture \"{}\"", description.entity.type));
+    unsupported_.report_unused(description.entity.parameters,
+                               fmt::format("texture \"{}\"", description.entity.type));
   }
 }
 
@@ -65,7 +68,8 @@ SpectrumTexture TextureLibrary::spectrum_parameter(const Parameters& parameters,
                                                    SpectrumRole role) const {
   if (const Parameter* texture = parameters.find(name, {"texture"}))
     return named_texture(spectra_, *texture, "spectrum");
-  const std::optional<SceneSpectrum> spectrum = render::spectrum_parameter(parameters, name, role, unsupported_);
+  const std::optional<SceneSpectrum> spectrum =
+      render::spectrum_parameter(parameters, name, role, unsupported_);
   if (!spectrum) return nullptr;
   return std::make_shared<ConstantSpectrum>(groups_.sampled(spectrum->at));
 }
@@ -73,7 +77,8 @@ SpectrumTexture TextureLibrary::spectrum_parameter(const Parameters& parameters,
 SpectrumTexture TextureLibrary::spectrum_parameter(const Parameters& parameters, const std::string& name,
                                                    SpectrumRole role, double otherwise) const {
   SpectrumTexture texture = spectrum_parameter(parameters, name, role);
-  return texture ? texture : std::make_shared<ConstantSpectrum>(groups_.sampled([&](double) { return otherwise; }));
+  return texture ? texture
+                 : std::make_shared<ConstantSpectrum>(groups_.sampled([&](double) { return otherwise; }));
 }
 
 const std::shared_ptr<const ReflectanceTable>& TextureLibrary::reflectances() {
@@ -87,7 +92,8 @@ PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureText
   options.scale = parameters.number("scale", 1);
   options.invert = parameters.boolean("invert", false);
   const std::string wrap = parameters.choice("wrap", "repeat", {"repeat", "black", "clamp"});
-  const std::string filter = parameters.string("filter", "bilinear");  // all but "point" are taken for bilinear
+  const std::string filter =
+      parameters.string("filter", "bilinear");  // all but "point" are taken for bilinear
   const std::string encoding = parameters.string("encoding", "");
   if (!encoding.empty() && encoding != "sRGB" && encoding != "linear")
     unsupported_.report(parameters.location_of("encoding"), fmt::format("the encoding \"{}\"", encoding));
@@ -96,15 +102,15 @@ PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureText
   if (name.empty()) throw scene_error(parameters.location(), "an imagemap needs a \"string filename\"");
   std::shared_ptr<const PictureFile>& picture = pictures_[name + "\n" + encoding];
   if (!picture) try {
-      picture = std::make_shared<const PictureFile>(
-          read_picture_file(resolved_path(parameters.location(), name), encoding == "sRGB"     ? PictureEncoding::srgb
-                                                                        : encoding == "linear" ? PictureEncoding::linear
-                                                                        : PictureEncoding::by_format));
+      picture = std::make_shared<const PictureFile>(read_picture_file(
+          resolved_path(parameters.location(), name), encoding == "sRGB"     ? PictureEncoding::srgb
+                                                      : encoding == "linear" ? PictureEncoding::linear
+                                                                             : PictureEncoding::by_format));
     } catch (const InputError& error) {
       throw scene_error(parameters.location_of("filename"), error.what());
     }
   return {picture,
-          wrap == "repeat" ? PictureWrap::repeat
+          wrap == "repeat"  ? PictureWrap::repeat
           : wrap == "clamp" ? PictureWrap::clamp
                             : PictureWrap::black,
           filter != "point"};

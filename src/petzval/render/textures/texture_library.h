@@ -18,10 +18,12 @@ class TextureLibrary {
   /// \throws InputError with file, line and column; through `unsupported`. The references must outlive this.
   TextureLibrary(const SceneDescription& scene, const WavelengthGroups& groups, Unsupported& unsupported);
 
-  /// The parameter as a texture: "texture name" refers to one, anything else is a constant. Nothing if absent.
+  /// The parameter as a texture: "texture name" refers to one, anything else is a constant. Nothing if
+  /// absent.
   FloatTexture float_parameter(const Parameters& parameters, const std::string& name) const;
   FloatTexture float_parameter(const Parameters& parameters, const std::string& name, double otherwise) const;
-  SpectrumTexture spectrum_parameter(const Parameters& parameters, const std::string& name, SpectrumRole role) const;
+  SpectrumTexture spectrum_parameter(const Parameters& parameters, const std::string& name,
+                                     SpectrumRole role) const;
   SpectrumTexture spectrum_parameter(const Parameters& parameters, const std::string& name, SpectrumRole role,
                                      double otherwise) const;
 
