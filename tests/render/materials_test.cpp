@@ -108,7 +108,9 @@ TEST(Bsdf, GivesBackWhatItsValueSays) {
       // 2^15 Sobol points and the midpoint rule over 80000 cells: a few parts in a thousand each.
       EXPECT_NEAR(sampled, integral, 4e-3) << name << " at cos " << cos;
       EXPECT_LT(sampled + mirrored, 1 + 2e-3) << name << " at cos " << cos;
-      if (lossless) EXPECT_NEAR(sampled + mirrored, 1, 3e-3) << name << " at cos " << cos;
+      if (lossless) {
+        EXPECT_NEAR(sampled + mirrored, 1, 3e-3) << name << " at cos " << cos;
+      }
     }
   }
 }

@@ -270,7 +270,10 @@ FocusResult find_focus(const PicturesAt& pictures_at, const std::vector<FocusZon
     if (nearest_tried(judge.result, *x) < tolerance) {
       // Known there; the flanks of the peak say more about where it is.
       const double flank = std::max(2 * tolerance, curve ? flank_widths * curve->width : 0);
-      x = *x + (settled == 0 ? flank : -flank);
+      // A flank inside of the bracket, however wide the peak is.
+      const double up = std::min(flank, 0.7 * (search.high() - *x)),
+                   down = std::min(flank, 0.7 * (*x - search.low()));
+      x = *x + (settled == 0 ? up : -down);
       ++settled;
       if (!search.brackets(*x) || nearest_tried(judge.result, *x) < tolerance) continue;
     }

@@ -10,6 +10,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Paths through surfaces that are no boundary do not count as scattered; this many are enough for any scene.
 constexpr int most_interfaces = 1000;
+/// Share of a shadow ray's way on which it may be blocked: to the last roundings of a float.
+constexpr double shadow_end = 1 - 0x1p-20;
 /// Path length after which weak paths are ended at random.
 constexpr int roulette_depth = 2;
 constexpr double roulette_floor = 0.05;
@@ -80,7 +82,10 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   const Lanes f = bsdf.value(wo, wi);
   if (f.is_black()) return;
   const Vector3 origin = point.origin_towards(light->direction);
-  if (world_.intersector->blocked(origin, light->direction, light->distance)) return;
+  // Between two places, each just in front of its surface: at grazing angles a direction alone would miss by
+  // much.
+  const Vector3 way = light->place ? *light->place - origin : light->direction;
+  if (world_.intersector->blocked(origin, way, light->place ? shadow_end : infinity)) return;
   double weight = std::abs(wi.z) / light->pdf;
   if (!light->small && options_.lights == PathOptions::Lights::both)
     weight *= balanced(light->pdf, bsdf.pdf(wo, wi));

@@ -3,15 +3,10 @@
 #include <petzval/render/lights/lights.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace petzval::render {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Shadow rays end this far (relative) in front of the light, so that it does not shade itself.
-constexpr double before_light = 1 - 1e-5;
 
 double mean_of(const BandSpectrum& spectrum) {
   double sum = 0;
@@ -80,8 +75,8 @@ std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometrie
     const Environment::Sample direction = environment.sample(u, v);
     if (!(direction.pdf > 0)) return {};
     // All skies shine from that direction, and each might have chosen it.
-    return LightSample{direction.direction, infinity, sky(direction.direction, group),
-                       sky_pdf(direction.direction)};
+    return LightSample{
+        direction.direction, {}, sky(direction.direction, group), sky_pdf(direction.direction)};
   }
   if (sample) sample->pdf *= share(light);
   return sample;
@@ -89,8 +84,7 @@ std::optional<LightSample> Lights::sample(const std::vector<Geometry>& geometrie
 
 std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3 to, int group) const {
   const Lanes& strength = light.strength[static_cast<std::size_t>(group)];
-  if (light.kind == SmallLight::Kind::distant)
-    return LightSample{-light.direction, infinity, strength, 1, true};
+  if (light.kind == SmallLight::Kind::distant) return LightSample{-light.direction, {}, strength, 1, true};
   const Vector3 away = light.position - to;
   const double distance = length(away);
   if (!(distance > 0)) return {};
@@ -98,7 +92,7 @@ std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3
   double share = 1 / (distance * distance);
   if (light.kind == SmallLight::Kind::spot) share *= spot_share(light, -dot(direction, light.direction));
   if (!(share > 0)) return {};
-  return LightSample{direction, distance * before_light, share * strength, 1, true};
+  return LightSample{direction, light.position, share * strength, 1, true};
 }
 
 std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geometries, std::size_t index,
@@ -138,7 +132,7 @@ std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geom
   const Vector3 direction = 1 / distance * away;
   const Lanes radiance = emitted(index, point, -direction, group);
   if (radiance.is_black()) return {};
-  return LightSample{direction, distance * before_light, radiance, pdf};
+  return LightSample{direction, point.origin_towards(-direction), radiance, pdf};
 }
 
 Lanes Lights::emitted(std::size_t area, const SurfacePoint& point, Vector3 wo, int group) const {

@@ -32,7 +32,8 @@ struct SmallLight {
 /// How light arrives at a point.
 struct LightSample {
   Vector3 direction;  ///< towards the light; unit
-  double distance = 0;
+  /// Where it shines, just in front of its surface; absent: infinitely far away.
+  std::optional<Vector3> place;
   Lanes light;         ///< radiance, or for small lights what stands for radiance / pdf times pdf
   double pdf = 0;      ///< over solid angle, with the choice of the light
   bool small = false;  ///< no other way of sampling finds it
