@@ -54,6 +54,8 @@ void add_glass_commands(CLI::App& app, Shared& shared);
 void add_scene_commands(CLI::App& app, Shared& shared);
 void add_optics_commands(CLI::App& app, Shared& shared);
 void add_image_command(CLI::App& app, Shared& shared);
+void add_render_command(CLI::App& app, Shared& shared);
+void add_focus_command(CLI::App& app, Shared& shared);
 void add_compare_command(CLI::App& app, Shared& shared);
 void add_target_command(CLI::App& app, Shared& shared);
 void add_sfr_command(CLI::App& app, Shared& shared);

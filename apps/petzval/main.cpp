@@ -32,6 +32,8 @@ int main(int argc, char** argv) {
   app::add_scene_commands(program, shared);
   app::add_optics_commands(program, shared);
   app::add_image_command(program, shared);
+  app::add_render_command(program, shared);
+  app::add_focus_command(program, shared);
   app::add_compare_command(program, shared);
   app::add_target_command(program, shared);
   app::add_sfr_command(program, shared);

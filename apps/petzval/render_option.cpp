@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render_option.h"
+
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/scene/scene_file.h>
+
+#include <cstdio>
+
+namespace petzval::app {
+
+namespace {
+
+/// "400x300" as two numbers.
+void parse_size(const std::string& text, render::CameraChoice& choice) {
+  int columns = 0, rows = 0;
+  char end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &columns, &rows, &end) != 2 || columns < 1 || rows < 1)
+    throw InputError(fmt::format("--size {}: WIDTHxHEIGHT in pixels would be right, as 400x300", text));
+  choice.columns = columns, choice.rows = rows;
+}
+
+render::CameraChoice camera_choice(const RenderChoice& choice, const Shared& shared) {
+  render::CameraChoice camera;
+  if (!choice.lens.path_or_name.empty()) {
+    if (choice.pinhole) throw InputError("--pinhole and --lens exclude each other");
+    camera.lens = choice.lens.read(shared);
+  }
+  camera.pinhole = choice.pinhole;
+  if (!choice.size.empty()) parse_size(choice.size, camera);
+  camera.film_diagonal_mm = choice.film_diagonal_mm;
+  camera.aperture_diameter_mm = choice.aperture_diameter_mm;
+  camera.f_number = choice.f_number;
+  camera.film_distance_mm = choice.film_distance_mm;
+  camera.focus_distance_m = choice.focus_distance_m;
+  if (!(choice.scene_unit_mm > 0))
+    throw InputError(
+        fmt::format("--scene-unit {}: the length of a scene's unit in mm is above 0", choice.scene_unit_mm));
+  camera.options.scene_units_per_mm = 1 / choice.scene_unit_mm;
+  camera.options.origin_at_front = choice.camera_origin == "front";
+  if (choice.sampling == "rear-disk")
+    camera.options.sampling = render::LensCameraOptions::Sampling::rear_disk;
+  return camera;
+}
+
+render::PathOptions path_options(const RenderChoice& choice, const render::SceneDescription& scene,
+                                 render::Unsupported& unsupported) {
+  render::PathOptions path;
+  const render::Entity& integrator = scene.integrator;
+  if (!integrator.type.empty() && integrator.type != "path" && integrator.type != "volpath")
+    unsupported.report(integrator.location(), fmt::format("Integrator \"{}\"", integrator.type));
+  path.max_depth = integrator.parameters.integer("maxdepth", path.max_depth);
+  if (choice.max_depth > 0) path.max_depth = choice.max_depth;
+  for (const char* ignored : {"lightsampler", "regularize"}) integrator.parameters.find(ignored);
+  unsupported.report_unused(integrator.parameters, fmt::format("Integrator \"{}\"", integrator.type));
+  return path;
+}
+
+PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wavelengths_nm,
+                      const Shared& shared, render::Unsupported& unsupported) {
+  PreparedScene prepared;
+  prepared.description = render::read_scene_description(
+      find_data_file("scenes", ".pbrt", choice.scene, "three-dimensional scene"), unsupported);
+  prepared.camera = render::set_up_camera(prepared.description, camera_choice(choice, shared), unsupported);
+  prepared.path = path_options(choice, prepared.description, unsupported);
+  const render::WavelengthGroups groups(
+      choice.wavelengths.empty() ? wavelengths_nm : parse_wavelengths_nm(choice.wavelengths));
+  prepared.world = render::build_world(prepared.description, groups, {choice.absolute_spectra}, unsupported);
+  return prepared;
+}
+
+}  // namespace
+
+void RenderChoice::add_to(CLI::App& command) {
+  command.add_option("scene", scene, "Scene in the text format of pbrt-v4, or the name of a bundled one")
+      ->required();
+  lens.add_to(command, false, false);
+  command.add_option("--film-diagonal", film_diagonal_mm, "Of the film, corner to corner [mm]");
+  command.add_option("--aperture-diameter", aperture_diameter_mm, "Of the stop [mm]");
+  command.add_option("--f-number", f_number, "Stop down to this paraxial f-number at infinity");
+  command.add_option("--film-distance", film_distance_mm, "From the last surface to the film [mm]");
+  command.add_option("--focus-distance", focus_distance_m, "From the film to what is to be sharp [m]");
+  command.add_flag("--pinhole", pinhole, "The scene's perspective through a pinhole, for comparison");
+  command.add_option("--size", size, "Of the picture in pixels, as 400x300");
+  command.add_option("--wavelengths", wavelengths, "FROM:STEP:TO or a list [nm]");
+  command
+      .add_option(
+          "--sampling", sampling,
+          "Directions from a film point: inside of the pupil, or over the disk of the last surface (2006)")
+      ->check(CLI::IsMember({"exit-pupil", "rear-disk"}))
+      ->capture_default_str();
+  command.add_option("--camera-origin", camera_origin, "What stands where the scene puts its camera")
+      ->check(CLI::IsMember({"film", "front"}))
+      ->capture_default_str();
+  command.add_option("--scene-unit", scene_unit_mm, "Length of the scene's unit [mm]")->capture_default_str();
+  command
+      .add_option("--max-depth", max_depth,
+                  "Times that light is scattered at most; default: the scene's, or 5")
+      ->check(CLI::Range(1, 10000));
+  command
+      .add_option("--far", far_distance,
+                  "Surfaces beyond this distance along a ray are not seen [scene units]")
+      ->check(CLI::PositiveNumber);
+  command.add_flag(
+      "--absolute-spectra", absolute_spectra,
+      "Spectra of lights are radiances [W/(m2 sr nm)] as they stand, not scaled as pbrt-v4 scales them");
+}
+
+PreparedScene prepare_scene(const RenderChoice& choice, const std::vector<double>& wavelengths_nm,
+                            const Shared& shared) {
+  render::Unsupported unsupported;
+  PreparedScene prepared = prepare(choice, wavelengths_nm, shared, unsupported);
+  for (const std::string& line : prepared.camera.notes) note(shared, line);
+  return prepared;
+}
+
+std::vector<render::Complaint> unsupported_in(const RenderChoice& choice, const Shared& shared) {
+  render::Unsupported unsupported(true);
+  prepare(choice, {550}, shared, unsupported);
+  return unsupported.list();
+}
+
+}  // namespace petzval::app

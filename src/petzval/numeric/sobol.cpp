@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/numeric/sobol.h>
+
+namespace petzval {
+
+namespace {
+
+constexpr int dimensions = 4;
+constexpr double unit = 0x1p-32;
+
+using DirectionNumbers = std::array<std::uint32_t, 32>;
+
+/// Degree and coefficients of the primitive polynomials and the first odd numbers m of dimensions 2 to 4 (Joe
+/// & Kuo, SIAM J. Sci. Comput. 30 (2008) 2635: new-joe-kuo-6).
+struct Primitive {
+  int degree;
+  std::uint32_t coefficients;
+  std::array<std::uint32_t, 3> m;
+};
+constexpr std::array<Primitive, 3> primitives{{{1, 0, {1, 0, 0}}, {2, 1, {1, 3, 0}}, {3, 1, {1, 3, 1}}}};
+
+constexpr DirectionNumbers direction_numbers(int dimension) {
+  DirectionNumbers v{};
+  if (dimension == 0) {
+    for (int i = 0; i < 32; ++i) v[static_cast<std::size_t>(i)] = 1u << (31 - i);
+    return v;
+  }
+  const Primitive primitive = primitives[static_cast<std::size_t>(dimension - 1)];
+  const int s = primitive.degree;
+  for (int i = 0; i < 32; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (i < s) {
+      v[at] = primitive.m[at] << (31 - i);
+      continue;
+    }
+    const std::uint32_t back = v[at - static_cast<std::size_t>(s)];
+    v[at] = back ^ (back >> s);
+    for (int k = 1; k < s; ++k)
+      if (primitive.coefficients >> (s - 1 - k) & 1) v[at] ^= v[at - static_cast<std::size_t>(k)];
+  }
+  return v;
+}
+
+/// The exclusive or of the direction numbers of all bits of each byte of an index.
+using ByteTables = std::array<std::array<std::array<std::uint32_t, 256>, 4>, dimensions>;
+
+constexpr ByteTables make_byte_tables() {
+  ByteTables tables{};
+  for (int d = 0; d < dimensions; ++d) {
+    const DirectionNumbers v = direction_numbers(d);
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      for (std::size_t value = 0; value < 256; ++value)
+        for (std::size_t bit = 0; bit < 8; ++bit)
+          if (value >> bit & 1) tables[static_cast<std::size_t>(d)][byte][value] ^= v[8 * byte + bit];
+  }
+  return tables;
+}
+
+constexpr ByteTables byte_tables = make_byte_tables();
+
+constexpr std::uint32_t reversed_bits(std::uint32_t x) {
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+}  // namespace
+
+std::uint32_t sobol(std::uint32_t index, int dimension) {
+  const auto& table = byte_tables[static_cast<std::size_t>(dimension)];
+  return table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
+         table[3][index >> 24];
+}
+
+std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed) {
+  std::uint32_t x = reversed_bits(digits);
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return reversed_bits(x);
+}
+
+std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
+  std::uint64_t x = (static_cast<std::uint64_t>(a) << 32) ^ b;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
+}
+
+template <std::size_t Count>
+std::array<double, Count> SobolSample::next() {
+  const std::uint32_t set_seed = hashed(seed_, set_++);
+  const std::uint32_t shuffled = owen_scrambled(index_, set_seed);
+  std::array<double, Count> point;
+  for (std::size_t d = 0; d < Count; ++d)
+    point[d] = unit * owen_scrambled(sobol(shuffled, static_cast<int>(d)),
+                                     hashed(set_seed, 0x9e3779b9u + static_cast<std::uint32_t>(d)));
+  return point;
+}
+
+double SobolSample::next1() {
+  return next<1>()[0];
+}
+std::array<double, 2> SobolSample::next2() {
+  return next<2>();
+}
+std::array<double, 4> SobolSample::next4() {
+  return next<4>();
+}
+
+}  // namespace petzval

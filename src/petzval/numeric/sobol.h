@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Owen-scrambled Sobol points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace petzval {
+
+/// Coordinate 0 … 3 of point `index` of the Sobol sequence, as a fixed-point number of 32 bits (Joe & Kuo
+/// 2008).
+std::uint32_t sobol(std::uint32_t index, int dimension);
+
+/// Nested uniform (Owen) scrambling of the 32 binary digits, the permutations taken from a hash of `seed`
+/// (Laine & Karras 2011, with the constants of Vegdahl 2021).
+std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed);
+
+/// A well mixed 32-bit hash of two numbers, for making seeds.
+std::uint32_t hashed(std::uint32_t a, std::uint32_t b);
+
+/// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four
+/// dimensions are Sobol points stratified together; different sets are independent permutations of the same
+/// samples (Burley, "Practical hash-based Owen scrambling", JCGT 9 (2020) 4).
+///
+///     SobolSample sample(hashed(pixel, seed), index);   // the index-th of the samples of that pixel
+///     const auto [u, v] = sample.next2();
+class SobolSample {
+ public:
+  SobolSample(std::uint32_t seed, std::uint32_t index) : seed_(seed), index_(index) {}
+
+  double next1();
+  std::array<double, 2> next2();
+  std::array<double, 4> next4();
+
+ private:
+  template <std::size_t Count>
+  std::array<double, Count> next();
+
+  std::uint32_t seed_, index_, set_ = 0;
+};
+
+}  // namespace petzval

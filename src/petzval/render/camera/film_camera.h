@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From places on the film to rays in the scene.
+#pragma once
+
+#include <petzval/render/spectra/lanes.h>
+#include <petzval/render/vector3.h>
+
+#include <array>
+#include <span>
+
+namespace petzval::render {
+
+/// A place on the film, in pixels of the upright picture, and two numbers in [0, 1) that choose a direction
+/// there.
+struct FilmSample {
+  double column = 0, row = 0;
+  double u = 0, v = 0;
+};
+
+/// The part of the film [pixels] from which samples are taken.
+struct FilmArea {
+  double left = 0, top = 0, right = 0, bottom = 0;
+};
+
+/// A ray of light that reaches the film, followed backwards out into the scene.
+struct CameraRay {
+  bool passes = false;
+  Vector3 origin, direction;  ///< camera space: looking along +z, x to the right, y up; scene units
+  /// What radiance along the ray adds to irradiance, lane by lane [sr]: 1/density in film phase space.
+  Lanes weight = Lanes::all(0);
+  /// The same for the hero wavelength when it alone takes the path.
+  float weight_alone = 0;
+  /// Where each wavelength lands [pixels]; all at the film sample unless `spread`.
+  bool spread = false;
+  std::array<float, lane_count> column{}, row{};
+};
+
+/// How a picture is taken. Implementations may be asked from several threads at once.
+class FilmCamera {
+ public:
+  virtual ~FilmCamera() = default;
+  /// Rays for samples whose hero wavelength is lane `hero` of `group`. `rays` is as long as `samples`.
+  /// \param sampled  all samples of the picture are spread evenly over this area: what else could have found
+  /// a ray.
+  virtual void trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+                     std::span<CameraRay> rays) const = 0;
+  /// Whether wavelengths part on their way, so that it matters which one leads.
+  virtual bool disperses() const { return false; }
+};
+
+}  // namespace petzval::render

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A real lens in front of the film.
+#pragma once
+
+#include <petzval/render/camera/film_camera.h>
+#include <petzval/render/spectra/wavelength_groups.h>
+#include <petzval/sensor/sensor.h>
+#include <petzval/trace/exit_pupil_region.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace petzval::render {
+
+struct LensCameraOptions {
+  /// exit_pupil: directions inside of the pupil as the film point sees it. rear_disk: points on the disk of
+  /// the last surface's aperture, weighted A cos⁴θ/d², as the reports of CS348B (2006) have it: the same
+  /// picture, more noise.
+  enum class Sampling { exit_pupil, rear_disk };
+  Sampling sampling = Sampling::exit_pupil;
+  double scene_units_per_mm = 1e-3;
+  bool origin_at_front =
+      false;  ///< the camera's place is the first vertex, as in 2006; else the film's centre
+};
+
+/// Traces every film sample backwards through every surface, at its own wavelength: prescription, glass,
+/// apertures and stop as they are. Wavelengths that dispersion parts share one scene path: the hero's ray,
+/// found from the film, is sent back through the lens at the others, and each lands where it lands (étendue
+/// is kept at every wavelength, so that densities in film phase space dA dα dβ may be compared; balance
+/// heuristic over the wavelengths).
+class LensCamera final : public FilmCamera {
+ public:
+  /// \param lens  focused and stopped down as it is used; its image surface is the film.
+  /// \throws InputError if no light reaches the film, and as Tracer.
+  LensCamera(const Lens& lens, const SensorGeometry& film, const WavelengthGroups& groups,
+             const LensCameraOptions& options = {});
+
+  void trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+             std::span<CameraRay> rays) const override;
+  bool disperses() const override { return disperses_; }
+
+ private:
+  struct Start {
+    double alpha = 0, beta = 0, area = 0;  ///< direction cosines of travelling light; 1/density
+  };
+  void find_regions(const Lens& lens);
+  Start start(double x_mm, double y_mm, double u, double v) const;
+  double density(double x_mm, double y_mm, double alpha, double beta) const;
+  void share_among_wavelengths(int group, int hero, const FilmArea& sampled, std::span<CameraRay> rays,
+                               const RayBatch& scene_side, std::span<const double> hero_density) const;
+  const Tracer& tracer(int group, int lane) const;
+
+  SensorGeometry film_;
+  WavelengthGroups groups_;
+  LensCameraOptions options_;
+  std::vector<Tracer> tracers_;  ///< by band; one when nothing disperses
+  bool disperses_ = false;
+  std::optional<ExitPupilRegions> regions_;
+  double rear_radius_mm_ = 0, rear_distance_mm_ = 0;
+};
+
+}  // namespace petzval::render

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/units.h>
+#include <petzval/camera/camera.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/render/camera/scene_camera.h>
+
+#include <cmath>
+
+namespace petzval::render {
+
+namespace {
+
+constexpr int most_pixels_a_side = 65536;
+
+int checked_size(const Parameters& parameters, const char* name, int otherwise, std::optional<int> wanted) {
+  const int given = parameters.integer(name, otherwise);
+  const int size = wanted.value_or(given);
+  if (size < 1 || size > most_pixels_a_side)
+    throw scene_error(
+        parameters.location_of(name),
+        fmt::format("a picture of {} pixels a side; 1 to {} would be right", size, most_pixels_a_side));
+  return size;
+}
+
+SensorGeometry read_film(const Entity& film, const CameraChoice& choice, Unsupported& unsupported) {
+  const Parameters& parameters = film.parameters;
+  if (film.type != "rgb" && film.type != "spectral" && film.type != "gbuffer" && film.type != "image" &&
+      !film.type.empty())
+    unsupported.report(film.location(), fmt::format("Film \"{}\"", film.type));
+  SensorGeometry geometry;
+  geometry.columns = checked_size(parameters, "xresolution", 1280, choice.columns);
+  geometry.rows = checked_size(parameters, "yresolution", 720, choice.rows);
+  const double diagonal_mm = choice.film_diagonal_mm.value_or(parameters.number("diagonal", 35));
+  if (!(diagonal_mm > 0) || !std::isfinite(diagonal_mm))
+    throw scene_error(parameters.location_of("diagonal"),
+                      fmt::format("a film diagonal of {} mm; above 0 would be right", diagonal_mm));
+  geometry.pitch_um = diagonal_mm / std::hypot(geometry.columns, geometry.rows) * um_per_mm;
+  // What pbrt makes of the light afterwards is the business of `sense` and `develop`.
+  for (const char* ignored :
+       {"filename", "iso", "sensor", "savefp16", "maxcomponentvalue", "whitebalance", "nbuckets", "lambdamin",
+        "lambdamax", "coordinatesystem", "exposuretime", "shutter"})
+    parameters.find(ignored);
+  unsupported.report_unused(parameters, fmt::format("Film \"{}\"", film.type));
+  return geometry;
+}
+
+void read_perspective(const Parameters& parameters, SceneCamera& camera) {
+  PerspectiveOptions& options = camera.perspective;
+  options.field_of_view_deg = parameters.number("fov", 90);
+  options.lens_radius = parameters.number("lensradius", 0);
+  options.focal_distance = parameters.number("focaldistance", 1e6);
+  const std::vector<double> window = parameters.numbers("screenwindow", {"float"});
+  if (!window.empty() && window.size() != 4)
+    throw scene_error(parameters.location_of("screenwindow"), "\"screenwindow\" takes four numbers");
+  for (std::size_t i = 0; i < window.size(); ++i) options.screen_window[i] = window[i];
+  parameters.number("frameaspectratio", 0);
+}
+
+Lens read_scene_lens(const Parameters& parameters) {
+  const std::string name = parameters.string("lensfile", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a realistic camera needs a \"string lensfile\"");
+  try {
+    return read_lens(resolved_path(parameters.location(), name)).lens;
+  } catch (const InputError& error) {
+    throw scene_error(parameters.location_of("lensfile"), error.what());
+  }
+}
+
+/// Closes the stop to a diameter; opening it wider than it is made does nothing.
+void set_stop(Lens& lens, double diameter_mm, std::vector<std::string>& notes) {
+  if (!(diameter_mm > 0) || !std::isfinite(diameter_mm))
+    throw InputError(fmt::format("a stop of {} mm diameter; above 0 would be right", diameter_mm));
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, diameter_mm / 2};
+  const std::optional<double> made = lens.surfaces[lens.stop_index()].semi_diameter_mm;
+  if (made && diameter_mm > 2 * *made)
+    notes.push_back(fmt::format("the stop of {} opens to {:g} mm only, not to {:g} mm", lens.name, 2 * *made,
+                                diameter_mm));
+}
+
+void focus(Camera& camera, const CameraChoice& choice, const Parameters& parameters, bool realistic,
+           SceneCamera& result) {
+  const double m_per_unit = 1 / (choice.options.scene_units_per_mm * mm_per_m);
+  if (choice.film_distance_mm) return;
+  if (choice.focus_distance_m) return camera.focus_at_m(*choice.focus_distance_m);
+  const char* name = realistic ? "focusdistance" : "focaldistance";
+  const double distance = parameters.number(name, realistic ? 10 : -1);
+  if (distance > 0) return camera.focus_at_m(distance * m_per_unit);
+  result.notes.push_back(
+      "the lens is focused as its prescription has it: neither the scene nor the command line gives a "
+      "distance");
+}
+
+Lens lens_in_use(const CameraChoice& choice, const Parameters& parameters, bool realistic,
+                 SceneCamera& result) {
+  Lens lens = choice.lens ? *choice.lens : read_scene_lens(parameters);
+  if (realistic) parameters.string("lensfile", "");
+  const double scene_stop = realistic ? parameters.number("aperturediameter", 1) : -1;
+  if (choice.aperture_diameter_mm && choice.f_number)
+    throw InputError("give the stop either a diameter or an f-number");
+  if (choice.aperture_diameter_mm)
+    set_stop(lens, *choice.aperture_diameter_mm, result.notes);
+  else if (!choice.f_number && !choice.lens && scene_stop > 0)
+    set_stop(lens, scene_stop, result.notes);
+  Camera camera(std::move(lens));
+  if (choice.f_number) camera.set_f_number(*choice.f_number);
+  if (choice.film_distance_mm && choice.focus_distance_m)
+    throw InputError("give the film either a distance from the lens or a distance to focus on");
+  focus(camera, choice, parameters, realistic, result);
+  Lens used = camera.lens();
+  if (choice.film_distance_mm) {
+    if (!(*choice.film_distance_mm > 0) || !std::isfinite(*choice.film_distance_mm))
+      throw InputError(fmt::format("a film {} mm behind the lens; a positive distance would be right",
+                                   *choice.film_distance_mm));
+    used.surfaces.back().thickness_mm = *choice.film_distance_mm;
+  }
+  return used;
+}
+
+void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsupported& unsupported,
+                 SceneCamera& camera) {
+  const Entity& entity = scene.camera;
+  const Parameters& parameters = entity.parameters;
+  const bool realistic = entity.type == "realistic";
+  if (!realistic && entity.type != "perspective" && !entity.type.empty())
+    unsupported.report(entity.location(), fmt::format("Camera \"{}\"", entity.type));
+  for (const char* ignored : {"shutteropen", "shutterclose", "simpleweighting"}) parameters.find(ignored);
+  if (const Parameter* aperture = parameters.find("aperture"))
+    if (aperture->strings.empty() || aperture->strings[0] != "circular")
+      unsupported.report(aperture->at, "an aperture of another shape than a circle");
+  if (!realistic) read_perspective(parameters, camera);
+  if (realistic && choice.pinhole)
+    throw scene_error(entity.location(),
+                      "the scene's camera is a real lens; it has no perspective for --pinhole");
+  if ((realistic || choice.lens) && !choice.pinhole)
+    camera.lens = lens_in_use(choice, parameters, realistic, camera);
+  else if (choice.film_distance_mm || choice.focus_distance_m || choice.aperture_diameter_mm ||
+           choice.f_number)
+    throw InputError("film distance, focus and stop belong to a lens; --lens names one");
+  if (choice.pinhole) camera.perspective.lens_radius = 0;
+  if (realistic)
+    for (const char* each : {"aperturediameter", "focusdistance", "lensfile"}) parameters.find(each);
+  unsupported.report_unused(parameters, fmt::format("Camera \"{}\"", entity.type));
+}
+
+}  // namespace
+
+SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
+                          Unsupported& unsupported) {
+  SceneCamera camera;
+  camera.film = read_film(scene.film, choice, unsupported);
+  camera.options = choice.options;
+  camera.world_from_camera = scene.camera_from_world.inverse();
+  read_camera(scene, choice, unsupported, camera);
+  camera.perspective.columns = camera.film.columns;
+  camera.perspective.rows = camera.film.rows;
+  return camera;
+}
+
+double SceneCamera::film_distance_mm() const {
+  return lens ? lens->surfaces.back().thickness_mm : 0;
+}
+
+SceneCamera SceneCamera::with_film_distance_mm(double distance_mm) const {
+  if (!lens) throw InputError("an ideal camera has no film distance; a lens has");
+  SceneCamera moved = *this;
+  moved.lens->surfaces.back().thickness_mm = distance_mm;
+  return moved;
+}
+
+std::unique_ptr<const FilmCamera> SceneCamera::make(const WavelengthGroups& groups) const {
+  if (lens) return std::make_unique<const LensCamera>(*lens, film, groups, options);
+  return std::make_unique<const PerspectiveCamera>(perspective);
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The camera that a scene file asks for, and what the user wants instead.
+#pragma once
+
+#include <petzval/render/camera/lens_camera.h>
+#include <petzval/render/camera/perspective_camera.h>
+#include <petzval/render/pbrt/scene_description.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval::render {
+
+/// What the user asks for; what is absent is as the scene has it.
+struct CameraChoice {
+  std::optional<Lens> lens;
+  bool pinhole = false;  ///< the scene's perspective, whatever camera it has
+  std::optional<int> columns, rows;
+  std::optional<double> film_diagonal_mm;
+  std::optional<double> aperture_diameter_mm;  ///< of the stop
+  std::optional<double> f_number;
+  std::optional<double> film_distance_mm;  ///< from the last vertex to the film
+  std::optional<double> focus_distance_m;  ///< from the film to what is sharp
+  LensCameraOptions options;
+};
+
+/// A camera as it is used: how many pixels, how large, and either a lens or an ideal perspective.
+struct SceneCamera {
+  SensorGeometry film;
+  std::optional<Lens> lens;  ///< focused and stopped down
+  PerspectiveOptions perspective;
+  LensCameraOptions options;
+  Transform world_from_camera;
+  std::vector<std::string> notes;
+
+  /// The same camera with its film elsewhere. \throws InputError unless it has a lens and the distance is
+  /// positive.
+  SceneCamera with_film_distance_mm(double distance_mm) const;
+  double film_distance_mm() const;
+  std::unique_ptr<const FilmCamera> make(const WavelengthGroups& groups) const;
+};
+
+/// Reads the Film and Camera of a scene: perspective, realistic (pbrt-v4's parameters: lensfile,
+/// aperturediameter [mm], focusdistance [scene units]), and film sizes. \throws InputError with file, line
+/// and column for bad values, and through `unsupported`.
+SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
+                          Unsupported& unsupported);
+
+}  // namespace petzval::render

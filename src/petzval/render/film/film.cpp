@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/render/film/film.h>
+
+#include <cstring>
+#include <filesystem>
+
+namespace petzval::render {
+
+namespace {
+
+/// 16 GiB of sums.
+constexpr double most_values = 2147483648.0;
+constexpr std::string_view magic = "petzval-render-checkpoint/1\n";
+
+template <class T>
+void append(std::string& bytes, const std::vector<T>& values) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+}
+
+struct CheckpointHead {
+  std::uint64_t fingerprint_size, rays, passed;
+  std::int64_t passes;
+};
+
+/// Takes bytes from the front of a text, checking that they are there.
+void take(std::string_view& bytes, void* to, std::size_t count, const std::string& path) {
+  if (bytes.size() < count)
+    throw InputError(path, "is a damaged checkpoint: it ends early; delete it to start afresh");
+  if (count > 0) std::memcpy(to, bytes.data(), count);
+  bytes.remove_prefix(count);
+}
+
+std::vector<std::vector<double>*> sums_of(Film& film) {
+  return {&film.light, &film.met, &film.depth, &film.normal, &film.albedo};
+}
+
+}  // namespace
+
+Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces) : window(pixels) {
+  const double values = static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + 5);
+  if (values > most_values)
+    throw InputError(
+        fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
+                    "pixels or bands would fit",
+                    pixels.columns(), pixels.rows(), bands, values * 8 / 1073741824));
+  light.assign(pixels.size() * static_cast<std::size_t>(bands), 0.0);
+  if (!first_surfaces) return;
+  met.assign(pixels.size(), 0.0);
+  depth.assign(pixels.size(), 0.0);
+  normal.assign(3 * pixels.size(), 0.0);
+  albedo.assign(light.size(), 0.0);
+}
+
+void write_checkpoint(const std::string& path, const Film& film, const std::string& fingerprint) {
+  std::string bytes(magic);
+  const CheckpointHead head{fingerprint.size(), film.rays, film.passed, film.passes};
+  bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
+  bytes += fingerprint;
+  append(bytes, film.light);
+  append(bytes, film.met);
+  append(bytes, film.depth);
+  append(bytes, film.normal);
+  append(bytes, film.albedo);
+  write_whole_file(path, bytes);
+}
+
+bool read_checkpoint(const std::string& path, Film& film, const std::string& fingerprint) {
+  if (!std::filesystem::exists(path)) return false;
+  const std::string text = read_whole_file(path, std::size_t{1} << 36);
+  std::string_view bytes(text);
+  if (bytes.substr(0, magic.size()) != magic) throw InputError(path, "is no checkpoint of petzval render");
+  bytes.remove_prefix(magic.size());
+  CheckpointHead head{};
+  take(bytes, &head, sizeof head, path);
+  if (head.fingerprint_size != fingerprint.size() || bytes.substr(0, fingerprint.size()) != fingerprint)
+    throw InputError(
+        path, "is the checkpoint of another picture, or of other options; delete it or name another file");
+  bytes.remove_prefix(fingerprint.size());
+  Film read = film;
+  for (std::vector<double>* sums : sums_of(read))
+    take(bytes, sums->data(), sums->size() * sizeof(double), path);
+  if (!bytes.empty())
+    throw InputError(path, "is a damaged checkpoint: it is too long; delete it to start afresh");
+  read.rays = head.rays, read.passed = head.passed, read.passes = static_cast<int>(head.passes);
+  film = std::move(read);
+  return true;
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where light is gathered.
+#pragma once
+
+#include <petzval/render/path_tracer.h>
+#include <petzval/render/spectra/wavelength_groups.h>
+
+#include <string>
+#include <vector>
+
+namespace petzval::render {
+
+/// Pixels [left, right) × [top, bottom) of a picture.
+struct PixelWindow {
+  int left = 0, top = 0, right = 0, bottom = 0;
+
+  int columns() const { return right - left; }
+  int rows() const { return bottom - top; }
+  std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
+  bool contains(int column, int row) const {
+    return column >= left && column < right && row >= top && row < bottom;
+  }
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row - top) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(column - left);
+  }
+};
+
+/// Sums over samples; doubles, so that a million of them lose nothing.
+struct Film {
+  PixelWindow window;
+  std::vector<double> light;  ///< [band][pixel]
+  /// Of first surfaces, if wanted: sums over rays that met one, and how many did.
+  std::vector<double> met, depth, normal, albedo;  ///< [pixel], [pixel], [pixel][3], [band][pixel]
+  std::uint64_t rays = 0, passed = 0;
+  int passes = 0;  ///< rounds of samples that are in the sums
+
+  /// \throws InputError if it would not fit into memory.
+  Film(const PixelWindow& window, int bands, bool first_surfaces);
+  bool has_first_surfaces() const { return !met.empty(); }
+};
+
+/// Saves a film, whole or not at all, and reads it back. `fingerprint` says what is being rendered.
+/// \throws InputError if a file is damaged or belongs to another picture; Failure.
+void write_checkpoint(const std::string& path, const Film& film, const std::string& fingerprint);
+bool read_checkpoint(const std::string& path, Film& film, const std::string& fingerprint);
+
+}  // namespace petzval::render

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
+#include <petzval/colour/rgb_to_spectrum.h>
+#include <petzval/render/lights/environment.h>
+
+#include <algorithm>
+
+namespace petzval::render {
+
+namespace {
+
+double mean_of(const BandSpectrum& spectrum) {
+  double sum = 0;
+  for (const Lanes& lanes : spectrum)
+    for (const float value : lanes.v) sum += static_cast<double>(value);
+  return sum / static_cast<double>(spectrum.size() * lane_count);
+}
+
+/// Index of the interval of a cumulative list that holds `at`, and how far into it.
+std::size_t find_interval(const double* begin, std::size_t count, double at, double& share) {
+  const double* above = std::upper_bound(begin + 1, begin + count, at);
+  const std::size_t i = std::min(static_cast<std::size_t>(above - begin) - 1, count - 2);
+  const double low = begin[i], high = begin[i + 1];
+  share = high > low ? std::clamp((at - low) / (high - low), 0.0, 1 - 1e-12) : 0.5;
+  return i;
+}
+
+/// Running sums scaled to end at 1; even if all weights are 0. Returns the sum.
+double accumulate(const double* weights, std::size_t count, double* cumulative) {
+  cumulative[0] = 0;
+  for (std::size_t i = 0; i < count; ++i) cumulative[i + 1] = cumulative[i] + weights[i];
+  const double sum = cumulative[count];
+  for (std::size_t i = 1; i <= count; ++i)
+    cumulative[i] = sum > 0 ? cumulative[i] / sum : static_cast<double>(i) / static_cast<double>(count);
+  return sum;
+}
+
+}  // namespace
+
+SquareDistribution::SquareDistribution(std::vector<double> weights, int width, int height)
+    : width_(width), height_(height) {
+  const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+  rows_.resize(h + 1);
+  cells_.resize(h * (w + 1));
+  std::vector<double> sums(h);
+  for (std::size_t row = 0; row < h; ++row)
+    sums[row] = accumulate(&weights[row * w], w, &cells_[row * (w + 1)]);
+  accumulate(sums.data(), h, rows_.data());
+}
+
+SquareDistribution::Point SquareDistribution::sample(double u, double v) const {
+  const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+  double down, across;
+  const std::size_t row = find_interval(rows_.data(), h + 1, v, down);
+  const double* cells = &cells_[row * (w + 1)];
+  const std::size_t cell = find_interval(cells, w + 1, u, across);
+  const double density = (rows_[row + 1] - rows_[row]) * static_cast<double>(h) *
+                         (cells[cell + 1] - cells[cell]) * static_cast<double>(w);
+  return {(static_cast<double>(cell) + across) / static_cast<double>(w),
+          (static_cast<double>(row) + down) / static_cast<double>(h), density};
+}
+
+double SquareDistribution::density(double u, double v) const {
+  const auto w = static_cast<std::size_t>(width_), h = static_cast<std::size_t>(height_);
+  const auto place = [](double at, std::size_t count) {
+    return std::min(static_cast<std::size_t>(std::max(0.0, at * static_cast<double>(count))), count - 1);
+  };
+  const std::size_t row = place(v, h), cell = place(u, w);
+  const double* cells = &cells_[row * (w + 1)];
+  return (rows_[row + 1] - rows_[row]) * static_cast<double>(h) * (cells[cell + 1] - cells[cell]) *
+         static_cast<double>(w);
+}
+
+Vector3 sphere_from_square(double u, double v) {
+  const double a = 2 * u - 1, b = 2 * v - 1, up = std::abs(a), vp = std::abs(b);
+  const double from_edge = 1 - (up + vp), r = 1 - std::abs(from_edge);
+  const double phi = (r == 0 ? 1 : (vp - up) / r + 1) * pi / 4;
+  const double z = std::copysign(1 - r * r, from_edge), rho = r * std::sqrt(std::max(0.0, 2 - r * r));
+  return {std::copysign(std::cos(phi), a) * rho, std::copysign(std::sin(phi), b) * rho, z};
+}
+
+void square_from_sphere(Vector3 d, double& u, double& v) {
+  const double x = std::abs(d.x), y = std::abs(d.y), r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
+  const double phi = x == 0 && y == 0 ? 0 : std::atan2(std::min(x, y), std::max(x, y)) * 2 / pi;
+  const double share = x < y ? 1 - phi : phi;
+  double vp = share * r, up = r - vp;
+  if (d.z < 0) {
+    std::swap(up, vp);
+    up = 1 - up, vp = 1 - vp;
+  }
+  u = (std::copysign(up, d.x) + 1) / 2;
+  v = (std::copysign(vp, d.y) + 1) / 2;
+}
+
+struct Environment::Sky {
+  std::shared_ptr<const PictureFile> picture;
+  SquareDistribution distribution;
+  struct Pixel {
+    SigmoidReflectance shape;
+    float scale;
+  };
+  std::vector<Pixel> pixels;
+  WavelengthGroups groups;
+
+  const Pixel& at(double u, double v) const {
+    const int side = picture->width;
+    const int column = std::clamp(static_cast<int>(u * side), 0, side - 1);
+    const int row = std::clamp(static_cast<int>(v * side), 0, side - 1);
+    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+                  static_cast<std::size_t>(column)];
+  }
+};
+
+Environment::Environment(BandSpectrum radiance, Transform world_from_light)
+    : radiance_(std::move(radiance)),
+      world_from_light_(std::move(world_from_light)),
+      mean_(mean_of(radiance_)) {}
+
+Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white,
+                         const WavelengthGroups& groups, Transform world_from_light)
+    : radiance_(std::move(white)), world_from_light_(std::move(world_from_light)) {
+  const ReflectanceTable table;
+  std::vector<Sky::Pixel> pixels;
+  std::vector<double> weights;
+  double sum = 0;
+  for (int row = 0; row < picture->height; ++row)
+    for (int column = 0; column < picture->width; ++column) {
+      const float* p = picture->pixel(column, row);
+      const bool grey = picture->channels == 1;
+      const LinearRgb rgb{std::max(0.0f, p[0]), std::max(0.0f, p[grey ? 0 : 1]),
+                          std::max(0.0f, p[grey ? 0 : 2])};
+      const double scale = 2 * std::max({rgb.r, rgb.g, rgb.b});
+      Sky::Pixel pixel{{}, static_cast<float>(scale)};
+      if (scale > 0) pixel.shape = table({rgb.r / scale, rgb.g / scale, rgb.b / scale});
+      pixels.push_back(pixel);
+      weights.push_back((rgb.r + rgb.g + rgb.b) / 3);
+      sum += weights.back();
+    }
+  mean_ = mean_of(radiance_) * sum / static_cast<double>(weights.size());
+  sky_ = std::make_shared<const Sky>(
+      Sky{picture, SquareDistribution(weights, picture->width, picture->height), std::move(pixels), groups});
+}
+
+Lanes Environment::radiance(Vector3 direction, int group) const {
+  const Lanes& white = radiance_[static_cast<std::size_t>(group)];
+  if (!sky_) return white;
+  double u, v;
+  square_from_sphere(normalised(world_from_light_.inverse_direction(direction)), u, v);
+  const Sky::Pixel& pixel = sky_->at(u, v);
+  Lanes result;
+  for (int i = 0; i < lane_count; ++i)
+    result[i] =
+        white[i] * pixel.scale * static_cast<float>(pixel.shape.at(sky_->groups.wavelength_nm(group, i)));
+  return result;
+}
+
+Environment::Sample Environment::sample(double u, double v) const {
+  if (!sky_) return {sphere_from_square(u, v), 1 / (4 * pi)};
+  const SquareDistribution::Point point = sky_->distribution.sample(u, v);
+  return {normalised(world_from_light_.direction(sphere_from_square(point.u, point.v))),
+          point.density / (4 * pi)};
+}
+
+double Environment::pdf(Vector3 direction) const {
+  if (!sky_) return 1 / (4 * pi);
+  double u, v;
+  square_from_sphere(normalised(world_from_light_.inverse_direction(direction)), u, v);
+  return sky_->distribution.density(u, v) / (4 * pi);
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Light from all around, far away.
+#pragma once
+
+#include <petzval/render/spectra/wavelength_groups.h>
+#include <petzval/render/textures/picture_file.h>
+#include <petzval/render/transform.h>
+
+#include <memory>
+#include <vector>
+
+namespace petzval::render {
+
+/// A density over the unit square, constant in each of width × height cells.
+class SquareDistribution {
+ public:
+  /// \param weights  row by row, none negative; all zero counts as even.
+  SquareDistribution(std::vector<double> weights, int width, int height);
+  struct Point {
+    double u = 0, v = 0, density = 0;
+  };
+  Point sample(double u, double v) const;
+  double density(double u, double v) const;
+
+ private:
+  int width_, height_;
+  std::vector<double> rows_, cells_;  ///< cumulative: of rows, and of each row's cells
+};
+
+/// The directions of a sphere from the unit square and back, areas kept (Clarberg 2008, as pbrt-v4 lays out
+/// its sky pictures).
+Vector3 sphere_from_square(double u, double v);
+void square_from_sphere(Vector3 direction, double& u, double& v);
+
+/// An infinite light: the same from everywhere, or a square picture in the equal-area octahedral layout.
+class Environment {
+ public:
+  /// \param radiance  [group].
+  Environment(BandSpectrum radiance, Transform world_from_light);
+  /// Each pixel's colour as light of `white` (the spectrum of rgb 1, scaled).
+  Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white, const WavelengthGroups& groups,
+              Transform world_from_light);
+
+  /// From a unit direction (world space, towards the light).
+  Lanes radiance(Vector3 direction, int group) const;
+  struct Sample {
+    Vector3 direction;
+    double pdf = 0;  ///< over solid angle
+  };
+  Sample sample(double u, double v) const;
+  double pdf(Vector3 direction) const;
+  /// Mean over the sphere, of all wavelengths: how important the light is.
+  double mean() const { return mean_; }
+
+ private:
+  struct Sky;
+  BandSpectrum radiance_;
+  Transform world_from_light_;
+  std::shared_ptr<const Sky> sky_;
+  double mean_ = 0;
+};
+
+}  // namespace petzval::render

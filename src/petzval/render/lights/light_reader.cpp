@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/units.h>
+#include <petzval/render/lights/light_reader.h>
+
+#include <algorithm>
+
+namespace petzval::render {
+
+namespace {
+
+/// The spectrum of a light and the factor that makes it a radiance or intensity: pbrt-v4's "scale", and the
+/// division by ∫ ȳ of its shape.
+struct Strength {
+  SceneSpectrum spectrum;
+  double scale = 1;
+
+  BandSpectrum at(const WavelengthGroups& groups, double factor = 1) const {
+    return groups.sampled([&](double nm) { return factor * scale * spectrum.at(nm); });
+  }
+};
+
+Strength read_strength(const Parameters& parameters, const char* name, bool absolute,
+                       Unsupported& unsupported) {
+  Strength strength;
+  strength.scale = parameters.number("scale", 1);
+  const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
+  strength.spectrum = given ? *given : white_light();
+  const Parameter* parameter = parameters.find(name);
+  const bool as_it_stands =
+      absolute && parameter && (parameter->type == "spectrum" || parameter->type == "blackbody");
+  if (!as_it_stands) {
+    if (!(strength.spectrum.photometric > 0))
+      throw scene_error(parameters.location_of(name), "this light has no visible part to scale it by");
+    strength.scale /= strength.spectrum.photometric;
+  }
+  return strength;
+}
+
+/// "power" in the unit of ∫ Φ ȳ dλ, if given, replaces the strength (pbrt-v4).
+double power_factor(const Parameters& parameters, double emitted_per_strength) {
+  const double power = parameters.number("power", -1);
+  return power > 0 ? power / emitted_per_strength : 1;
+}
+
+Vector3 triple(const Parameters& parameters, const char* name, Vector3 otherwise) {
+  const auto value = parameters.triple(name);
+  return value ? Vector3{(*value)[0], (*value)[1], (*value)[2]} : otherwise;
+}
+
+SmallLight read_point(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
+                      Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const Strength strength = read_strength(parameters, "I", absolute, unsupported);
+  SmallLight light;
+  light.position = description.world_from_light.point(triple(parameters, "from", {}));
+  light.strength = strength.at(groups, power_factor(parameters, 4 * pi));
+  return light;
+}
+
+SmallLight read_spot(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
+                     Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const Strength strength = read_strength(parameters, "I", absolute, unsupported);
+  SmallLight light;
+  light.kind = SmallLight::Kind::spot;
+  const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
+  light.position = description.world_from_light.point(from);
+  light.direction = normalised(description.world_from_light.direction(to - from));
+  const double cone = parameters.number("coneangle", 30), edge = parameters.number("conedeltaangle", 5);
+  if (!(cone > 0 && cone <= 180 && edge >= 0))
+    throw scene_error(parameters.location_of("coneangle"),
+                      "a spot's cone angle lies above 0 and at most at 180 degrees");
+  light.cos_end = std::cos(radians(cone));
+  light.cos_begin = std::cos(radians(std::max(0.0, cone - edge)));
+  const double solid_angle = 2 * pi * ((1 - light.cos_begin) + (light.cos_begin - light.cos_end) / 2);
+  light.strength = strength.at(groups, power_factor(parameters, solid_angle));
+  return light;
+}
+
+SmallLight read_distant(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
+                        Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const Strength strength = read_strength(parameters, "L", absolute, unsupported);
+  SmallLight light;
+  light.kind = SmallLight::Kind::distant;
+  const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
+  light.direction = normalised(description.world_from_light.direction(to - from));
+  if (!(length(light.direction) > 0))
+    throw scene_error(parameters.location(), "this light shines in no direction");
+  const double illuminance = parameters.number("illuminance", -1);
+  light.strength = strength.at(groups, illuminance > 0 ? illuminance : 1);
+  return light;
+}
+
+Environment read_infinite(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
+                          Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  Strength strength = read_strength(parameters, "L", absolute, unsupported);
+  const double illuminance = parameters.number("illuminance", -1);
+  const double factor = illuminance > 0 ? illuminance / pi : 1;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty()) return {strength.at(groups, factor), description.world_from_light};
+  if (parameters.find("L"))
+    throw scene_error(parameters.location_of("L"), "an infinite light has either \"L\" or a file");
+  std::shared_ptr<const PictureFile> picture;
+  try {
+    picture =
+        std::make_shared<const PictureFile>(read_picture_file(resolved_path(parameters.location(), name)));
+  } catch (const InputError& error) {
+    throw scene_error(parameters.location_of("filename"), error.what());
+  }
+  if (picture->width != picture->height)
+    throw scene_error(
+        parameters.location_of("filename"),
+        fmt::format(
+            "{} has {} x {} pixels; a square picture in the equal-area octahedral layout would be right",
+            name, picture->width, picture->height));
+  return {picture, strength.at(groups, factor), groups, description.world_from_light};
+}
+
+}  // namespace
+
+void add_light(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
+               Unsupported& unsupported, Lights& lights) {
+  const std::string& type = description.entity.type;
+  if (type == "point")
+    lights.smalls.push_back(read_point(description, groups, absolute, unsupported));
+  else if (type == "spot")
+    lights.smalls.push_back(read_spot(description, groups, absolute, unsupported));
+  else if (type == "distant")
+    lights.smalls.push_back(read_distant(description, groups, absolute, unsupported));
+  else if (type == "infinite")
+    lights.environments.push_back(read_infinite(description, groups, absolute, unsupported));
+  else
+    return unsupported.report(description.entity.location(), fmt::format("LightSource \"{}\"", type));
+  unsupported.report_unused(description.entity.parameters, fmt::format("LightSource \"{}\"", type));
+}
+
+BandSpectrum area_radiance(const Entity& entity, double area, const WavelengthGroups& groups, bool absolute,
+                           Unsupported& unsupported) {
+  if (entity.type != "diffuse") {
+    unsupported.report(entity.location(), fmt::format("AreaLightSource \"{}\"", entity.type));
+    return groups.sampled([](double) { return 0; });
+  }
+  const Strength strength = read_strength(entity.parameters, "L", absolute, unsupported);
+  const double sides = entity.parameters.boolean("twosided", false) ? 2 : 1;
+  const double factor = power_factor(entity.parameters, sides * pi * area);
+  unsupported.report_unused(entity.parameters, "AreaLightSource \"diffuse\"");
+  return strength.at(groups, factor);
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lights a scene.
+#pragma once
+
+#include <petzval/render/lights/environment.h>
+#include <petzval/render/shapes/geometry.h>
+#include <petzval/render/spectra/named_spectra.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace petzval::render {
+
+/// One primitive of a surface that shines.
+struct AreaLight {
+  int geometry = 0;
+  std::size_t primitive = 0;
+  int spectrum = 0;  ///< into Lights::area_spectra
+  bool two_sided = false;
+};
+
+/// A light without extent.
+struct SmallLight {
+  enum class Kind { point, spot, distant };
+  Kind kind = Kind::point;
+  BandSpectrum strength;  ///< intensity [W·sr⁻¹·nm⁻¹ per unit²]; distant: irradiance across the direction
+  Vector3 position, direction;        ///< direction in which spot and distant lights shine; unit
+  double cos_begin = 1, cos_end = 1;  ///< of a spot: where its edge begins and ends
+};
+
+/// How light arrives at a point.
+struct LightSample {
+  Vector3 direction;  ///< towards the light; unit
+  /// Where it shines, just in front of its surface; absent: infinitely far away.
+  std::optional<Vector3> place;
+  Lanes light;         ///< radiance, or for small lights what stands for radiance / pdf times pdf
+  double pdf = 0;      ///< over solid angle, with the choice of the light
+  bool small = false;  ///< no other way of sampling finds it
+};
+
+/// All lights of a scene. Which one is asked is chosen by how much light each gives.
+class Lights {
+ public:
+  std::vector<BandSpectrum> area_spectra;
+  std::vector<AreaLight> areas;
+  std::vector<SmallLight> smalls;
+  std::vector<Environment> environments;
+
+  /// Works out how often each is chosen; call when the lists are complete. \param scene_radius  of the
+  /// scene's sphere.
+  void prepare(const std::vector<Geometry>& geometries, double scene_radius);
+  bool empty() const { return areas.empty() && smalls.empty() && environments.empty(); }
+
+  /// Light towards a point. Nothing where the chosen light does not reach.
+  std::optional<LightSample> sample(const std::vector<Geometry>& geometries, Vector3 to, double choice,
+                                    double u, double v, int group) const;
+  /// Radiance of an area light at a point of it, towards `wo`.
+  Lanes emitted(std::size_t area, const SurfacePoint& point, Vector3 wo, int group) const;
+  /// The density with which sample() finds a point of an area light from `from`.
+  double area_pdf(const std::vector<Geometry>& geometries, std::size_t area, Vector3 from,
+                  const SurfacePoint& point) const;
+  Lanes sky(Vector3 direction, int group) const;
+  double sky_pdf(Vector3 direction) const;
+
+ private:
+  struct Sphere {
+    Vector3 centre;
+    double radius = 0;
+  };
+  std::optional<LightSample> sample_area(const std::vector<Geometry>& geometries, std::size_t index,
+                                         Vector3 to, double u, double v, int group) const;
+  std::optional<LightSample> sample_small(const SmallLight& light, Vector3 to, int group) const;
+  double share(std::size_t light) const { return cumulative_[light + 1] - cumulative_[light]; }
+
+  std::vector<double> cumulative_;              ///< areas, then smalls, then environments
+  std::vector<std::optional<Sphere>> spheres_;  ///< of area lights that are whole spheres
+};
+
+}  // namespace petzval::render

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The materials of a scene.
+#pragma once
+
+#include <petzval/render/materials/bsdf.h>
+#include <petzval/render/materials/coating_albedo.h>
+#include <petzval/render/textures/texture_library.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace petzval::render {
+
+/// What a surface is made of; fields that a kind does not have are empty.
+struct Material {
+  enum class Kind {
+    diffuse,
+    diffuse_transmission,
+    coated_diffuse,
+    conductor,
+    dielectric,
+    thin_dielectric,
+    none,
+    mix
+  };
+  Kind kind = Kind::diffuse;
+  SpectrumTexture reflectance, transmittance;
+  double transmittance_scale = 1;
+  SpectrumTexture eta, k;
+  FloatTexture roughness_u, roughness_v;
+  bool remap_roughness = true;  ///< alpha = √roughness
+  std::shared_ptr<const CoatingAlbedo> coating;
+  FloatTexture mix_amount;
+  std::array<int, 2> mixed{0, 0};  ///< into the list of materials
+
+  /// Scattering at a point. \param hero  the lane that decides where dispersed light goes. Kinds none and mix
+  /// have none.
+  Bsdf bsdf(const TexturePoint& point, int group, int hero) const;
+};
+
+/// All materials of a scene, in the order of its description.
+std::vector<Material> make_materials(const SceneDescription& scene, const TextureLibrary& textures,
+                                     Unsupported& unsupported);
+
+/// The material that is there at a point: follows mixtures. \param choice  in [0, 1).
+const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point,
+                            int group, double choice);
+
+}  // namespace petzval::render

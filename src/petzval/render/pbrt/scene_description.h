@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pbrt scene file says, before any of it has been built.
+#pragma once
+
+#include <petzval/render/pbrt/parameters.h>
+#include <petzval/render/transform.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace petzval::render {
+
+/// What a scene has and Petzval has not, with its place.
+struct Complaint {
+  Location at;
+  std::string what;
+};
+
+/// Where unsupported things are reported to: an error at once, or a list of all of them.
+class Unsupported {
+ public:
+  explicit Unsupported(bool collect = false) : collect_(collect) {}
+  /// \throws InputError "<file>:<line>:<column>: <what> is not supported", unless collecting.
+  void report(const Location& at, const std::string& what);
+  /// Reports every parameter that nobody asked for. \param owner  "Shape \"sphere\"".
+  void report_unused(const Parameters& parameters, const std::string& owner);
+  const std::vector<Complaint>& list() const { return list_; }
+
+ private:
+  bool collect_;
+  std::vector<Complaint> list_;
+};
+
+struct Entity {
+  std::string type;  ///< "perspective", "diffuse", …
+  Parameters parameters;
+
+  const Location& location() const { return parameters.location(); }
+};
+
+struct TextureDescription {
+  std::string name, value_type;  ///< value_type: "float" or "spectrum"
+  Entity entity;
+  Transform world_from_texture;
+};
+
+struct LightDescription {
+  Entity entity;
+  Transform world_from_light;
+};
+
+struct ShapeDescription {
+  Entity entity;
+  Transform world_from_object;
+  bool reverse_orientation = false;
+  int material = 0;     ///< into SceneDescription::materials
+  int area_light = -1;  ///< into SceneDescription::area_lights; −1: does not shine
+};
+
+struct InstanceDescription {
+  int object = 0;  ///< into SceneDescription::objects
+  Transform world_from_instance;
+  Location at;
+};
+
+struct SceneDescription {
+  std::string file;
+  Entity film, camera, sampler, integrator, pixel_filter;
+  Transform camera_from_world;
+  std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one
+  std::vector<Entity> materials;             ///< the first is pbrt's default, grey diffuse
+  std::map<std::string, int> named_materials;
+  std::vector<Entity> area_lights;
+  std::vector<LightDescription> lights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<std::vector<ShapeDescription>> objects;
+  std::vector<InstanceDescription> instances;
+};
+
+/// Reads a scene with everything that it includes. \throws InputError with file, line and column for text
+/// that is not a pbrt-v4 scene, a missing or cyclic include, a singular transformation; and through
+/// `unsupported`.
+SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported);
+/// The same from text. \param file  for messages, and the folder that relative names start from.
+SceneDescription parse_scene_description(const std::string& text, const std::string& file,
+                                         Unsupported& unsupported);
+
+/// A file named in a scene: relative to the folder of the file that names it.
+std::string resolved_path(const Location& at, const std::string& name);
+
+}  // namespace petzval::render

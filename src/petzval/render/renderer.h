@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scene and a camera to a picture.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/image/spectral_image.h>
+#include <petzval/render/camera/film_camera.h>
+#include <petzval/render/film/film.h>
+#include <petzval/sensor/sensor.h>
+
+#include <optional>
+
+namespace petzval::render {
+
+struct RenderOptions {
+  /// Camera paths a pixel. Each serves the up to eight wavelengths of one group; at least one for every group
+  /// is taken.
+  int samples_per_pixel = 16;
+  std::uint64_t seed = 1;
+  PathOptions path;
+  double far_distance = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
+  std::optional<PixelWindow> window;                              ///< only these pixels are rendered
+  bool first_surfaces = false;
+  std::string checkpoint;   ///< a file to resume from and to save to; empty: none
+  std::string fingerprint;  ///< of scene, lens and options, kept in the checkpoint
+  double checkpoint_seconds = 60;
+  /// Called with passes done and all; returning false ends rendering there (after a checkpoint, if one is
+  /// kept).
+  std::function<bool(int, int)> after_pass;
+};
+
+/// What a picture's first surfaces are, seen through the lens: means over the rays that met one.
+struct FirstSurfaces {
+  std::vector<float>
+      depth;  ///< distance from the film along the camera's axis [scene units]; 0 where nothing is met
+  std::vector<float> normal;  ///< world space, [pixel][3]
+  std::vector<float> albedo;  ///< [band][pixel]
+  std::vector<float> share;   ///< of the rays that met a surface
+};
+
+struct Rendering {
+  SpectralImage irradiance;  ///< [W·m⁻²·nm⁻¹], of the window; box pixels
+  std::optional<FirstSurfaces> first_surfaces;
+  std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
+  bool complete = true;
+};
+
+/// Renders a picture. The same arguments give the same bytes for any number of threads, and whether or not it
+/// was interrupted and resumed. \param world_from_camera  camera space: looking along +z, x right, y up, film
+/// at 0. \throws InputError, Failure.
+Rendering render_picture(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
+                         const SensorGeometry& film, const RenderOptions& options,
+                         const ProgressCallback& progress = {});
+
+/// How many paths a pixel are really taken: at least one for every group of wavelengths.
+int effective_samples(const WavelengthGroups& groups, int samples_per_pixel);
+
+}  // namespace petzval::render

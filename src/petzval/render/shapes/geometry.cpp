@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/render/shapes/geometry.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval::render {
+
+namespace {
+
+/// Of the largest coordinate: some thirty roundings of a float.
+constexpr double float_clearance = 0x1p-19;
+
+std::array<double, 2> uv_of(const TriangleMesh& mesh, std::uint32_t vertex, std::size_t corner) {
+  static constexpr std::array<std::array<double, 2>, 3> standard{{{0, 0}, {1, 0}, {1, 1}}};
+  if (mesh.uvs.empty()) return standard[corner];
+  return {static_cast<double>(mesh.uvs[vertex][0]), static_cast<double>(mesh.uvs[vertex][1])};
+}
+
+/// ∂p/∂u of a triangle; any direction in it where the texture coordinates give none.
+Vector3 triangle_along_u(const std::array<Vector3, 3>& p, const std::array<std::array<double, 2>, 3>& uv) {
+  const double du1 = uv[1][0] - uv[0][0], dv1 = uv[1][1] - uv[0][1], du2 = uv[2][0] - uv[0][0],
+               dv2 = uv[2][1] - uv[0][1];
+  const double determinant = du1 * dv2 - dv1 * du2;
+  if (determinant == 0) return p[1] - p[0];
+  return 1 / determinant * (dv2 * (p[1] - p[0]) - dv1 * (p[2] - p[0]));
+}
+
+SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, std::size_t triangle,
+                            double b1, double b2) {
+  const auto& index = mesh.triangles[triangle];
+  const std::array<Vector3, 3> p = mesh.corners(triangle);
+  const std::array<double, 3> b{1 - b1 - b2, b1, b2};
+  SurfacePoint point;
+  point.position = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
+  point.normal = normalised(cross(p[1] - p[0], p[2] - p[0]));
+  std::array<std::array<double, 2>, 3> uv;
+  for (std::size_t i = 0; i < 3; ++i) {
+    uv[i] = uv_of(mesh, index[i], i);
+    point.u += b[i] * uv[i][0];
+    point.v += b[i] * uv[i][1];
+  }
+  point.along_u = triangle_along_u(p, uv);
+  if (mesh.normals.empty()) {
+    if (geometry.reversed != geometry.swaps_handedness) point.normal = -point.normal;
+    point.shading_normal = point.normal;
+    return point;
+  }
+  Vector3 shading;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const TriangleMesh::Vertex& n = mesh.normals[index[i]];
+    shading = shading + b[i] * Vector3{n[0], n[1], n[2]};
+  }
+  if (geometry.reversed) shading = -shading;
+  point.normal = facing(point.normal, shading);
+  point.shading_normal = dot(shading, shading) > 0 ? normalised(shading) : point.normal;
+  return point;
+}
+
+SurfacePoint quadric_point(const Geometry& geometry, const Quadric& quadric, Vector3 position) {
+  const Quadric::Point on = quadric.at(position);
+  SurfacePoint point;
+  point.position = on.position;
+  point.normal = geometry.reversed ? -on.normal : on.normal;
+  point.shading_normal = point.normal;
+  point.along_u = on.along_u;
+  point.u = on.u, point.v = on.v;
+  return point;
+}
+
+}  // namespace
+
+std::size_t Geometry::primitives() const {
+  const auto* mesh = std::get_if<TriangleMesh>(&shape);
+  return mesh ? mesh->triangles.size() : 1;
+}
+
+double Geometry::primitive_area(std::size_t primitive) const {
+  const auto* mesh = std::get_if<TriangleMesh>(&shape);
+  return mesh ? mesh->area(primitive) : std::get<Quadric>(shape).area();
+}
+
+Vector3 SurfacePoint::origin_towards(Vector3 direction) const {
+  const double size = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
+  return position + float_clearance * size * facing(normal, direction);
+}
+
+SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 origin, Vector3 direction,
+                           const Transform* place) {
+  const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape);
+  SurfacePoint point;
+  if (mesh) {
+    point = triangle_point(geometry, *mesh, static_cast<std::size_t>(hit.primitive), hit.b1, hit.b2);
+  } else {
+    Vector3 near = origin + hit.distance * direction;
+    if (place) near = place->inverse_point(near);
+    point = quadric_point(geometry, std::get<Quadric>(geometry.shape), near);
+  }
+  if (!place) return point;
+  point.position = place->point(point.position);
+  point.normal = normalised(place->normal(point.normal));
+  point.shading_normal = normalised(place->normal(point.shading_normal));
+  point.along_u = place->direction(point.along_u);
+  return point;
+}
+
+SurfaceSample sample_primitive(const Geometry& geometry, std::size_t primitive, double u, double v) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape)) {
+    // Even over the triangle (Heitz, "A low-distortion map between triangle and square", 2019).
+    double b0 = u / 2, b1 = v - b0;
+    if (v <= u) {
+      b1 = v / 2;
+      b0 = u - b1;
+    }
+    return {triangle_point(geometry, *mesh, primitive, b1, 1 - b0 - b1), 1 / mesh->area(primitive)};
+  }
+  const Quadric& quadric = std::get<Quadric>(geometry.shape);
+  const Quadric::Sample sample = quadric.sample(u, v);
+  return {quadric_point(geometry, quadric, sample.point.position), sample.per_area};
+}
+
+double primitive_density(const Geometry& geometry, std::size_t primitive, const SurfacePoint& point) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape)) return 1 / mesh->area(primitive);
+  Quadric::Point at;
+  at.position = point.position;
+  return std::get<Quadric>(geometry.shape).density(at);
+}
+
+}  // namespace petzval::render

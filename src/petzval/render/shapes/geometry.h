@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The surfaces of a scene as they are met by rays.
+#pragma once
+
+#include <petzval/render/shapes/quadric.h>
+#include <petzval/render/shapes/triangle_mesh.h>
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace petzval::render {
+
+/// One shape of a scene.
+struct Geometry {
+  std::variant<TriangleMesh, Quadric> shape;
+  int material = 0;
+  bool reversed = false;          ///< ReverseOrientation
+  bool swaps_handedness = false;  ///< its transformation is a mirror image
+  int first_light = -1;           ///< of its primitives, which shine one by one; −1: none do
+
+  std::size_t primitives() const;
+  double primitive_area(std::size_t primitive) const;
+};
+
+/// A ray's nearest meeting with a surface.
+struct Hit {
+  double distance = 0;  ///< in units of the direction's length
+  int geometry = 0, primitive = 0, instance = -1;
+  double b1 = 0, b2 = 0;  ///< barycentric coordinates of corners 1 and 2 of a triangle
+};
+
+/// A point of a surface, in world space.
+struct SurfacePoint {
+  Vector3 position;
+  Vector3 normal;          ///< of the surface; unit
+  Vector3 shading_normal;  ///< of its interpolated normals, on the same side
+  Vector3 along_u;
+  double u = 0, v = 0;
+
+  /// Where a ray to `direction` begins so that it does not meet the point's own surface again, for all that
+  /// Embree computes in single precision.
+  Vector3 origin_towards(Vector3 direction) const;
+};
+
+/// The point of a hit. \param place  world from the object for a hit on a placed object, else null.
+SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 origin, Vector3 direction,
+                           const Transform* place);
+
+/// A point of a primitive, for lights, with its density per area.
+struct SurfaceSample {
+  SurfacePoint point;
+  double per_area = 0;
+};
+SurfaceSample sample_primitive(const Geometry& geometry, std::size_t primitive, double u, double v);
+/// The density of sample_primitive() at a point.
+double primitive_density(const Geometry& geometry, std::size_t primitive, const SurfacePoint& point);
+
+}  // namespace petzval::render

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/render/textures/picture_texture.h>
+
+#include <algorithm>
+
+namespace petzval::render {
+
+void TextureMapping::coordinates(const TexturePoint& point, double& s, double& t) const {
+  if (kind == Kind::planar) {
+    const Vector3 p = texture_from_world.point(point.world);
+    s = dot(p, axis_s) + offset_u;
+    t = dot(p, axis_t) + offset_v;
+    return;
+  }
+  s = scale_u * point.u + offset_u;
+  t = scale_v * point.v + offset_v;
+}
+
+void PictureSampler::add_pixel(double weight, int column, int row, std::array<double, 3>& sum) const {
+  const int width = picture_->width, height = picture_->height;
+  if (wrap_ == PictureWrap::repeat) {
+    column = (column % width + width) % width;
+    row = (row % height + height) % height;
+  } else if (wrap_ == PictureWrap::clamp) {
+    column = std::clamp(column, 0, width - 1);
+    row = std::clamp(row, 0, height - 1);
+  } else if (column < 0 || column >= width || row < 0 || row >= height) {
+    return;
+  }
+  const float* pixel = picture_->pixel(column, row);
+  for (std::size_t c = 0; c < 3; ++c)
+    sum[c] += weight * static_cast<double>(pixel[picture_->channels == 3 ? c : 0]);
+}
+
+std::array<double, 3> PictureSampler::at(double s, double t) const {
+  std::array<double, 3> sum{};
+  // Far outside, the place in the picture is lost to rounding anyway.
+  if (!(std::abs(s) < 1e6 && std::abs(t) < 1e6)) return sum;
+  const double x = s * picture_->width, y = (1 - t) * picture_->height;
+  if (!linear_) {
+    add_pixel(1, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)), sum);
+    return sum;
+  }
+  const double column = std::floor(x - 0.5), row = std::floor(y - 0.5);
+  const double dx = x - 0.5 - column, dy = y - 0.5 - row;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      add_pixel((i ? dx : 1 - dx) * (j ? dy : 1 - dy), static_cast<int>(column) + i,
+                static_cast<int>(row) + j, sum);
+  return sum;
+}
+
+namespace {
+
+std::array<double, 3> colour_at(const PictureSampler& picture, const PictureTextureOptions& options,
+                                const TexturePoint& point) {
+  double s, t;
+  options.mapping.coordinates(point, s, t);
+  std::array<double, 3> rgb = picture.at(s, t);
+  for (double& value : rgb) {
+    value *= options.scale;
+    if (options.invert) value = std::max(0.0, 1 - value);
+  }
+  return rgb;
+}
+
+}  // namespace
+
+double FloatPicture::at(const TexturePoint& point, int) const {
+  const std::array<double, 3> rgb = colour_at(picture_, options_, point);
+  return (rgb[0] + rgb[1] + rgb[2]) / 3;
+}
+
+Lanes SpectrumPicture::at(const TexturePoint& point, int group) const {
+  const std::array<double, 3> rgb = colour_at(picture_, options_, point);
+  const SigmoidReflectance reflectance = (*table_)({rgb[0], rgb[1], rgb[2]});
+  Lanes result;
+  for (int i = 0; i < lane_count; ++i)
+    result[i] = static_cast<float>(reflectance.at(groups_.wavelength_nm(group, i)));
+  return result;
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quantities that vary over a surface.
+#pragma once
+
+#include <petzval/render/spectra/lanes.h>
+#include <petzval/render/transform.h>
+
+#include <memory>
+
+namespace petzval::render {
+
+/// Where a texture is asked for.
+struct TexturePoint {
+  Vector3 world;
+  double u = 0, v = 0;
+};
+
+/// A quantity over a surface: Value is double, or Lanes for the wavelengths of `group`.
+template <class Value>
+class Texture {
+ public:
+  virtual ~Texture() = default;
+  virtual Value at(const TexturePoint& point, int group) const = 0;
+};
+
+using FloatTexture = std::shared_ptr<const Texture<double>>;
+using SpectrumTexture = std::shared_ptr<const Texture<Lanes>>;
+
+/// How a place on a surface becomes texture coordinates (s, t).
+struct TextureMapping {
+  enum class Kind { uv, planar };
+  Kind kind = Kind::uv;
+  double scale_u = 1, scale_v = 1, offset_u = 0, offset_v = 0;
+  Vector3 axis_s{1, 0, 0}, axis_t{0, 1, 0};
+  Transform texture_from_world;
+
+  void coordinates(const TexturePoint& point, double& s, double& t) const;
+};
+
+}  // namespace petzval::render

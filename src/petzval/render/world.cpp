@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/render/lights/light_reader.h>
+#include <petzval/render/world.h>
+
+namespace petzval::render {
+
+namespace {
+
+bool is_mesh(const std::string& type) {
+  return type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh";
+}
+
+/// Puts the pieces of a world together.
+class WorldBuilder {
+ public:
+  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, Unsupported& unsupported,
+               World& world)
+      : scene_(scene), options_(options), unsupported_(unsupported), world_(world) {}
+
+  GeometryRange add(const std::vector<ShapeDescription>& shapes) {
+    const std::size_t first = world_.geometries.size();
+    for (const ShapeDescription& shape : shapes) add(shape);
+    return {first, world_.geometries.size()};
+  }
+
+ private:
+  void add(const ShapeDescription& description) {
+    const std::string& type = description.entity.type;
+    const Parameters& parameters = description.entity.parameters;
+    Geometry geometry;
+    if (is_mesh(type)) {
+      geometry.shape = read_triangle_mesh(description, unsupported_);
+    } else if (type == "sphere" || type == "disk" || type == "cylinder") {
+      geometry.shape = read_quadric(description, unsupported_);
+    } else {
+      return unsupported_.report(parameters.location(), fmt::format("Shape \"{}\"", type));
+    }
+    unsupported_.report_unused(parameters, fmt::format("Shape \"{}\"", type));
+    geometry.material = description.material;
+    geometry.reversed = description.reverse_orientation;
+    geometry.swaps_handedness = description.world_from_object.swaps_handedness();
+    if (description.area_light >= 0) light_up(description, geometry);
+    world_.geometries.push_back(std::move(geometry));
+  }
+
+  void light_up(const ShapeDescription& description, Geometry& geometry) {
+    const Entity& entity = scene_.area_lights[static_cast<std::size_t>(description.area_light)];
+    double area = 0;
+    for (std::size_t i = 0; i < geometry.primitives(); ++i) area += geometry.primitive_area(i);
+    Lights& lights = world_.lights;
+    const bool two_sided = entity.parameters.boolean("twosided", false);
+    const int spectrum = static_cast<int>(lights.area_spectra.size());
+    lights.area_spectra.push_back(
+        area_radiance(entity, area, world_.groups, options_.absolute_spectra, unsupported_));
+    geometry.first_light = static_cast<int>(lights.areas.size());
+    for (std::size_t i = 0; i < geometry.primitives(); ++i)
+      lights.areas.push_back({static_cast<int>(world_.geometries.size()), i, spectrum, two_sided});
+  }
+
+  const SceneDescription& scene_;
+  const WorldOptions& options_;
+  Unsupported& unsupported_;
+  World& world_;
+};
+
+}  // namespace
+
+std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
+                                         const WorldOptions& options, Unsupported& unsupported) {
+  auto world = std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, nullptr});
+  const TextureLibrary textures(scene, world->groups, unsupported);
+  world->materials = make_materials(scene, textures, unsupported);
+  WorldBuilder builder(scene, options, unsupported, *world);
+  const GeometryRange standing = builder.add(scene.shapes);
+  std::vector<GeometryRange> objects;
+  for (const auto& shapes : scene.objects) objects.push_back(builder.add(shapes));
+  for (const InstanceDescription& instance : scene.instances)
+    world->placed.push_back({instance.object, instance.world_from_instance});
+  for (const LightDescription& light : scene.lights)
+    add_light(light, world->groups, options.absolute_spectra, unsupported, world->lights);
+  world->intersector = std::make_unique<Intersector>(world->geometries, standing, objects, world->placed);
+  const auto box = world->intersector->bounds();
+  world->lights.prepare(world->geometries, box ? length((*box)[1] - (*box)[0]) / 2 : 1);
+  return world;
+}
+
+}  // namespace petzval::render

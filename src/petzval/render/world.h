@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene that is ready to be rendered.
+#pragma once
+
+#include <petzval/render/lights/lights.h>
+#include <petzval/render/materials/material.h>
+#include <petzval/render/shapes/intersector.h>
+
+#include <memory>
+#include <vector>
+
+namespace petzval::render {
+
+struct WorldOptions {
+  /// pbrt-v4 scales every light so that a strength of 1 is a luminance (or luminous intensity) of 1 in the
+  /// unit of ∫ L ȳ dλ. If set, spectra of lights given as tables, files or black bodies are radiances
+  /// [W·m⁻²·sr⁻¹·nm⁻¹] as they stand.
+  bool absolute_spectra = false;
+};
+
+/// Shapes, materials and lights at the wavelengths of one picture. Immutable once built.
+struct World {
+  WavelengthGroups groups;
+  std::vector<Geometry> geometries;
+  std::vector<PlacedObject> placed;
+  std::vector<Material> materials;
+  Lights lights;
+  std::unique_ptr<Intersector> intersector;
+
+  const Transform* place_of(const Hit& hit) const {
+    return hit.instance < 0 ? nullptr : &placed[static_cast<std::size_t>(hit.instance)].world_from_object;
+  }
+};
+
+/// \throws InputError with file, line and column, and through `unsupported`; Failure.
+std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
+                                         const WorldOptions& options, Unsupported& unsupported);
+
+}  // namespace petzval::render

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures as a whole: the same bytes whoever computes them, interrupted or not; light where geometry says.
+#include <gtest/gtest.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/render/camera/lens_camera.h>
+#include <petzval/render/camera/perspective_camera.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scene_text.h"
+
+namespace petzval::render {
+namespace {
+
+/// A floor and a glass sphere that disperses, under a lamp and a sky.
+constexpr const char* scene =
+    "LightSource \"infinite\" \"rgb L\" [ .2 .3 .4 ]\n"
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 5\nTranslate 0 1 1\nRotate 90 1 0 0\nShape "
+    "\"disk\" "
+    "\"float radius\" 0.3\nAttributeEnd\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -2 -.1 0  2 -.1 0  -2 -.1 4  2 -.1 4 ]\n"
+    "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\"\nTranslate 0 0 1\nShape \"sphere\" \"float "
+    "radius\" 0.08\n";
+
+struct SmallPicture {
+  std::unique_ptr<const World> world = world_of(scene, {420, 480, 520, 560, 600, 640, 660, 680, 700});
+  SensorGeometry film{40, 30, 150};
+  LensCamera camera{read_lens("edmund-54852").lens, film, world->groups};
+
+  Rendering render(RenderOptions options = {}) const {
+    options.samples_per_pixel = 24;
+    options.first_surfaces = true;
+    return render_picture(*world, camera, Transform(), film, options);
+  }
+};
+
+std::vector<float> values(const Rendering& rendering) {
+  return {rendering.irradiance.values().begin(), rendering.irradiance.values().end()};
+}
+
+TEST(Renderer, GivesTheSameBytesOnAnyNumberOfThreads) {
+  const SmallPicture small;
+  std::vector<float> one, two;
+  {
+    const ThreadLimit limit(1);
+    one = values(small.render());
+  }
+  {
+    const ThreadLimit limit(2);
+    two = values(small.render());
+  }
+  EXPECT_EQ(one, two);
+  RenderOptions other;
+  other.seed = 2;
+  EXPECT_NE(one, values(small.render(other)));
+}
+
+TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
+  const SmallPicture small;
+  const std::string path = (std::filesystem::temp_directory_path() / "petzval-checkpoint-test").string();
+  std::filesystem::remove(path);
+  RenderOptions options;
+  options.checkpoint = path;
+  options.fingerprint = "this picture";
+  int passes = 0;
+  options.after_pass = [&](int done, int all) {
+    passes = all;
+    return done < 2;  // "killed" after the second pass
+  };
+  const Rendering part = small.render(options);
+  ASSERT_GT(passes, 2);
+  EXPECT_FALSE(part.complete);
+  ASSERT_TRUE(std::filesystem::exists(path));
+  options.after_pass = nullptr;
+  const Rendering resumed = small.render(options), whole = small.render();
+  EXPECT_TRUE(resumed.complete);
+  EXPECT_EQ(values(resumed), values(whole));
+  EXPECT_EQ(resumed.first_surfaces->depth, whole.first_surfaces->depth);
+  EXPECT_EQ(resumed.rays, whole.rays);
+
+  options.fingerprint = "another picture";
+  EXPECT_THROW(small.render(options), InputError);
+  options.fingerprint = "this picture";
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
+  EXPECT_THROW(small.render(options), InputError);
+  std::ofstream(path) << "something else";
+  EXPECT_THROW(small.render(options), InputError);
+  std::filesystem::remove(path);
+}
+
+/// A white wall lit by a distant light at right angles: E/π through a pinhole of 1 sr; and how far it is.
+TEST(Renderer, LambertsWallHasTheRadianceThatPhotometrySays) {
+  const auto world = world_of(
+      "LightSource \"distant\" \"spectrum L\" [ 300 2 900 2 ] \"point3 from\" [ 0 0 0 ] \"point3 to\" [ 0 0 "
+      "1 ]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]\n"
+      "Shape \"trianglemesh\" \"point3 P\" [ -9 -9 3  9 -9 3  0 9 3 ] \"integer indices\" [ 0 1 2 ]\n");
+  PerspectiveOptions perspective;
+  perspective.columns = perspective.rows = 8;
+  perspective.field_of_view_deg = 40;
+  const PerspectiveCamera camera(perspective);
+  RenderOptions options;
+  options.first_surfaces = true;
+  const Rendering picture = render_picture(*world, camera, Transform(), {8, 8, 10}, options);
+  for (const float value : picture.irradiance.values()) EXPECT_NEAR(value, 2 * 0.5 / pi, 1e-6);
+  for (const float depth : picture.first_surfaces->depth) EXPECT_NEAR(depth, 3, 1e-5);
+  for (const float albedo : picture.first_surfaces->albedo) EXPECT_NEAR(albedo, 0.5, 1e-6);
+  for (std::size_t i = 2; i < picture.first_surfaces->normal.size(); i += 3)
+    EXPECT_NEAR(picture.first_surfaces->normal[i], -1, 1e-6);
+}
+
+/// What a white wall at z = 3 sends back from the point (0, 0, 3), seen from the side, times π: the
+/// irradiance there.
+double irradiance_on_wall(const std::string& light) {
+  const auto world = world_of("AttributeBegin\n" + light +
+                              "AttributeEnd\nMaterial \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
+                              "Shape \"trianglemesh\" \"point3 P\" [ -9 -9 3  9 -9 3  0 9 3 ]");
+  PathOptions path;
+  path.max_depth = 1;
+  const PathTracer tracer(*world, path);
+  const Vector3 from{1.2, 0, 2.9}, to{0, 0, 3};
+  double sum = 0;
+  constexpr int samples = 4096;
+  for (int i = 0; i < samples; ++i) {
+    SobolSample sample(3, static_cast<std::uint32_t>(i));
+    sum += static_cast<double>(tracer.trace(from, normalised(to - from), 0, 0, sample).shared[0]) / samples;
+  }
+  return pi * sum;
+}
+
+/// Lamps 2 in front of the wall, of radiance or intensity 3.
+TEST(Renderer, LightsGiveTheIrradianceOfTheirClosedForms) {
+  const std::string area = "AreaLightSource \"diffuse\" \"spectrum L\" [ 300 3 900 3 ]\nTranslate 0 0 1\n";
+  const std::string intensity = " \"spectrum I\" [ 300 3 900 3 ] \"point3 from\" [ 0 0 1 ]";
+  const auto expect = [](const std::string& light, double expected) {
+    EXPECT_NEAR(irradiance_on_wall(light), expected, 2e-3 * expected) << light;  // 4096 Sobol points
+  };
+  expect(area + "Shape \"disk\" \"float radius\" 0.5\n", pi * 3 * 0.25 / (4 + 0.25));  // π L sin²θ
+  expect(area + "Shape \"sphere\" \"float radius\" 0.5\n", pi * 3 * 0.25 / 4);
+  expect("LightSource \"point\"" + intensity + "\n", 3.0 / 4);
+  expect("LightSource \"spot\"" + intensity + " \"point3 to\" [ 0 0 2 ]\n", 3.0 / 4);
+}
+
+}  // namespace
+}  // namespace petzval::render

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the reader of pbrt scenes understands, and how it says what it does not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "scene_text.h"
+
+namespace petzval::render {
+namespace {
+
+/// The message with which a scene is refused; empty if it is not.
+std::string refusal(const std::string& text) {
+  try {
+    Unsupported unsupported;
+    const SceneDescription scene = parse_scene_description(text, "s.pbrt", unsupported);
+    build_world(scene, WavelengthGroups({550}), {}, unsupported);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+std::string in_world(const std::string& text) {
+  return refusal("WorldBegin\n" + text);
+}
+
+void expect_refused(const std::string& message, const std::string& place, const std::string& part) {
+  EXPECT_EQ(message.rfind(place, 0), 0u) << message;
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+TEST(SceneReader, NamesFileLineAndColumn) {
+  expect_refused(in_world("  Shape \"sphere\" \"float radius\" -1"), "s.pbrt:2:18: ", "above 0");
+  expect_refused(in_world("Shap \"sphere\""), "s.pbrt:2:1: ", "Shape");
+  expect_refused(in_world("Shape \"sphere"), "s.pbrt:2:7: ", "closing");
+  expect_refused(in_world("Translate 1 2"), "s.pbrt:2:1: ", "3 numbers");
+  expect_refused(in_world("Translate 1 2 x"), "s.pbrt:2:15: ", "3 numbers");
+  expect_refused(in_world("Shape \"sphere\" \"float radius\" [ 1 2 ]"), "s.pbrt:2:16: ", "2 values");
+  expect_refused(in_world("Shape \"sphere\" \"float radius\" [ 1"), "s.pbrt:2:31: ", "not closed");
+  expect_refused(in_world("Shape \"sphere\" \"float radius\" nan"), "s.pbrt:2:16: ", "finite");
+  expect_refused(in_world("Shape \"sphere\" \"speed radius\" 1"), "s.pbrt:2:16: ", "no type");
+  expect_refused(in_world("Shape \"sphere\" \"float radius\" 1 \"float radius\" 2"),
+                 "s.pbrt:2:33: ", "twice");
+  expect_refused(in_world("AttributeBegin\nShape \"sphere\""), "s.pbrt:2:1: ", "AttributeEnd");
+  expect_refused(in_world("AttributeEnd"), "s.pbrt:2:1: ", "without");
+  expect_refused(in_world("NamedMaterial \"gold\""), "s.pbrt:2:1: ", "gold");
+  expect_refused(in_world("ObjectInstance \"car\""), "s.pbrt:2:1: ", "car");
+  expect_refused(in_world("CoordSysTransform \"tree\""), "s.pbrt:2:1: ", "tree");
+  expect_refused(in_world("Include \"missing-file.pbrt\""), "s.pbrt:2:1: ", "missing-file.pbrt");
+  expect_refused(in_world("Material \"diffuse\" \"texture reflectance\" \"wood\""), "s.pbrt:2:20: ", "wood");
+  expect_refused(in_world("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"none.png\""),
+                 "s.pbrt:2:35: ", "none.png");
+  expect_refused(in_world("Shape \"plymesh\" \"string filename\" \"none.ply\""), "s.pbrt:2:17: ", "none.ply");
+  expect_refused(in_world("Material \"diffuse\" \"rgb reflectance\" [ 1 2 0 ]"), "s.pbrt:2:20: ", "exceed 1");
+  expect_refused(refusal("LookAt 0 0 0 1 0 0 0 1 0"), "s.pbrt: ", "WorldBegin");
+  expect_refused(refusal("Shape \"sphere\""), "s.pbrt:1:1: ", "before WorldBegin");
+}
+
+TEST(SceneReader, RefusesSingularTransformations) {
+  expect_refused(in_world("Scale 1 0 1"), "s.pbrt:2:1: ", "singular");
+  expect_refused(in_world("LookAt 0 0 0  0 0 0  0 1 0"), "s.pbrt:2:1: ", "sees nothing");
+  expect_refused(in_world("LookAt 0 0 0  0 1 0  0 1 0"), "s.pbrt:2:1: ", "sees nothing");
+  expect_refused(in_world("Rotate 30 0 0 0"), "s.pbrt:2:1: ", "axis");
+  expect_refused(in_world("ConcatTransform [ 1 0 0 0 0 1 0 0 0 0 nan 0 0 0 0 1 ]"), "s.pbrt:2:1: ", "finite");
+  expect_refused(in_world("ConcatTransform [ 1 1 0 0 1 1 0 0 0 0 1 0 0 0 0 1 ]"), "s.pbrt:2:1: ", "singular");
+  EXPECT_EQ(in_world("Scale 1e-6 1e-6 1e-6\nShape \"sphere\""), "");  // small is not singular
+}
+
+TEST(SceneReader, RefusesMeshesThatMakeNoSense) {
+  const std::string p = "\"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] ";
+  expect_refused(in_world("Shape \"trianglemesh\" " + p + "\"integer indices\" [ 0 1 3 ]"),
+                 "s.pbrt:2:55: ", "vertex 3");
+  expect_refused(in_world("Shape \"trianglemesh\" " + p + "\"integer indices\" [ 0 1 -1 ]"),
+                 "s.pbrt:2:55: ", "vertex -1");
+  expect_refused(in_world("Shape \"trianglemesh\" " + p + "\"integer indices\" [ 0 1 ]"),
+                 "s.pbrt:2:1: ", "multiple of 3");
+  expect_refused(in_world("Shape \"trianglemesh\" \"point3 P\" [ 0 0 nan 1 0 0 0 1 0 ]"),
+                 "s.pbrt:2:22: ", "finite");
+  expect_refused(in_world("Shape \"trianglemesh\" \"point3 P\" [ 0 0 1e300 1 0 0 0 1 0 ]"),
+                 "s.pbrt:2:1: ", "finite");
+  expect_refused(in_world("Shape \"trianglemesh\" \"point3 P\" [ 0 0 ]"), "s.pbrt:2:22: ", "multiple of 3");
+  expect_refused(in_world("Shape \"trianglemesh\" " + p + "\"normal N\" [ 0 0 1 ]"),
+                 "s.pbrt:2:1: ", "normals");
+  EXPECT_EQ(in_world("Shape \"trianglemesh\" " + p), "");
+}
+
+TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-include-test";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.pbrt") << "WorldBegin\nInclude \"b.pbrt\"\n";
+  std::ofstream(folder / "b.pbrt") << "\n  Include \"a.pbrt\"\n";
+  try {
+    Unsupported unsupported;
+    read_scene_description((folder / "a.pbrt").string(), unsupported);
+    FAIL() << "a cyclic include was followed";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("b.pbrt:2:3: "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("includes itself"), std::string::npos) << error.what();
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(SceneReader, ListsEverythingThatIsNotSupported) {
+  Unsupported unsupported(true);
+  const SceneDescription scene = parse_scene_description(
+      "WorldBegin\nMaterial \"hair\"\nShape \"curve\" \"float width\" 1\nShape \"sphere\" \"float alpha\" "
+      "0.5\n"
+      "LightSource \"goniometric\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
+      "s.pbrt", unsupported);
+  build_world(scene, WavelengthGroups({550}), {}, unsupported);
+  std::vector<std::string> list;
+  for (const Complaint& each : unsupported.list()) list.push_back(each.at.text() + " " + each.what);
+  EXPECT_EQ(list, (std::vector<std::string>{"s.pbrt:6:1 a participating medium",
+                                            "s.pbrt:2:1 Material \"hair\"", "s.pbrt:3:1 Shape \"curve\"",
+                                            "s.pbrt:4:16 the parameter \"float alpha\" of Shape \"sphere\"",
+                                            "s.pbrt:5:1 LightSource \"goniometric\""}));
+}
+
+TEST(SceneReader, FollowsTransformationsAndBlocks) {
+  const SceneDescription scene = described(
+      "AttributeBegin\nTranslate 1 2 3\nScale 2 2 2\nCoordinateSystem \"there\"\nShape "
+      "\"sphere\"\nAttributeEnd\n"
+      "Shape \"sphere\"\nCoordSysTransform \"there\"\nReverseOrientation\nShape \"sphere\"\n"
+      "ObjectBegin \"o\"\nShape \"disk\"\nObjectEnd\nObjectInstance \"o\"\n"
+      "Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1 ]\nShape \"sphere\"",
+      "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\"");
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  const Vector3 p = scene.shapes[0].world_from_object.point({1, 0, 0});
+  EXPECT_DOUBLE_EQ(p.x, 3);
+  EXPECT_DOUBLE_EQ(p.y, 2);
+  EXPECT_DOUBLE_EQ(scene.shapes[1].world_from_object.point({1, 0, 0}).x, 1);
+  EXPECT_DOUBLE_EQ(scene.shapes[2].world_from_object.point({1, 0, 0}).x, 3);
+  EXPECT_TRUE(scene.shapes[2].reverse_orientation);
+  EXPECT_DOUBLE_EQ(scene.shapes[3].world_from_object.point({0, 0, 0}).y, 6);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  EXPECT_EQ(scene.instances.size(), 1u);
+  // The eye is at the camera's origin, the target ahead of it along +z.
+  EXPECT_NEAR(length(scene.camera_from_world.point({0, 0, -5})), 0, 1e-15);
+  EXPECT_NEAR(scene.camera_from_world.point({0, 0, 0}).z, 5, 1e-15);
+  EXPECT_NEAR(scene.camera_from_world.point({1, 0, 0}).x, 1, 1e-15);
+}
+
+/// Text that is cut off anywhere, or has any one byte replaced, is read or refused with a message; it never
+/// ends the program.
+TEST(SceneReader, SurvivesDamagedText) {
+  const std::string text =
+      "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+      "Texture \"c\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [ 1 1 1 ]\nMakeNamedMaterial \"m\" \"string "
+      "type\" "
+      "\"mix\" \"string materials\" [ \"m\" \"m\" ]\nObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" "
+      "[ 0 0 0 1 0 0 0 1 0 ]\nObjectEnd\nObjectInstance \"o\"\nLightSource \"infinite\"\n";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    refusal(text.substr(0, i));
+    for (const char byte : {'\0', '"', '[', ']', '9', '-', '#', '\n', '\xff'}) {
+      std::string damaged = text;
+      damaged[i] = byte;
+      const std::string message = refusal(damaged);
+      EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+  }
+}
+
+TEST(Ply, ReadsTextAndBothByteOrders) {
+  const std::string head =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  const TriangleMesh text =
+      parse_ply("ply\nformat ascii 1.0\n" + head + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n", "m.ply");
+  EXPECT_EQ(text.triangles.size(), 2u);
+  std::string little = "ply\nformat binary_little_endian 1.0\n" + head,
+              big = "ply\nformat binary_big_endian 1.0\n" + head;
+  const auto put = [](std::string& bytes, auto value, bool swap) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    if (swap) std::reverse(raw, raw + sizeof value);
+    bytes.append(raw, sizeof value);
+  };
+  for (std::string* bytes : {&little, &big}) {
+    for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.f, 0.f, 1.f, 0.f})
+      put(*bytes, value, bytes == &big);
+    bytes->push_back(4);
+    for (const std::int32_t index : {0, 1, 2, 3}) put(*bytes, index, bytes == &big);
+    const TriangleMesh mesh = parse_ply(*bytes, "m.ply");
+    EXPECT_EQ(mesh.positions, text.positions);
+    EXPECT_EQ(mesh.triangles, text.triangles);
+    for (std::size_t cut = 0; cut < bytes->size(); ++cut)
+      EXPECT_THROW(parse_ply(std::string_view(*bytes).substr(0, cut), "m.ply"), InputError);
+  }
+}
+
+TEST(Ply, BelievesNoCount) {
+  EXPECT_THROW(
+      parse_ply(
+          "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\nproperty "
+          "float z\nend_header\n0 0 0\n",
+          "m.ply"),
+      InputError);
+  EXPECT_THROW(
+      parse_ply(
+          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+          "element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n900000 0 0\n",
+          "m.ply"),
+      InputError);
+}
+
+}  // namespace
+}  // namespace petzval::render
