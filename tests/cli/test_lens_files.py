@@ -106,6 +106,35 @@ class LensFiles(ProgramTest):
         self.assertIsNone(self.json_of("lens", "info", "telecentric.json")["f_number"])
         self.assertRegex(self.assert_succeeds("lens", "info", "telecentric.json"), r"\n  f-number +none")
 
+    def test_infrared_lens(self):
+        """All analyses at 8-12 um, and refocused at 3-5 um, where ZnSe and Ge both let light through."""
+        for wavelengths, setting in (("8000:2000:12000", "surfaces[3].thickness_mm=49.602"),
+                                     ("3000:1000:5000", "reference_wavelength_nm=4000")):
+            lens = ("infrared-50mm", "--fields", "0,3", "--wavelengths", wavelengths, "--set", setting)
+            spots = self.json_of("lens", "spots", *lens)["rows"]
+            self.assertEqual(len(spots), 6)
+            for command in ("distortion", "illumination", "wavefront"):
+                self.assertEqual(len(self.json_of("lens", command, *lens)["rows"]), 6, command)
+            mtf = self.json_of("lens", "mtf", *lens, "--frequencies", "0,10")["rows"]
+            self.assertTrue(all(0 <= row["tangential"] <= 1.000001 for row in mtf))
+        # Focal lengths by Gullstrand's equation for two thick lenses, with the publications' formulas written out here.
+        def germanium(um):
+            return (1 + 0.4886331 * um**2 / (um**2 - 1.393959) + 14.5142535 * um**2 / (um**2 - 0.1626427)
+                    + 0.0091224 * um**2 / (um**2 - 752.190)) ** 0.5
+
+        def zinc_selenide(um):
+            return (1 + 4.45813734 * um**2 / (um**2 - 0.200859853**2) + 0.467216334 * um**2 / (um**2 - 0.391371166**2)
+                    + 2.89566290 * um**2 / (um**2 - 47.1362108**2)) ** 0.5
+
+        for um in (3, 4, 5, 8, 10, 12):
+            height, angle = 1, 0  # of a ray parallel to the axis; angle is n u
+            for index, radius, gap, behind in ((germanium(um), 110.074, 6, germanium(um)), (germanium(um), -505.418, 1, 1),
+                                               (zinc_selenide(um), -24.174, 4, zinc_selenide(um)), (zinc_selenide(um), 26.355, 0, 1)):
+                angle -= height * (index - 1) / radius
+                height += gap * angle / behind
+            efl = self.json_of("lens", "info", "infrared-50mm", "--wavelength", 1000 * um)["efl_mm"]
+            self.assertAlmostEqual(efl, -1 / angle, delta=1e-9, msg=um)
+
     def test_own_glasses(self):
         self.write("mine.agf", AGF)
         show = self.json_of("glass", "show", "BRAND-NEW", "--glass-catalogue", "mine.agf", "--wavelengths", "500")
