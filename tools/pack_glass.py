@@ -19,7 +19,7 @@ from decimal import Decimal
 
 MAGIC = b"PZGLASS1"
 STATUSES = ["", "preferred", "standard", "special"]
-FORMULAS = {"formula 1": 1, "formula 2": 2, "formula 3": 3, "formula 5": 5}
+FORMULAS = {f"formula {number}": number for number in range(1, 10)}
 
 # The polymer files are named after the substance and the first author of the measurement. Command-line names are
 # SHORT-AUTHOR; SHORT alone means Sultanova et al. 2009, the one source that measured all four alike at 20 °C.

@@ -5,12 +5,17 @@
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/text_lines.h>
+#include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 namespace petzval::app {
@@ -22,7 +27,7 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
   command->footer("Example:\n  " + example);
   command->add_option("--threads", shared.threads, "Threads to use; 0: all (results do not depend on it)")
       ->check(CLI::Range(0, 4096));
-  command->add_option("--seed", shared.seed, "Seed of every random number")->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", shared.seed, "Seed of every random number")->check(whole_number());
   command->add_flag("--quiet", shared.quiet, "No notes and no progress bar");
   if (prints_numbers) command->add_flag("--json", shared.json, "Numbers as JSON on stdout");
   command->callback([&shared, work = std::move(work)] {
@@ -48,6 +53,91 @@ void refuse_unknown_command(const CLI::App& program, int argc, const char* const
   }
 }
 
+namespace {
+
+/// Takes words that are numbers and fulfil `holds`.
+CLI::Validator number_check(bool (*holds)(double), const char* right) {
+  const auto complaint = [=](const std::string& word) {
+    const auto number = parse_number(word);
+    return number && holds(*number) ? std::string() : fmt::format("{} is not {}", word, right);
+  };
+  return CLI::Validator(complaint, right);
+}
+
+}  // namespace
+
+CLI::Validator positive_number() {
+  return number_check([](double value) { return value > 0; }, "a number above 0");
+}
+
+CLI::Validator number_not_negative() {
+  return number_check([](double value) { return value >= 0; }, "a number from 0 on");
+}
+
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](const std::string& word) {
+        constexpr std::size_t most_digits = 19;
+        const bool right =
+            !word.empty() && word.size() <= most_digits && word.find_first_not_of("0123456789") == word.npos;
+        return right ? std::string() : fmt::format("{} is not a whole number from 0 on", word);
+      },
+      "a whole number from 0 on");
+}
+
+std::vector<double> parse_number_list(const std::string& option, const std::string& text) {
+  constexpr double most_numbers = 100'000;
+  const auto complain = [&](const std::string& part) {
+    throw InputError(fmt::format("{} {}: \"{}\" is not a number or start:step:stop, such as 400:10:700",
+                                 option, quotable(text), quotable(part)));
+  };
+  std::vector<double> numbers;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::vector<std::string> ends = CLI::detail::split(part, ':');
+    std::vector<double> values;
+    for (const std::string& end : ends) {
+      const auto value = parse_number(trimmed(end));
+      if (!value) complain(part);
+      values.push_back(*value);
+    }
+    if (values.size() == 1) {
+      numbers.push_back(values[0]);
+      continue;
+    }
+    if (values.size() != 3) complain(part);
+    const double start = values[0], step = values[1], steps = (values[2] - start) / step;
+    if (!(steps >= 0 && steps < most_numbers)) complain(part);
+    // The last step may miss the end by rounding.
+    constexpr double share_of_a_step = 1e-9;
+    for (int i = 0; i <= std::floor(steps + share_of_a_step); ++i) numbers.push_back(start + i * step);
+  }
+  return numbers;
+}
+
+void GlassChoice::add_to(CLI::App& command) {
+  command
+      .add_option(
+          "--glass-catalogue", paths,
+          "Glasses of your own, searched before the bundled ones: .agf, a refractiveindex.info .yml, or a "
+          "folder of them (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+GlassCatalogue GlassChoice::read(const Shared& shared) const {
+  std::vector<std::string> all = paths;
+  if (const char* given = std::getenv("PETZVAL_GLASS_CATALOGUES"))
+    for (const std::string& path : CLI::detail::split(given, ':'))
+      if (!path.empty()) all.push_back(path);
+  std::vector<Glass> glasses;
+  for (const std::string& path : all) {
+    GlassFile file = read_glass_files(path);
+    for (const std::string& line : file.notes) note(shared, line);
+    std::move(file.glasses.begin(), file.glasses.end(), std::back_inserter(glasses));
+  }
+  return glasses.empty() ? GlassCatalogue::bundled() : GlassCatalogue::bundled().with(std::move(glasses));
+}
+
 void LensChoice::add_to(CLI::App& command, bool positional, bool required) {
   CLI::Option* option =
       command.add_option(positional ? "lens" : "--lens", path_or_name, "Lens file or name of a bundled lens");
@@ -60,6 +150,7 @@ void LensChoice::add_to(CLI::App& command, bool positional, bool required) {
                   "Use another glass: LAK10C=CDGM:H-LAK10, or by nd/Vd SK1=1.61025/56.71 (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
+  glasses.add_to(command);
 }
 
 Lens LensChoice::read(const Shared& shared) const {
@@ -73,9 +164,10 @@ Lens LensChoice::read(const Shared& shared) const {
           text));
     options.substitutions[text.substr(0, equals)] = text.substr(equals + 1);
   }
+  options.glasses = glasses.read(shared);
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
-  for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting);
+  for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
   return std::move(file.lens);
 }
 

@@ -2,6 +2,7 @@
 // What all subcommands share: the options of the whole program, and the way a lens is named.
 #pragma once
 
+#include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
 
 #include <CLI/CLI.hpp>
@@ -29,9 +30,20 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
 /// \throws InputError when the command line names a subcommand that does not exist, with the nearest that do.
 void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv);
 
-/// A lens on the command line: LENS, --set, --substitute.
+/// The user's own glass catalogues: --glass-catalogue, and the variable PETZVAL_GLASS_CATALOGUES, which holds
+/// paths parted by colons. Searched in this order, then the bundled ones.
+struct GlassChoice {
+  std::vector<std::string> paths;
+
+  void add_to(CLI::App& command);
+  /// \throws InputError with file and line.
+  GlassCatalogue read(const Shared& shared) const;
+};
+
+/// A lens on the command line: LENS, --set, --substitute, --glass-catalogue.
 struct LensChoice {
   std::string path_or_name;
+  GlassChoice glasses;
   std::vector<std::string> settings;
   std::vector<std::string> substitutions;
 
@@ -40,6 +52,15 @@ struct LensChoice {
   /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
   Lens read(const Shared& shared) const;
 };
+
+// Checks of options, whose messages say what would be right.
+CLI::Validator positive_number();
+CLI::Validator number_not_negative();
+CLI::Validator whole_number();
+
+/// "0,7,14", "0:5:20" (start:step:stop, both ends taken) or both, parted by commas.
+/// \param option  for messages. \throws InputError naming the option.
+std::vector<double> parse_number_list(const std::string& option, const std::string& text);
 
 /// Prints a note on stderr, unless --quiet: "petzval: note: …".
 void note(const Shared& shared, const std::string& message);

@@ -26,19 +26,26 @@ const std::map<std::string, Fields::Kind>& field_kinds() {
   return kinds;
 }
 
+std::vector<double> parse_wavelength_list(const std::string& text) {
+  std::vector<double> wavelengths_nm = parse_number_list("--wavelengths", text);
+  for (const double wavelength_nm : wavelengths_nm)
+    if (!(wavelength_nm > 0))
+      throw InputError(fmt::format("--wavelengths {}: a wavelength must be above 0, in nm", text));
+  return wavelengths_nm;
+}
+
 }  // namespace
 
 void FieldChoice::add_to(CLI::App& command) {
-  command.add_option("--fields", fields, "Fields, separated by commas; in the units of the field type")
-      ->delimiter(',');
+  command.add_option_function<std::string>(
+      "--fields", [this](const std::string& text) { fields = parse_number_list("--fields", text); },
+      "Fields, 0,7,14 or 0:7:14 (start:step:stop); in the units of the field type");
   command.add_option("--field-type", field_type, "What the fields are; default: as in the lens file")
       ->check(CLI::IsMember(
           {"angle_deg", "object_height_mm", "paraxial_image_height_mm", "real_image_height_mm"}));
-  command
-      .add_option("--wavelengths", wavelengths_nm,
-                  "Wavelengths [nm], separated by commas; default: the lens's own")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  command.add_option_function<std::string>(
+      "--wavelengths", [this](const std::string& text) { wavelengths_nm = parse_wavelength_list(text); },
+      "Wavelengths [nm], 450,550 or 400:50:700; default: the lens's own");
   command.add_flag("--ignore-apertures", ignore_apertures, "Let nothing but the stop clip the rays");
   command
       .add_option_function<std::string>(
@@ -97,6 +104,14 @@ nlohmann::ordered_json field_definition(Fields::Kind kind) {
 std::string field_heading(Fields::Kind kind) {
   const std::string name = to_string(kind);
   return fmt::format("{} [{}]", name.substr(0, name.rfind('_')), field_unit(kind));
+}
+
+bool has_f_number(const FirstOrder& data) {
+  return std::isfinite(data.f_number) && data.f_number > 0;
+}
+
+nlohmann::ordered_json f_number_or_null(const FirstOrder& data) {
+  return has_f_number(data) ? nlohmann::ordered_json(data.f_number) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json number_or_null(double value) {

@@ -4,6 +4,7 @@
 
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/field_values.h>
+#include <petzval/lens/first_order.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -31,6 +32,10 @@ struct FieldChoice {
 nlohmann::ordered_json field_definition(Fields::Kind kind);
 /// "field [deg]" and the like, for table headings.
 std::string field_heading(Fields::Kind kind);
+
+/// A lens that is telecentric in object space has an infinite entrance pupil and so no f-number.
+bool has_f_number(const FirstOrder& data);
+nlohmann::ordered_json f_number_or_null(const FirstOrder& data);
 
 /// NaN and infinities become null, as JSON wants.
 nlohmann::ordered_json number_or_null(double value);

@@ -20,19 +20,17 @@ namespace {
 using json = nlohmann::ordered_json;
 using GlassPointer = std::shared_ptr<const Glass>;
 
-/// Every bundled glass, or those of one catalogue; case does not matter. \throws InputError if there is none
-/// such.
-std::vector<GlassPointer> glasses_of(const std::string& catalogue) {
-  const GlassCatalogue& bundled = GlassCatalogue::bundled();
+/// Every glass, or those of one catalogue; case does not matter. \throws InputError if there is none such.
+std::vector<GlassPointer> glasses_of(const GlassCatalogue& all, const std::string& catalogue) {
   std::vector<GlassPointer> glasses;
-  for (const std::string& name : bundled.full_names()) {
+  for (const std::string& name : all.full_names()) {
     const std::string holder = name.substr(0, name.find(':'));
     if (catalogue.empty() || CLI::detail::to_lower(holder) == CLI::detail::to_lower(catalogue))
-      glasses.push_back(bundled.find(name));
+      glasses.push_back(all.find(name));
   }
   if (glasses.empty())
     throw InputError(fmt::format("there is no glass catalogue {}; the known are {}", catalogue,
-                                 fmt::join(bundled.catalogues(), ", ")));
+                                 fmt::join(all.catalogues(), ", ")));
   return glasses;
 }
 
@@ -65,8 +63,8 @@ void print_json(const json& value) {
 
 // --- list
 
-void list(const Shared& shared, const std::string& catalogue) {
-  const std::vector<GlassPointer> glasses = glasses_of(catalogue);
+void list(const Shared& shared, const GlassCatalogue& all, const std::string& catalogue) {
+  const std::vector<GlassPointer> glasses = glasses_of(all, catalogue);
   if (shared.json) {
     json rows = json::array();
     for (const GlassPointer& glass : glasses) rows.push_back(summary_of(*glass));
@@ -148,8 +146,9 @@ void print_description(const Glass& glass, const json& rows) {
   }
 }
 
-void show(const Shared& shared, const std::string& name, const std::vector<double>& wavelengths_nm) {
-  const GlassPointer glass = GlassCatalogue::bundled().find(name);
+void show(const Shared& shared, const GlassCatalogue& all, const std::string& name,
+          const std::vector<double>& wavelengths_nm) {
+  const GlassPointer glass = all.find(name);
   // All indices are computed before anything is printed, so that an error leaves no half of an answer.
   const json rows = rows_of(*glass, wavelengths_nm.empty() ? usual_wavelengths(*glass) : wavelengths_nm);
   if (shared.json) {
@@ -176,13 +175,13 @@ double distance(const AbbeNumbers& glass, const Wanted& wanted) {
   return std::hypot(in_nd, in_vd);
 }
 
-void find(const Shared& shared, const Wanted& wanted) {
+void find(const Shared& shared, const GlassCatalogue& all, const Wanted& wanted) {
   if (!wanted.nd && !wanted.vd) throw InputError("glass find needs --nd, --vd or both");
   for (const auto& [option, value] : {std::pair{"--nd", wanted.nd}, {"--vd", wanted.vd}})
     if (value && !(std::isfinite(*value) && *value > 0))
       throw InputError(fmt::format("{} {}: a positive number is wanted", option, *value));
   std::vector<std::pair<double, GlassPointer>> ranked;
-  for (const GlassPointer& glass : glasses_of(wanted.catalogue))
+  for (const GlassPointer& glass : glasses_of(all, wanted.catalogue))
     if (const auto abbe = glass->abbe()) ranked.emplace_back(distance(*abbe, wanted), glass);
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -203,37 +202,43 @@ void find(const Shared& shared, const Wanted& wanted) {
 }  // namespace
 
 void add_glass_commands(CLI::App& app, Shared& shared) {
-  CLI::App* glass = app.add_subcommand("glass", "Look up glasses of the bundled catalogues");
+  CLI::App* glass = app.add_subcommand("glass", "Look up glasses of the bundled catalogues and of your own");
   glass->require_subcommand(1);
+  const auto own = std::make_shared<GlassChoice>();
 
   const auto catalogue = std::make_shared<std::string>();
-  add_command(*glass, shared, "list", "List glasses with nd, Vd and valid range",
-              "petzval glass list --catalogue SCHOTT", true,
-              [&shared, catalogue] { list(shared, *catalogue); })
-      ->add_option("--catalogue", *catalogue, "Only this catalogue, for example SCHOTT");
+  CLI::App* list_command =
+      add_command(*glass, shared, "list", "List glasses with nd, Vd and valid range",
+                  "petzval glass list --catalogue SCHOTT", true,
+                  [&shared, own, catalogue] { list(shared, own->read(shared), *catalogue); });
+  list_command->add_option("--catalogue", *catalogue, "Only this catalogue, for example SCHOTT");
 
   const auto name = std::make_shared<std::string>();
   const auto wavelengths_nm = std::make_shared<std::vector<double>>();
-  CLI::App* show_command =
-      add_command(*glass, shared, "show", "Show a glass: formula, coefficients, range, index and absorption",
-                  "petzval glass show SCHOTT:N-BK7 --wavelengths 486.13,587.56", true,
-                  [&shared, name, wavelengths_nm] { show(shared, *name, *wavelengths_nm); });
+  CLI::App* show_command = add_command(
+      *glass, shared, "show", "Show a glass: formula, coefficients, range, index and absorption",
+      "petzval glass show SCHOTT:N-BK7 --wavelengths 486.13,587.56", true,
+      [&shared, own, name, wavelengths_nm] { show(shared, own->read(shared), *name, *wavelengths_nm); });
   show_command->add_option("name", *name, "CATALOGUE:NAME, or NAME where only one catalogue has it")
       ->required();
-  show_command
-      ->add_option("--wavelengths", *wavelengths_nm, "Wavelengths in nm (default: the lines g F e d C)")
-      ->delimiter(',');
+  show_command->add_option_function<std::string>(
+      "--wavelengths",
+      [wavelengths_nm](const std::string& text) {
+        *wavelengths_nm = parse_number_list("--wavelengths", text);
+      },
+      "Wavelengths in nm, 450,550 or 400:50:700 (default: the lines g F e d C)");
 
   const auto wanted = std::make_shared<Wanted>();
   CLI::App* find_command = add_command(*glass, shared, "find",
                                        "Find the glasses nearest to nd and Vd: by the square root of "
                                        "(nd - nd0)^2 + (0.01 (Vd - Vd0))^2",
                                        "petzval glass find --nd 1.6 --vd 60 --count 5", true,
-                                       [&shared, wanted] { find(shared, *wanted); });
+                                       [&shared, own, wanted] { find(shared, own->read(shared), *wanted); });
   find_command->add_option("--nd", wanted->nd, "Index wanted at 587.56 nm");
   find_command->add_option("--vd", wanted->vd, "Abbe number wanted");
   find_command->add_option("--count", wanted->count, "How many to show")->check(CLI::Range(1, 100000));
   find_command->add_option("--catalogue", wanted->catalogue, "Only this catalogue");
+  for (CLI::App* command : {list_command, show_command, find_command}) own->add_to(*command);
 }
 
 }  // namespace petzval::app

@@ -9,6 +9,7 @@ namespace petzval::app {
 void add_lens_list(CLI::App& lens, Shared& shared);
 void add_lens_info(CLI::App& lens, Shared& shared);
 void add_lens_convert(CLI::App& lens, Shared& shared);
+void add_lens_scale(CLI::App& lens, Shared& shared);
 void add_lens_draw(CLI::App& lens, Shared& shared);
 void add_lens_trace(CLI::App& lens, Shared& shared);
 void add_lens_distortion(CLI::App& lens, Shared& shared);

@@ -18,7 +18,7 @@ struct ConvertCommand {
 
 void convert(const ConvertCommand& options, const Shared& shared) {
   const Lens lens = options.lens.read(shared);
-  write_lens(lens, options.output);
+  for (const std::string& line : write_lens(lens, options.output)) note(shared, line);
   if (!shared.quiet) fmt::print("{}: {} surfaces\n", options.output, lens.surfaces.size());
 }
 
@@ -26,10 +26,12 @@ void convert(const ConvertCommand& options, const Shared& shared) {
 
 void add_lens_convert(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<ConvertCommand>();
-  CLI::App* command = add_command(lens, shared, "convert",
-                                  "Write a lens in another format: .json (native), .zmx or .dat (pbrt)",
-                                  "petzval lens convert dgauss-50mm dgauss.zmx", false,
-                                  [options, &shared] { convert(*options, shared); });
+  CLI::App* command =
+      add_command(lens, shared, "convert",
+                  "Write a lens in another format: .json (native), .zmx, .seq (CODE V), .dat (pbrt) "
+                  "or .iset.json (ISET)",
+                  "petzval lens convert dgauss-50mm dgauss.zmx", false,
+                  [options, &shared] { convert(*options, shared); });
   options->lens.add_to(*command);
   command->add_option("output", options->output, "File to write; its extension tells the format")->required();
 }

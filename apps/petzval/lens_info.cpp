@@ -35,7 +35,7 @@ nlohmann::ordered_json info_json(const Lens& lens, const FirstOrder& data) {
       {"efl_mm", number_or_null(data.efl_mm)},
       {"bfl_mm", number_or_null(data.bfl_mm)},
       {"ffl_mm", number_or_null(data.ffl_mm)},
-      {"f_number", number_or_null(data.f_number)},
+      {"f_number", f_number_or_null(data)},
       {"working_f_number", number_or_null(data.working_f_number)},
       {"image_space_na", number_or_null(data.image_space_na)},
       {"field_of_view_deg", number_or_null(data.field_of_view_deg)},
@@ -45,13 +45,16 @@ nlohmann::ordered_json info_json(const Lens& lens, const FirstOrder& data) {
       {"petzval_radius_mm", number_or_null(data.petzval_radius_mm)},
       {"total_track_mm", number_or_null(data.total_track_mm)},
       {"paraxial_image_mm", number_or_null(data.paraxial_image_mm)},
-      {"stop_semi_diameter_mm", number_or_null(data.stop_semi_diameter_mm)},
+      {"stop_semi_diameter_mm", number_or_null(stop_radius_mm(lens))},
+      {"paraxial_stop_semi_diameter_mm", number_or_null(data.stop_semi_diameter_mm)},
       {"lagrange_invariant_mm", number_or_null(data.lagrange_invariant_mm)}};
 }
 
 void print_first_order(const Lens& lens, const FirstOrder& data) {
   const auto line = [](const char* what, double value, const char* remark) {
-    const std::string number = std::isfinite(value) ? fmt::format("{:.6f}", value) : "infinite";
+    const std::string number = std::isfinite(value) ? fmt::format("{:.6f}", value)
+                               : std::isnan(value)  ? "none"
+                                                    : "infinite";
     fmt::print("  {:<28} {:>16}  {}\n", what, number, remark);
   };
   fmt::print("{}\n{}\n\nAt {:g} nm, lengths in mm\n", lens.name, lens.source, data.wavelength_nm);
@@ -59,7 +62,7 @@ void print_first_order(const Lens& lens, const FirstOrder& data) {
   line("focal length", data.efl_mm, "");
   line("back focal length", data.bfl_mm, "last vertex to rear focal point");
   line("front focal length", data.ffl_mm, "vertex 1 to front focal point");
-  line("f-number", data.f_number, "paraxial, object at infinity");
+  line("f-number", has_f_number(data) ? data.f_number : NAN, "paraxial, object at infinity");
   line("working f-number", data.working_f_number, "paraxial, at the object distance");
   line("image-space NA", data.image_space_na, "paraxial, at the object distance");
   line("field of view [deg]", data.field_of_view_deg, "full angle at the entrance pupil");
@@ -68,7 +71,8 @@ void print_first_order(const Lens& lens, const FirstOrder& data) {
   line("entrance pupil diameter", data.entrance_pupil.diameter_mm, "");
   line("exit pupil position", data.exit_pupil.position_mm, "from the image surface");
   line("exit pupil diameter", data.exit_pupil.diameter_mm, "");
-  line("stop semi-diameter", data.stop_semi_diameter_mm, "height of the paraxial marginal ray");
+  line("stop semi-diameter", stop_radius_mm(lens), "height of the real marginal ray");
+  line("paraxial stop semi-d.", data.stop_semi_diameter_mm, "height of the paraxial marginal ray");
   line("Petzval radius", data.petzval_radius_mm, "");
   line("total track", data.total_track_mm, "vertex 1 to image surface");
   line("paraxial image", data.paraxial_image_mm, "behind the last vertex");

@@ -14,24 +14,27 @@ namespace {
 
 void list(const Shared& shared) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  if (!shared.json)
-    fmt::print("{:<20} {:>10} {:>8} {:>9}  {}\n", "name", "EFL [mm]", "f/", "FOV [deg]", "lens");
+  // All lenses are read before anything is printed, so that an error leaves no half of an answer.
+  std::string text =
+      fmt::format("{:<20} {:>10} {:>8} {:>9}  {}\n", "name", "EFL [mm]", "f/", "FOV [deg]", "lens");
   for (const std::string& name : bundled_names("lenses", ".json")) {
     const Lens lens = read_lens(name).lens;
     const FirstOrder data = first_order(lens);
     if (!shared.json) {
-      fmt::print("{:<20} {:>10.3f} {:>8.2f} {:>9.1f}  {}\n", name, data.efl_mm, data.f_number,
-                 data.field_of_view_deg, lens.name);
+      text += fmt::format("{:<20} {:>10.3f} {:>8} {:>9.1f}  {}\n", name, data.efl_mm,
+                          has_f_number(data) ? fmt::format("{:.2f}", data.f_number) : "-",
+                          data.field_of_view_deg, lens.name);
       continue;
     }
     rows.push_back({{"name", name},
                     {"description", lens.name},
                     {"source", lens.source},
                     {"efl_mm", number_or_null(data.efl_mm)},
-                    {"f_number", number_or_null(data.f_number)},
+                    {"f_number", f_number_or_null(data)},
                     {"field_of_view_deg", number_or_null(data.field_of_view_deg)}});
   }
-  if (shared.json) print_json({{"rows", rows}});
+  if (shared.json) return print_json({{"rows", rows}});
+  fmt::print("{}", text);
 }
 
 }  // namespace

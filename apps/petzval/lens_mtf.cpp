@@ -75,14 +75,14 @@ void add_lens_mtf(CLI::App& lens, Shared& shared) {
           "--frequencies", options->mtf.frequencies_cpmm,
           "Spatial frequencies on the sensor [cycles/mm], separated by commas; default: 0 to 100 by 10")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_not_negative());
   command->add_flag("--polychromatic", options->polychromatic,
                     "All wavelengths together, with equal weights");
   command
       ->add_option("--weights", options->mtf.weights,
                    "All wavelengths together, with these weights, separated by commas: the light of each")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_not_negative());
   command->add_flag("--geometric", options->mtf.geometric, "Of the rays alone, without diffraction");
   command->add_flag(
       "--as-psf", options->as_psf,

@@ -151,7 +151,7 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
   command
       ->add_option("--spacing", options->psf.spacing_um,
                    "Spacing of the samples [um]; default: 0.45 lambda N")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy");
 }
 

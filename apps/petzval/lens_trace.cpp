@@ -111,17 +111,45 @@ struct Prepared {
   LensTransmittance transmittance;
 };
 
-std::string result_line(const RayLine& line, const Prepared& prepared, Tracer::Clip clip, bool with_losses) {
+struct TracedRay {
+  Ray ray;
+  double wavelength_nm;
+  std::optional<double> transmittance;  ///< with losses, of a ray that arrived
+
+  bool arrived() const { return ray.status == RayStatus::ok; }
+};
+
+TracedRay traced(const RayLine& line, const Prepared& prepared, Tracer::Clip clip, bool with_losses) {
   std::vector<Intersection> path;
   const Ray ray = prepared.tracer.trace(line.ray, clip, with_losses ? &path : nullptr);
-  if (ray.status != RayStatus::ok)
+  TracedRay result{ray, line.wavelength_nm, {}};
+  if (with_losses && result.arrived()) result.transmittance = prepared.transmittance.along(line.ray, path);
+  return result;
+}
+
+std::string csv_line(const TracedRay& traced, bool with_losses) {
+  const Ray& ray = traced.ray;
+  if (!traced.arrived())
     return fmt::format("{},nan,nan,nan,nan,nan,nan,nan{}\n", to_string(ray.status),
                        with_losses ? ",nan" : "");
   std::string text = fmt::format("ok,{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
                                  ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0],
                                  ray.direction[1], ray.direction[2], ray.opl_mm);
-  if (with_losses) text += fmt::format(",{:.17g}", prepared.transmittance.along(line.ray, path));
+  if (traced.transmittance) text += fmt::format(",{:.17g}", *traced.transmittance);
   return text + "\n";
+}
+
+/// Numbers of a ray that did not arrive are null.
+nlohmann::ordered_json json_row(const TracedRay& traced, bool with_losses) {
+  const Ray& ray = traced.ray;
+  const auto number = [&](double value) { return traced.arrived() ? number_or_null(value) : nullptr; };
+  nlohmann::ordered_json row{{"status", to_string(ray.status)}, {"wavelength_nm", traced.wavelength_nm},
+                             {"x_mm", number(ray.point_mm[0])}, {"y_mm", number(ray.point_mm[1])},
+                             {"z_mm", number(ray.point_mm[2])}, {"L", number(ray.direction[0])},
+                             {"M", number(ray.direction[1])},   {"N", number(ray.direction[2])},
+                             {"opl_mm", number(ray.opl_mm)}};
+  if (with_losses) row["transmittance"] = number(traced.transmittance.value_or(0));
+  return row;
 }
 
 void trace(const TraceCommand& options, const Shared& shared) {
@@ -131,17 +159,21 @@ void trace(const TraceCommand& options, const Shared& shared) {
   std::map<double, Prepared> prepared;
   std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm";
   csv += losses.any() ? ",transmittance\n" : "\n";
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const RayLine& line : read_rays(options.rays)) {
     const double nm = line.wavelength_nm;
     auto at = prepared.find(nm);
     if (at == prepared.end())
       at = prepared.emplace(nm, Prepared{Tracer(lens, nm), LensTransmittance(lens, nm, losses)}).first;
-    csv += result_line(line, at->second, clip, losses.any());
+    const TracedRay result = traced(line, at->second, clip, losses.any());
+    csv += csv_line(result, losses.any());
+    if (shared.json) rows.push_back(json_row(result, losses.any()));
   }
-  if (options.output.empty())
+  if (!options.output.empty()) write_whole_file(options.output, csv);
+  if (shared.json)
+    print_json({{"lens", lens.name}, {"at", "image surface"}, {"rows", rows}});
+  else if (options.output.empty())
     fmt::print("{}", csv);
-  else
-    write_whole_file(options.output, csv);
 }
 
 }  // namespace
@@ -149,7 +181,7 @@ void trace(const TraceCommand& options, const Shared& shared) {
 void add_lens_trace(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<TraceCommand>();
   CLI::App* command = add_command(lens, shared, "trace", "Trace explicit rays to the image surface",
-                                  "petzval lens trace cooke-triplet --rays rays.csv -o traced.csv", false,
+                                  "petzval lens trace cooke-triplet --rays rays.csv -o traced.csv", true,
                                   [=, &shared] { trace(*options, shared); });
   options->lens.add_to(*command);
   command->add_option("--rays", options->rays, "CSV with x_mm,y_mm,z_mm,L,M,N,wavelength_nm in lens space")

@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <iostream>
 #include <new>
 
 namespace {
@@ -45,7 +46,10 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0) return report("standard output cannot be written", 1);
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);
+    if (error.get_exit_code() == 0) {
+      const int code = program.exit(error);
+      return std::cout.flush() ? code : report("standard output cannot be written", 1);
+    }
     return report(fmt::format("{} (see petzval --help)", error.what()), 2);
   } catch (const InputError& error) {
     return report(error.what(), 2);

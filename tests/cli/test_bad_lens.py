@@ -99,11 +99,16 @@ class BadUse(ProgramTest):
 
     def test_substitution(self):
         self.write("unknown.json", singlet_with_surface(1, glass="SECRET-7"))
-        self.assert_refused("lens", "info", "unknown.json", words=["SECRET-7"])
+        self.assert_refused("lens", "info", "unknown.json", words=["SECRET-7", "--substitute"])
         self.assert_succeeds("lens", "info", "unknown.json", "--substitute", "SECRET-7=SCHOTT:N-BK7")
         self.assert_succeeds("lens", "info", "unknown.json", "--substitute", "SECRET-7=1.61025/56.71")
         self.assert_refused("lens", "info", "unknown.json", "--substitute", "SECRET-7=NO-SUCH", words=["NO-SUCH"])
         self.assert_refused("lens", "info", "unknown.json", "--substitute", "SECRET-7", words=["--substitute"])
+        self.assert_refused("lens", "info", "singlet.json", "--substitute", "ABSENT=SCHOTT:F2",
+                            words=["ABSENT", "no such glass"])
+
+    def test_a_folder(self):
+        self.assert_refused("lens", "info", "..", words=["folder"])
 
     def test_a_stop_that_no_ray_passes(self):
         """A clear aperture of a micrometre before a stop that lies far off axis in no one's way: the rays that would

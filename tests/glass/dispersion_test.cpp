@@ -36,7 +36,9 @@ TEST(DispersionFormula, RefusesWhatHasNoIndex) {
   EXPECT_THROW(formula(2, {0, 1, 4}, 2000), InputError) << "on the resonance";
   EXPECT_THROW(formula(3, {-2}, 500), InputError) << "negative n²";
   EXPECT_THROW(formula(5, {0}, 500), InputError) << "n = 0";
-  EXPECT_THROW(formula(4, {1}, 500), InputError) << "unknown formula";
+  EXPECT_THROW(formula(10, {1}, 500), InputError) << "unknown formula";
+  EXPECT_THROW(formula(0, {1}, 500), InputError);
+  EXPECT_THROW(formula(4, std::vector<double>(18, 1), 500), InputError) << "too many coefficients";
   EXPECT_THROW(formula(2, {}, 500), InputError);
   EXPECT_THROW(formula(2, {0, 1}, 500), InputError) << "half a pair";
   for (const double nm : {0.0, -500.0, std::nan(""), std::numeric_limits<double>::infinity()})

@@ -79,7 +79,7 @@ class Packer(unittest.TestCase):
         self.assertFalse(self.output.exists())
 
     def test_refuses_an_unknown_formula(self):
-        self.refuses(GLASS.replace("formula 2", "formula 4"), "formula 4")
+        self.refuses(GLASS.replace("formula 2", "formula 10"), "formula 10")
 
     def test_refuses_a_file_without_an_index(self):
         self.refuses(GLASS.replace("DATA:", "OTHER:"), "no index")

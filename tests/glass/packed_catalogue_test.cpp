@@ -158,7 +158,7 @@ TEST(PackedCatalogue, RefusesGlassesThatMakeNoSense) {
     change(glass);
     return taken(glass);
   };
-  EXPECT_FALSE(with([](GlassBytes& g) { g.formula = 4; }));
+  EXPECT_FALSE(with([](GlassBytes& g) { g.formula = 10; }));
   EXPECT_FALSE(with([](GlassBytes& g) { g.formula = 0; })) << "a table without a table";
   EXPECT_FALSE(with([](GlassBytes& g) { g.status = 4; }));
   EXPECT_FALSE(with([](GlassBytes& g) { g.coefficients.pop_back(); }));

@@ -4,11 +4,12 @@
 #include "sample_lenses.h"
 #include "scratch_file.h"
 
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/formats/pbrt.h>
-#include <petzval/lens/formats/text_lines.h>
+#include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
 
 #include <filesystem>
@@ -28,6 +29,7 @@ std::string file_text(const std::string& name, const std::string& extension) {
 Lens lens_from_bytes(const std::string& file, const std::string& bytes) {
   const std::string extension = std::filesystem::path(file).extension();
   if (extension == ".zmx") return read_zmx(decoded_text(bytes), file, {}).lens;
+  if (extension == ".seq") return read_seq(decoded_text(bytes), file, {}).lens;
   if (extension == ".dat") return read_pbrt(decoded_text(bytes), file).lens;
   const JsonDocument document(bytes, file);
   return is_iset(document) ? read_iset(document).lens : read_native(document, {});
@@ -106,8 +108,15 @@ TEST_P(HostileFile, TooLarge) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileFile,
                          ::testing::Values(std::pair(".json", "edmund-54852"),
-                                           std::pair(".zmx", "us-2532751"), std::pair(".dat", "dgauss-50mm")),
-                         [](const auto& format) { return std::string(format.param.first + 1); });
+                                           std::pair(".zmx", "us-2532751"),
+                                           std::pair(".seq", "cooke-triplet"),
+                                           std::pair(".dat", "dgauss-50mm"),
+                                           std::pair(".iset.json", "dgauss-50mm")),
+                         [](const auto& format) {
+                           std::string name = format.param.first + 1;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name;
+                         });
 
 TEST(HostileLens, ExtremeNumbersEndInNumbersOrErrors) {
   RandomLens random(8);

@@ -66,5 +66,27 @@ TEST(IsetReader, NamesLineAndPath) {
   expect_mentions(complaint("\"metadata\"", "\"meta\""), {"bad.json:10: meta is not a key"});
 }
 
+TEST(IsetWriter, ReadsBackTheSame) {
+  for (const char* name : {"dgauss-50mm", "fisheye-10mm", "telephoto-250mm"}) {
+    SCOPED_TRACE(name);
+    Lens lens = read_lens(name).lens;
+    lens.fields = {};  // rows of numbers hold none
+    const Lens again = through_file(lens, "lens.iset.json");
+    expect_same_lens(again, lens);
+  }
+}
+
+TEST(IsetWriter, RefusesWhatItCannotHold) {
+  expect_mentions(error_of([] { through_file(read_lens("cooke-triplet").lens, "out.iset.json"); }),
+                  {"out.iset.json: surfaces[0]", "an ISET file cannot hold the dispersion"});
+}
+
+TEST(IsetWriter, SaysWhatItLeavesOut) {
+  ScratchFile file("lens.iset.json");
+  const auto notes = write_lens(read_lens("dgauss-50mm").lens, file.path());
+  ASSERT_EQ(notes.size(), 1u);
+  expect_mentions(notes[0], {"lens.iset.json", "fields", "wavelengths"});
+}
+
 }  // namespace
 }  // namespace petzval

@@ -214,7 +214,37 @@ TEST(ZmxReader, ModelGlasses) {
   expect_mentions(file.notes[0], {"SURF 1", "F2"});
   const Lens constant = read(changed("1.62 36.5", "1.62 0")).lens;
   EXPECT_EQ(constant.surfaces[3].material.index(400), 1.62);
-  expect_mentions(complaint("1.62 36.5 0 ", "1.62 36.5 0.01 "), {"SURF 4", "0.01", "partial dispersion"});
+  // Off the normal line: P_gF is larger by so much, and nd and Vd stay.
+  const Material normal = read(example).lens.surfaces[3].material;
+  const Material off = read(changed("1.62 36.5 0 ", "1.62 36.5 0.01 ")).lens.surfaces[3].material;
+  const double g = 435.8343, f = 486.1327, d = 587.5618, c = 656.2725;
+  const auto partial = [=](const Material& m) {
+    return (m.index(g) - m.index(f)) / (m.index(f) - m.index(c));
+  };
+  EXPECT_NEAR(partial(off) - partial(normal), 0.01, 1e-12);  // rounding of differences of indices
+  EXPECT_NEAR(off.index(d), 1.62, 1e-15);
+  EXPECT_NEAR((off.index(d) - 1) / (off.index(f) - off.index(c)), 36.5, 1e-10);
+}
+
+TEST(ZmxReader, ExtendedAspheres) {
+  // Coefficients of (r/R)², (r/R)⁴ …, R = 2.
+  const Lens lens =
+      read(changed("  TYPE EVENASPH\n",
+                   "  TYPE XASPHERE\n  XDAT 1 3 0 0 1 0 0 \"\"\n  XDAT 2 2.0 0 0 1\n  XDAT 3 0\n"
+                   "  XDAT 4 1.6e-3\n  XDAT 5 -6.4e-4\n  XDAT 6 9\n"))
+          .lens;
+  ASSERT_EQ(lens.surfaces[0].asphere.size(), 2u);  // term 4 is beyond the number of terms
+  EXPECT_DOUBLE_EQ(lens.surfaces[0].asphere.at(4), 1e-4);
+  EXPECT_DOUBLE_EQ(lens.surfaces[0].asphere.at(6), -1e-5);
+  expect_mentions(complaint("  TYPE EVENASPH\n", "  TYPE XASPHERE\n  XDAT 1 3\n  XDAT 4 1e-3\n"),
+                  {"SURF 1: ", "XDAT 2"});
+}
+
+TEST(ZmxReader, ReadsTheConfigurationThatIsWrittenOut) {
+  const auto notes = read(changed("TOL TOFF", "MNUM 2\nTHIC 1 2 5\nTOL TOFF")).notes;
+  ASSERT_EQ(notes.size(), 1u);
+  expect_mentions(notes[0], {"lens.zmx:60: of 2 configurations"});
+  EXPECT_TRUE(read(changed("TOL TOFF", "MNUM 1 1\nTOL TOFF")).notes.empty());
 }
 
 TEST(ZmxReader, RefusesWhatItDoesNotModel) {
@@ -311,7 +341,8 @@ TEST(ZmxWriter, RefusesWhatItCannotHold) {
   };
   expect_mentions(refusal("surfaces[2].glass.index_table={\"550\": 1.6}"),
                   {"out.zmx: surfaces[2].glass", "table"});
-  expect_mentions(refusal("surfaces[1].asphere.18=1e-9"), {"surfaces[1].asphere", "r^18"});
+  EXPECT_EQ(through_file(with_setting(lens, "surfaces[1].asphere.18=1e-9"), "out.zmx").surfaces[1].asphere,
+            (std::map<int, double>{{18, 1e-9}}));
   expect_mentions(refusal("surfaces[1].asphere.9=1e-9"), {"surfaces[1].asphere", "r^9"});
   expect_mentions(refusal("reference_wavelength_nm=555"), {"reference_wavelength_nm"});
   // Whichever catalogue a reader searches first, one SF1 is taken for the other.
@@ -324,7 +355,8 @@ TEST(ZmxWriter, RefusesWhatItCannotHold) {
 TEST(LensFile, UnknownExtensions) {
   expect_mentions(error_of([] { read_text("lens.txt", "lens"); }), {"lens.txt: ", ".json", ".dat", ".zmx"});
   const Lens lens = read_lens("tessar").lens;
-  expect_mentions(error_of([&] { through_file(lens, "lens.seq"); }), {"lens.seq: ", ".json", ".dat", ".zmx"});
+  expect_mentions(error_of([&] { through_file(lens, "lens.txt"); }),
+                  {"lens.txt: ", ".json", ".iset.json", ".dat", ".zmx", ".seq"});
   expect_mentions(error_of([] { read_lens("tesar"); }), {"tesar", "tessar"});
   EXPECT_EQ(read_text("LENS.ZMX", example).lens.name, "a made-up lens");
 }

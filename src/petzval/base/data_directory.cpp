@@ -86,6 +86,8 @@ std::string find_data_file(const std::string& kind, const std::string& extension
     const fs::path bundled = fs::path(data_directory()) / kind / (path_or_name + extension);
     if (fs::is_regular_file(bundled, error)) return bundled.string();
   }
+  if (fs::is_directory(path_or_name, error))
+    throw InputError(path_or_name, fmt::format("is a folder; the {} wanted is a file", what));
   const std::vector<std::string> near = nearest_names(path_or_name, bundled_names(kind, extension));
   throw InputError(path_or_name,
                    fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,

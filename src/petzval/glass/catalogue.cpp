@@ -8,8 +8,11 @@
 #include <petzval/glass/packed_catalogue.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <set>
+#include <unordered_map>
 
 namespace petzval {
 
@@ -22,7 +25,8 @@ constexpr std::size_t largest_file = std::size_t{64} << 20;
 
 bool same_dispersion(const Glass& a, const Glass& b) {
   return a.formula == b.formula && a.coefficients == b.coefficients && a.n_table == b.n_table &&
-         a.shortest_nm == b.shortest_nm && a.longest_nm == b.longest_nm;
+         a.shortest_nm == b.shortest_nm && a.longest_nm == b.longest_nm && a.absolute == b.absolute &&
+         a.vacuum_wavelengths == b.vacuum_wavelengths;
 }
 
 bool is_control(char c) {
@@ -36,46 +40,82 @@ std::string_view without_prefix(std::string_view bare) {
   return dash <= longest_prefix ? bare.substr(dash + 1) : bare;
 }
 
-}  // namespace
+/// A table of names, sorted by `folded`, and the glasses that they are numbers of.
+struct Shelf {
+  const std::vector<Name>& names;
+  std::function<std::shared_ptr<const Glass>(std::size_t)> glass;
 
-struct GlassCatalogue::Impl {
-  PackedCatalogue packed;
-
-  const Name* find_full(const std::string& folded) const;
-  std::vector<const Name*> find_bare(const std::string& folded) const;
+  const Name* find_full(const std::string& folded) const {
+    const auto found = std::lower_bound(names.begin(), names.end(), folded,
+                                        [](const Name& a, const std::string& b) { return a.folded < b; });
+    return found != names.end() && found->folded == folded ? &*found : nullptr;
+  }
+  std::vector<const Name*> find_bare(const std::string& folded) const {
+    std::vector<const Name*> found;
+    for (const Name& name : names)
+      if (name.folded_bare() == folded) found.push_back(&name);
+    return found;
+  }
   const Name* the_one(const std::string& name, const std::vector<const Name*>& found) const;
-  [[noreturn]] void unknown(const std::string& name) const;
-  std::vector<std::string> nearest(const std::string& bare, const std::string& folded_catalogue) const;
+  const Name* find(const std::string& name, const std::vector<std::string>& preferred) const;
 };
 
-const Name* GlassCatalogue::Impl::find_full(const std::string& folded) const {
-  const auto& names = packed.names();
-  const auto found = std::lower_bound(names.begin(), names.end(), folded,
-                                      [](const Name& a, const std::string& b) { return a.folded < b; });
-  return found != names.end() && found->folded == folded ? &*found : nullptr;
-}
-
-std::vector<const Name*> GlassCatalogue::Impl::find_bare(const std::string& folded) const {
-  std::vector<const Name*> found;
-  for (const Name& name : packed.names())
-    if (name.folded_bare() == folded) found.push_back(&name);
-  return found;
-}
-
 /// The glass that all of `found` agree on.
-const Name* GlassCatalogue::Impl::the_one(const std::string& name,
-                                          const std::vector<const Name*>& found) const {
-  const Glass first = packed.glass(found.front()->glass);
+const Name* Shelf::the_one(const std::string& name, const std::vector<const Name*>& found) const {
+  const auto first = glass(found.front()->glass);
   std::vector<std::string> candidates;
   bool all_same = true;
   for (const Name* candidate : found) {
     candidates.push_back(candidate->full);
-    all_same = all_same && same_dispersion(first, packed.glass(candidate->glass));
+    all_same = all_same && same_dispersion(*first, *glass(candidate->glass));
   }
   if (!all_same)
     throw InputError(fmt::format("glass {} is ambiguous; say which: {}", name, fmt::join(candidates, ", ")));
   return found.front();
 }
+
+const Name* Shelf::find(const std::string& name, const std::vector<std::string>& preferred) const {
+  const std::string folded = upper_case(name);
+  if (folded.find(':') != folded.npos) return find_full(folded);
+  for (const std::string& catalogue : preferred)
+    if (const Name* found = find_full(upper_case(catalogue) + ":" + folded)) return found;
+  const auto candidates = find_bare(folded);
+  return candidates.empty() ? nullptr : the_one(name, candidates);
+}
+
+std::string squeezed(std::string_view text) {
+  std::string letters;
+  for (const char c : upper_case(text))
+    if ((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) letters += c;
+  return letters;
+}
+
+}  // namespace
+
+struct GlassCatalogue::Impl {
+  std::shared_ptr<const PackedCatalogue> packed;  ///< may be absent
+  std::vector<std::shared_ptr<const Glass>> own;
+  std::vector<Name> own_names;
+  /// Letters and digits of a bare name → full names; made when it is first wanted.
+  mutable std::once_flag spelled_once;
+  mutable std::unordered_map<std::string, std::vector<std::string>> spelled;
+
+  Shelf own_shelf() const {
+    return {own_names, [this](std::size_t i) { return own[i]; }};
+  }
+  Shelf packed_shelf() const {
+    static const std::vector<Name> none;
+    return {packed ? packed->names() : none,
+            [this](std::size_t i) { return std::make_shared<const Glass>(packed->glass(i)); }};
+  }
+  template <class Work>
+  void for_each_name(Work work) const {
+    for (const Name& name : own_names) work(name);
+    for (const Name& name : packed_shelf().names) work(name);
+  }
+  [[noreturn]] void unknown(const std::string& name) const;
+  std::vector<std::string> nearest(const std::string& bare, const std::string& folded_catalogue) const;
+};
 
 /// Full names of the glasses whose bare names, with or without the maker's prefix, are nearest, within one
 /// catalogue or ("") in all.
@@ -83,12 +123,12 @@ std::vector<std::string> GlassCatalogue::Impl::nearest(const std::string& bare,
                                                        const std::string& folded_catalogue) const {
   constexpr std::size_t most = 6;
   std::multimap<std::string, const Name*> by_name;
-  for (const Name& name : packed.names()) {
-    if (!folded_catalogue.empty() && name.folded_catalogue() != folded_catalogue) continue;
+  for_each_name([&](const Name& name) {
+    if (!folded_catalogue.empty() && name.folded_catalogue() != folded_catalogue) return;
     by_name.emplace(name.folded_bare(), &name);
     if (const auto core = without_prefix(name.folded_bare()); core != name.folded_bare())
       by_name.emplace(core, &name);
-  }
+  });
   std::vector<std::string> candidates, full;
   for (const auto& [name, glass] : by_name)
     if (candidates.empty() || candidates.back() != name) candidates.push_back(name);
@@ -112,7 +152,7 @@ void GlassCatalogue::Impl::unknown(const std::string& name) const {
         fmt::format("unknown glass {}; the nearest known are {}", name, fmt::join(nearest(name, ""), ", ")));
   const std::string bare = name.substr(colon + 1);
   std::set<std::string> catalogues;
-  for (const Name& known : packed.names()) catalogues.emplace(known.folded_catalogue());
+  for_each_name([&](const Name& known) { catalogues.emplace(known.folded_catalogue()); });
   const std::string catalogue = upper_case(name.substr(0, colon));
   if (catalogues.count(catalogue) == 0)
     throw InputError(fmt::format(
@@ -123,9 +163,10 @@ void GlassCatalogue::Impl::unknown(const std::string& name) const {
 }
 
 GlassCatalogue GlassCatalogue::open(const std::string& path) {
+  auto impl = std::make_shared<Impl>();
+  impl->packed = std::make_shared<const PackedCatalogue>(read_whole_file(path, largest_file), path);
   GlassCatalogue catalogue;
-  catalogue.impl_ =
-      std::make_shared<const Impl>(Impl{PackedCatalogue(read_whole_file(path, largest_file), path)});
+  catalogue.impl_ = std::move(impl);
   return catalogue;
 }
 
@@ -134,41 +175,80 @@ const GlassCatalogue& GlassCatalogue::bundled() {
   return catalogue;
 }
 
+GlassCatalogue GlassCatalogue::of(std::vector<Glass> glasses) {
+  GlassCatalogue empty;
+  empty.impl_ = std::make_shared<Impl>();
+  return empty.with(std::move(glasses));
+}
+
+GlassCatalogue GlassCatalogue::with(std::vector<Glass> glasses) const {
+  auto impl = std::make_shared<Impl>();
+  impl->packed = impl_->packed;
+  impl->own = impl_->own;
+  std::set<std::string> taken;
+  for (const auto& glass : impl->own) taken.insert(upper_case(glass->full_name()));
+  for (Glass& glass : glasses) {
+    const std::string full = glass.full_name();
+    if (glass.catalogue.empty() || glass.name.empty() || std::any_of(full.begin(), full.end(), is_control) ||
+        std::count(full.begin(), full.end(), ':') != 1)
+      throw InputError("a glass without a name, or with one that cannot be written as CATALOGUE:NAME");
+    if (taken.insert(upper_case(full)).second) impl->own.push_back(std::make_shared<Glass>(std::move(glass)));
+  }
+  for (std::size_t i = 0; i < impl->own.size(); ++i) {
+    const std::string full = impl->own[i]->full_name();
+    impl->own_names.push_back({full, upper_case(full), i, true});
+  }
+  std::sort(impl->own_names.begin(), impl->own_names.end(),
+            [](const Name& a, const Name& b) { return a.folded < b.folded; });
+  GlassCatalogue catalogue;
+  catalogue.impl_ = std::move(impl);
+  return catalogue;
+}
+
 std::size_t GlassCatalogue::size() const {
-  return impl_->packed.glass_count();
+  return full_names().size();
 }
 
 std::vector<std::string> GlassCatalogue::full_names() const {
+  const Shelf own = impl_->own_shelf();
   std::vector<std::string> names;
-  for (const Name& name : impl_->packed.names())
-    if (name.proper) names.push_back(name.full);
+  impl_->for_each_name([&](const Name& name) {
+    const Name* hiding = own.find_full(name.folded);
+    if (name.proper && (!hiding || hiding == &name)) names.push_back(name.full);
+  });
+  std::sort(names.begin(), names.end(),
+            [](const std::string& a, const std::string& b) { return upper_case(a) < upper_case(b); });
   return names;
 }
 
 std::vector<std::string> GlassCatalogue::catalogues() const {
   std::set<std::string> known;
-  for (const Name& name : impl_->packed.names()) known.insert(name.full.substr(0, name.full.find(':')));
+  impl_->for_each_name([&](const Name& name) { known.insert(name.full.substr(0, name.full.find(':'))); });
   return {known.begin(), known.end()};
 }
 
 std::shared_ptr<const Glass> GlassCatalogue::find(const std::string& name,
                                                   const std::vector<std::string>& preferred) const {
-  const std::string folded = upper_case(name);
-  const Name* found = nullptr;
-  if (folded.find(':') != folded.npos) {
-    found = impl_->find_full(folded);
-  } else {
-    for (std::size_t i = 0; i < preferred.size() && !found; ++i)
-      found = impl_->find_full(upper_case(preferred[i]) + ":" + folded);
-    if (const auto candidates = impl_->find_bare(folded); !found && !candidates.empty())
-      found = impl_->the_one(name, candidates);
-  }
-  if (!found) impl_->unknown(name);
-  return std::make_shared<const Glass>(impl_->packed.glass(found->glass));
+  for (const Shelf& shelf : {impl_->own_shelf(), impl_->packed_shelf()})
+    if (const Name* found = shelf.find(name, preferred)) return shelf.glass(found->glass);
+  impl_->unknown(name);
 }
 
 bool GlassCatalogue::contains(const std::string& full_name) const {
-  return impl_->find_full(upper_case(full_name)) != nullptr;
+  const std::string folded = upper_case(full_name);
+  return impl_->own_shelf().find_full(folded) || impl_->packed_shelf().find_full(folded);
+}
+
+std::vector<std::string> GlassCatalogue::names_spelled(const std::string& letters_and_digits) const {
+  std::call_once(impl_->spelled_once, [this] {
+    const Shelf own = impl_->own_shelf();
+    impl_->for_each_name([&](const Name& name) {
+      const Name* hiding = own.find_full(name.folded);
+      if (!hiding || hiding == &name) impl_->spelled[squeezed(name.folded_bare())].push_back(name.full);
+    });
+  });
+  const auto found = impl_->spelled.find(squeezed(letters_and_digits));
+  return found == impl_->spelled.end() ? std::vector<std::string>() : found->second;
 }
 
 }  // namespace petzval

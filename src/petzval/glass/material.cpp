@@ -26,6 +26,8 @@ void check(const Material::Model& model) {
   check_index(model.nd, "a model glass with nd");
   if (!(model.vd > 0) || !std::isfinite(model.vd))
     throw InputError(fmt::format("a model glass with Vd of {}; it must be positive", model.vd));
+  if (!std::isfinite(model.dpgf))
+    throw InputError("a model glass with a deviation of P_gF that is not finite");
 }
 
 void check(const Material::Constant& constant) {
@@ -52,7 +54,7 @@ double index_in(const std::shared_ptr<const Glass>& glass, double wavelength_nm)
   return glass->index(wavelength_nm);
 }
 double index_in(const Material::Model& model, double wavelength_nm) {
-  return model_glass_index(model.nd, model.vd, wavelength_nm);
+  return model_glass_index(model.nd, model.vd, wavelength_nm, model.dpgf);
 }
 double index_in(const Material::Constant& constant, double) {
   return constant.index;
@@ -68,7 +70,8 @@ std::string describe(const std::shared_ptr<const Glass>& glass) {
   return glass->full_name();
 }
 std::string describe(const Material::Model& model) {
-  return fmt::format("nd {} Vd {}", model.nd, model.vd);
+  const std::string text = fmt::format("nd {} Vd {}", model.nd, model.vd);
+  return model.dpgf == 0 ? text : fmt::format("{} dPgF {}", text, model.dpgf);
 }
 std::string describe(const Material::Constant& constant) {
   return fmt::format("n {}", constant.index);
@@ -83,10 +86,14 @@ double Glass::index(double wavelength_nm) const {
   if (!(wavelength_nm >= shortest_nm && wavelength_nm <= longest_nm))
     throw InputError(fmt::format("the index of {} is not known at {} nm; it is valid from {} to {} nm",
                                  full_name(), wavelength_nm, shortest_nm, longest_nm));
-  if (formula != 0) return dispersion_formula(formula, coefficients, wavelength_nm);
+  const double air = absolute || vacuum_wavelengths ? air_index(wavelength_nm) : 1;
+  const double at_nm = vacuum_wavelengths ? wavelength_nm * air : wavelength_nm;
+  const double relative_to = absolute ? air : 1;
+  if (formula != 0) return dispersion_formula(formula, coefficients, at_nm) / relative_to;
   if (n_table.empty())
     throw InputError(full_name() + " has neither a dispersion formula nor a table of indices");
-  return tabulated_index(n_table, wavelength_nm);
+  // A wavelength in vacuum is longer: at the end of the range it may have passed the table's.
+  return tabulated_index(n_table, std::min(at_nm, n_table.back().first)) / relative_to;
 }
 
 double Glass::extinction(double wavelength_nm) const {

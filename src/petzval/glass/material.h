@@ -18,15 +18,17 @@ namespace petzval {
 struct Glass {
   std::string catalogue;  ///< upper case: "SCHOTT"
   std::string name;       ///< as the maker writes it: "N-BK7"
-  /// Number of the refractiveindex.info formula (1, 2: Sellmeier; 3: power series; 5: Cauchy), λ in µm;
-  /// 0: a table of n in `n_table`, interpolated.
+  /// Number of the refractiveindex.info formula (dispersion.h), λ in µm; 0: a table of n in `n_table`,
+  /// interpolated.
   int formula = 0;
   std::vector<double> coefficients;
   double shortest_nm = 0, longest_nm = 0;          ///< where the index is valid
   std::vector<std::pair<double, double>> n_table;  ///< (wavelength [nm], n)
   std::vector<std::pair<double, double>> k_table;  ///< (wavelength [nm], extinction coefficient)
   std::optional<double> stated_nd, stated_vd;      ///< as the maker prints them
-  std::string status;                              ///< "preferred", "standard", "special" or unknown: ""
+  std::string status;                              ///< "preferred", "standard", "special" … or unknown: ""
+  /// Whether formula or table give the index against vacuum, and by wavelengths in vacuum; index() converts.
+  bool absolute = false, vacuum_wavelengths = false;
 
   /// By the formula (dispersion.h) or the table. \throws InputError outside the valid range, naming glass and
   /// range.
@@ -45,9 +47,11 @@ struct Glass {
 class Material {
  public:
   struct Air {};
-  /// nd and Vd on the line of normal partial dispersion (model_glass_index in dispersion.h).
+  /// nd, Vd and the deviation of P_gF from the line of normal partial dispersion (model_glass_index in
+  /// dispersion.h).
   struct Model {
     double nd, vd;
+    double dpgf = 0;
   };
   struct Constant {
     double index;

@@ -37,11 +37,13 @@ std::optional<double> stated(double value) {
 }
 
 void check_formula(const ByteReader& reader, const Glass& glass) {
-  constexpr std::array known = {0, 1, 2, 3, 5};
-  if (std::find(known.begin(), known.end(), glass.formula) == known.end())
-    reader.damaged("an unknown formula");
-  if (glass.formula == 0 ? glass.n_table.empty() : glass.coefficients.size() % 2 == 0)
+  if (glass.formula > 9) reader.damaged("an unknown formula");
+  try {
+    if (glass.formula != 0) check_dispersion_formula(glass.formula, glass.coefficients);
+  } catch (const InputError&) {
     reader.damaged(fmt::format("formula {} without its numbers", glass.formula));
+  }
+  if (glass.formula == 0 && glass.n_table.empty()) reader.damaged("formula 0 without its numbers");
   if (!(0 < glass.shortest_nm && glass.shortest_nm < glass.longest_nm))
     reader.damaged("a valid range that is none");
 }

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/formats/pbrt.h>
-#include <petzval/lens/formats/text_lines.h>
+#include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
 #include <petzval/lens/lens_file.h>
 
@@ -28,9 +30,19 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
+/// Rows of numbers have no glass that another could take the place of.
+LensFile without_glasses(LensFile file, const std::string& path, const LensReadOptions& options) {
+  try {
+    GlassLookup(options).require_all_used();
+  } catch (const InputError& error) {
+    throw InputError(path, error.what());
+  }
+  return file;
+}
+
 LensFile read_json(const std::string& text, const std::string& path, const LensReadOptions& options) {
   const JsonDocument document(text, path);
-  if (is_iset(document)) return read_iset(document);
+  if (is_iset(document)) return without_glasses(read_iset(document), path, options);
   return {read_native(document, options), {}};
 }
 
@@ -38,13 +50,30 @@ LensFile read_text(const std::string& bytes, const std::string& path, const Lens
   const std::string extension = extension_of(path);
   if (bytes.empty()) throw InputError(path, "is empty; it should hold a lens");
   if (extension == ".json") return read_json(bytes, path, options);
-  if (extension == ".dat") return read_pbrt(decoded_text(bytes), path);
+  if (extension == ".dat") return without_glasses(read_pbrt(decoded_text(bytes), path), path, options);
   if (extension == ".zmx") return read_zmx(decoded_text(bytes), path, options);
+  if (extension == ".seq") return read_seq(decoded_text(bytes), path, options);
   throw InputError(
       path,
       fmt::format("\"{}\" is not the extension of a lens file that is read here; .json (native or ISET), "
-                  ".dat (pbrt) and .zmx are",
+                  ".dat (pbrt), .zmx and .seq (CODE V) are",
                   extension));
+}
+
+using LensText = std::string (*)(const Lens&);
+
+LensText writer_for(const std::string& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".json") {
+    const std::string inner = extension_of(std::filesystem::path(path).stem().string());
+    return inner == ".iset" ? iset_text : lens_to_json;
+  }
+  if (extension == ".dat") return pbrt_text;
+  if (extension == ".zmx") return zmx_text;
+  if (extension == ".seq") return seq_text;
+  throw InputError(path, fmt::format("\"{}\" is not the extension of a lens file that is written here; .json "
+                                     "(native), .iset.json (ISET), .dat (pbrt), .zmx and .seq (CODE V) are",
+                                     extension));
 }
 
 }  // namespace
@@ -58,22 +87,18 @@ LensFile read_lens(const std::string& path_or_name, const LensReadOptions& optio
   return file;
 }
 
-void write_lens(const Lens& lens, const std::string& path) {
-  const std::string extension = extension_of(path);
-  if (extension == ".json") return write_whole_file(path, lens_to_json(lens));
-  if (extension != ".dat" && extension != ".zmx")
-    throw InputError(
-        path,
-        fmt::format("\"{}\" is not the extension of a lens file that is written here; .json (native), .dat "
-                    "(pbrt) and .zmx are",
-                    extension));
+std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
+  const auto text_of = writer_for(path);
   std::string text;
   try {
-    text = extension == ".dat" ? pbrt_text(lens) : zmx_text(lens);
+    text = text_of(lens);
   } catch (const InputError& error) {
     throw InputError(path, error.what());
   }
   write_whole_file(path, text);
+  const bool rows_only = text_of == pbrt_text || text_of == iset_text;
+  if (!rows_only) return {};
+  return {path + ": holds one index a gap, and neither fields nor wavelengths: these are left out"};
 }
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 // Reading and writing lenses, whatever the format.
 #pragma once
 
+#include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
 
 #include <string>
@@ -13,6 +14,8 @@ struct LensReadOptions {
   /// Explicit glass substitutions, "LAK10C" → "CDGM:H-LAK10", or "SK1" → "1.61025/56.71", nd and Vd of a
   /// glass that no catalogue has. Nothing is substituted without one.
   std::map<std::string, std::string> substitutions;
+  /// Where glasses are looked for; absent: the bundled catalogue alone.
+  std::optional<GlassCatalogue> glasses;
 };
 
 /// A lens and what its reader has to say of it (apertures that are missing, an image distance that was
@@ -22,14 +25,15 @@ struct LensFile {
   std::vector<std::string> notes;
 };
 
-/// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx)
-/// and content. The lens is valid. \throws InputError with file and line, for anything that is wrong or not
-/// modelled.
+/// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx,
+/// .seq) and content. The lens is valid. \throws InputError with file and line, for anything that is wrong or
+/// not modelled, and for a substitution of a glass that the file does not have.
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options = {});
 
-/// Writes by extension (.json native, .dat, .zmx), whole or not at all.
+/// Writes by extension (.json native, .iset.json, .dat, .zmx, .seq), whole or not at all. What a format
+/// leaves out without altering a ray (fields and wavelengths in tables of rows) is returned, one line each.
 /// \throws InputError if the format cannot hold the lens, naming the surface.
-void write_lens(const Lens& lens, const std::string& path);
+std::vector<std::string> write_lens(const Lens& lens, const std::string& path);
 
 /// The lens as native JSON text, and back; every double survives.
 std::string lens_to_json(const Lens& lens);
@@ -37,8 +41,8 @@ std::string lens_to_json(const Lens& lens);
 Lens lens_from_json(const std::string& text, const std::string& file, const LensReadOptions& options = {});
 
 /// Applies "surfaces[4].thickness_mm=0.5": a path into the native JSON form, and a JSON value (a bare word is
-/// taken as a string). \throws InputError if the path names nothing in the format or the result is not a
-/// lens.
-Lens with_setting(const Lens& lens, const std::string& assignment);
+/// taken as a string). \param options  where glasses are looked for; substitutions are not used.
+/// \throws InputError if the path names nothing in the format or the result is not a lens.
+Lens with_setting(const Lens& lens, const std::string& assignment, const LensReadOptions& options = {});
 
 }  // namespace petzval

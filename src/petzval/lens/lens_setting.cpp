@@ -2,8 +2,8 @@
 // "surfaces[4].thickness_mm=0.5": a path into the native JSON form, and a JSON value.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/lens/formats/native.h>
-#include <petzval/lens/formats/number_text.h>
 
 #include <set>
 
@@ -52,7 +52,7 @@ std::vector<Step> split_path(const std::string& path) {
 /// Objects that say one thing in several ways: naming another way replaces what was there.
 void clear_alternatives(json& object, const std::string& parent_key, const std::string& key) {
   std::set<std::string> kept{key};
-  if (parent_key == "glass" && (key == "nd" || key == "vd")) kept = {"nd", "vd"};
+  if (parent_key == "glass" && (key == "nd" || key == "vd" || key == "dpgf")) kept = {"nd", "vd", "dpgf"};
   if (parent_key != "aperture" && parent_key != "glass") return;
   if (!object.is_object()) object = json::object();
   for (auto entry = object.begin(); entry != object.end();)
@@ -116,7 +116,7 @@ json altered(json root, const std::vector<Step>& steps, const json& value) {
 
 }  // namespace
 
-Lens with_setting(const Lens& lens, const std::string& assignment) {
+Lens with_setting(const Lens& lens, const std::string& assignment, const LensReadOptions& options) {
   const std::string origin = "--set " + assignment;
   JsonDocument document(lens_to_json(lens), lens.name);
   const std::size_t equals = assignment.find('=');
@@ -129,7 +129,9 @@ Lens with_setting(const Lens& lens, const std::string& assignment) {
   } catch (const InputError& error) {
     throw InputError(origin, error.what());
   }
-  return read_native(document, {});
+  LensReadOptions without_substitutions;
+  without_substitutions.glasses = options.glasses;
+  return read_native(document, without_substitutions);
 }
 
 }  // namespace petzval

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
-#include <petzval/glass/catalogue.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/glass/packed_catalogue.h>
 #include <petzval/lens/formats/glass_lookup.h>
-#include <petzval/lens/formats/number_text.h>
-#include <petzval/lens/formats/text_lines.h>
+
+#include <algorithm>
 
 namespace petzval {
 
@@ -20,11 +22,10 @@ std::optional<Material> model_glass(const std::string& text) {
   return Material(Material::Model{*nd, *vd});
 }
 
-Material catalogue_glass(const std::string& name, const std::vector<std::string>& preferred) {
+void check_name(const std::string& name) {
   constexpr std::size_t longest_name = 60;
   if (name.empty() || name.size() > longest_name || quotable(name) != name)
     throw InputError(fmt::format("\"{}\" is not the name of a glass", quotable(name)));
-  return Material(GlassCatalogue::bundled().find(name, preferred));
 }
 
 std::optional<std::string> substitute(const std::string& name, const LensReadOptions& options) {
@@ -35,15 +36,62 @@ std::optional<std::string> substitute(const std::string& name, const LensReadOpt
 
 }  // namespace
 
-bool is_substituted(const std::string& name, const LensReadOptions& options) {
-  return substitute(name, options).has_value();
+const GlassCatalogue& GlassLookup::catalogue() const {
+  return options_.glasses ? *options_.glasses : GlassCatalogue::bundled();
 }
 
-Material find_glass(const std::string& name, const LensReadOptions& options,
-                    const std::vector<std::string>& preferred) {
-  const std::string wanted = substitute(name, options).value_or(name);
-  const auto model = wanted == name ? std::nullopt : model_glass(wanted);
-  return model ? *model : catalogue_glass(wanted, preferred);
+bool GlassLookup::is_substituted(const std::string& name) const {
+  return substitute(name, options_).has_value();
+}
+
+Material GlassLookup::of_catalogue(const std::string& name, const std::vector<std::string>& preferred) const {
+  check_name(name);
+  try {
+    return Material(catalogue().find(name, preferred));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; --substitute {}=… takes another", error.what(), name));
+  }
+}
+
+Material GlassLookup::find(const std::string& name, const std::vector<std::string>& preferred) {
+  asked_.insert(name);
+  const auto instead = substitute(name, options_);
+  if (!instead) return of_catalogue(name, preferred);
+  const auto model = model_glass(*instead);
+  return model ? *model : of_catalogue(*instead, preferred);
+}
+
+Material GlassLookup::find_squeezed(const std::string& name, const std::string& holder) {
+  const std::string as_written = holder.empty() ? name : name + "_" + holder;
+  if (is_substituted(as_written)) return find(as_written);
+  check_name(name);
+  std::vector<std::string> found = catalogue().names_spelled(name);
+  if (!holder.empty())
+    std::erase_if(found, [&](const std::string& full) {
+      return upper_case(full.substr(0, full.find(':'))) != upper_case(holder);
+    });
+  asked_.insert(as_written);
+  if (found.empty()) return of_catalogue(holder.empty() ? name : holder + ":" + name, {});
+  const auto bare = [](const std::string& full) { return full.substr(full.find(':') + 1); };
+  const bool one_name = std::all_of(found.begin(), found.end(), [&](const std::string& full) {
+    return upper_case(bare(full)) == upper_case(bare(found.front()));
+  });
+  if (!one_name)
+    throw InputError(fmt::format("glass {} is ambiguous; say which: {}", as_written, fmt::join(found, ", ")));
+  return of_catalogue(found.size() == 1 ? found.front() : bare(found.front()), {});
+}
+
+void GlassLookup::require_all_used() const {
+  for (const auto& [from, to] : options_.substitutions) {
+    const bool used = std::any_of(asked_.begin(), asked_.end(), [&, &from = from](const std::string& name) {
+      return upper_case(name) == upper_case(from);
+    });
+    if (used) continue;
+    if (asked_.empty())
+      throw InputError(fmt::format("--substitute {}={}: the lens names no glasses", quotable(from), to));
+    throw InputError(fmt::format("--substitute {}={}: the lens has no such glass; its glasses are {}",
+                                 quotable(from), quotable(to), fmt::join(asked_, ", ")));
+  }
 }
 
 }  // namespace petzval

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/row_lens.h>
-#include <petzval/lens/formats/text_lines.h>
 
 namespace petzval {
 
@@ -12,12 +13,17 @@ namespace {
 LensRow read_row(const JsonEntry& entry) {
   entry.allow_only({"ior", "radius", "semi_aperture", "thickness"});
   LensRow row;
-  row.radius_mm = entry.at("radius").number("a radius in mm, 0 for the stop");
+  const JsonEntry radius = entry.at("radius");
+  const double radius_mm = radius.number("a radius in mm, 0 for the stop");
+  row.stop = radius_mm == 0;
+  if (!row.stop)
+    row.curvature_per_mm =
+        radius.long_number() ? curvature_from_radius(*radius.long_number()) : 1 / radius_mm;
   row.thickness_mm = entry.at("thickness").number("a distance in mm");
   const JsonEntry ior = entry.at("ior");
   row.index_after = ior.number("a refractive index, 0 at the stop");
   row.semi_diameter_mm = entry.at("semi_aperture").number("a semi-diameter in mm");
-  if (!(row.index_after >= 1) && !(row.radius_mm == 0 && row.index_after == 0))
+  if (!(row.index_after >= 1) && !(row.stop && row.index_after == 0))
     ior.fail("must be at least 1; 1 is air, 0 stands at the stop only");
   return row;
 }
@@ -43,7 +49,7 @@ LensFile read_iset(const JsonDocument& document) {
   bool has_stop = false;
   for (const JsonEntry& surface : top.at("surfaces").items("a list of surfaces, front to back")) {
     rows.push_back(read_row(surface));
-    if (rows.back().radius_mm != 0) continue;
+    if (!rows.back().stop) continue;
     if (has_stop) surface.fail("is a second stop (radius 0); give a flat surface a large radius");
     has_stop = true;
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/formats/json_document.h>
 #include <petzval/lens/formats/json_locator.h>
-#include <petzval/lens/formats/text_lines.h>
 
 #include <algorithm>
 

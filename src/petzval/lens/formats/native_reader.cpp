@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/native.h>
-#include <petzval/lens/formats/number_text.h>
 #include <petzval/lens/lens_fault.h>
 
 #include <algorithm>
@@ -34,13 +34,13 @@ Material index_table(const JsonEntry& entry) {
   return located(entry, [&] { return Material(table); });
 }
 
-Material read_glass(const JsonEntry& entry, const LensReadOptions& options) {
+Material read_glass(const JsonEntry& entry, GlassLookup& glasses) {
   constexpr const char* forms =
       "a glass name, {\"nd\": …, \"vd\": …}, {\"index\": …} or {\"index_table\": {\"587.56\": …}}";
   if (entry.is_null()) return Material();
   if (entry.is_text()) {
     const std::string name = entry.text(forms);
-    return located(entry, [&] { return find_glass(name, options); });
+    return located(entry, [&] { return glasses.find(name); });
   }
   if (!entry.is_object()) entry.fail(fmt::format("must be {}, or be left out for air", forms));
   if (const auto table = entry.find("index_table")) {
@@ -53,9 +53,11 @@ Material read_glass(const JsonEntry& entry, const LensReadOptions& options) {
     return located(entry, [&] { return Material(Material::Constant{n}); });
   }
   if (!entry.find("nd") && !entry.find("vd")) entry.fail(fmt::format("must be {}", forms));
-  entry.allow_only({"nd", "vd"});
+  entry.allow_only({"nd", "vd", "dpgf"});
+  const auto deviation = entry.find("dpgf");
   const Material::Model model{entry.at("nd").number("a refractive index"),
-                              entry.at("vd").number("an Abbe number")};
+                              entry.at("vd").number("an Abbe number"),
+                              deviation ? deviation->number("a deviation of P_gF") : 0};
   return located(entry, [&] { return Material(model); });
 }
 
@@ -74,12 +76,12 @@ void read_asphere(const JsonEntry& entry, Surface& surface) {
   }
 }
 
-Surface read_surface(const JsonEntry& entry, const LensReadOptions& options) {
+Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "stop"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
-  if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, options);
+  if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, glasses);
   if (const auto semi = entry.find("semi_diameter_mm"); semi && !semi->is_null())
     surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
   if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
@@ -141,9 +143,15 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   lens.aperture = read_aperture(top.at("aperture"));
   if (const auto fields = top.find("fields")) lens.fields = read_fields(*fields);
   read_wavelengths(top, lens);
+  GlassLookup glasses(options);
   for (const JsonEntry& surface : top.at("surfaces").items("a list of surfaces, front to back"))
-    lens.surfaces.push_back(read_surface(surface, options));
+    lens.surfaces.push_back(read_surface(surface, glasses));
   if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
+  try {
+    glasses.require_all_used();
+  } catch (const InputError& error) {
+    document.fail("", error.what());
+  }
   return lens;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/number_text.h>
 #include <petzval/lens/formats/native.h>
-#include <petzval/lens/formats/number_text.h>
 
 namespace petzval {
 
@@ -24,7 +24,9 @@ struct GlassText {
     return quoted(glass->full_name());
   }
   std::string operator()(const Material::Model& model) const {
-    return fmt::format(R"({{"nd": {}, "vd": {}}})", number_text(model.nd), number_text(model.vd));
+    const std::string deviation = model.dpgf == 0 ? "" : ", \"dpgf\": " + number_text(model.dpgf);
+    return fmt::format(R"({{"nd": {}, "vd": {}{}}})", number_text(model.nd), number_text(model.vd),
+                       deviation);
   }
   std::string operator()(const Material::Constant& constant) const {
     return fmt::format(R"({{"index": {}}})", number_text(constant.index));

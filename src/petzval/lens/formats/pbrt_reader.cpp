@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/lens/formats/number_text.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/row_lens.h>
-#include <petzval/lens/formats/text_lines.h>
 
 #include <cmath>
 
@@ -22,9 +22,10 @@ struct PbrtTable {
   int stop_line = 0;
 };
 
-LensRow row_of(const std::vector<double>& numbers, const std::string& file, int line) {
-  LensRow row{numbers[0], numbers[1], numbers[2], numbers[3] / 2};
-  const bool stop = row.radius_mm == 0;
+LensRow row_of(const std::vector<double>& numbers, const std::string& radius, const std::string& file,
+               int line) {
+  const bool stop = numbers[0] == 0;
+  const LensRow row{stop ? 0 : curvature_from_radius(radius), numbers[1], numbers[2], numbers[3] / 2, stop};
   if (!(row.index_after >= 1) && !(stop && row.index_after == 0))
     throw InputError(
         file, line,
@@ -50,8 +51,8 @@ void read_row(const TextLine& line, const std::string& file, PbrtTable& table) {
   if (numbers.size() != 4)
     throw InputError(file, line.number,
                      fmt::format("a row has 4 numbers ({}), not {}", row_form, numbers.size()));
-  const LensRow row = row_of(numbers, file, line.number);
-  if (row.radius_mm == 0) {
+  const LensRow row = row_of(numbers, line.words[0], file, line.number);
+  if (row.stop) {
     if (table.stop_line != 0)
       throw InputError(
           file, line.number,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
-#include <petzval/lens/formats/number_text.h>
-#include <petzval/lens/formats/text_lines.h>
+#include <petzval/lens/formats/field_point.h>
 #include <petzval/lens/formats/zmx.h>
 #include <petzval/lens/formats/zmx_keywords.h>
 #include <petzval/lens/formats/zmx_surfaces.h>
@@ -80,13 +81,6 @@ std::optional<std::size_t> field_option(const ZmxFile& file, std::size_t i) {
   if (!value || *value < 0)
     file.fail(file.header, record->line, fmt::format("value {} of FTYP must be a whole number", i + 1));
   return static_cast<std::size_t>(*value);
-}
-
-/// Fields are points in x and y; on a lens that is round only their distance from the axis counts.
-double radial_field(double x, double y, bool is_angle) {
-  if (x == 0) return y;
-  if (!is_angle) return std::hypot(x, y);
-  return degrees(std::atan(std::hypot(std::tan(radians(x)), std::tan(radians(y)))));
 }
 
 Fields read_fields(const ZmxContext& context) {
@@ -183,7 +177,8 @@ LensFile read_zmx(const std::string& text, const std::string& file_name, const L
   LensFile result;
   result.notes = check_zmx_keywords(file);
   check_environment(file);
-  ZmxContext context{file, options, read_unit(file), {}, result.notes};
+  GlassLookup glasses(options);
+  ZmxContext context{file, glasses, read_unit(file), {}, result.notes};
   if (const ZmxRecord* catalogues = file.header.find("GCAT")) context.catalogues = catalogues->values;
   Lens& lens = result.lens;
   if (const ZmxRecord* name = file.header.find("NAME")) lens.name = name->rest;
@@ -194,6 +189,11 @@ LensFile read_zmx(const std::string& text, const std::string& file_name, const L
   read_wavelengths(file, lens);
   if (const auto fault = find_fault(lens))
     throw InputError(file_name, line_of(file, fault->path), fault->path + " " + fault->message);
+  try {
+    glasses.require_all_used();
+  } catch (const InputError& error) {
+    throw InputError(file_name, error.what());
+  }
   note_unbounded(file, lens, result.notes);
   return result;
 }

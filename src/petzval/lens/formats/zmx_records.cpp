@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/lens/formats/number_text.h>
-#include <petzval/lens/formats/text_lines.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/formats/zmx_records.h>
 #include <petzval/lens/lens_fault.h>
 
@@ -64,9 +64,13 @@ double ZmxFile::number_or(const ZmxBlock& block, const ZmxRecord& record, std::s
 ZmxFile zmx_records(const std::string& text, const std::string& file) {
   ZmxFile result;
   result.name = file;
-  bool surface_is_indented = false;
+  bool surface_is_indented = false, is_tail = false;
   for (TextLine& line : text_lines(text)) {
     if (line.words.empty()) continue;
+    if (is_tail) {
+      if (line.words.front() == "MNUM") result.header.records.push_back(record_of(std::move(line)));
+      continue;
+    }
     const bool indented = line.text.front() == ' ' || line.text.front() == '\t';
     ZmxRecord record = record_of(std::move(line));
     if (record.keyword == "SURF") {
@@ -78,7 +82,11 @@ ZmxFile zmx_records(const std::string& text, const std::string& file) {
       result.header.records.push_back(std::move(record));
       continue;
     }
-    if (surface_is_indented && !indented) break;
+    if (surface_is_indented && !indented) {
+      is_tail = true;
+      if (record.keyword == "MNUM") result.header.records.push_back(std::move(record));
+      continue;
+    }
     surface_is_indented = surface_is_indented || indented;
     result.surfaces.back().records.push_back(std::move(record));
   }

@@ -38,7 +38,8 @@ struct ZmxFile {
 };
 
 /// Records of surfaces are indented; what follows the last surface without indent (merit function,
-/// configurations, tolerances) says nothing about the lens as it stands and is left out. \throws InputError
+/// configurations, tolerances) says nothing about the lens as it stands and is left out, but for
+/// the number of configurations, MNUM. \throws InputError
 /// unless the surfaces are numbered from 0 on and there are at least three.
 ZmxFile zmx_records(const std::string& text, const std::string& file);
 

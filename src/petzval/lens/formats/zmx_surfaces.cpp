@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/lens/formats/glass_lookup.h>
-#include <petzval/lens/formats/number_text.h>
-#include <petzval/lens/formats/text_lines.h>
 #include <petzval/lens/formats/zmx_surfaces.h>
 
 #include <cmath>
+#include <map>
 
 namespace petzval {
 
@@ -21,13 +22,16 @@ bool is_infinite(const ZmxRecord& thickness) {
   return std::abs(parse_number(thickness.values[0]).value_or(0)) >= infinite_distance;
 }
 
-/// Coefficient i (from 1) of PARM is that of r^(step·i).
+/// Coefficient i (from 1) of PARM is that of r^(step·i). An extended asphere has them in XDAT instead, after
+/// their number and a radius R that r is divided by.
 struct SurfaceType {
   const char* name;
   int power_step;  ///< 0: no polynomial
+  bool extended;
 };
-constexpr SurfaceType surface_types[] = {{"STANDARD", 0}, {"EVENASPH", 2}, {"ODDASPHE", 1}};
-constexpr int most_parameters = 8;
+constexpr SurfaceType surface_types[] = {
+    {"STANDARD", 0, false}, {"EVENASPH", 2, false}, {"ODDASPHE", 1, false}, {"XASPHERE", 2, true}};
+constexpr int most_parameters = 8, most_extra_data = 300;
 
 /// What stands for the name of a glass that has none.
 constexpr const char* unnamed_glass = "___BLANK";
@@ -38,8 +42,9 @@ const SurfaceType& surface_type(const ZmxFile& file, const ZmxBlock& block) {
   const std::string name = record->has(0) ? record->values[0] : "";
   for (const SurfaceType& type : surface_types)
     if (name == type.name) return type;
-  file.fail(block, record->line,
-            fmt::format("TYPE {} is not modelled; STANDARD, EVENASPH and ODDASPHE are", quotable(name)));
+  file.fail(
+      block, record->line,
+      fmt::format("TYPE {} is not modelled; STANDARD, EVENASPH, ODDASPHE and XASPHERE are", quotable(name)));
 }
 
 void read_polynomial(const ZmxContext& context, const ZmxBlock& block, int power_step, Surface& surface) {
@@ -56,24 +61,40 @@ void read_polynomial(const ZmxContext& context, const ZmxBlock& block, int power
   }
 }
 
+void read_extended_polynomial(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
+  const ZmxFile& file = context.file;
+  std::map<int, double> data;
+  for (const ZmxRecord& record : block.records) {
+    if (record.keyword != "XDAT") continue;
+    const double i = file.number(block, record, 0);
+    if (i != std::floor(i) || i < 1 || i > most_extra_data)
+      file.fail(block, record.line, fmt::format("XDAT {} is not a number of extra data", i));
+    data[static_cast<int>(i)] = file.number(block, record, 1);
+  }
+  constexpr int first_coefficient = 3;
+  const double terms = data[1], radius_mm = data[2] * context.mm_per_unit;
+  for (const auto& [i, value] : data) {
+    const int term = i - first_coefficient + 1;
+    if (term < 1 || term > terms || value == 0) continue;
+    if (!(radius_mm > 0))
+      file.fail(block, block.line, "an XASPHERE without a positive normalisation radius (XDAT 2)");
+    surface.asphere[2 * term] = value * context.mm_per_unit * std::pow(radius_mm, -2 * term);
+  }
+}
+
 /// nd, Vd and the deviation ΔP_gF from the normal line, of a glass that is given by these and not by its
 /// name.
 Material read_model_glass(const ZmxContext& context, const ZmxBlock& block, const ZmxRecord& record) {
   const ZmxFile& file = context.file;
   const std::string name = quotable(record.values[0]);
   const double nd = file.number(block, record, 3), vd = file.number_or(block, record, 4, 0);
-  if (file.number_or(block, record, 5, 0) != 0)
-    file.fail(
-        block, record.line,
-        fmt::format("a model glass off the normal line (by {} in its partial dispersion) is not modelled; "
-                    "name a glass, or use --substitute {}=…",
-                    quotable(record.values[5]), name));
+  const double dpgf = file.number_or(block, record, 5, 0);
   if (record.values[0] != unnamed_glass)
     context.notes.push_back(fmt::format("{}:{}: SURF {}: a model glass, nd {} Vd {}; its name {} is not used",
                                         file.name, record.line, block.number, nd, vd, name));
   // Without an Abbe number a model glass has no dispersion.
   try {
-    return vd == 0 ? Material(Material::Constant{nd}) : Material(Material::Model{nd, vd});
+    return vd == 0 ? Material(Material::Constant{nd}) : Material(Material::Model{nd, vd, dpgf});
   } catch (const InputError& error) {
     file.fail(block, record.line, error.what());
   }
@@ -86,9 +107,9 @@ Material read_glass(const ZmxContext& context, const ZmxBlock& block, const ZmxR
   const std::string& name = record.values[0];
   if (name == "MIRROR") file.fail(block, record.line, "GLAS MIRROR: mirrors are not modelled");
   const bool is_model = name == unnamed_glass || file.number_or(block, record, 1, 0) == 1;
-  if (is_model && !is_substituted(name, context.options)) return read_model_glass(context, block, record);
+  if (is_model && !context.glasses.is_substituted(name)) return read_model_glass(context, block, record);
   try {
-    return find_glass(name, context.options, context.catalogues);
+    return context.glasses.find(name, context.catalogues);
   } catch (const InputError& error) {
     file.fail(block, record.line, error.what());
   }
@@ -133,7 +154,10 @@ Surface read_surface(const ZmxContext& context, const ZmxBlock& block) {
   surface.thickness_mm = read_thickness(context, block);
   surface.stop = block.find("STOP") != nullptr;
   surface.semi_diameter_mm = read_semi_diameter(context, block);
-  if (type.power_step) read_polynomial(context, block, type.power_step, surface);
+  if (type.extended)
+    read_extended_polynomial(context, block, surface);
+  else if (type.power_step)
+    read_polynomial(context, block, type.power_step, surface);
   if (const ZmxRecord* glass = block.find("GLAS")) surface.material = read_glass(context, block, *glass);
   return surface;
 }

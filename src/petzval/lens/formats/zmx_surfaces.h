@@ -2,6 +2,7 @@
 // The surfaces of a .zmx file.
 #pragma once
 
+#include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/zmx_records.h>
 #include <petzval/lens/lens_file.h>
 
@@ -12,7 +13,7 @@ namespace petzval {
 
 struct ZmxContext {
   const ZmxFile& file;
-  const LensReadOptions& options;
+  GlassLookup& glasses;
   double mm_per_unit = 1;
   std::vector<std::string> catalogues;  ///< in the file's order
   std::vector<std::string>& notes;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/glass/catalogue.h>
-#include <petzval/lens/formats/number_text.h>
 #include <petzval/lens/formats/zmx.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ constexpr int um_per_nm_power = -3;
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  return text;
+  return trimmed(text);
 }
 
 /// The first catalogue glass of a lens that a reader who searches `catalogue` before its own would mistake.
@@ -65,27 +66,45 @@ struct GlassText {
                                    surface, glass->full_name()));
     return fmt::format("  GLAS {} 0 0 1.5 40 0 0 0 0 0 0\n", glass->name);
   }
-  std::string operator()(const Material::Model& model) const { return model_glass(model.nd, model.vd); }
-  std::string operator()(const Material::Constant& constant) const { return model_glass(constant.index, 0); }
+  std::string operator()(const Material::Model& model) const {
+    return model_glass(model.nd, model.vd, model.dpgf);
+  }
+  std::string operator()(const Material::Constant& constant) const {
+    return model_glass(constant.index, 0, 0);
+  }
   std::string operator()(const Material::Table&) const {
     throw InputError(fmt::format(
         "surfaces[{}].glass: a .zmx file cannot hold a table of indices; name a glass first", surface));
   }
-  static std::string model_glass(double nd, double vd) {
-    return fmt::format("  GLAS ___BLANK 1 0 {} {} 0 0 0 0 0 0\n", number_text(nd), number_text(vd));
+  static std::string model_glass(double nd, double vd, double dpgf) {
+    return fmt::format("  GLAS ___BLANK 1 0 {} {} {} 0 0 0 0 0\n", number_text(nd), number_text(vd),
+                       number_text(dpgf));
   }
 };
 
-/// Even powers up to 16 make an EVENASPH, powers up to 8 an ODDASPHE.
+/// Even powers of any height, r measured in mm.
+std::string extended_shape_text(const Surface& surface) {
+  const auto datum = [](int i, const std::string& value) {
+    return fmt::format("  XDAT {} {} 0 0 1 0 0 \"\"\n", i, value);
+  };
+  std::string text = "  TYPE XASPHERE\n";
+  text += datum(1, fmt::format("{}", surface.asphere.rbegin()->first / 2)) + datum(2, "1.0");
+  for (const auto& [power, coefficient] : surface.asphere)
+    text += datum(power / 2 + 2, number_text(coefficient));
+  return text;
+}
+
+/// Even powers up to 16 make an EVENASPH, higher ones an XASPHERE, powers up to 8 an ODDASPHE.
 std::string shape_text(const Surface& surface, std::size_t i) {
   if (surface.asphere.empty()) return "  TYPE STANDARD\n";
   constexpr int parameters = 8;
   const bool even = std::all_of(surface.asphere.begin(), surface.asphere.end(),
                                 [](const auto& term) { return term.first % 2 == 0; });
   const int step = even ? 2 : 1, highest = surface.asphere.rbegin()->first;
+  if (highest > parameters * step && even) return extended_shape_text(surface);
   if (highest > parameters * step)
     throw InputError(fmt::format(
-        "surfaces[{}].asphere: a .zmx file holds even powers up to 16 or all up to 8, not r^{}", i, highest));
+        "surfaces[{}].asphere: a .zmx file holds even powers, or all powers up to 8, not r^{}", i, highest));
   std::string text = even ? "  TYPE EVENASPH\n" : "  TYPE ODDASPHE\n";
   for (const auto& [power, coefficient] : surface.asphere)
     text += fmt::format("  PARM {} {}\n", power / step, number_text(coefficient));

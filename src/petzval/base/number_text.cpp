@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/lens/formats/number_text.h>
+#include <petzval/base/number_text.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/lens/formats/text_lines.h>
+#include <petzval/base/text_lines.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval lens scale.
+#include <fmt/format.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/lens/scaled_lens.h>
+
+#include <memory>
+
+#include "lens_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct ScaleCommand {
+  LensChoice lens;
+  double factor = 1;
+  std::string output;
+};
+
+void scale(const ScaleCommand& options, const Shared& shared) {
+  const Lens lens = options.lens.read(shared), scaled = scaled_lens(lens, options.factor);
+  for (const std::string& line : write_lens(scaled, options.output)) note(shared, line);
+  if (shared.quiet) return;
+  fmt::print("{}: focal length {:.6g} mm, was {:.6g} mm\n", options.output, first_order(scaled).efl_mm,
+             first_order(lens).efl_mm);
+}
+
+}  // namespace
+
+void add_lens_scale(CLI::App& lens, Shared& shared) {
+  auto options = std::make_shared<ScaleCommand>();
+  CLI::App* command =
+      add_command(lens, shared, "scale",
+                  "Write a lens with all its lengths multiplied: focal length, object distance, "
+                  "apertures and field heights; f-number and angles stay",
+                  "petzval lens scale double-gauss --factor 0.5 -o half.json", false,
+                  [options, &shared] { scale(*options, shared); });
+  options->lens.add_to(*command);
+  command->add_option("--factor", options->factor, "What every length is multiplied by")
+      ->required()
+      ->check(positive_number());
+  command->add_option("-o,--output", options->output, "Lens file to write; its extension tells the format")
+      ->required();
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
+#include <petzval/glass/packed_catalogue.h>
+#include <petzval/lens/formats/seq.h>
+#include <petzval/lens/formats/seq_surfaces.h>
+#include <petzval/lens/lens_fault.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// CODE V writes an infinite distance as 10^13 and takes any from 10^10 on for one.
+constexpr double infinite_distance = 1e10;
+
+/// A private glass of one index everywhere has no dispersion.
+Material private_material(const Material::Table& table) {
+  const bool constant = std::all_of(table.begin(), table.end(),
+                                    [&](const auto& entry) { return entry.second == table.front().second; });
+  return constant ? Material(Material::Constant{table.front().second}) : Material(table);
+}
+
+/// Power of r whose coefficient a letter is, 0 for none.
+int asphere_power(const std::string& name) {
+  if (name.size() != 1) return 0;
+  const std::size_t letter = seq_asphere_letters.find(name[0]);
+  return letter == seq_asphere_letters.npos ? 0 : seq_lowest_asphere_power + 2 * static_cast<int>(letter);
+}
+
+}  // namespace
+
+std::string SeqSurfaces::where() const {
+  if (surfaces_.empty()) return "";
+  if (current_ == 0) return "SO: ";
+  return ended_ && current_ + 1 == surfaces_.size() ? "SI: " : fmt::format("S{}: ", current_);
+}
+
+int SeqSurfaces::line_of(std::size_t i) const {
+  return surfaces_[std::min(i + 1, surfaces_.size() - 1)].command.line;
+}
+
+bool SeqSurfaces::wants_image_distance() const {
+  if (surfaces_.size() < 2) return false;
+  const SeqSurface& last = surfaces_[surfaces_.size() - 2];
+  return last.solves_image_distance && last.thickness == 0;
+}
+
+double SeqSurfaces::curvature(const SeqCommand& command, std::size_t i, bool is_radius,
+                              const SeqContext& context) const {
+  const double value = context.number(command, i, where());
+  if (!is_radius || value == 0) return value;
+  return curvature_from_radius(command.words[i]);
+}
+
+/// PRV, PWL and 'NAME' n1 n2 …, END.
+bool SeqSurfaces::apply_private(const SeqCommand& command, const SeqContext& context) {
+  if (command.name == "PRV") {
+    in_private_ = true;
+    return true;
+  }
+  if (!in_private_) return false;
+  if (command.name == "END") {
+    in_private_ = false;
+  } else if (command.name == "PWL") {
+    private_wavelengths_nm_ = context.numbers(command);
+  } else {
+    std::vector<double> indices;
+    for (const std::string& word : command.words) {
+      if (!parse_number(word))
+        throw InputError(
+            context.file, command.line,
+            fmt::format("private glass '{}': only indices at the wavelengths of PWL are read, not "
+                        "\"{}\"",
+                        quotable(command.name), quotable(word)));
+      indices.push_back(*parse_number(word));
+    }
+    Material::Table table;
+    if (indices.empty() || indices.size() != private_wavelengths_nm_.size())
+      throw InputError(context.file, command.line,
+                       fmt::format("private glass '{}': {} indices for the {} wavelengths of PWL",
+                                   quotable(command.name), indices.size(), private_wavelengths_nm_.size()));
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      table.emplace_back(private_wavelengths_nm_[i], indices[i]);
+    std::sort(table.begin(), table.end());
+    try {
+      private_[upper_case(command.name)] = private_material(table);
+    } catch (const InputError& error) {
+      throw InputError(context.file, command.line, error.what());
+    }
+  }
+  return true;
+}
+
+bool SeqSurfaces::enter_surface(const SeqCommand& command, const SeqContext& context) {
+  using Kind = SeqSurfaceName::Kind;
+  const auto name = seq_surface_name(command.name);
+  if (!name) return false;
+  const auto count = static_cast<int>(surfaces_.size());
+  if (name->kind == Kind::object) {
+    if (count > 0) context.fail(command, "stands a second time; the object comes once, and first");
+  } else if (count == 0) {
+    context.fail(command, "comes before the object surface; SO must be the first");
+  }
+  if (surfaces_.size() > most_surfaces) context.fail(command, "is one surface too many");
+  const bool numbered = name->kind == Kind::numbered;
+  if (numbered && (name->number > count || (ended_ && name->number >= count)))
+    context.fail(command, fmt::format("is not the next surface, which is S{}", count));
+  if (!numbered && ended_) context.fail(command, "comes after the image surface SI");
+  current_ = numbered ? static_cast<std::size_t>(name->number) : surfaces_.size();
+  if (current_ == surfaces_.size()) surfaces_.emplace_back();
+  if (name->kind == Kind::image) ended_ = true;
+  SeqSurface& surface = surfaces_[current_] = SeqSurface();
+  surface.command = command;
+  if (command.has(0)) surface.curvature = curvature(command, 0, radius_mode_, context);
+  if (command.has(1)) surface.thickness = context.number(command, 1, where());
+  for (std::size_t i = 2; i < command.words.size(); ++i) {
+    const std::string word = upper_case(command.words[i]);
+    if (word == "REFL") context.fail(command, "is a mirror (REFL), which is not modelled", where());
+    if (word == "REFR") continue;
+    if (i > 2) context.fail(command, fmt::format("has a \"{}\" that is not read", quotable(word)), where());
+    surface.glass = SeqCommand{command.line, command.name, {command.words[i]}};
+  }
+  return true;
+}
+
+std::size_t SeqSurfaces::target(const SeqCommand& command, std::size_t& first_word,
+                                const SeqContext& context) const {
+  using Kind = SeqSurfaceName::Kind;
+  if (surfaces_.empty()) context.fail(command, "comes before the first surface");
+  const auto name = command.has(0) ? seq_surface_name(command.words[0]) : std::nullopt;
+  if (!name || name->kind == Kind::next) return current_;
+  first_word = 1;
+  if (name->kind == Kind::object) return 0;
+  if (name->kind == Kind::image) return surfaces_.size() - 1;
+  if (name->number >= static_cast<int>(surfaces_.size()))
+    context.fail(command, fmt::format("is for S{}, which is not there", name->number));
+  return static_cast<std::size_t>(name->number);
+}
+
+/// CIR [EDG | OBS | HOL] radius: an edge is where the glass ends, and not clear aperture.
+void SeqSurfaces::apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                                 const SeqContext& context) {
+  bool is_edge = false;
+  for (std::size_t i = first; i < command.words.size(); ++i) {
+    const std::string word = upper_case(command.words[i]);
+    if (word == "EDG") is_edge = true;
+    if (word == "OBS" || word == "HOL")
+      context.fail(command, fmt::format("{} (an obscuration or a hole) is not modelled", word), where());
+    if (!parse_number(word)) continue;
+    const double radius = *parse_number(word);
+    if (!(radius >= 0)) context.fail(command, "must be a radius that is not negative", where());
+    if (!is_edge && radius > 0) surface.semi_diameter = radius;
+    return;
+  }
+  context.fail(command, "must have a radius", where());
+}
+
+bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                              const SeqContext& context) {
+  const std::string& name = command.name;
+  if (name == "RDY" || name == "CUY") {
+    surface.curvature = curvature(command, first, name == "RDY", context);
+  } else if (name == "THI") {
+    surface.thickness = context.number(command, first, where());
+  } else if (name == "K") {
+    surface.conic = context.number(command, first, where());
+  } else if (const int power = asphere_power(name)) {
+    surface.asphere[power] = context.number(command, first, where());
+  } else if (name == "GLA" || name == "GL1") {
+    if (!command.has(first)) context.fail(command, "must have a glass", where());
+    if (upper_case(command.words[first]) == "REFL")
+      context.fail(command, "REFL: mirrors are not modelled", where());
+    surface.glass = SeqCommand{command.line, name, {command.words[first]}};
+  } else if (name == "CIR") {
+    apply_aperture(surface, command, first, context);
+  } else if (name == "PIM") {
+    surface.solves_image_distance = true;
+  } else if (name == "SPH") {
+    surface.conic = 0;
+    surface.asphere.clear();
+  } else if (name == "RMD") {
+    if (command.has(first) && upper_case(command.words[first]).substr(0, 4) != "REFR")
+      context.fail(command, fmt::format("{} is not modelled; REFR is", quotable(command.words[first])),
+                   where());
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool SeqSurfaces::apply(const SeqCommand& command, const SeqContext& context) {
+  if (apply_private(command, context)) return true;
+  if (command.name == "RDM") {
+    radius_mode_ = !command.has(0) || upper_case(command.words[0]).substr(0, 1) != "N";
+    return true;
+  }
+  if (enter_surface(command, context)) return true;
+  static const std::vector<std::string> names{"STO", "RDY", "CUY", "THI", "K",  "GLA",
+                                              "GL1", "CIR", "PIM", "SPH", "RMD"};
+  if (std::find(names.begin(), names.end(), command.name) == names.end() && !asphere_power(command.name))
+    return false;
+  std::size_t first = 0;
+  const std::size_t surface = target(command, first, context);
+  if (command.name != "STO") return apply_shape(surfaces_[surface], command, first, context);
+  stop_ = surface;
+  return true;
+}
+
+void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& context,
+                           GlassLookup& glasses) const {
+  constexpr std::size_t fewest_surfaces = 3;
+  if (surfaces_.size() < fewest_surfaces || !ended_)
+    throw InputError(
+        context.file,
+        "does not enter a whole lens; it needs the object SO, at least one surface S and the image SI");
+  const auto check_end = [&](const SeqSurface& end, const char* what) {
+    if (end.curvature != 0 || !end.asphere.empty() || end.glass)
+      context.fail(end.command,
+                   fmt::format("is a curved {} surface or one with glass behind it, which is not "
+                               "modelled",
+                               what));
+  };
+  check_end(surfaces_.front(), "object");
+  check_end(surfaces_.back(), "image");
+  const double object = surfaces_.front().thickness;
+  lens.object_distance_mm.reset();
+  if (!(std::abs(object) >= infinite_distance)) lens.object_distance_mm = object * mm_per_unit;
+  const std::size_t stop = stop_.value_or(1);
+  if (!stop_) context.notes.push_back(context.file + ": no STO; the stop is the first surface");
+  if (stop == 0 || stop + 1 == surfaces_.size())
+    throw InputError(context.file, "has its stop STO on the object or the image surface");
+  for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
+    const SeqSurface& from = surfaces_[i];
+    Surface surface;
+    surface.curvature_per_mm = from.curvature / mm_per_unit;
+    if (!(std::abs(from.thickness) < infinite_distance))
+      context.fail(from.command, "is infinitely far from the next surface; only the object may be");
+    surface.thickness_mm = from.thickness * mm_per_unit;
+    surface.conic = from.conic;
+    for (const auto& [power, value] : from.asphere)
+      if (value != 0) surface.asphere[power] = value * std::pow(mm_per_unit, 1 - power);
+    if (from.semi_diameter) surface.semi_diameter_mm = *from.semi_diameter * mm_per_unit;
+    surface.stop = i == stop;
+    if (from.glass) try {
+        surface.material = seq_glass(from.glass->words[0], private_, glasses);
+      } catch (const InputError& error) {
+        throw InputError(context.file, from.glass->line, fmt::format("S{}: {}", i, error.what()));
+      }
+    lens.surfaces.push_back(std::move(surface));
+  }
+}
+
+}  // namespace petzval

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The surfaces of a CODE V file.
+#pragma once
+
+#include <petzval/lens/formats/seq_glass.h>
+#include <petzval/lens/formats/seq_system.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// In the unit of the file.
+struct SeqSurface {
+  SeqCommand command;  ///< that entered it
+  double curvature = 0, thickness = 0, conic = 0;
+  std::map<int, double> asphere;
+  std::optional<SeqCommand> glass;  ///< the command whose first word names it
+  std::optional<double> semi_diameter;
+  bool solves_image_distance = false;  ///< PIM
+};
+
+class SeqSurfaces {
+ public:
+  /// Takes over a command if it is one of these; false: it is another's. \throws InputError
+  bool apply(const SeqCommand& command, const SeqContext& context);
+
+  /// Fills in the surfaces and the object distance, in mm. The aperture, fields and wavelengths are not
+  /// needed.
+  void put_into(Lens& lens, double mm_per_unit, const SeqContext& context, GlassLookup& glasses) const;
+  /// Whether the last gap is to be solved: it says PIM and gives no distance.
+  bool wants_image_distance() const;
+  /// Thickness of the image surface: a shift of focus.
+  double focus_shift() const { return surfaces_.empty() ? 0 : surfaces_.back().thickness; }
+  /// "S3: " of the current surface, "" before the first.
+  std::string where() const;
+  /// The line that entered surface `i` of the lens.
+  int line_of(std::size_t i) const;
+
+ private:
+  bool apply_private(const SeqCommand& command, const SeqContext& context);
+  bool enter_surface(const SeqCommand& command, const SeqContext& context);
+  bool apply_shape(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                   const SeqContext& context);
+  void apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                      const SeqContext& context);
+  double curvature(const SeqCommand& command, std::size_t i, bool is_radius, const SeqContext& context) const;
+  /// The surface that a command is for: that of its first word ("S3"), else the current one.
+  std::size_t target(const SeqCommand& command, std::size_t& first_word, const SeqContext& context) const;
+
+  bool radius_mode_ = false, in_private_ = false, ended_ = false;
+  std::vector<SeqSurface> surfaces_;  ///< the object first
+  std::size_t current_ = 0;
+  std::optional<std::size_t> stop_;
+  std::vector<double> private_wavelengths_nm_;
+  PrivateGlasses private_;
+};
+
+}  // namespace petzval

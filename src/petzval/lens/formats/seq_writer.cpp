@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/lens/formats/seq.h>
+#include <petzval/lens/formats/seq_glass.h>
+
+#include <algorithm>
+
+namespace petzval {
+
+namespace {
+
+/// A constant index has no place of its own; as a private glass it stands at two wavelengths, and a reader
+/// takes equal indices for a constant.
+const Material::Table constant_at{{100, 0}, {100000, 0}};
+
+[[noreturn]] void refuse(std::size_t surface, const char* key, const std::string& why) {
+  throw InputError(fmt::format("surfaces[{}].{}: a .seq file cannot hold {}", surface, key, why));
+}
+
+/// Titles as one line in single quotes.
+std::string title_text(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == '\''; }, ' ');
+  return fmt::format("'{}'", text);
+}
+
+std::string numbers_text(const std::vector<double>& numbers) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) texts.push_back(number_text(number));
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+/// Names of glasses, and the private glasses that they need.
+struct GlassText {
+  std::size_t surface;
+  std::string& private_glasses;
+
+  std::string operator()(const Material::Air&) const { return ""; }
+  std::string operator()(const std::shared_ptr<const Glass>& glass) const {
+    return fmt::format(" {}", guarded([&] { return seq_glass_name(*glass); }));
+  }
+  std::string operator()(const Material::Model& model) const {
+    return fmt::format(" {}", guarded([&] { return fictitious_glass_text(model); }));
+  }
+  std::string operator()(const Material::Constant& constant) const {
+    Material::Table table = constant_at;
+    for (auto& entry : table) entry.second = constant.index;
+    return (*this)(table);
+  }
+  std::string operator()(const Material::Table& table) const {
+    const std::string name = fmt::format("G{}", surface + 1);
+    std::vector<double> wavelengths_nm, indices;
+    for (const auto& [wavelength_nm, index] : table) {
+      wavelengths_nm.push_back(wavelength_nm);
+      indices.push_back(index);
+    }
+    private_glasses +=
+        fmt::format("PWL {}\n'{}' {}\n", numbers_text(wavelengths_nm), name, numbers_text(indices));
+    return fmt::format(" '{}'", name);
+  }
+
+ private:
+  template <typename Make>
+  std::string guarded(Make make) const {
+    try {
+      return make();
+    } catch (const InputError& error) {
+      refuse(surface, "glass", error.what());
+    }
+  }
+};
+
+std::string asphere_text(const Surface& surface, std::size_t i) {
+  std::string text = "  ASP\n";
+  if (surface.conic != 0) text += fmt::format("  K {}\n", number_text(surface.conic));
+  for (const auto& [power, coefficient] : surface.asphere) {
+    const int letter = (power - seq_lowest_asphere_power) / 2;
+    if (power % 2 != 0 || power < seq_lowest_asphere_power ||
+        letter >= static_cast<int>(seq_asphere_letters.size()))
+      refuse(i, "asphere", fmt::format("r^{}; it holds r^4, r^6 … r^20", power));
+    text += fmt::format("  {} {}\n", seq_asphere_letters[static_cast<std::size_t>(letter)],
+                        number_text(coefficient));
+  }
+  return text;
+}
+
+std::string surface_text(const Lens& lens, std::size_t i, std::string& private_glasses) {
+  const Surface& surface = lens.surfaces[i];
+  std::string text =
+      fmt::format("S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
+                  std::visit(GlassText{i, private_glasses}, surface.material.kind()));
+  if (surface.stop) text += "  STO\n";
+  if (surface.conic != 0 || !surface.asphere.empty()) text += asphere_text(surface, i);
+  if (surface.semi_diameter_mm) text += fmt::format("  CIR {}\n", number_text(*surface.semi_diameter_mm));
+  return text;
+}
+
+std::string aperture_text(const Lens& lens) {
+  const std::string value = number_text(lens.aperture.value);
+  switch (lens.aperture.kind) {
+    case Aperture::Kind::f_number:
+      if (lens.object_distance_mm)
+        throw InputError(
+            "aperture.f_number: a .seq file's FNO is the one at the object's distance; set "
+            "aperture.working_f_number or aperture.entrance_pupil_diameter_mm first");
+      return "FNO " + value;
+    case Aperture::Kind::working_f_number:
+      return "FNO " + value;
+    case Aperture::Kind::image_na:
+      return "NA " + value;
+    case Aperture::Kind::object_na:
+      return "NAO " + value;
+    case Aperture::Kind::entrance_pupil_diameter_mm:
+      return "EPD " + value;
+    case Aperture::Kind::stop_semi_diameter_mm:
+      break;
+  }
+  throw InputError(
+      "aperture.stop_semi_diameter_mm: a .seq file cannot hold it; set aperture.entrance_pupil_diameter_mm "
+      "or "
+      "aperture.f_number first");
+}
+
+std::string fields_text(const Fields& fields) {
+  constexpr const char* names[] = {"YAN", "YOB", "YIM", "YRI"};
+  return fmt::format("{} {}\n", names[static_cast<std::size_t>(fields.kind)], numbers_text(fields.values));
+}
+
+std::string wavelengths_text(const Lens& lens) {
+  const auto& wavelengths = lens.wavelengths_nm;
+  const auto reference = std::find(wavelengths.begin(), wavelengths.end(), lens.reference_wavelength_nm);
+  if (reference == wavelengths.end())
+    throw InputError("reference_wavelength_nm: in a .seq file it must be one of wavelengths_nm");
+  return fmt::format("WL {}\nREF {}\nWTW {}\n", numbers_text(wavelengths),
+                     reference - wavelengths.begin() + 1,
+                     fmt::join(std::vector<int>(wavelengths.size(), 1), " "));
+}
+
+}  // namespace
+
+std::string seq_text(const Lens& lens) {
+  lens.validate();
+  constexpr double infinity = 1e13, farthest = 1e10;
+  if (lens.object_distance_mm && *lens.object_distance_mm >= farthest)
+    throw InputError("object_distance_mm: in a .seq file a distance from 1e10 on is infinite");
+  std::string private_glasses, surfaces;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (!(std::abs(lens.surfaces[i].thickness_mm) < farthest))
+      refuse(i, "thickness_mm", "a distance from 1e10 on: it is infinite");
+    surfaces += surface_text(lens, i, private_glasses);
+  }
+  std::string text =
+      fmt::format("RDM N\nLEN\nTITLE {}\nDIM M\n{}\n", title_text(lens.name), aperture_text(lens));
+  text += wavelengths_text(lens) + fields_text(lens.fields);
+  if (!private_glasses.empty()) text += fmt::format("PRV\n{}END\n", private_glasses);
+  text += fmt::format("SO 0.0 {}\n", number_text(lens.object_distance_mm.value_or(infinity)));
+  return text + surfaces + "SI 0.0 0.0\nGO\n";
+}
+
+}  // namespace petzval
