@@ -188,28 +188,28 @@ TEST(Mtf, BadFrequenciesAndWeightsAreErrors) {
   }
 }
 
-class SmoothPupils : public GoldenLensTest {};
+class ExitPupilFits : public GoldenLensTest {};
 
-TEST_P(SmoothPupils, GiveTheTransferOfAimedRays) {
+TEST_P(ExitPupilFits, GiveTheTransferOfAimedRays) {
   int compared = 0;
   for_each_row([&](const FieldTracer& tracer, const ChiefRay& chief, const nlohmann::json& row) {
     if (!row.contains("diffraction_mtf")) return;
     const ExitPupil pupil = *ExitPupil::of(tracer, chief);
     for (const PupilModel& model : {PupilModel{}, as_psf}) {
-      const std::optional<SmoothPupil> smooth = SmoothPupil::of(pupil, model);
+      const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(pupil, model);
       ASSERT_TRUE(smooth);
       for (const MtfDirection direction : {MtfDirection::tangential, MtfDirection::sagittal}) {
         ++compared;
         EXPECT_NEAR(std::abs(diffraction_otf(tracer, pupil, direction, 35, model) -
                              diffraction_otf(tracer, pupil, *smooth, direction, 35)),
-                    0, 2 * pi * SmoothPupil::tolerance);
+                    0, 2 * pi * ExitPupilFit::tolerance);
       }
     }
   });
   EXPECT_EQ(compared, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Lenses, SmoothPupils, golden_lenses());
+INSTANTIATE_TEST_SUITE_P(Lenses, ExitPupilFits, golden_lenses());
 
 TEST(MtfThroughFocus, IsThatOfAnotherLastThickness) {
   // Rays are carried to the moved sensor on the one hand, the lens is altered on the other.

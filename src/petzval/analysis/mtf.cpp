@@ -206,7 +206,7 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);
   if (!pupil) return {};
   for (const double shift : shifts) {
-    const std::optional<SmoothPupil> smooth = SmoothPupil::of(*pupil, options.model, shift);
+    const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(*pupil, options.model, shift);
     if (!smooth && shift != 0)
       throw InputError(
           fmt::format("{}: the wave at field {:g} is too rough to be moved by {:g} mm; set the "
@@ -249,7 +249,7 @@ std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil&
 }
 
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
-                                     const SmoothPupil& smooth, MtfDirection direction,
+                                     const ExitPupilFit& smooth, MtfDirection direction,
                                      double frequency_cpmm) {
   const auto wave = [&](double alpha, double beta) { return smooth.wave(alpha, beta); };
   return overlap_otf(tracer, pupil, wave, smooth.transverse_mm(), direction, frequency_cpmm);

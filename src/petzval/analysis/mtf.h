@@ -3,9 +3,9 @@
 #pragma once
 
 #include <petzval/analysis/exit_pupil.h>
+#include <petzval/analysis/exit_pupil_fit.h>
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/pupil_rays.h>
-#include <petzval/analysis/smooth_pupil.h>
 
 #include <complex>
 #include <optional>
@@ -29,7 +29,7 @@ std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil&
 
 /// The same, the wave asked of polynomials through the pupil's rays instead of aimed rays.
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
-                                     const SmoothPupil& wave, MtfDirection direction, double frequency_cpmm);
+                                     const ExitPupilFit& wave, MtfDirection direction, double frequency_cpmm);
 
 /// The transform of the ray spot, each ray weighing as the light it carries.
 std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirection direction,

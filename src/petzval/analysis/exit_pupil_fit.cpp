@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/analysis/smooth_pupil.h>
+#include <petzval/analysis/exit_pupil_fit.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/base/units.h>
 
@@ -42,11 +42,11 @@ Eigen::Index term_count(int degree) {
 
 }  // namespace
 
-std::optional<SmoothPupil> SmoothPupil::of(const ExitPupil& pupil, const PupilModel& model,
-                                           double sensor_shift_mm) {
+std::optional<ExitPupilFit> ExitPupilFit::of(const ExitPupil& pupil, const PupilModel& model,
+                                             double sensor_shift_mm) {
   const std::vector<ExitPupil::Sample> samples = pupil.samples(model, sensor_shift_mm);
   const auto rows = static_cast<Eigen::Index>(samples.size());
-  SmoothPupil smooth;
+  ExitPupilFit smooth;
   smooth.alpha_scale_ = pupil.alpha_max();
   smooth.beta_middle_ = 0.5 * (pupil.beta_range().low + pupil.beta_range().high);
   smooth.beta_scale_ = 0.5 * pupil.beta_range().length();
@@ -82,14 +82,14 @@ std::optional<SmoothPupil> SmoothPupil::of(const ExitPupil& pupil, const PupilMo
   return {};
 }
 
-double SmoothPupil::sum(const std::vector<double>& coefficients, double alpha, double beta) const {
+double ExitPupilFit::sum(const std::vector<double>& coefficients, double alpha, double beta) const {
   double total = 0;
   over_terms(degree_, alpha / alpha_scale_, (beta - beta_middle_) / beta_scale_,
              [&](std::size_t t, double value) { total += coefficients[t] * value; });
   return total;
 }
 
-std::complex<double> SmoothPupil::wave(double alpha, double beta) const {
+std::complex<double> ExitPupilFit::wave(double alpha, double beta) const {
   return std::polar(amplitude_.empty() ? 1.0 : std::max(sum(amplitude_, alpha, beta), 0.0),
                     2 * pi * sum(phase_, alpha, beta));
 }

@@ -13,7 +13,7 @@ namespace petzval {
 /// Amplitude and phase of an ExitPupil, least-squares polynomials through a quadrature's worth of its rays:
 /// Chebyshev in β and in α², on the box about the pupil. Also for a sensor moved along the axis, which
 /// changes the phase by what the rays travel and nothing else.
-class SmoothPupil {
+class ExitPupilFit {
  public:
   /// Largest miss of the polynomials at any of the rays: of the phase [waves], and of the amplitude against
   /// its largest value. A transfer function errs by less than 2π times this.
@@ -22,8 +22,8 @@ class SmoothPupil {
   /// \param sensor_shift_mm  how far the sensor stands behind the lens's own image surface; the wave is then
   /// about the chief ray's new point. \returns nothing when no polynomial of degree 24 or less is so near;
   /// then ExitPupil::wave is there.
-  static std::optional<SmoothPupil> of(const ExitPupil& pupil, const PupilModel& model,
-                                       double sensor_shift_mm = 0);
+  static std::optional<ExitPupilFit> of(const ExitPupil& pupil, const PupilModel& model,
+                                        double sensor_shift_mm = 0);
 
   std::complex<double> wave(double alpha, double beta) const;
   /// As ExitPupil::transverse_mm, on the moved sensor.
