@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "camera_option.h"
 #include "field_option.h"
 
 namespace petzval::app {
@@ -12,10 +13,14 @@ namespace petzval::app {
 struct AnalysisCommand {
   LensChoice lens;
   FieldChoice fields;
+  CameraChoice camera;
   std::string plot;
 
-  /// The lens as the analysis sees it: read, set, with apertures as asked.
-  Lens prepare(const Shared& shared) const { return fields.prepare(lens.read(shared), shared); }
+  /// The lens as the analysis sees it: read, set, stopped down and focused, with apertures as asked.
+  Lens prepare(const Shared& shared) const {
+    const Lens read = fields.prepare(lens.read(shared), shared);
+    return camera.used(read, fields.request(read), shared);
+  }
 };
 
 /// Adds a subcommand with LENS, fields, wavelengths, apertures and --plot FILE.svg around `work`.
@@ -29,6 +34,7 @@ CLI::App* add_analysis_command(CLI::App& parent, Shared& shared, const std::stri
   });
   options->lens.add_to(*command);
   options->fields.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("--plot", options->plot, "Also draw the result into this SVG file");
   return command;
 }

@@ -142,6 +142,10 @@ void LensChoice::add_to(CLI::App& command, bool positional, bool required) {
   CLI::Option* option =
       command.add_option(positional ? "lens" : "--lens", path_or_name, "Lens file or name of a bundled lens");
   if (required) option->required();
+  add_settings_to(command);
+}
+
+void LensChoice::add_settings_to(CLI::App& command) {
   command.add_option("--set", settings, "Alter the lens: surfaces[4].thickness_mm=0.5 (repeatable)")
       ->take_all()
       ->allow_extra_args(false);

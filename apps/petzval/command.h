@@ -49,6 +49,8 @@ struct LensChoice {
 
   /// Adds the positional LENS (or `--lens` when `positional` is false), --set and --substitute.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
+  /// Adds --set and --substitute alone.
+  void add_settings_to(CLI::App& command);
   /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
   Lens read(const Shared& shared) const;
 };

@@ -23,6 +23,8 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_vignetting(*lens, shared);
   add_lens_chief_ray_angle(*lens, shared);
   add_lens_mtf(*lens, shared);
+  add_lens_focus(*lens, shared);
+  add_lens_report(*lens, shared);
   add_lens_convert(*lens, shared);
   add_lens_scale(*lens, shared);
 }

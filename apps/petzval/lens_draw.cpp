@@ -10,6 +10,7 @@
 
 #include <memory>
 
+#include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
 
@@ -20,13 +21,15 @@ namespace {
 struct DrawCommand {
   LensChoice lens;
   FieldChoice fields;
+  CameraChoice camera;
   int rays = 5;
   std::string output;
 };
 
 void draw(const DrawCommand& options, const Shared& shared) {
   require_extension(options.output, {".svg"}, "a drawing");
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens read = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   const FieldTableRequest request = options.fields.request(lens);
   FieldTracer tracer(
       lens,
@@ -58,6 +61,7 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
                                   [=, &shared] { draw(*options, shared); });
   options->lens.add_to(*command);
   options->fields.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("--rays", options->rays, "Rays a field")->check(CLI::Range(1, 1001));
   command->add_option("-o,--output", options->output, "SVG file to write")->required();
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct InfoCommand {
   LensChoice lens;
+  CameraChoice camera;
   std::optional<double> wavelength_nm;
 };
 
@@ -100,7 +102,7 @@ void info(const InfoCommand& options, const Shared& shared) {
   const auto wavelength_nm = options.wavelength_nm;
   if (wavelength_nm && !(std::isfinite(*wavelength_nm) && *wavelength_nm > 0))
     throw InputError(fmt::format("--wavelength {}: must be a positive number of nm", *wavelength_nm));
-  const Lens lens = options.lens.read(shared);
+  const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   const FirstOrder data = first_order(lens, wavelength_nm);
   if (shared.json) return print_json(info_json(lens, data));
   print_first_order(lens, data);
@@ -116,6 +118,7 @@ void add_lens_info(CLI::App& lens, Shared& shared) {
                   "petzval lens info edmund-54852 --wavelength 486.13 --set object_distance_mm=500", true,
                   [options, &shared] { info(*options, shared); });
   options->lens.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("--wavelength", options->wavelength_nm,
                       "In nm; the lens's reference wavelength if not given");
 }

@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct SeidelCommand {
   LensChoice lens;
+  CameraChoice camera;
   std::string plot;
 };
 
@@ -44,7 +46,7 @@ void print_terms(const std::string& name, const SeidelTerms& values, double unit
 }
 
 void seidel(const SeidelCommand& options, const Shared& shared) {
-  const Lens lens = options.lens.read(shared);
+  const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   const SeidelSums sums = seidel_sums(lens);
   if (!options.plot.empty()) {
     const Plot plot = seidel_plot(sums);
@@ -87,6 +89,7 @@ void add_lens_seidel(CLI::App& lens, Shared& shared) {
                                     seidel(*options, shared);
                                   });
   options->lens.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("--plot", options->plot, "Also draw the coefficients into this SVG file");
 }
 

@@ -5,9 +5,7 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/svg_plot.h>
 
-#include <memory>
-
-#include "field_option.h"
+#include "analysis_command.h"
 #include "lens_commands.h"
 #include "loss_option.h"
 
@@ -15,27 +13,9 @@ namespace petzval::app {
 
 namespace {
 
-struct TableCommand {
-  LensChoice lens;
-  FieldChoice fields;
+struct TableCommand : AnalysisCommand {
   LossChoice losses;  ///< illumination only
-  std::string plot;
 };
-
-/// \param counts_light  whether reflection and absorption matter to it.
-void add_table_command(CLI::App& parent, Shared& shared, const std::string& name,
-                       const std::string& description, const std::string& example, bool counts_light,
-                       void (*work)(const TableCommand&, const Shared&)) {
-  auto options = std::make_shared<TableCommand>();
-  CLI::App* command = add_command(parent, shared, name, description, example, true, [=, &shared] {
-    if (!options->plot.empty()) require_extension(options->plot, {".svg"}, "a plot");
-    work(*options, shared);
-  });
-  options->lens.add_to(*command);
-  options->fields.add_to(*command);
-  command->add_option("--plot", options->plot, "Also draw the table into this SVG file");
-  if (counts_light) options->losses.add_to(*command);
-}
 
 nlohmann::ordered_json table_json(const Lens& lens, const FieldTableRequest& request) {
   return {{"lens", lens.name},
@@ -61,7 +41,8 @@ void write_plot(const std::string& path, Plot plot, const std::vector<Row>& rows
 }
 
 void distortion(const TableCommand& options, const Shared& shared) {
-  const Lens lens = options.lens.read(shared);
+  const Lens read = options.lens.read(shared);
+  const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   const FieldTableRequest request = options.fields.request(lens);
   const std::vector<DistortionRow> rows = distortion_table(lens, request);
   if (!options.plot.empty()) {
@@ -99,7 +80,7 @@ void distortion(const TableCommand& options, const Shared& shared) {
 }
 
 void illumination(const TableCommand& options, const Shared& shared) {
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens lens = options.prepare(shared);
   FieldTableRequest request = options.fields.request(lens);
   request.losses = options.losses.losses(lens, shared);
   const std::vector<IlluminationRow> rows = illumination_table(lens, request);
@@ -140,15 +121,17 @@ void illumination(const TableCommand& options, const Shared& shared) {
 }  // namespace
 
 void add_lens_distortion(CLI::App& lens, Shared& shared) {
-  add_table_command(lens, shared, "distortion", "Real and paraxial image heights by field and wavelength",
-                    "petzval lens distortion edmund-54852 --fields 0,2.1,3 --wavelengths 587.56", false,
-                    distortion);
+  add_analysis_command(lens, shared, "distortion", "Real and paraxial image heights by field and wavelength",
+                       "petzval lens distortion edmund-54852 --fields 0,2.1,3 --wavelengths 587.56",
+                       std::make_shared<TableCommand>(), distortion);
 }
 
 void add_lens_illumination(CLI::App& lens, Shared& shared) {
-  add_table_command(lens, shared, "illumination",
-                    "Absolute and relative illumination by field and wavelength",
-                    "petzval lens illumination edmund-54852 --plot illumination.svg", true, illumination);
+  auto options = std::make_shared<TableCommand>();
+  CLI::App* command = add_analysis_command(
+      lens, shared, "illumination", "Absolute and relative illumination by field and wavelength",
+      "petzval lens illumination edmund-54852 --plot illumination.svg", options, illumination);
+  options->losses.add_to(*command);
 }
 
 }  // namespace petzval::app

@@ -14,7 +14,7 @@ namespace {
 
 struct WavefrontCommand : AnalysisCommand {
   std::string map;
-  int samples = 65;
+  int samples = 64;
 };
 
 void write_map(const WavefrontCommand& options, const Lens& lens, FieldTableRequest request) {

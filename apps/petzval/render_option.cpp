@@ -101,7 +101,7 @@ void RenderChoice::add_to(CLI::App& command) {
   command
       .add_option("--far", far_distance,
                   "Surfaces beyond this distance along a ray are not seen [scene units]")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_flag(
       "--absolute-spectra", absolute_spectra,
       "Spectra of lights are radiances [W/(m2 sr nm)] as they stand, not scaled as pbrt-v4 scales them");

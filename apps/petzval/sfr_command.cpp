@@ -278,7 +278,7 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->check(CLI::IsMember({"exact", "iso"}))
       ->capture_default_str();
   command->add_option("--pixel-pitch", options->pitch_um, "Pixel pitch [um], for results in lp/mm")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--csv", options->csv, "Write the SFR table: .csv");
   command->add_option("--plot", options->plot, "Draw the SFRs: .svg");
   command->add_option("--profile", options->profile,

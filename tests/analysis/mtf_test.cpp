@@ -188,5 +188,80 @@ TEST(Mtf, BadFrequenciesAndWeightsAreErrors) {
   }
 }
 
+class ExitPupilFits : public GoldenLensTest {};
+
+TEST_P(ExitPupilFits, GiveTheTransferOfAimedRays) {
+  int compared = 0;
+  for_each_row([&](const FieldTracer& tracer, const ChiefRay& chief, const nlohmann::json& row) {
+    if (!row.contains("diffraction_mtf")) return;
+    const ExitPupil pupil = *ExitPupil::of(tracer, chief);
+    for (const PupilModel& model : {PupilModel{}, as_psf}) {
+      const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(pupil, model);
+      ASSERT_TRUE(smooth);
+      for (const MtfDirection direction : {MtfDirection::tangential, MtfDirection::sagittal}) {
+        ++compared;
+        EXPECT_NEAR(std::abs(diffraction_otf(tracer, pupil, direction, 35, model) -
+                             diffraction_otf(tracer, pupil, *smooth, direction, 35)),
+                    0, 2 * pi * ExitPupilFit::tolerance);
+      }
+    }
+  });
+  EXPECT_EQ(compared, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, ExitPupilFits, golden_lenses());
+
+TEST(MtfThroughFocus, IsThatOfAnotherLastThickness) {
+  // Rays are carried to the moved sensor on the one hand, the lens is altered on the other.
+  const Lens lens = read_lens("double-gauss").lens;
+  FieldTableRequest request = FieldTableRequest::of(lens);
+  request.fields = {0, 14};
+  for (const bool geometric : {false, true}) {
+    MtfOptions options;
+    options.frequencies_cpmm = {20, 40};
+    options.geometric = geometric;
+    options.weights = {1, 2, 1};
+    options.sensor_shifts_mm = {-0.2, 0.1};
+    const std::vector<MtfRow> moved = mtf_table(lens, request, options);
+    ASSERT_EQ(moved.size(), 8U);
+    options.sensor_shifts_mm.clear();
+    for (std::size_t s = 0; s < 2; ++s) {
+      Lens altered = lens;
+      altered.surfaces.back().thickness_mm += moved[4 * s].sensor_shift_mm;
+      const std::vector<MtfRow> rows = mtf_table(altered, request, options);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_NEAR(moved[4 * s + i].tangential, rows[i].tangential, 2e-4);
+        EXPECT_NEAR(moved[4 * s + i].sagittal, rows[i].sagittal, 2e-4);
+      }
+    }
+  }
+}
+
+TEST(MtfThroughFocus, OfAPerfectLensIsThatOfADefocusedCircle) {
+  // Geometrical limit of a small defocus at low frequency: 2 J1(z)/z with z = 2π ν (shift · tan U').
+  Lens lens;
+  Surface front, back;
+  front.thickness_mm = 2;
+  front.material = Material(Material::Constant{1.5});
+  front.stop = true;
+  back.curvature_per_mm = -1.0 / 20;
+  back.conic = -2.25;
+  back.thickness_mm = 40;
+  lens.surfaces = {front, back};
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 1};
+  lens.wavelengths_nm = {550};
+  lens.reference_wavelength_nm = 550;
+  MtfOptions options;
+  options.frequencies_cpmm = {10};
+  options.geometric = true;
+  options.sensor_shifts_mm = {-1, 0, 0.5, 1};
+  for (const MtfRow& row : mtf_table(lens, FieldTableRequest::of(lens), options)) {
+    const double z = 2 * pi * 10 * std::abs(row.sensor_shift_mm) / 40;
+    const double expected = z == 0 ? 1 : std::abs(2 * std::cyl_bessel_j(1, z) / z);
+    EXPECT_NEAR(row.tangential, expected, 1e-3);  // NA² = 6e-4
+    EXPECT_NEAR(row.sagittal, expected, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace petzval

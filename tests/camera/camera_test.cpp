@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/camera/camera.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_file.h>
 
 #include <cmath>
 #include <limits>
@@ -198,6 +199,55 @@ TEST(Camera, RefocusingKeepsFieldAngles) {
   camera.focus_at_m({});
   EXPECT_EQ(camera.lens().fields.kind, Fields::Kind::angle_deg);
   EXPECT_NEAR(camera.lens().fields.values[1], 9.0902769208223, 1e-9);  // atan 0.16
+}
+
+TEST(Camera, MovesTheSensorAndNothingElse) {
+  Camera camera(read_lens("double-gauss").lens);
+  const double design = camera.lens().surfaces.back().thickness_mm;
+  camera.move_sensor_mm(0.25);
+  EXPECT_DOUBLE_EQ(camera.lens().surfaces.back().thickness_mm, design + 0.25);
+  camera.move_sensor_mm(0.25);
+  EXPECT_DOUBLE_EQ(camera.lens().surfaces.back().thickness_mm, design + 0.5);
+  EXPECT_FALSE(camera.lens().object_distance_mm);
+  camera.set_f_number(8);
+  EXPECT_DOUBLE_EQ(camera.lens().surfaces.back().thickness_mm, design + 0.5);
+  camera.set_image_distance_mm(70);
+  EXPECT_DOUBLE_EQ(camera.lens().surfaces.back().thickness_mm, 70);
+  EXPECT_THROW(camera.move_sensor_mm(-71), InputError);
+  EXPECT_THROW(camera.set_image_distance_mm(0), InputError);
+  EXPECT_THROW(camera.set_image_distance_mm(std::nan("")), InputError);
+}
+
+TEST(Camera, MovingTheWholeLensKeepsObjectAndSensor) {
+  Camera camera(read_lens("edmund-54852").lens);
+  const double total = *camera.object_distance_from_sensor_m();
+  const double object = *camera.lens().object_distance_mm, image = camera.lens().surfaces.back().thickness_mm;
+  camera.move_lens_mm(0.1);
+  EXPECT_NEAR(*camera.object_distance_from_sensor_m(), total, 1e-15);
+  EXPECT_NEAR(*camera.lens().object_distance_mm, object - 0.1, 1e-12);
+  EXPECT_NEAR(camera.lens().surfaces.back().thickness_mm, image + 0.1, 1e-12);
+  EXPECT_THROW(camera.move_lens_mm(1e4), InputError);
+  EXPECT_THROW(camera.move_lens_mm(-1e4), InputError);
+}
+
+TEST(Camera, AHelicoidFocusesAThinLensByNewtonsEquation) {
+  // x x' = f²: an object at distance x in front of the front focus is sharp x' = f²/x behind the rear one.
+  // Focused at infinity, the lens is moved towards an object until the paraxial image falls on the sensor.
+  Camera camera(read_lens("double-gauss").lens);
+  Lens near = camera.lens();
+  near.object_distance_mm = 2000;
+  const FirstOrder data = first_order(near);
+  double low = 0, high = 50;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    Camera moved(near);
+    moved.move_lens_mm(middle);
+    const FirstOrder at = first_order(moved.lens());
+    (at.paraxial_image_mm > moved.lens().surfaces.back().thickness_mm ? low : high) = middle;
+  }
+  // After the move the object is nearer by the move, and the sensor stands x' + (sensor − rear focus).
+  const double x = 2000 - low + data.ffl_mm;
+  EXPECT_NEAR(low, data.efl_mm * data.efl_mm / x - (near.surfaces.back().thickness_mm - data.bfl_mm), 1e-9);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include <petzval/analysis/exit_pupil.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/first_order.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace petzval {
@@ -12,6 +14,9 @@ namespace {
 
 /// Corners of the outline: a polygon of 512 is too small by a share of (2π/512)²/6 = 2.5e-5.
 constexpr int outline_azimuths = 512;
+/// Rays of samples(): every fourth azimuth of the outline, and nodes in radius.
+constexpr std::size_t azimuth_stride = 4;
+constexpr int sample_radii = 24;
 /// Distance to neighbouring rays per pupil radius, for the Jacobian.
 constexpr double nudge_per_radius = 1e-4;
 /// The aim is good when the direction is met to this share of the pupil: what is left is put right by the
@@ -25,7 +30,8 @@ ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief)
     : tracer_(&tracer),
       chief_(chief),
       pencil_(Pencil::from_object(tracer.lens(), chief.object_field)),
-      sphere_radius_mm_(reference_sphere_radius_mm(tracer, chief)) {}
+      sphere_radius_mm_(reference_sphere_radius_mm(tracer, chief)),
+      pupil_position_mm_(first_order(tracer.lens()).exit_pupil.position_mm) {}
 
 std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
   const std::optional<Ray> launched = pencil_.ray(u, v);
@@ -46,7 +52,45 @@ std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay
   if (!pupil) return {};
   ExitPupil exit(tracer, chief);
   if (!exit.find_outline(*pupil)) return {};
+  // Every fourth azimuth from the second on: mirror symmetric like the whole.
+  exit.boundary_ = {pupil->centre_v, pupil->chief_v, {}};
+  for (std::size_t i = 0; i < pupil->radius.size() / azimuth_stride; ++i)
+    exit.boundary_.radius.push_back(
+        0.5 * (pupil->radius[azimuth_stride * i + 1] + pupil->radius[azimuth_stride * i + 2]));
   return exit;
+}
+
+std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, double sensor_shift_mm) const {
+  const std::array<double, 3> chief = chief_.at_image.direction;
+  const double index = tracer_->tracer().image_index();
+  const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
+  const double chief_slope = chief[1] / chief[2];
+  const double height_mm = chief_.image_height_mm + sensor_shift_mm * chief_slope;
+  const double pupil_mm = pupil_position_mm_ - sensor_shift_mm;
+  const double radius_mm = std::copysign(std::hypot(pupil_mm, height_mm), -pupil_mm);
+  std::vector<Sample> samples;
+  const auto add = [&](double u, double v) {
+    const std::optional<Probe> at = probe(u, v), right = probe(u + nudge_, v), above = probe(u, v + nudge_);
+    if (!at || !right || !above) return;
+    const double jacobian = ((right->alpha - at->alpha) * (above->beta - at->beta) -
+                             (above->alpha - at->alpha) * (right->beta - at->beta)) /
+                            (nudge_ * nudge_);
+    const double gamma = std::sqrt(1 - at->alpha * at->alpha - at->beta * at->beta);
+    Sample sample{std::abs(at->alpha), at->beta, at->phase_waves, 1, at->x_mm, at->y_mm};
+    if (model.amplitude == PupilModel::Amplitude::light) sample.amplitude = 1 / std::sqrt(std::abs(jacobian));
+    sample.x_mm += sensor_shift_mm * at->alpha / gamma;
+    sample.y_mm += sensor_shift_mm * (at->beta / gamma - chief_slope);
+    double more_mm = sensor_shift_mm * (at->beta * chief_slope + gamma - 1 / chief[2]);
+    if (model.phase == PupilModel::Phase::reference_sphere)
+      more_mm -= sphere_behind_foot_mm(sample.x_mm, sample.y_mm, at->alpha, at->beta, radius_mm);
+    sample.phase_waves += index * more_mm / lambda_mm;
+    samples.push_back(sample);
+  };
+  for (const PupilNode& node : half_pupil_nodes(boundary_, sample_radii)) add(node.u, node.v);
+  for (std::size_t i = 0; i < boundary_.radius.size() / 2; ++i)
+    add(boundary_.radius[i] * std::sin(boundary_.azimuth(i)),
+        boundary_.centre_v + boundary_.radius[i] * std::cos(boundary_.azimuth(i)));
+  return samples;
 }
 
 bool ExitPupil::find_outline(const PupilBoundary& pupil) {

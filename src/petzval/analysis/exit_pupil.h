@@ -48,6 +48,16 @@ class ExitPupil {
   Chord along_beta(double alpha) const;
   Chord along_alpha(double beta) const;
 
+  /// A ray of the half pupil α ≥ 0.
+  struct Sample {
+    double alpha = 0, beta = 0;
+    double phase_waves = 0, amplitude = 0;  ///< of wave() in that direction
+    double x_mm = 0, y_mm = 0;              ///< on the sensor, from the chief ray's point
+  };
+  /// Rays over the pupil and on its rim, none of them aimed; for a sensor `sensor_shift_mm` behind the image
+  /// surface, about the chief ray's point on it. The rays stay, the paths to them change.
+  std::vector<Sample> samples(const PupilModel& model, double sensor_shift_mm = 0) const;
+
   /// Amplitude and phase in a direction, a exp(2πi φ). Aimed with real rays; zero where none goes that way.
   std::complex<double> wave(double alpha, double beta, const PupilModel& model) const;
 
@@ -66,6 +76,8 @@ class ExitPupil {
   double u_per_alpha_ = 0, v_per_beta_ = 0, middle_v_ = 0, middle_beta_ = 0;  ///< first guess
   std::vector<double> outline_alpha_, outline_beta_;  ///< half of it, α ≥ 0, closed on the axis
   double alpha_max_ = 0, transverse_mm_ = 0, sphere_radius_mm_ = 0;
+  double pupil_position_mm_ = 0;  ///< of the paraxial exit pupil, from the image surface
+  PupilBoundary boundary_;        ///< coarse, for samples()
   Chord beta_range_;
 };
 

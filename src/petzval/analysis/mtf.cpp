@@ -39,10 +39,12 @@ void over_chords(double low, double high, int count, F&& f) {
     f(middle + half * std::sin(rule.nodes[i]), half * std::cos(rule.nodes[i]) * rule.weights[i]);
 }
 
+/// \tparam Wave  (α ≥ 0, β) → complex amplitude.
+template <class Wave>
 class Autocorrelation {
  public:
-  Autocorrelation(const ExitPupil& pupil, const PupilModel& model, int nodes)
-      : pupil_(pupil), model_(model), nodes_(nodes), rule_(gauss_legendre(nodes)) {}
+  Autocorrelation(const ExitPupil& pupil, const Wave& wave, int nodes)
+      : pupil_(pupil), wave_(wave), nodes_(nodes), rule_(gauss_legendre(nodes)) {}
 
   /// Chords along β, pupil against itself shifted by s in β.
   std::complex<double> tangential(double s) const {
@@ -85,7 +87,7 @@ class Autocorrelation {
  private:
   std::complex<double> wave(double alpha, double beta) const {
     // Mirror symmetric.
-    return pupil_.wave(std::abs(alpha), beta, model_);
+    return wave_(std::abs(alpha), beta);
   }
   template <class P, class Q>
   std::complex<double> along(double low, double high, P&& p, Q&& q) const {
@@ -113,7 +115,7 @@ class Autocorrelation {
   }
 
   const ExitPupil& pupil_;
-  PupilModel model_;
+  const Wave& wave_;
   int nodes_;
   QuadratureRule rule_;
 };
@@ -122,6 +124,8 @@ void check(const FieldTableRequest& request, const MtfOptions& options) {
   for (const double frequency : options.frequencies_cpmm)
     if (!(frequency >= 0) || !std::isfinite(frequency))
       throw InputError(fmt::format("a spatial frequency of {:g} cycles/mm; it must be 0 or more", frequency));
+  for (const double shift : options.sensor_shifts_mm)
+    if (!std::isfinite(shift)) throw InputError("a sensor shift is not finite; give mm");
   if (options.weights.empty()) return;
   if (options.weights.size() != request.wavelengths_nm.size())
     throw InputError(fmt::format("{} weights for {} wavelengths; give one a wavelength",
@@ -135,51 +139,104 @@ void check(const FieldTableRequest& request, const MtfOptions& options) {
   if (!(sum > 0)) throw InputError("all weights are zero; at least one wavelength must count");
 }
 
-/// Both OTFs of a field and wavelength, frequency by frequency.
-struct OtfRow {
-  double field = 0, wavelength_nm = 0;
+/// OTF by the overlap of the pupil with itself; `transverse_mm` is the reach of its rays.
+template <class Wave>
+std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
+                                 double transverse_mm, MtfDirection direction, double frequency_cpmm) {
+  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
+  const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
+  const Autocorrelation<Wave> pairs(pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm));
+  const std::complex<double> whole = Autocorrelation<Wave>(pupil, wave, fewest_nodes).tangential(0);
+  return (direction == MtfDirection::tangential ? pairs.tangential(shift) : pairs.sagittal(shift)) /
+         whole.real();
+}
+
+/// Both OTFs of a field and wavelength on one sensor, frequency by frequency.
+struct SensorOtf {
   double image_height_mm = 0;
   std::vector<std::complex<double>> tangential, sagittal;
 };
 
+struct OtfRow {
+  double field = 0, wavelength_nm = 0;
+  std::vector<SensorOtf> sensors;  ///< [sensor shift]
+};
+
+template <class Otf>
+SensorOtf fill(const std::vector<double>& frequencies, double height_mm, Otf&& otf) {
+  SensorOtf result;
+  result.image_height_mm = height_mm;
+  for (const double frequency : frequencies) {
+    result.tangential.push_back(otf(MtfDirection::tangential, frequency));
+    result.sagittal.push_back(otf(MtfDirection::sagittal, frequency));
+  }
+  return result;
+}
+
+/// Where rays are on a sensor behind the image surface, from the chief ray's point there.
+std::vector<PupilRay> on_moved_sensor(std::vector<PupilRay> rays, const ChiefRay& chief, double shift_mm) {
+  const double chief_slope = chief.at_image.direction[1] / chief.at_image.direction[2];
+  for (PupilRay& ray : rays) {
+    const double gamma = std::sqrt(1 - ray.alpha * ray.alpha - ray.beta * ray.beta);
+    ray.x_mm += shift_mm * ray.alpha / gamma;
+    ray.y_mm += shift_mm * (ray.beta / gamma - chief_slope);
+  }
+  return rays;
+}
+
 std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, const MtfOptions& options) {
+  const std::vector<double>& frequencies = options.frequencies_cpmm;
+  const std::vector<double> shifts =
+      options.sensor_shifts_mm.empty() ? std::vector<double>{0} : options.sensor_shifts_mm;
+  const double chief_slope = chief.at_image.direction[1] / chief.at_image.direction[2];
+  const auto height_mm = [&](double shift) { return chief.image_height_mm + shift * chief_slope; };
   OtfRow row;
-  row.image_height_mm = chief.image_height_mm;
-  const auto fill = [&](auto&& otf) {
-    for (const double frequency : options.frequencies_cpmm) {
-      row.tangential.push_back(otf(MtfDirection::tangential, frequency));
-      row.sagittal.push_back(otf(MtfDirection::sagittal, frequency));
-    }
-  };
   if (options.geometric) {
     const std::vector<PupilRay> rays = pupil_rays(tracer, chief, {32, 192});
     if (rays.empty()) return {};
-    fill([&](MtfDirection direction, double frequency) { return geometric_otf(rays, direction, frequency); });
+    for (const double shift : shifts) {
+      const std::vector<PupilRay> moved = on_moved_sensor(rays, chief, shift);
+      row.sensors.push_back(
+          fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
+            return geometric_otf(moved, direction, frequency);
+          }));
+    }
     return row;
   }
   const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);
   if (!pupil) return {};
-  fill([&](MtfDirection direction, double frequency) {
-    return diffraction_otf(tracer, *pupil, direction, frequency, options.model);
-  });
+  for (const double shift : shifts) {
+    const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(*pupil, options.model, shift);
+    if (!smooth && shift != 0)
+      throw InputError(
+          fmt::format("{}: the wave at field {:g} is too rough to be moved by {:g} mm; set the "
+                      "last thickness instead",
+                      tracer.lens().name, chief.object_field, shift));
+    row.sensors.push_back(fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
+      return smooth ? diffraction_otf(tracer, *pupil, *smooth, direction, frequency)
+                    : diffraction_otf(tracer, *pupil, direction, frequency, options.model);
+    }));
+  }
   return row;
 }
 
 /// One field over all its wavelengths, each at its own height.
-OtfRow polychromatic(const OtfRow* rows, const MtfOptions& options) {
-  OtfRow result;
-  result.field = rows[0].field;
-  result.tangential.resize(options.frequencies_cpmm.size());
-  result.sagittal.resize(options.frequencies_cpmm.size());
+SensorOtf polychromatic(const OtfRow* rows, std::size_t sensor, const MtfOptions& options) {
+  const std::size_t frequencies = options.frequencies_cpmm.size();
+  SensorOtf result;
+  result.tangential.resize(frequencies);
+  result.sagittal.resize(frequencies);
   double sum = 0;
   for (const double weight : options.weights) sum += weight;
-  for (std::size_t w = 0; w < options.weights.size(); ++w)
-    for (std::size_t k = 0; k < options.frequencies_cpmm.size(); ++k) {
-      const double cycles = options.frequencies_cpmm[k] * (rows[w].image_height_mm - rows[0].image_height_mm);
-      const double share = options.weights[w] / sum;
-      result.tangential[k] += share * rows[w].tangential[k] * std::polar(1.0, -2 * pi * cycles);
-      result.sagittal[k] += share * rows[w].sagittal[k];
+  for (std::size_t w = 0; w < options.weights.size(); ++w) {
+    const SensorOtf& otf = rows[w].sensors[sensor];
+    const double above_mm = otf.image_height_mm - rows[0].sensors[sensor].image_height_mm;
+    for (std::size_t k = 0; k < frequencies; ++k) {
+      const double share = options.weights[w] / sum, cycles = options.frequencies_cpmm[k] * above_mm;
+      result.tangential[k] += share * otf.tangential[k] * std::polar(1.0, -2 * pi * cycles);
+      result.sagittal[k] += share * otf.sagittal[k];
     }
+  }
   return result;
 }
 
@@ -187,13 +244,15 @@ OtfRow polychromatic(const OtfRow* rows, const MtfOptions& options) {
 
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
                                      MtfDirection direction, double frequency_cpmm, const PupilModel& model) {
-  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
-  const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
-  const int nodes = nodes_for(2 * frequency_cpmm * pupil.transverse_mm());
-  const Autocorrelation pairs(pupil, model, nodes);
-  const std::complex<double> whole = Autocorrelation(pupil, model, fewest_nodes).tangential(0);
-  return (direction == MtfDirection::tangential ? pairs.tangential(shift) : pairs.sagittal(shift)) /
-         whole.real();
+  const auto wave = [&](double alpha, double beta) { return pupil.wave(alpha, beta, model); };
+  return overlap_otf(tracer, pupil, wave, pupil.transverse_mm(), direction, frequency_cpmm);
+}
+
+std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
+                                     const ExitPupilFit& smooth, MtfDirection direction,
+                                     double frequency_cpmm) {
+  const auto wave = [&](double alpha, double beta) { return smooth.wave(alpha, beta); };
+  return overlap_otf(tracer, pupil, wave, smooth.transverse_mm(), direction, frequency_cpmm);
 }
 
 std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirection direction,
@@ -212,20 +271,23 @@ std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirecti
 
 std::vector<MtfRow> mtf_table(const Lens& lens, const FieldTableRequest& request, const MtfOptions& options) {
   check(request, options);
-  std::vector<OtfRow> otfs = field_rows<OtfRow>(
+  const std::vector<OtfRow> otfs = field_rows<OtfRow>(
       lens, request,
       [&](const FieldTracer& tracer, const ChiefRay& chief) { return otf_row(tracer, chief, options); });
-  if (!options.weights.empty()) {
-    std::vector<OtfRow> together;
-    for (std::size_t i = 0; i < otfs.size(); i += options.weights.size())
-      together.push_back(polychromatic(&otfs[i], options));
-    otfs = together;
-  }
   std::vector<MtfRow> rows;
-  for (const OtfRow& otf : otfs)
+  const auto add = [&](const OtfRow& at, double wavelength_nm, double shift_mm, const SensorOtf& otf) {
     for (std::size_t k = 0; k < options.frequencies_cpmm.size(); ++k)
-      rows.push_back({otf.field, otf.wavelength_nm, options.frequencies_cpmm[k], std::abs(otf.tangential[k]),
-                      std::abs(otf.sagittal[k])});
+      rows.push_back({at.field, wavelength_nm, options.frequencies_cpmm[k], std::abs(otf.tangential[k]),
+                      std::abs(otf.sagittal[k]), shift_mm});
+  };
+  for (std::size_t s = 0; s < std::max<std::size_t>(options.sensor_shifts_mm.size(), 1); ++s) {
+    const double shift_mm = options.sensor_shifts_mm.empty() ? 0 : options.sensor_shifts_mm[s];
+    if (options.weights.empty())
+      for (const OtfRow& row : otfs) add(row, row.wavelength_nm, shift_mm, row.sensors[s]);
+    else
+      for (std::size_t i = 0; i < otfs.size(); i += options.weights.size())
+        add(otfs[i], 0, shift_mm, polychromatic(&otfs[i], s, options));
+  }
   return rows;
 }
 

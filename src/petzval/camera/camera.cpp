@@ -164,6 +164,31 @@ void Camera::focus_as_designed() {
   use(prescription_.object_distance_mm, prescription_.surfaces.back().thickness_mm);
 }
 
+void Camera::set_image_distance_mm(double distance_mm) {
+  if (!(std::isfinite(distance_mm) && distance_mm > 0))
+    throw InputError(
+        fmt::format("the sensor would stand {:g} mm behind the last surface of lens {}; it must be behind it",
+                    distance_mm, prescription_.name));
+  use(lens_.object_distance_mm, distance_mm);
+}
+
+void Camera::move_sensor_mm(double shift_mm) {
+  set_image_distance_mm(lens_.surfaces.back().thickness_mm + shift_mm);
+}
+
+void Camera::move_lens_mm(double towards_object_mm) {
+  std::optional<double> object_mm = lens_.object_distance_mm;
+  if (object_mm) *object_mm -= towards_object_mm;
+  if (object_mm && !(*object_mm > 0))
+    throw InputError(fmt::format("moved by {:g} mm, lens {} would touch its object, {:g} mm in front of it",
+                                 towards_object_mm, prescription_.name, *lens_.object_distance_mm));
+  const double image_mm = lens_.surfaces.back().thickness_mm + towards_object_mm;
+  if (!(std::isfinite(image_mm) && image_mm > 0))
+    throw InputError(fmt::format("moved by {:g} mm, lens {} would touch its sensor", towards_object_mm,
+                                 prescription_.name));
+  use(object_mm, image_mm);
+}
+
 std::optional<double> Camera::object_distance_from_sensor_m() const {
   if (!lens_.object_distance_mm) return {};
   return (*lens_.object_distance_mm + lens_.total_track_mm()) / mm_per_m;

@@ -38,6 +38,15 @@ class Camera {
   void place_object_at_m(std::optional<double> distance_from_sensor_m);
   /// Keeps the prescription's object and sensor.
   void focus_as_designed();
+  /// Puts the sensor this far behind the last vertex; the object stays as far in front of the lens as it is.
+  /// \throws InputError unless the distance is positive and finite.
+  void set_image_distance_mm(double distance_mm);
+  /// Moves the sensor away from the lens (negative: towards it), from where it is. \throws InputError if it
+  /// would touch the lens.
+  void move_sensor_mm(double shift_mm);
+  /// Moves the whole lens towards the object (negative: towards the sensor), both of which stay where they
+  /// are: how a lens in a helicoid is focused. \throws InputError if the lens would touch one of them.
+  void move_lens_mm(double towards_object_mm);
   /// From the object to the sensor plane [m]; absent: infinity.
   std::optional<double> object_distance_from_sensor_m() const;
 

@@ -108,6 +108,40 @@ Plot mtf_field_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::siz
   return plot;
 }
 
+Plot mtf_focus_plot(Fields::Kind kind, const std::vector<MtfRow>& rows) {
+  Plot plot;
+  plot.title = "MTF through focus, tangential solid, sagittal dashed";
+  plot.x = {"sensor behind the image surface", "mm"};
+  plot.y = {"modulation transfer", "", PlotScale::linear, 0.0, 1.0};
+  plot.guides.push_back({PlotGuide::At::x, 0});
+  std::size_t per_shift = 0;
+  while (per_shift < rows.size() && rows[per_shift].sensor_shift_mm == rows[0].sensor_shift_mm) ++per_shift;
+  for (std::size_t curve = 0; curve < per_shift; ++curve) {
+    std::vector<double> shift, tangential, sagittal;
+    for (std::size_t i = curve; i < rows.size(); i += per_shift) {
+      shift.push_back(rows[i].sensor_shift_mm);
+      tangential.push_back(rows[i].tangential);
+      sagittal.push_back(rows[i].sagittal);
+    }
+    const std::string colour = series_colour(curve).hex();
+    std::string label =
+        fmt::format("{}, {:g} cycles/mm", field_text(kind, rows[curve].field), rows[curve].frequency_cpmm);
+    if (rows[curve].wavelength_nm > 0) label += ", " + wavelength_text(rows[curve].wavelength_nm);
+    plot.line(label, shift, tangential).colour = colour;
+    PlotSeries& dashed = plot.line("", shift, sagittal);
+    dashed.colour = colour;
+    dashed.stroke = PlotStroke::dashed;
+  }
+  return plot;
+}
+
+std::vector<double> even_shifts(double reach_mm) {
+  constexpr int steps = 16;
+  std::vector<double> shifts;
+  for (int i = -steps; i <= steps; ++i) shifts.push_back(reach_mm * i / steps);
+  return shifts;
+}
+
 Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows) {
   Plot plot = upright_plot("Longitudinal aberration", {"focus from the image surface", "mm"},
                            {"height at the stop", "radii", PlotScale::linear, 0.0, 1.0});
@@ -148,7 +182,8 @@ Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow
 Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
   Plot plot = upright_plot("Distortion", {"distortion", "%"}, field_axis(kind));
   add_curves(
-      plot, rows, [](const DistortionRow& row) { return row.distortion_percent; },
+      // On the axis itself a ratio of two zeros: the curve begins beside it.
+      plot, rows, [](const DistortionRow& row) { return row.field == 0 ? NAN : row.distortion_percent; },
       [](const DistortionRow& row) { return row.field; });
   return plot;
 }

@@ -18,6 +18,11 @@ Plot mtf_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t fr
 /// A pair of curves a frequency over the field.
 Plot mtf_field_plot(Fields::Kind kind, const std::vector<MtfRow>& rows, std::size_t frequencies);
 
+/// A pair of curves a field and frequency over the place of the sensor.
+Plot mtf_focus_plot(Fields::Kind kind, const std::vector<MtfRow>& rows);
+/// 33 sensor shifts from −reach to +reach, for such a plot.
+std::vector<double> even_shifts(double reach_mm);
+
 /// The three curves by which designers know a lens: field upwards, aberration to the right.
 Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows);
 Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);

@@ -3,6 +3,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/report/analysis_tables.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -72,11 +73,16 @@ Table tabulate(Fields::Kind kind, const std::vector<WavefrontRow>& rows) {
 
 Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows) {
   using Row = MtfRow;
-  return make<Row>(
-      kind, rows,
-      {{{"frequency", "cycles/mm", 2, "frequency_cpmm"}, [](const Row& row) { return row.frequency_cpmm; }},
-       {{"tangential", "", 4, "tangential"}, [](const Row& row) { return row.tangential; }},
-       {{"sagittal", "", 4, "sagittal"}, [](const Row& row) { return row.sagittal; }}});
+  std::vector<Column<Row>> columns = {
+      {{"frequency", "cycles/mm", 2, "frequency_cpmm"}, [](const Row& row) { return row.frequency_cpmm; }},
+      {{"tangential", "", 4, "tangential"}, [](const Row& row) { return row.tangential; }},
+      {{"sagittal", "", 4, "sagittal"}, [](const Row& row) { return row.sagittal; }}};
+  const bool moved =
+      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.sensor_shift_mm != 0; });
+  if (moved)
+    columns.push_back(
+        {{"sensor shift", "mm", 4, "sensor_shift_mm"}, [](const Row& row) { return row.sensor_shift_mm; }});
+  return make<Row>(kind, rows, columns);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
@@ -222,13 +228,13 @@ Table tabulate(const std::vector<AxialFocusRow>& rows) {
 
 Table tabulate(const SeidelSums& sums) {
   Table table{{{"surface", "", 0, "surface"},
-               {"S1 spherical", "mm", 6, "s1"},
-               {"S2 coma", "mm", 6, "s2"},
-               {"S3 astigmatism", "mm", 6, "s3"},
-               {"S4 Petzval", "mm", 6, "s4"},
-               {"S5 distortion", "mm", 6, "s5"},
-               {"CL axial colour", "mm", 6, "cl"},
-               {"CT lateral colour", "mm", 6, "ct"}},
+               {"S1 spherical", "mm", 5, "s1"},
+               {"S2 coma", "mm", 5, "s2"},
+               {"S3 astigmatism", "mm", 5, "s3"},
+               {"S4 Petzval", "mm", 5, "s4"},
+               {"S5 distortion", "mm", 5, "s5"},
+               {"CL axial colour", "mm", 5, "cl"},
+               {"CT lateral colour", "mm", 5, "ct"}},
               {}};
   const auto add = [&](const std::string& name, const SeidelTerms& terms) {
     table.rows.push_back({name, terms.s1, terms.s2, terms.s3, terms.s4, terms.s5, terms.cl, terms.ct});

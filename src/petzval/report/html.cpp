@@ -126,6 +126,12 @@ Block figure(const Block& content, std::string_view caption) {
                       inline_markup(caption))};
 }
 
+Block download(std::string_view file_name, std::string_view mime, std::string_view bytes,
+               std::string_view label) {
+  return {fmt::format("<p class=\"download\"><a download=\"{}\" href=\"{}\">{}</a></p>\n",
+                      xml_escape(file_name), data_uri(mime, bytes), xml_escape(label))};
+}
+
 Block side_by_side(const std::vector<Block>& blocks) {
   std::string markup = "<div class=\"row\">\n";
   for (const Block& block : blocks) markup += "<div>\n" + block.markup + "</div>\n";

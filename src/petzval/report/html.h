@@ -38,6 +38,9 @@ Block drawing(std::string_view svg);
 Block picture(const Image& image);
 /// A drawing, picture or table with its caption beneath.
 Block figure(const Block& content, std::string_view caption);
+/// A link that saves `bytes` as a file: the data behind a plot. Not on paper. \param label  "data (CSV)".
+Block download(std::string_view file_name, std::string_view mime, std::string_view bytes,
+               std::string_view label);
 /// Blocks in a row of equal columns; one below the other on a narrow screen.
 Block side_by_side(const std::vector<Block>& blocks);
 /// Two images of one size on top of each other with a handle to draw across; side by side on paper.

@@ -33,7 +33,7 @@ img{border-radius:.2rem}
 .pixelated{image-rendering:pixelated}
 .row{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(22rem,100%),1fr));gap:1rem 1.6rem;align-items:start}
 .row figure,.row p{margin:.4rem 0}
-.scroll{overflow-x:auto}
+.scroll{overflow-x:auto;margin:.9rem 0}
 table{border-collapse:collapse;font-size:.94rem;font-variant-numeric:tabular-nums}
 th,td{padding:.32rem .9rem .32rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}
 th{font-weight:600}
@@ -55,8 +55,10 @@ box-shadow:0 0 4px #000;pointer-events:none}
 font-size:.8rem;font-weight:500;pointer-events:none}
 .wipe>b:first-of-type{left:.5rem}
 .wipe>b:last-of-type{right:.5rem}
+.download{margin:.2rem 0 .8rem;font-size:.85rem}
 footer{margin-top:2rem;color:var(--soft);font-size:.88rem}
-@media print{body{max-width:none;padding:0;background:#fff;font-size:11pt}nav,.wipe>input,.wipe>i{display:none}
+@media print{body{max-width:none;padding:0;background:#fff;font-size:11pt}nav,.download,.wipe>input,.wipe>i{display:none}
+svg{max-height:21cm}table{font-size:8pt}th,td{padding-right:.5rem}
 section{border:0;padding:0;margin:0 0 1.2rem}h2{break-after:avoid}figure,table,.row>*{break-inside:avoid}
 .wipe{grid-template-columns:1fr 1fr;gap:.5rem;max-width:none}.wipe>img{grid-area:auto}.wipe>img+img{clip-path:none}
 .wipe>b:last-of-type{right:.5rem}}

@@ -138,14 +138,15 @@ std::vector<Plot> wavefront_map_plots(Fields::Kind kind, const std::vector<Wavef
         low = std::min(low, waves);
         high = std::max(high, waves);
       }
-    plot.title = fmt::format("{}, {}: {:.2f} to {:.2f} waves", field_text(kind, map.field),
-                             wavelength_text(map.wavelength_nm), low + 0.0, high);
+    plot.title =
+        fmt::format("{}, {}: {} to {} waves", field_text(kind, map.field), wavelength_text(map.wavelength_nm),
+                    short_number(std::round(100 * low) / 100), short_number(std::round(100 * high) / 100));
     const double edge = 1 + 1.0 / (map.size - 1);
     plot.images.push_back({heat_map_png(values, map.size, map.size, options), -edge, edge, -edge, edge});
     plot.x = {"stop x", "radii", PlotScale::linear, -edge, edge};
     plot.y = {"stop y", "radii", PlotScale::linear, -edge, edge};
     plot.equal_aspect = true;
-    plot.width_px = 330;
+    plot.width_px = 390;
     plot.grid = false;
     plots.push_back(std::move(plot));
   }

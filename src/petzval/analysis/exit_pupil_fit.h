@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The wave in an exit pupil as polynomials: a hundred times quicker to ask than rays that must be aimed.
+#pragma once
+
+#include <petzval/analysis/exit_pupil.h>
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+namespace petzval {
+
+/// Amplitude and phase of an ExitPupil, least-squares polynomials through a quadrature's worth of its rays:
+/// Chebyshev in β and in α², on the box about the pupil. Also for a sensor moved along the axis, which
+/// changes the phase by what the rays travel and nothing else.
+class ExitPupilFit {
+ public:
+  /// Largest miss of the polynomials at any of the rays: of the phase [waves], and of the amplitude against
+  /// its largest value. A transfer function errs by less than 2π times this.
+  static constexpr double tolerance = 2e-5;
+
+  /// \param sensor_shift_mm  how far the sensor stands behind the lens's own image surface; the wave is then
+  /// about the chief ray's new point. \returns nothing when no polynomial of degree 24 or less is so near;
+  /// then ExitPupil::wave is there.
+  static std::optional<ExitPupilFit> of(const ExitPupil& pupil, const PupilModel& model,
+                                        double sensor_shift_mm = 0);
+
+  std::complex<double> wave(double alpha, double beta) const;
+  /// As ExitPupil::transverse_mm, on the moved sensor.
+  double transverse_mm() const { return transverse_mm_; }
+
+ private:
+  double sum(const std::vector<double>& coefficients, double alpha, double beta) const;
+
+  int degree_ = 0;
+  double alpha_scale_ = 1, beta_middle_ = 0, beta_scale_ = 1, transverse_mm_ = 0;
+  std::vector<double> phase_, amplitude_;  ///< amplitude empty: 1 everywhere
+};
+
+}  // namespace petzval

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Analyses of a lens as their users meet them: rows by name, pictures, focus and stop, and what is refused."""
+
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from petzval_cli import ProgramTest
+
+ANALYSES = {
+    "fans": {"pupil", "x_um", "y_um", "opd_waves", "fan"},
+    "zernike": {"index", "n", "m", "name", "coefficient_waves"},
+    "field-curvature": {"tangential_mm", "sagittal_mm", "petzval_mm", "real_image_height_mm"},
+    "colour": {"lateral_colour_um"},
+    "vignetting": {"open_share", "pupil_low", "pupil_high", "low_surface"},
+    "chief-ray-angle": {"chief_ray_angle_deg", "mean_ray_angle_deg"},
+}
+
+
+class LensAnalyses(ProgramTest):
+    def test_rows_have_field_wavelength_and_their_numbers(self):
+        for command, keys in ANALYSES.items():
+            with self.subTest(command=command):
+                out = self.json_of("lens", command, "cooke-triplet", "--fields", "0,14", "--wavelengths", "550",
+                                   "--plot", "plot.svg")
+                self.assertEqual(out["field_definition"]["type"], "angle_deg")
+                self.assertEqual({row["field"] for row in out["rows"]}, {0, 14})
+                for row in out["rows"]:
+                    self.assertLessEqual(keys | {"field", "wavelength_nm"}, set(row))
+                root = ElementTree.parse(self.folder / "plot.svg").getroot()
+                self.assertTrue(root.tag.endswith("svg"))
+
+    def test_through_focus_and_over_field(self):
+        rows = self.json_of("lens", "mtf", "cooke-triplet", "--fields", "0", "--frequencies", "30",
+                            "--polychromatic", "--through-focus", "0.2")["rows"]
+        shifts = [row["sensor_shift_mm"] for row in rows]
+        self.assertEqual((len(rows), min(shifts), max(shifts)), (33, -0.2, 0.2))
+        at_rest, = self.json_of("lens", "mtf", "cooke-triplet", "--fields", "0", "--frequencies", "30",
+                                "--polychromatic")["rows"]
+        self.assertAlmostEqual(rows[16]["tangential"], at_rest["tangential"], 9)
+        over = self.json_of("lens", "mtf", "cooke-triplet", "--over-field", "--polychromatic")["rows"]
+        self.assertEqual(len(over), 21 * 3)
+
+    def test_stopping_down_and_focusing_change_the_lens_in_use(self):
+        open_ = self.json_of("lens", "info", "double-gauss")
+        closed = self.json_of("lens", "info", "double-gauss", "--f-number", "8")
+        self.assertAlmostEqual(closed["f_number"], 8, 9)
+        self.assertAlmostEqual(closed["efl_mm"], open_["efl_mm"], 9)
+        # 1/f = 1/s + 1/s' with the thin lens's planes replaced by Newton's: x x' = f².
+        near = self.json_of("lens", "info", "double-gauss", "--focus", "2000")
+        x = near["object_distance_mm"] + near["ffl_mm"]
+        moved = near["total_track_mm"] - open_["total_track_mm"]
+        self.assertAlmostEqual(moved, near["efl_mm"] ** 2 / x, 9)
+        self.assertAlmostEqual(near["object_distance_mm"] + near["total_track_mm"], 2000, 9)
+        pulled = self.json_of("lens", "info", "edmund-54852", "--move-lens", "0.05")
+        rest = self.json_of("lens", "info", "edmund-54852")
+        self.assertAlmostEqual(pulled["object_distance_mm"], rest["object_distance_mm"] - 0.05, 9)
+        self.assertAlmostEqual(pulled["total_track_mm"], rest["total_track_mm"] + 0.05, 9)
+
+    def test_best_focus_is_where_focus_says(self):
+        rows = {row["focus"]: row for row in
+                self.json_of("lens", "focus", "cooke-triplet", "--frequency", "40", "--fields", "0,14")["rows"]}
+        self.assertGreater(rows["best-mtf@40"]["after"], rows["best-mtf@40"]["before"])
+        self.assertLess(rows["best-spot"]["after"], rows["best-spot"]["before"])
+        again = self.json_of("lens", "focus", "cooke-triplet", "--frequency", "40", "--fields", "0,14", "--focus",
+                             "best-spot")["rows"]
+        # Derivatives of rays by differences leave the tenth digit.
+        self.assertAlmostEqual(again[1]["sensor_shift_mm"], 0, 8)
+        self.assertAlmostEqual(again[1]["before"], rows["best-spot"]["after"], 7)
+
+    def test_what_is_refused(self):
+        self.assert_refused("lens", "spots", "cooke-triplet", "--focus", "sharp", words=["best-spot"])
+        self.assert_refused("lens", "spots", "cooke-triplet", "--focus", "best-mtf@0", words=["cycles/mm"])
+        self.assert_refused("lens", "spots", "cooke-triplet", "--f-number", "2", words=["opens to f/5"])
+        self.assert_refused("lens", "spots", "cooke-triplet", "--focus", "infinity", "--image-distance", "40",
+                            words=["--image-distance"])
+        self.assert_refused("lens", "report", "cooke-triplet", "-o", "report.pdf", words=[".html"])
+        self.assert_refused("lens", "zernike", "cooke-triplet", "--terms", "38", words=["37"])
+        self.assert_refused("lens", "fans", "cooke-triplet", "--fields", "80", words=["80"])
+
+    def test_report_of_two_lenses_on_a_sensor(self):
+        self.assert_succeeds("lens", "report", "cooke-triplet", "edmund-54852", "--wavelengths", "550", "--sensor",
+                             "third-inch-vga", "-o", "report.html")
+        page = (self.folder / "report.html").read_text()
+        self.assertIn("Comparison", page)
+        self.assertEqual(page.count("On the sensor 1/3 inch, VGA"), 2)
+
+    def test_threads_do_not_matter(self):
+        for threads in (1, 3):
+            self.assert_succeeds("lens", "report", "cooke-triplet", "--fields", "0,20", "--wavelengths", "550", "--threads", threads, "-o",
+                                 f"{threads}.html")
+        self.assertEqual((self.folder / "1.html").read_bytes(), (self.folder / "3.html").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
