@@ -13,6 +13,7 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_distortion(*lens, shared);
   add_lens_illumination(*lens, shared);
   add_lens_psf(*lens, shared);
+  add_lens_encircled_energy(*lens, shared);
   add_lens_spots(*lens, shared);
   add_lens_wavefront(*lens, shared);
   add_lens_fans(*lens, shared);

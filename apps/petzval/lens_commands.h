@@ -15,6 +15,7 @@ void add_lens_trace(CLI::App& lens, Shared& shared);
 void add_lens_distortion(CLI::App& lens, Shared& shared);
 void add_lens_illumination(CLI::App& lens, Shared& shared);
 void add_lens_psf(CLI::App& lens, Shared& shared);
+void add_lens_encircled_energy(CLI::App& lens, Shared& shared);
 void add_lens_spots(CLI::App& lens, Shared& shared);
 void add_lens_wavefront(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens psf: diffraction point-spread functions.
 #include <fmt/format.h>
+#include <petzval/analysis/fft_point_spread.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
@@ -25,6 +26,8 @@ struct PsfCommand {
   LensChoice lens;
   FieldChoice fields;
   PsfOptions psf;
+  std::string method = "rays";
+  int pupil_samples = 256;
   std::string output;
 };
 
@@ -32,7 +35,33 @@ struct PsfRow {
   double field, wavelength_nm;
   ChiefRay chief;
   Psf psf;
+  /// Of the FFT method: the rms and the largest difference from the sum over real rays, over its rms and
+  /// peak.
+  double rms_difference = 0, peak_difference = 0;
 };
+
+/// Replaces the PSF of a row by the plain FFT's on the same grid, and says how far that is off.
+void take_fft(const PsfCommand& options, const FieldTracer& tracer, PsfRow& row) {
+  if (const PsfPlan plan = *plan_psf(tracer, row.chief, options.psf); plan.samples_per_cell > 1)
+    throw InputError(fmt::format(
+        "--method fft: the PSF at field {:g} is {:.0f} um wide, more than {} samples of the FFT span; "
+        "a smaller f-number, --size or --spacing would be right",
+        row.field, plan.size * plan.spacing_um, plan.size));
+  const std::optional<Psf> fft =
+      fft_point_spread(tracer, row.chief, {row.psf.size, row.psf.spacing_um}, options.pupil_samples);
+  if (!fft) throw InputError(fmt::format("no ray passes at field {:g}", row.field));
+  double square = 0, norm = 0, peak = 0, worst = 0;
+  for (std::size_t i = 0; i < fft->values.size(); ++i) {
+    const double rays = row.psf.values[i], difference = fft->values[i] - rays;
+    square += difference * difference;
+    norm += rays * rays;
+    peak = std::max(peak, rays);
+    worst = std::max(worst, std::abs(difference));
+  }
+  row.rms_difference = std::sqrt(square / norm);
+  row.peak_difference = worst / peak;
+  row.psf = *fft;
+}
 
 std::vector<PsfRow> psf_rows(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request) {
   std::vector<PsfRow> rows;
@@ -46,6 +75,7 @@ std::vector<PsfRow> psf_rows(const PsfCommand& options, const Lens& lens, const 
         throw InputError(
             fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens.name, field, wavelength));
       rows.push_back({field, wavelength, *chief, *psf});
+      if (options.method == "fft") take_fft(options, tracer, rows.back());
     }
   }
   return rows;
@@ -108,7 +138,8 @@ void psf(const PsfCommand& options, const Shared& shared) {
   if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);
   if (shared.json) {
     nlohmann::ordered_json json = {{"lens", lens.name},
-                                   {"field_definition", field_definition(request.field_kind)}};
+                                   {"field_definition", field_definition(request.field_kind)},
+                                   {"method", options.method}};
     json["rows"] = nlohmann::ordered_json::array();
     for (const PsfRow& row : rows) {
       const PsfMoments m = moments(row.psf);
@@ -121,18 +152,25 @@ void psf(const PsfCommand& options, const Shared& shared) {
                               {"peak_per_um2", m.peak_per_um2},
                               {"centroid_tangential_um", m.centroid_t_um},
                               {"rms_radius_um", m.rms_radius_um}});
+      if (options.method != "fft") continue;
+      json["rows"].back()["rms_difference"] = row.rms_difference;
+      json["rows"].back()["peak_difference"] = row.peak_difference;
     }
     return print_json(json);
   }
-  fmt::print("{}: diffraction PSFs, centred on the chief ray\n", lens.name);
-  fmt::print("{:>28} {:>15} {:>18} {:>9} {:>13} {:>11} {:>14} {:>15} {:>16}\n",
+  const bool fft = options.method == "fft";
+  fmt::print("{}: diffraction PSFs, centred on the chief ray{}\n", lens.name,
+             fft ? ", by the plain FFT's model; differences from the sum over real rays" : "");
+  fmt::print("{:>28} {:>15} {:>18} {:>9} {:>13} {:>11} {:>14} {:>15} {:>16}{}\n",
              field_heading(request.field_kind), "wavelength [nm]", "image height [mm]", "samples",
-             "spacing [um]", "captured", "peak [1/um2]", "centroid t [um]", "rms radius [um]");
+             "spacing [um]", "captured", "peak [1/um2]", "centroid t [um]", "rms radius [um]",
+             fft ? "  rms difference  peak difference" : "");
   for (const PsfRow& row : rows) {
     const PsfMoments m = moments(row.psf);
-    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>9} {:>13.4f} {:>11.4f} {:>14.5f} {:>15.3f} {:>16.3f}\n",
+    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>9} {:>13.4f} {:>11.4f} {:>14.5f} {:>15.3f} {:>16.3f}{}\n",
                row.field, row.wavelength_nm, row.chief.image_height_mm, fmt::format("{0}x{0}", row.psf.size),
-               row.psf.spacing_um, row.psf.captured, m.peak_per_um2, m.centroid_t_um, m.rms_radius_um);
+               row.psf.spacing_um, row.psf.captured, m.peak_per_um2, m.centroid_t_um, m.rms_radius_um,
+               fft ? fmt::format(" {:>15.4f} {:>16.4f}", row.rms_difference, row.peak_difference) : "");
   }
 }
 
@@ -149,9 +187,19 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
   command->add_option("--size", options->psf.size, "Samples a side; default: as many as the spot needs")
       ->check(CLI::Range(8, 4096));
   command
-      ->add_option("--spacing", options->psf.spacing_um,
-                   "Spacing of the samples [um]; default: 0.45 lambda N")
+      ->add_option(
+          "--spacing", options->psf.spacing_um,
+          "Spacing of the cells [um]; default: 0.45 lambda N, or wider where 256 do not span the spot")
       ->check(positive_number());
+  command
+      ->add_option(
+          "--method", options->method,
+          "rays: plane waves of real rays; fft: the plain FFT's model of the pupil, with its difference")
+      ->check(CLI::IsMember({"rays", "fft"}))
+      ->capture_default_str();
+  command->add_option("--pupil-samples", options->pupil_samples, "Points across the pupil of --method fft")
+      ->check(CLI::Range(8, 1024))
+      ->capture_default_str();
   command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy");
 }
 

@@ -278,6 +278,27 @@ void add_build(CLI::App& optics, Shared& shared) {
                     "Let nothing but the stop clip the rays");
 }
 
+struct ImportCommand {
+  std::string path, from = "hdf5", output;
+};
+
+void add_import(CLI::App& optics, Shared& shared) {
+  auto options = std::make_shared<ImportCommand>();
+  CLI::App* command = add_command(
+      optics, shared, "import", "Take a lens data table that another program made",
+      "petzval optics import edmund.h5 --from hdf5 -o imported.h5", false,
+      [options] { write_table(read_table(options->path, TableOrigin::elsewhere), options->output); });
+  command->add_option("table", options->path, "The table to take")->required();
+  command
+      ->add_option(
+          "--from", options->from,
+          "hdf5: the layout of docs/FILE_FORMATS.md, without Petzval's checksum. HDF5 may not survive a "
+          "damaged file")
+      ->check(CLI::IsMember({"hdf5"}))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")->required();
+}
+
 void add_info(CLI::App& optics, Shared& shared) {
   auto options = std::make_shared<InfoCommand>();
   CLI::App* command = add_command(optics, shared, "info", "Show a lens data table and how well curves fit it",
@@ -294,6 +315,7 @@ void add_optics_commands(CLI::App& app, Shared& shared) {
   CLI::App* optics = app.add_subcommand("optics", "Lens data tables: what a lens does to light, stored");
   optics->require_subcommand(1);
   add_build(*optics, shared);
+  add_import(*optics, shared);
   add_info(*optics, shared);
 }
 

@@ -19,7 +19,8 @@
 //
 // with units and long_name on every dataset and dimension labels on every axis. A user block of 512 bytes in
 // front, which HDF5 readers skip, holds size and checksum of the rest, so that a damaged file is told before
-// it is parsed. Files of the same layout without it (made in Python, say) are read too.
+// HDF5, which damaged files crash, gets to see it. Files of the same layout without it (made in Python, say)
+// are read on request.
 #pragma once
 
 #include <petzval/optics/lens_data_table.h>
@@ -33,8 +34,13 @@ namespace petzval {
 /// table is not valid, Failure if it cannot be written.
 void write_table(const LensDataTable& table, const std::string& path);
 
+enum class TableOrigin {
+  petzval,   ///< begins with the checksum, or is refused
+  elsewhere  ///< no checksum is asked for: HDF5 itself must be trusted with the file
+};
+
 /// Reads a table and checks everything: layout, sizes (before any memory is taken for them), axes, values.
 /// \throws InputError naming file and dataset.
-LensDataTable read_table(const std::string& path);
+LensDataTable read_table(const std::string& path, TableOrigin origin = TableOrigin::petzval);
 
 }  // namespace petzval

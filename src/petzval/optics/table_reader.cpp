@@ -201,8 +201,8 @@ void read_psfs(const TableFile& file, LensDataTable& table) {
 
 }  // namespace
 
-LensDataTable read_table(const std::string& path) {
-  check_table_seal(path);
+LensDataTable read_table(const std::string& path, TableOrigin origin) {
+  if (origin == TableOrigin::petzval) check_table_seal(path);
   const Hdf5Silence silence;
   const TableFile file(path);
   LensDataTable table;

@@ -27,6 +27,19 @@ class Checksum {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
+/// HDF5 files begin with this, or have it behind a user block of 512 bytes times a power of two.
+constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
+
+[[noreturn]] void refuse_unsealed(const std::string& path, std::ifstream& file, const std::string& start) {
+  std::string behind(hdf5_signature.size(), '\0');
+  file.read(behind.data(), static_cast<std::streamsize>(behind.size()));
+  if (!start.starts_with(hdf5_signature) && behind != hdf5_signature)
+    throw InputError(path, "is not an HDF5 file; petzval optics build makes lens data tables");
+  throw InputError(path,
+                   "is damaged, or a table of another program: it does not begin with Petzval's checksum. "
+                   "petzval optics import --from hdf5 takes tables made elsewhere");
+}
+
 std::string seal_text(std::uint64_t size, const Checksum& checksum) {
   return fmt::format("{}\nsize {}\nfnv1a64 {:016x}\n", table_layout::format, size, checksum.value());
 }
@@ -50,7 +63,7 @@ void check_table_seal(const std::string& path) {
   std::string seal(table_seal_bytes, '\0');
   file.read(seal.data(), static_cast<std::streamsize>(seal.size()));
   seal.resize(static_cast<std::size_t>(file.gcount()));
-  if (!seal.starts_with(std::string(table_layout::format) + "\n")) return;
+  if (!seal.starts_with(std::string(table_layout::format) + "\n")) refuse_unsealed(path, file, seal);
 
   Checksum checksum;
   std::uint64_t size = 0;
@@ -63,8 +76,8 @@ void check_table_seal(const std::string& path) {
   if (!seal.starts_with(seal_text(size, checksum)))
     throw InputError(
         path,
-        "is damaged: size or checksum do not agree with its first lines; build it anew (or, if it was "
-        "edited on purpose, copy its contents into a new HDF5 file, which carries no checksum)");
+        "is damaged: size or checksum do not agree with its first lines; build it anew (if it was edited on "
+        "purpose: petzval optics import --from hdf5)");
 }
 
 }  // namespace petzval

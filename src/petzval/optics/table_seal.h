@@ -15,8 +15,8 @@ inline constexpr std::size_t table_seal_bytes = 512;
 /// zeros.
 std::string table_seal(std::string_view contents);
 
-/// Passes files without a seal. \throws InputError if there is one and size or checksum are not those of the
-/// rest, or if the file cannot be read.
+/// \throws InputError unless the file begins with a seal and size and checksum are those of the rest; a file
+/// without one is told apart from what is no HDF5 file at all.
 void check_table_seal(const std::string& path);
 
 }  // namespace petzval
