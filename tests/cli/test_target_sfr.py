@@ -154,7 +154,7 @@ class Sfr(ProgramTest):
                 (["t.npy", "--roi", "0,0,0,10"], ["empty"]),
                 (["t.npy", "--roi", "-5,0,20,20"], ["leaves the picture"]),
                 (["t.npy", "--roi", "90,90,2000000000,2000000000"], ["leaves the picture"]),
-                (["t.npy", "--roi", "2,2,12,12"], ["no edge"]),
+                (["t.npy", "--roi", "2,2,12,12"], ["--roi 2,2,12,12", "edge"]),
                 (["t.npy", "--channel", "red"], ["not RGB"]),
                 (["small.png"], ["no straight edge"]),
                 (["no.png"], ["no.png"]),
