@@ -6,6 +6,7 @@ import unittest
 from petzval_cli import ProgramTest
 
 SCENE = """LookAt 0 0 -1  0 0 0  0 1 0
+Camera "perspective"
 Film "rgb" "integer xresolution" 32 "integer yresolution" 24 "float diagonal" 40
 WorldBegin
 LightSource "infinite" "rgb L" [ 1 1 1 ]

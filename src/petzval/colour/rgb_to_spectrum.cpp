@@ -13,7 +13,7 @@ namespace petzval {
 namespace {
 
 constexpr double first_nm = 380, range_nm = 350;
-constexpr double step_nm = 10;
+constexpr double step_nm = 5;
 /// Enough for every colour of the gamut's inside; Gauss-Newton doubles the digits once it is near.
 constexpr int iterations = 30;
 /// Difference in CIELAB that no eye and no 16-bit picture tells from none.

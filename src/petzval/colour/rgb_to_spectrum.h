@@ -25,7 +25,7 @@ SigmoidReflectance reflectance_of(LinearRgb colour);
 
 /// reflectance_of() by interpolation in a table, for pictures: about 30 ns a pixel instead of some ten µs.
 ///
-///     const ReflectanceTable table;                    // a fifth of a second
+///     const ReflectanceTable table;                    // a second of one core
 ///     const double r = table(pixel).at(550);
 ///
 /// Immutable; may be shared between threads.
@@ -35,7 +35,7 @@ class ReflectanceTable {
   SigmoidReflectance operator()(LinearRgb colour) const;
 
  private:
-  static constexpr int nodes = 24;
+  static constexpr int nodes = 32;
   const SigmoidReflectance& node(int largest, int level, int first, int second) const;
 
   std::array<double, nodes> levels_{};
