@@ -5,6 +5,8 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/svg_plot.h>
 
+#include <cmath>
+
 #include "analysis_command.h"
 #include "lens_commands.h"
 #include "loss_option.h"
@@ -16,6 +18,11 @@ namespace {
 struct TableCommand : AnalysisCommand {
   LossChoice losses;  ///< illumination only
 };
+
+/// A number by its format, or a dash where there is none.
+std::string or_dash(const char* format, double value) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
 
 nlohmann::ordered_json table_json(const Lens& lens, const FieldTableRequest& request) {
   return {{"lens", lens.name},
@@ -30,6 +37,7 @@ void write_plot(const std::string& path, Plot plot, const std::vector<Row>& rows
   for (std::size_t w = 0; w < wavelengths; ++w) {
     std::vector<double> xs, ys;
     for (std::size_t i = w; i < rows.size(); i += wavelengths) {
+      if (!std::isfinite(x(rows[i])) || !std::isfinite(y(rows[i]))) continue;
       xs.push_back(x(rows[i]));
       ys.push_back(y(rows[i]));
     }
@@ -62,12 +70,11 @@ void distortion(const TableCommand& options, const Shared& shared) {
       json["rows"].push_back(
           {{"field", row.field},
            {"wavelength_nm", row.wavelength_nm},
-           {"image_height_mm", row.image_height_mm},
-           {"distortion_percent", row.distortion_percent},
-           {"distortion_ftheta_percent", row.distortion_ftheta_percent
-                                             ? nlohmann::ordered_json(*row.distortion_ftheta_percent)
-                                             : nlohmann::ordered_json(nullptr)},
-           {"paraxial_image_height_mm", row.paraxial_image_height_mm},
+           {"image_height_mm", number_or_null(row.image_height_mm)},
+           {"distortion_percent", number_or_null(row.distortion_percent)},
+           {"distortion_ftheta_percent", number_or_null(row.distortion_ftheta_percent.value_or(NAN))},
+           {"paraxial_image_height_mm", number_or_null(row.paraxial_image_height_mm)},
+           {"lit", row.lit},
            {lens.object_distance_mm ? "object_height_mm" : "object_angle_deg", row.object_field}});
     return print_json(json);
   }
@@ -75,8 +82,12 @@ void distortion(const TableCommand& options, const Shared& shared) {
   fmt::print("{:>28} {:>15} {:>18} {:>22} {:>15}\n", field_heading(request.field_kind), "wavelength [nm]",
              "image height [mm]", "paraxial height [mm]", "distortion [%]");
   for (const DistortionRow& row : rows)
-    fmt::print("{:>28g} {:>15g} {:>18.6f} {:>22.6f} {:>15.4f}\n", row.field, row.wavelength_nm,
-               row.image_height_mm, row.paraxial_image_height_mm, row.distortion_percent);
+    if (row.lit)
+      fmt::print("{:>28g} {:>15g} {:>18.6f} {:>22} {:>15}\n", row.field, row.wavelength_nm,
+                 row.image_height_mm, or_dash("{:.6f}", row.paraxial_image_height_mm),
+                 or_dash("{:.4f}", row.distortion_percent));
+    else
+      fmt::print("{:>28g} {:>15g} {:>18}\n", row.field, row.wavelength_nm, "no ray passes");
 }
 
 void illumination(const TableCommand& options, const Shared& shared) {
@@ -84,6 +95,12 @@ void illumination(const TableCommand& options, const Shared& shared) {
   FieldTableRequest request = options.fields.request(lens);
   request.losses = options.losses.losses(lens, shared);
   const std::vector<IlluminationRow> rows = illumination_table(lens, request);
+  for (const IlluminationRow& row : rows)
+    if (!row.pupil_in_one_piece)
+      note(shared,
+           fmt::format("at field {:g} and {:g} nm the pupil has a hole or falls into parts; g_sensor counts "
+                       "what lies around the chief ray, holes filled",
+                       row.field, row.wavelength_nm));
   if (!options.plot.empty()) {
     Plot plot;
     plot.title = lens.name + ": relative illumination";
@@ -101,7 +118,9 @@ void illumination(const TableCommand& options, const Shared& shared) {
       json["rows"].push_back(
           {{"field", row.field},
            {"wavelength_nm", row.wavelength_nm},
-           {"real_image_height_mm", row.real_image_height_mm},
+           {"real_image_height_mm", number_or_null(row.real_image_height_mm)},
+           {"lit", row.lit},
+           {"pupil_in_one_piece", row.pupil_in_one_piece},
            {"g_sensor_sr", row.g_sensor_sr},
            {"g_source_sr", row.g_source_sr},
            {"relative_illumination", row.relative_illumination},
@@ -113,9 +132,14 @@ void illumination(const TableCommand& options, const Shared& shared) {
   fmt::print("{:>28} {:>15} {:>18} {:>14} {:>14} {:>22}\n", field_heading(request.field_kind),
              "wavelength [nm]", "image height [mm]", "g_sensor [sr]", "g_source [sr]",
              "relative illumination");
-  for (const IlluminationRow& row : rows)
+  for (const IlluminationRow& row : rows) {
+    if (!row.lit) {
+      fmt::print("{:>28g} {:>15g} {:>18}\n", row.field, row.wavelength_nm, "no ray passes");
+      continue;
+    }
     fmt::print("{:>28g} {:>15g} {:>18.6f} {:>14.6f} {:>14.6f} {:>22.5f}\n", row.field, row.wavelength_nm,
                row.real_image_height_mm, row.g_sensor_sr, row.g_source_sr, row.relative_illumination);
+  }
 }
 
 }  // namespace

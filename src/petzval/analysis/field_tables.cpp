@@ -8,7 +8,9 @@
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace petzval {
 
@@ -21,11 +23,16 @@ std::vector<double> object_fields(const Lens& lens, const FieldTableRequest& req
   return resolved;
 }
 
-ChiefRay chief_or_error(FieldTracer& tracer, double field, double object_field) {
-  if (std::optional<ChiefRay> chief = tracer.chief_ray(object_field)) return *chief;
-  throw InputError(
-      fmt::format("{}: no chief ray passes at field {:g} and {:g} nm; a smaller field would be right",
-                  tracer.lens().name, field, tracer.tracer().wavelength_nm()));
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+/// Enough to see whether any light passes at all.
+constexpr int lit_azimuths = 8;
+
+/// \throws InputError unless one of the rows has light.
+template <class Row>
+void require_light(const Lens& lens, const std::vector<Row>& rows) {
+  if (rows.empty() || std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.lit; })) return;
+  throw InputError(fmt::format("{}: no ray passes at field {:g}{}; smaller fields would be right", lens.name,
+                               rows.front().field, rows.size() > 1 ? " nor at the others" : ""));
 }
 
 /// Fills rows [field][wavelength], wavelengths in parallel; `make(tracer, field, object_field)` gives one
@@ -56,11 +63,16 @@ FieldTableRequest FieldTableRequest::of(const Lens& lens) {
 }
 
 std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request) {
-  return tabulate<DistortionRow>(lens, request, [&](FieldTracer& tracer, double field, double object_field) {
+  auto rows = tabulate<DistortionRow>(lens, request, [&](FieldTracer& tracer, double, double object_field) {
     const double wavelength = tracer.tracer().wavelength_nm();
+    const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
     DistortionRow row;
-    row.image_height_mm = chief_or_error(tracer, field, object_field).image_height_mm;
-    row.paraxial_image_height_mm = ideal_image_height_mm(lens, object_field, wavelength);
+    row.lit = chief && tracer.object_pupil(*chief, lit_azimuths);
+    row.image_height_mm = row.lit ? chief->image_height_mm : not_a_number;
+    // A tangent ends at 90°.
+    const bool has_ideal = lens.object_distance_mm || std::abs(object_field) < 90;
+    row.paraxial_image_height_mm =
+        has_ideal ? ideal_image_height_mm(lens, object_field, wavelength) : not_a_number;
     const auto percent = [&](double ideal) {
       return ideal == 0 ? 0.0 : 100 * (row.image_height_mm - ideal) / ideal;
     };
@@ -69,24 +81,29 @@ std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRe
       row.distortion_ftheta_percent = percent(first_order(lens, wavelength).efl_mm * radians(object_field));
     return row;
   });
+  require_light(lens, rows);
+  return rows;
 }
 
 std::vector<IlluminationRow> illumination_table(const Lens& lens, const FieldTableRequest& request) {
-  return tabulate<IlluminationRow>(
-      lens, request, [&](FieldTracer& tracer, double field, double object_field) {
-        const ChiefRay axis = chief_or_error(tracer, 0, 0),
-                       chief = chief_or_error(tracer, field, object_field);
-        IlluminationRow row;
-        row.real_image_height_mm = chief.image_height_mm;
-        row.g_sensor_sr = tracer.g_sensor_sr(chief);
-        row.g_source_sr = tracer.g_source_sr(chief);
-        const double on_axis = tracer.g_sensor_sr(axis);
-        if (!(on_axis > 0))
-          throw InputError(
-              fmt::format("{}: no ray passes the stop on the axis; check the clear apertures", lens.name));
-        row.relative_illumination = row.g_sensor_sr / on_axis;
-        return row;
-      });
+  auto rows = tabulate<IlluminationRow>(lens, request, [&](FieldTracer& tracer, double, double object_field) {
+    const std::optional<ChiefRay> axis = tracer.chief_ray(0);
+    const double on_axis = axis ? tracer.g_sensor_sr(*axis) : 0;
+    if (!(on_axis > 0))
+      throw InputError(
+          fmt::format("{}: no ray passes the stop on the axis; check the clear apertures", lens.name));
+    const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+    IlluminationRow row;
+    row.real_image_height_mm = chief ? chief->image_height_mm : not_a_number;
+    row.g_sensor_sr = chief ? tracer.g_sensor_sr(*chief) : 0;
+    row.g_source_sr = chief ? tracer.g_source_sr(*chief) : 0;
+    row.lit = row.g_sensor_sr > 0 || row.g_source_sr > 0;
+    row.pupil_in_one_piece = !row.lit || tracer.image_pupil_in_one_piece(*chief);
+    row.relative_illumination = row.g_sensor_sr / on_axis;
+    return row;
+  });
+  require_light(lens, rows);
+  return rows;
 }
 
 }  // namespace petzval

@@ -26,6 +26,7 @@ struct FieldTableRequest {
 struct DistortionRow {
   double field = 0, wavelength_nm = 0;
   double object_field = 0;              ///< degrees or mm
+  bool lit = true;                      ///< false: no ray passes; heights and percentages are NaN
   double image_height_mm = 0;           ///< real chief ray
   double paraxial_image_height_mm = 0;  ///< f tan θ or m h at this wavelength
   /// (real − paraxial)/paraxial; at zero field its limit, zero.
@@ -37,12 +38,14 @@ struct DistortionRow {
 struct IlluminationRow {
   double field = 0, wavelength_nm = 0;
   double object_field = 0;
-  double real_image_height_mm = 0;
+  bool lit = true;                 ///< false: no ray passes; g is 0
+  bool pupil_in_one_piece = true;  ///< else g_sensor counts only the piece around the chief ray, holes filled
+  double real_image_height_mm = 0;  ///< of the chief ray, though an aperture may stop it; NaN without one
   double g_sensor_sr = 0, g_source_sr = 0;
   double relative_illumination = 0;  ///< g_sensor / g_sensor on axis at the same wavelength
 };
 
-/// Rows in the order fields × wavelengths. \throws InputError naming the field whose chief ray does not pass.
+/// Rows in the order fields × wavelengths. \throws InputError when no light passes at any of the fields.
 std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request);
 std::vector<IlluminationRow> illumination_table(const Lens& lens, const FieldTableRequest& request);
 

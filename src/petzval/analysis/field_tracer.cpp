@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/trace/passing_region.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,11 @@ std::optional<PupilBoundary> FieldTracer::object_pupil(const ChiefRay& chief, in
 std::optional<PupilBoundary> FieldTracer::image_pupil(const ChiefRay& chief, int azimuths) const {
   return find_pupil(tracer_, Pencil::from_image(tracer_, chief.image_height_mm), chief.at_image.direction[1],
                     azimuths, clip_);
+}
+
+bool FieldTracer::image_pupil_in_one_piece(const ChiefRay& chief) const {
+  const auto region = find_passing_region(tracer_, Pencil::from_image(tracer_, chief.image_height_mm), clip_);
+  return !region || (region->parts() == 1 && !region->has_hole());
 }
 
 double FieldTracer::g_sensor_sr(const ChiefRay& chief) const {

@@ -44,6 +44,10 @@ class FieldTracer {
   /// The same seen from the chief ray's image point.
   std::optional<PupilBoundary> image_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
 
+  /// Whether image_pupil is all the light that reaches the chief ray's image point: the pupil neither falls
+  /// into parts nor has a hole. By a grid of rays; parts smaller than a hundredth of its width go unseen.
+  bool image_pupil_in_one_piece(const ChiefRay& chief) const;
+
   /// n'² ∬ dα dβ over the directions that reach the object through every aperture [sr]: what a uniform wall
   /// of unit radiance gives in irradiance at the chief ray's image point; 0 where no ray passes.
   double g_sensor_sr(const ChiefRay& chief) const;

@@ -2,6 +2,7 @@
 #include <petzval/trace/batch_kernel.h>
 
 #include <algorithm>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/trace/batch_kernel.cpp"
@@ -19,30 +20,30 @@ constexpr std::size_t interleaved = 3;
 template <class T>
 constexpr std::size_t widest_group = interleaved* HWY_MAX_BYTES / sizeof(T);
 
-template <class T>
-HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T> (&rays)[interleaved]) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, measures> (&rays)[interleaved]) {
   const auto to_vertex = hn::Set(Lanes<T>(), surface.to_vertex_mm);
-  for (RayVector<T>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
+  for (RayVector<T, measures>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
   switch (surface.kind) {
     case KernelSurfaceKind::plane:
-      for (RayVector<T>& ray : rays) step_plane(surface, ray);
+      for (RayVector<T, measures>& ray : rays) step_plane(surface, ray);
       return;
     case KernelSurfaceKind::sphere:
-      for (RayVector<T>& ray : rays) step_sphere(surface, ray);
+      for (RayVector<T, measures>& ray : rays) step_sphere(surface, ray);
       return;
     case KernelSurfaceKind::conic:
-      for (RayVector<T>& ray : rays) step_conic(surface, ray);
+      for (RayVector<T, measures>& ray : rays) step_conic(surface, ray);
       return;
     case KernelSurfaceKind::even_asphere:
     case KernelSurfaceKind::odd_asphere:
-      for (RayVector<T>& ray : rays) step_asphere(surface, ray);
+      for (RayVector<T, measures>& ray : rays) step_asphere(surface, ray);
       return;
   }
 }
 
 /// To the image plane, and NaN is dead.
-template <class T>
-HWY_ATTR HWY_INLINE void finish(const KernelPath<T>& path, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void finish(const KernelPath<T>& path, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   if (path.to_image) {
     const auto gap = hn::Set(d, path.image_z_mm - path.last_vertex_z_mm);
@@ -50,16 +51,17 @@ HWY_ATTR HWY_INLINE void finish(const KernelPath<T>& path, RayVector<T>& ray) {
     ray.x = hn::MulAdd(distance, ray.l, ray.x);
     ray.y = hn::MulAdd(distance, ray.m, ray.y);
     ray.z = gap;
-    if constexpr (has_path<T>) ray.opl = hn::MulAdd(hn::Set(d, path.image_index), distance, ray.opl);
+    if constexpr (has_path<T> && !measures)
+      ray.opl = hn::MulAdd(hn::Set(d, path.image_index), distance, ray.opl);
     ray.alive = hn::And(ray.alive, hn::Gt(ray.n, hn::Zero(d)));
   }
   const auto sum = hn::Add(hn::Add(ray.x, ray.y), ray.n);
   ray.alive = hn::And(ray.alive, hn::Eq(sum, sum));
 }
 
-template <class T>
+template <class T, bool measures>
 HWY_ATTR HWY_INLINE void load(const KernelPath<T>& path, const RayColumns<T>& rays, std::size_t at,
-                              RayVector<T>& ray) {
+                              RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const auto flip = hn::Set(d, path.flip);
   ray.x = hn::LoadU(d, rays.x + at);
@@ -69,7 +71,7 @@ HWY_ATTR HWY_INLINE void load(const KernelPath<T>& path, const RayColumns<T>& ra
   ray.m = hn::LoadU(d, rays.m + at);
   ray.n = hn::Mul(flip, hn::LoadU(d, rays.n + at));
   if constexpr (has_path<T>) {
-    ray.opl = hn::LoadU(d, rays.opl + at);
+    if constexpr (!measures) ray.opl = hn::LoadU(d, rays.opl + at);
   } else {
     // What float loses of the unit length would count again at every surface.
     const auto length_sq = hn::MulAdd(ray.l, ray.l, hn::MulAdd(ray.m, ray.m, hn::Mul(ray.n, ray.n)));
@@ -78,6 +80,7 @@ HWY_ATTR HWY_INLINE void load(const KernelPath<T>& path, const RayColumns<T>& ra
     ray.m = hn::Mul(ray.m, scale);
     ray.n = hn::Mul(ray.n, scale);
   }
+  ray.worst = hn::Zero(d);
   ray.alive = hn::Eq(ray.z, ray.z);
 }
 
@@ -98,7 +101,7 @@ HWY_ATTR HWY_INLINE void store_mask(Mask<float> mask, std::uint8_t* to) {
 }
 
 template <class T>
-HWY_ATTR HWY_INLINE void store(const KernelPath<T>& path, const RayVector<T>& ray, std::size_t at,
+HWY_ATTR HWY_INLINE void store(const KernelPath<T>& path, const RayVector<T, false>& ray, std::size_t at,
                                const RayColumns<T>& rays) {
   const Lanes<T> d;
   const auto flip = hn::Set(d, path.flip);
@@ -113,18 +116,38 @@ HWY_ATTR HWY_INLINE void store(const KernelPath<T>& path, const RayVector<T>& ra
   store_mask(ray.alive, rays.passes + at);
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void trace_group(const KernelPath<T>& path, const RayColumns<T>& rays, std::size_t at) {
+/// One group from launch to end.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void run_group(const KernelPath<T>& path, const RayColumns<T>& rays, std::size_t at,
+                                   RayVector<T, measures> (&group)[interleaved]) {
   const Lanes<T> d;
-  RayVector<T> group[interleaved];
   for (std::size_t i = 0; i < interleaved; ++i) load(path, rays, at + i * hn::Lanes(d), group[i]);
   for (const KernelSurface<T>& surface : path.surfaces) {
     step(surface, group);
-    if (surface.clips && hn::AllFalse(d, hn::Or(group[0].alive, hn::Or(group[1].alive, group[2].alive))))
+    if (!measures && surface.clips &&
+        hn::AllFalse(d, hn::Or(group[0].alive, hn::Or(group[1].alive, group[2].alive))))
       break;
   }
-  for (RayVector<T>& ray : group) finish(path, ray);
-  for (std::size_t i = 0; i < interleaved; ++i) store(path, group[i], at + i * hn::Lanes(d), rays);
+  for (RayVector<T, measures>& ray : group) finish(path, ray);
+}
+
+template <class T>
+HWY_ATTR HWY_INLINE void trace_group(const KernelPath<T>& path, const RayColumns<T>& rays, std::size_t at) {
+  RayVector<T, false> group[interleaved];
+  run_group(path, rays, at, group);
+  for (std::size_t i = 0; i < interleaved; ++i) store(path, group[i], at + i * hn::Lanes(Lanes<T>()), rays);
+}
+
+HWY_ATTR HWY_INLINE void measure_group(const KernelPath<double>& path, const RayColumns<double>& rays,
+                                       std::size_t at, double* worst) {
+  const Lanes<double> d;
+  RayVector<double, true> group[interleaved];
+  run_group(path, rays, at, group);
+  const auto lost = hn::Set(d, std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < interleaved; ++i) {
+    const auto excess = hn::Sub(group[i].worst, hn::Set(d, 1.0));
+    hn::StoreU(hn::IfThenElse(group[i].alive, excess, lost), d, worst + at + i * hn::Lanes(d));
+  }
 }
 
 /// The rays that fill no group, by way of a group of their own: every ray goes through the same arithmetic.
@@ -149,6 +172,21 @@ HWY_ATTR void trace_all(const KernelPath<T>& path, const RayColumns<T>& rays) {
   if (at < rays.count) trace_rest(path, rays, at);
 }
 
+HWY_ATTR void measure_double(const KernelPath<double>& path, const RayColumns<double>& rays, double* worst) {
+  const std::size_t group = interleaved * hn::Lanes(Lanes<double>());
+  std::size_t at = 0;
+  for (; at + group <= rays.count; at += group) measure_group(path, rays, at, worst);
+  if (at == rays.count) return;
+  HWY_ALIGN double room[7][widest_group<double>] = {};
+  HWY_ALIGN double rest_worst[widest_group<double>];
+  const double* const from[6] = {rays.x, rays.y, rays.z, rays.l, rays.m, rays.n};
+  for (std::size_t c = 0; c < 6; ++c) std::copy_n(from[c] + at, rays.count - at, room[c]);
+  measure_group(path,
+                {room[0], room[1], room[2], room[3], room[4], room[5], room[6], nullptr, rays.count - at}, 0,
+                rest_worst);
+  std::copy_n(rest_worst, rays.count - at, worst + at);
+}
+
 HWY_ATTR void trace_double(const KernelPath<double>& path, const RayColumns<double>& rays) {
   trace_all(path, rays);
 }
@@ -164,12 +202,17 @@ namespace petzval {
 
 HWY_EXPORT(trace_double);
 HWY_EXPORT(trace_float);
+HWY_EXPORT(measure_double);
 
 void trace_columns(const KernelPath<double>& path, const RayColumns<double>& rays) {
   HWY_DYNAMIC_DISPATCH(trace_double)(path, rays);
 }
 void trace_columns(const KernelPath<float>& path, const RayColumns<float>& rays) {
   HWY_DYNAMIC_DISPATCH(trace_float)(path, rays);
+}
+
+void measure_columns(const KernelPath<double>& path, const RayColumns<double>& rays, double* worst) {
+  HWY_DYNAMIC_DISPATCH(measure_double)(path, rays, worst);
 }
 
 }  // namespace petzval

@@ -21,7 +21,7 @@ struct KernelSurface {
   T index_before = 1;  ///< on the side the ray comes from
   T index_ratio = 1;   ///< before / behind
   T index_ratio_sq = 1, one_minus_index_ratio_sq = 0;
-  T clear_radius_sq = 0;  ///< counts where `clips`
+  T clear_radius_sq = 0, per_clear_radius_sq = 0;  ///< count where `clips`
   /// Horner coefficients in t = r²/ρ² (even) or t = r/ρ (odd), a_p ρ^p: in float they neither overflow nor
   /// vanish.
   std::vector<T> polynomial;
@@ -54,5 +54,9 @@ struct RayColumns {
 /// and to rounding in float.
 void trace_columns(const KernelPath<double>& path, const RayColumns<double>& rays);
 void trace_columns(const KernelPath<float>& path, const RayColumns<float>& rays);
+
+/// For each ray the largest (r/r_clear)² over all clipping surfaces, minus 1, into worst[i]; infinity for a
+/// ray that misses or is totally reflected. The rays stay as they are; `passes` and `opl` are not used.
+void measure_columns(const KernelPath<double>& path, const RayColumns<double>& rays, double* worst);
 
 }  // namespace petzval

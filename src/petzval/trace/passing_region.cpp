@@ -17,6 +17,8 @@ constexpr Grid first_look{64, 128}, closer_look{32, 64}, last_look{96, 192};
 /// A box of rays that pass is worth another look when it is smaller than this share of what was scanned.
 constexpr double worth_zooming = 0.6;
 constexpr int most_looks = 12;
+/// How much a box grows on a side where rays pass at its edge.
+constexpr double widening = 0.2;
 /// For pupils that fall between the points of the first grid.
 constexpr int aimed_azimuths = 16;
 
@@ -59,6 +61,20 @@ class Scan {
         }
     if (last_row < 0) return {};
     return LabelBox{u(last_column) + cell_u_, v(first_row) - cell_v_, v(last_row) + cell_v_};
+  }
+
+  /// The box wider on the sides where rays pass at its very edge; nothing if there are none.
+  std::optional<LabelBox> widened() const {
+    bool right = false, below = false, above = false;
+    for (int r = 0; r < grid_.rows; ++r) right |= at(grid_.columns - 1, r);
+    for (int c = 0; c < grid_.columns; ++c) {
+      below |= at(c, 0);
+      above |= at(c, grid_.rows - 1);
+    }
+    if (!right && !below && !above) return {};
+    const double by = widening * (box_.high_v - box_.low_v);
+    return LabelBox{box_.high_u * (right ? 1 + widening : 1), box_.low_v - (below ? by : 0),
+                    box_.high_v + (above ? by : 0)};
   }
 
   PassingRegion region(const LabelBox& bounds) const {
@@ -131,10 +147,18 @@ std::optional<PassingRegion> find_passing_region(const Tracer& tracer, const Pen
     bounds = Scan(pencil, radiance, closer_look, box).bounds();
   }
   if (!bounds) return {};
-  const Scan scan(pencil, radiance, last_look, box);
-  const std::optional<LabelBox> last = scan.bounds();
-  if (!last) return {};
-  return scan.region(*last);
+  // The tips of a sliver are thinner than the cells of the first looks.
+  for (int look = 0;; ++look) {
+    const Scan scan(pencil, radiance, last_look, box);
+    const std::optional<LabelBox> wider = scan.widened();
+    if (wider && look < most_looks) {
+      box = *wider;
+      continue;
+    }
+    const std::optional<LabelBox> last = scan.bounds();
+    if (!last) return {};
+    return scan.region(*last);
+  }
 }
 
 }  // namespace petzval

@@ -18,6 +18,10 @@ constexpr double aim_tolerance = 1e-13;
 /// March no farther than this between chief rays: far less than any pupil wanders between them.
 constexpr double march_step_deg = 2.0;
 constexpr double march_steps_per_tangent = 30;
+/// Steps are halved down to this share before a chief ray is given up.
+constexpr double smallest_step_share = 1e-3;
+/// A predicted ray may miss the centre of a pinhole stop by this [mm].
+constexpr double least_catch_mm = 1e-3;
 constexpr int scan_points = 2000;
 
 /// Height at the stop of the meridional ray v, or NaN.
@@ -146,19 +150,33 @@ Pencil ChiefRayMarch::pencil_at(double field) const {
 }
 
 std::optional<double> ChiefRayMarch::v_at(double field) {
-  if (std::abs(field) < std::abs(last_field_) || field * last_field_ < 0) last_field_ = last_v_ = slope_ = 0;
+  // From the last field inwards or outwards, or from the axis if that is nearer.
+  if (std::abs(field) < 0.5 * std::abs(last_field_) || field * last_field_ < 0)
+    last_field_ = last_v_ = slope_ = 0;
+  double step = step_;
   while (last_field_ != field) {
     const double remaining = field - last_field_;
-    const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(remaining) / step_)));
-    const double next = steps == 1 ? field : last_field_ + remaining / steps;
-    const std::optional<double> v =
-        aim_chief_ray(tracer_, pencil_at(next), last_v_ + slope_ * (next - last_field_));
-    if (!v) return {};
-    slope_ = (*v - last_v_) / (next - last_field_);
-    last_v_ = *v;
-    last_field_ = next;
+    const double next = std::abs(remaining) <= step ? field : last_field_ + std::copysign(step, remaining);
+    const double predicted = last_v_ + slope_ * (next - last_field_);
+    if (const std::optional<double> v = follow(pencil_at(next), predicted)) {
+      slope_ = (*v - last_v_) / (next - last_field_);
+      last_v_ = *v;
+      last_field_ = next;
+      step = std::min(2 * step, step_);
+    } else {
+      step = 0.5 * std::min(step, std::abs(remaining));
+      if (step < smallest_step_share * step_) return {};
+    }
   }
   return last_v_;
+}
+
+std::optional<double> ChiefRayMarch::follow(const Pencil& pencil, double predicted) const {
+  // A neighbour of the last chief ray: it starts inside the stop, so that Newton cannot jump to another
+  // branch.
+  const double height = stop_height(tracer_, pencil, predicted);
+  if (!(std::abs(height) < std::max(tracer_.stop_radius_mm(), least_catch_mm))) return {};
+  return newton_on_stop(tracer_, pencil, predicted);
 }
 
 }  // namespace petzval

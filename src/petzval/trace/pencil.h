@@ -57,19 +57,23 @@ LabelRange label_range(const Tracer& tracer, const Pencil& pencil);
 /// nearest to the guess. Nothing when no ray of the pencil crosses the stop centre.
 std::optional<double> aim_chief_ray(const Tracer& tracer, const Pencil& pencil, double guess);
 
-/// Marches from the axis outwards to a field and returns the chief ray's v on the way; for wide-angle lenses,
-/// whose pupil wanders too far for the paraxial guess. Fields may be asked in any order; near the last one is
-/// cheapest.
+/// Marches from the axis outwards to a field, chief ray after chief ray; for wide-angle lenses, whose pupil
+/// wanders too far for the paraxial guess. Every step predicts the next chief ray from the last two, and is
+/// halved until the predicted ray crosses the stop inside its rim: so the branch that begins on the axis is
+/// never left for another, and where it ends there is no chief ray. Fields may be asked in any order; near
+/// the last one is cheapest.
 class ChiefRayMarch {
  public:
   enum class From { object, image };
   ChiefRayMarch(const Lens& lens, const Tracer& tracer, From from = From::object);
 
-  /// Nothing when no chief ray passes the glass at that field.
+  /// Nothing when the chief rays end before that field: they miss a surface or are totally reflected.
   std::optional<double> v_at(double field);
 
  private:
   Pencil pencil_at(double field) const;
+  /// The chief ray of a pencil near a prediction; nothing if that misses the stop.
+  std::optional<double> follow(const Pencil& pencil, double predicted) const;
 
   const Lens& lens_;
   const Tracer& tracer_;

@@ -2,6 +2,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/numeric/quadrature.h>
+#include <petzval/trace/clearance_batch.h>
 #include <petzval/trace/pupil.h>
 
 #include <algorithm>
@@ -16,6 +17,12 @@ namespace {
 constexpr double boundary_tolerance = 1e-12;
 /// An inner point nearer to an aperture than this is exchanged for a more central one.
 constexpr double comfortable_clearance = -0.5;
+/// Factor by which the search goes outwards until it has passed the boundary.
+constexpr double growth = 1.3;
+constexpr int most_rounds = 400;
+/// For the first look, which finds the stretch.
+constexpr std::size_t first_azimuths = 16;
+constexpr double widest_stretch = 100;
 
 class PupilSearch {
  public:
@@ -59,67 +66,133 @@ class PupilSearch {
     return {};
   }
 
-  /// Distance to the boundary from an inner point (0, v) along azimuth φ.
-  double radius(double v, double azimuth, double guess) const {
-    const double du = std::sin(azimuth), dv = std::cos(azimuth);
-    const auto at = [&](double r) { return worst(r * du, v + r * dv); };
-    double inside = 0, outside = guess;
-    double worst_inside = at(0.0), worst_outside = at(outside);
-    for (int i = 0; worst_outside < 0 && i < 200; ++i) {
-      inside = outside;
-      worst_inside = worst_outside;
-      outside *= 1.3;
-      worst_outside = at(outside);
-    }
-    return refine(at, inside, worst_inside, outside, worst_outside);
-  }
-
  private:
-  /// The Illinois form of false position, with bisection while the outer value is infinite or progress
-  /// stalls.
-  template <class F>
-  static double refine(const F& at, double inside, double worst_inside, double outside,
-                       double worst_outside) {
-    int side = 0;
-    for (int i = 0; i < 200 && outside - inside > boundary_tolerance * outside; ++i) {
-      double next = 0.5 * (inside + outside);
-      if (std::isfinite(worst_outside) && i % 8 != 7)
-        next = (inside * worst_outside - outside * worst_inside) / (worst_outside - worst_inside);
-      if (!(next > inside && next < outside)) next = 0.5 * (inside + outside);
-      if (next == inside || next == outside) break;
-      const double value = at(next);
-      if (value < 0) {
-        inside = next;
-        worst_inside = value;
-        if (side == -1) worst_outside *= 0.5;
-        side = -1;
-      } else {
-        if (value == 0) return next;
-        outside = next;
-        worst_outside = value;
-        if (side == 1) worst_inside *= 0.5;
-        side = 1;
-      }
-    }
-    return inside;
-  }
-
   const Tracer& tracer_;
   const Pencil& pencil_;
   Tracer::Clip clip_;
 };
 
+/// The boundary along one azimuth, closed in on from both sides.
+struct Bracket {
+  double sine, cosine;
+  double inside = 0, outside, worst_inside, worst_outside;
+  int last_side = 0;
+  bool bracketed = false;
+
+  bool done() const { return bracketed && !(outside - inside > boundary_tolerance * outside); }
+  /// Where to look next: farther out while the boundary is not passed, then by the Illinois form of false
+  /// position, with bisection while the outer value is infinite and every eighth time.
+  double next(int round) const {
+    if (!bracketed) return outside;
+    const double middle = 0.5 * (inside + outside);
+    if (!std::isfinite(worst_outside) || round % 8 == 7) return middle;
+    const double crossing =
+        (inside * worst_outside - outside * worst_inside) / (worst_outside - worst_inside);
+    return crossing > inside && crossing < outside ? crossing : middle;
+  }
+  void look(double radius, double worst) {
+    if (!bracketed) {
+      bracketed = !(worst < 0);
+      if (bracketed) {
+        worst_outside = worst;
+      } else {
+        inside = radius;
+        worst_inside = worst;
+        outside = growth * radius;
+      }
+      return;
+    }
+    // A middle that is one of the ends: there is nothing between them.
+    if (radius == inside || radius == outside)
+      outside = inside;
+    else if (worst < 0) {
+      inside = radius;
+      worst_inside = worst;
+      if (last_side == -1) worst_outside *= 0.5;
+      last_side = -1;
+    } else {
+      outside = radius;
+      worst_outside = worst;
+      if (last_side == 1) worst_inside *= 0.5;
+      last_side = 1;
+    }
+  }
+};
+
+/// All azimuths in lockstep, so that their rays fill the lanes.
+void close_in(std::vector<Bracket>& brackets, double centre_v, ClearanceBatch& clearances) {
+  std::vector<double> u, v, radius, worst;
+  std::vector<std::size_t> open;
+  for (int round = 0; round < most_rounds; ++round) {
+    u.clear(), v.clear(), radius.clear(), open.clear();
+    for (std::size_t i = 0; i < brackets.size(); ++i) {
+      if (brackets[i].done()) continue;
+      open.push_back(i);
+      radius.push_back(brackets[i].next(round));
+      u.push_back(radius.back() * brackets[i].sine);
+      v.push_back(centre_v + radius.back() * brackets[i].cosine);
+    }
+    if (open.empty()) return;
+    worst.resize(open.size());
+    clearances.measure(u, v, worst);
+    for (std::size_t k = 0; k < open.size(); ++k) brackets[open[k]].look(radius[k], worst[k]);
+  }
+}
+
+double even_azimuth(std::size_t i, std::size_t count) {
+  return 2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+}
+
 }  // namespace
 
 double PupilBoundary::azimuth(std::size_t i) const {
-  return 2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(radius.size());
+  const double even = even_azimuth(i, radius.size());
+  const double azimuth = std::atan2(stretch * std::sin(even), std::cos(even));
+  return azimuth < 0 ? azimuth + 2 * pi : azimuth;
+}
+
+double PupilBoundary::azimuth_weight(std::size_t i) const {
+  const double even = even_azimuth(i, radius.size());
+  const double sine = stretch * std::sin(even), cosine = std::cos(even);
+  return stretch / (sine * sine + cosine * cosine) * 2 * pi / static_cast<double>(radius.size());
 }
 
 double PupilBoundary::area() const {
   double sum = 0;
-  for (const double r : radius) sum += r * r;
-  return sum * pi / static_cast<double>(radius.size());
+  for (std::size_t i = 0; i < radius.size(); ++i) sum += 0.5 * radius[i] * radius[i] * azimuth_weight(i);
+  return sum;
 }
+
+namespace {
+
+/// Finds the boundary around boundary.centre_v, with boundary.stretch. `guess` is where each search begins.
+void find_radii(std::size_t azimuths, double worst_at_centre, double guess, ClearanceBatch& clearances,
+                PupilBoundary& boundary) {
+  boundary.radius.resize(azimuths);
+  std::vector<Bracket> brackets(azimuths / 2);
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    const double azimuth = boundary.azimuth(i);
+    brackets[i] = {std::sin(azimuth), std::cos(azimuth), 0, guess, worst_at_centre, 0};
+  }
+  close_in(brackets, boundary.centre_v, clearances);
+  for (std::size_t i = 0; i < brackets.size(); ++i)
+    boundary.radius[i] = boundary.radius[azimuths - 1 - i] = brackets[i].inside;
+}
+
+/// Width along u over height along v of a boundary.
+double stretch_of(const PupilBoundary& boundary) {
+  double width = 0, high = -1e300, low = 1e300;
+  for (std::size_t i = 0; i < boundary.radius.size() / 2; ++i) {
+    const double azimuth = boundary.azimuth(i);
+    width = std::max(width, 2 * boundary.radius[i] * std::sin(azimuth));
+    high = std::max(high, boundary.radius[i] * std::cos(azimuth));
+    low = std::min(low, boundary.radius[i] * std::cos(azimuth));
+  }
+  const double stretch = width / (high - low);
+  return std::isfinite(stretch) ? std::clamp(stretch, 1 / widest_stretch, widest_stretch) : 1;
+}
+
+}  // namespace
 
 std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& pencil, double chief_v,
                                         int azimuths, Tracer::Clip clip) {
@@ -132,25 +205,24 @@ std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& penc
   PupilBoundary boundary;
   boundary.centre_v = *centre;
   boundary.chief_v = chief_v;
-  const auto count = static_cast<std::size_t>(azimuths);
-  boundary.radius.resize(count);
-  double guess = scale;
-  for (std::size_t i = 0; i < count / 2; ++i) {
-    const double found = search.radius(*centre, boundary.azimuth(i), guess);
-    boundary.radius[i] = boundary.radius[count - 1 - i] = found;
-    guess = found > 0 ? found * 1.02 : scale;
-  }
+  const double worst_at_centre = search.worst(0, *centre);
+  ClearanceBatch clearances(tracer, pencil, clip);
+  find_radii(first_azimuths, worst_at_centre, scale, clearances, boundary);
+  boundary.stretch = stretch_of(boundary);
+  const double guess = *std::max_element(boundary.radius.begin(), boundary.radius.end());
+  find_radii(static_cast<std::size_t>(azimuths), worst_at_centre, guess > 0 ? guess : scale, clearances,
+             boundary);
   return boundary;
 }
 
 std::vector<PupilNode> half_pupil_nodes(const PupilBoundary& boundary, int radial_nodes) {
   const QuadratureRule radial = gauss_legendre(radial_nodes);
   const std::size_t azimuths = boundary.radius.size();
-  const double step = 2 * pi / static_cast<double>(azimuths);
   std::vector<PupilNode> nodes;
   nodes.reserve(azimuths / 2 * radial.nodes.size());
   for (std::size_t i = 0; i < azimuths / 2; ++i) {
     const double rim = boundary.radius[i], azimuth = boundary.azimuth(i);
+    const double step = boundary.azimuth_weight(i);
     for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
       const double r = rim * radial.nodes[k];
       nodes.push_back({r * std::sin(azimuth), boundary.centre_v + r * std::cos(azimuth),

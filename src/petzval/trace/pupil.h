@@ -10,15 +10,21 @@
 namespace petzval {
 
 /// The region of a pencil's (u, v) that passes, as a curve around an inner point (centre_u = 0 by symmetry):
-/// `radius[i]` at azimuth φ_i = 2π(i + ½)/n, counted from +v towards +u, so that (u, v) = centre +
-/// radius·(sin φ, cos φ). Mirror symmetric: radius[i] = radius[n−1−i]. Found along azimuths by root finding
-/// on the clearance of real rays at the real apertures; nothing is counted on a grid.
+/// `radius[i]` at azimuth(i), counted from +v towards +u, so that (u, v) = centre + radius·(sin φ, cos φ).
+/// Mirror symmetric: radius[i] = radius[n−1−i]. Found along azimuths by root finding on the clearance of real
+/// rays at the real apertures; nothing is counted on a grid.
+///
+/// The azimuths are those of a round pupil stretched along u: φ = atan2(s sin ψ, cos ψ), ψ = 2π(i + ½)/n. A
+/// pupil that vignetting has narrowed to a sliver is sampled along its whole rim.
 struct PupilBoundary {
   double centre_v = 0;
   double chief_v = 0;  ///< the chief ray's v
+  double stretch = 1;  ///< s: width along u over height along v
   std::vector<double> radius;
 
   double azimuth(std::size_t i) const;
+  /// dφ of one sample; they sum to 2π.
+  double azimuth_weight(std::size_t i) const;
   /// ∬ du dv inside the curve, ½ ∮ radius² dφ [mm² or sr].
   double area() const;
 };

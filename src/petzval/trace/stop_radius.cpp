@@ -12,6 +12,8 @@ namespace petzval {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 /// The on-axis ray towards the edge of the paraxial entrance pupil.
 Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
   const double edge = 0.5 * paraxial.entrance_pupil.diameter_mm;
@@ -26,13 +28,16 @@ Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
   return {{0, 0, -*lens.object_distance_mm}, {0, edge / length, to_pupil / length}};
 }
 
-/// The radius that the lens's `aperture` asks for, whatever the stop's own rim.
-double asked_radius_mm(const Lens& lens) {
+/// The radius that the lens's `aperture` asks for, whatever the stop's own rim. Nothing when the real ray to
+/// the edge of the paraxial pupil does not reach the stop: the glass passes less than was asked. \throws
+/// InputError in that case, if `must_reach`.
+std::optional<double> asked_radius_mm(const Lens& lens, bool must_reach) {
   if (lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm) return lens.aperture.value;
   const FirstOrder paraxial = first_order(lens, lens.reference_wavelength_nm);
-  const Tracer tracer(lens, lens.reference_wavelength_nm, std::numeric_limits<double>::infinity());
+  const Tracer tracer(lens, lens.reference_wavelength_nm, infinity);
   const Tracer::Clearance traced =
       tracer.clearance(ray_to_pupil_edge(lens, paraxial), false, Tracer::Clip::none);
+  if (!traced.reached_stop && !must_reach) return {};
   if (!traced.reached_stop)
     throw InputError(
         fmt::format("{}: the aperture is too wide: the ray to the edge of the entrance pupil ({:.6g} mm in "
@@ -46,7 +51,8 @@ double asked_radius_mm(const Lens& lens) {
 
 double stop_radius_mm(const Lens& lens) {
   const std::optional<double>& rim = lens.surfaces[lens.stop_index()].semi_diameter_mm;
-  return rim ? std::min(*rim, asked_radius_mm(lens)) : asked_radius_mm(lens);
+  const std::optional<double> asked = asked_radius_mm(lens, !rim.has_value());
+  return std::min(rim.value_or(infinity), asked.value_or(infinity));
 }
 
 }  // namespace petzval

@@ -36,31 +36,36 @@ constexpr T asphere_share = has_path<T> ? T(0) : 8 * std::numeric_limits<T>::eps
 constexpr int asphere_iterations = 20;
 
 /// Rays relative to the vertex of the surface they are at. A ray that misses or is totally reflected turns
-/// into NaN, which fails every later comparison; `alive` holds the rest.
-template <class T>
+/// into NaN, which fails every later comparison; `alive` holds the rest. A trace that measures clips nothing
+/// and keeps the largest (r/r_clear)² instead.
+template <class T, bool measures>
 struct RayVector {
-  Vector<T> x, y, z, l, m, n, opl;
+  Vector<T> x, y, z, l, m, n, opl, worst;
   Mask<T> alive;
 };
 
-template <class T>
-HWY_ATTR HWY_INLINE void advance(const KernelSurface<T>& surface, Vector<T> distance, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void advance(const KernelSurface<T>& surface, Vector<T> distance,
+                                 RayVector<T, measures>& ray) {
   ray.x = hn::MulAdd(distance, ray.l, ray.x);
   ray.y = hn::MulAdd(distance, ray.m, ray.y);
   ray.z = hn::MulAdd(distance, ray.n, ray.z);
-  if constexpr (has_path<T>)
+  if constexpr (has_path<T> && !measures)
     ray.opl = hn::MulAdd(hn::Set(Lanes<T>(), surface.index_before), distance, ray.opl);
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   if (!surface.clips) return;
   const auto radius_sq = hn::MulAdd(ray.x, ray.x, hn::Mul(ray.y, ray.y));
-  ray.alive = hn::And(ray.alive, hn::Le(radius_sq, hn::Set(Lanes<T>(), surface.clear_radius_sq)));
+  if constexpr (measures)
+    ray.worst = hn::Max(ray.worst, hn::Mul(radius_sq, hn::Set(Lanes<T>(), surface.per_clear_radius_sq)));
+  else
+    ray.alive = hn::And(ray.alive, hn::Le(radius_sq, hn::Set(Lanes<T>(), surface.clear_radius_sq)));
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void step_plane(const KernelSurface<T>& surface, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step_plane(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   ray.alive = hn::And(ray.alive, hn::Gt(ray.n, hn::Zero(d)));
   advance(surface, hn::Neg(hn::Div(ray.z, ray.n)), ray);
@@ -81,8 +86,8 @@ struct Crossing {
   Vector<T> distance, slope, slope_sq;
 };
 
-template <bool is_conic, class T>
-HWY_ATTR HWY_INLINE Crossing<T> cross(const KernelSurface<T>& surface, const RayVector<T>& ray) {
+template <bool is_conic, class T, bool measures>
+HWY_ATTR HWY_INLINE Crossing<T> cross(const KernelSurface<T>& surface, const RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const auto c = hn::Set(d, surface.curvature);
   auto qz = ray.z, a = c;
@@ -105,8 +110,8 @@ HWY_ATTR HWY_INLINE Crossing<T> cross(const KernelSurface<T>& surface, const Ray
   return crossing;
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void step_sphere(const KernelSurface<T>& surface, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step_sphere(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const Crossing<T> crossing = cross<false>(surface, ray);
   advance(surface, crossing.distance, ray);
@@ -125,9 +130,9 @@ HWY_ATTR HWY_INLINE void step_sphere(const KernelSurface<T>& surface, RayVector<
 }
 
 /// Snell at a gradient that is not of unit length; `slope` is direction · gradient.
-template <class T>
+template <class T, bool measures>
 HWY_ATTR HWY_INLINE void refract(const KernelSurface<T>& surface, Vector<T> gx, Vector<T> gy, Vector<T> gz,
-                                 Vector<T> slope, RayVector<T>& ray) {
+                                 Vector<T> slope, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const auto length_sq = hn::MulAdd(gx, gx, hn::MulAdd(gy, gy, hn::Mul(gz, gz)));
   const auto e = hn::Set(d, surface.index_ratio);
@@ -139,8 +144,8 @@ HWY_ATTR HWY_INLINE void refract(const KernelSurface<T>& surface, Vector<T> gx, 
   ray.n = hn::MulAdd(bend, gz, hn::Mul(e, ray.n));
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void step_conic(const KernelSurface<T>& surface, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step_conic(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const Crossing<T> crossing = cross<true>(surface, ray);
   advance(surface, crossing.distance, ray);
@@ -177,8 +182,8 @@ HWY_ATTR HWY_INLINE void asphere_sag(const KernelSurface<T>& surface, Vector<T> 
   slope_over_r = hn::Add(hn::Div(c, root), rise);
 }
 
-template <class T>
-HWY_ATTR HWY_INLINE void step_asphere(const KernelSurface<T>& surface, RayVector<T>& ray) {
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step_asphere(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   const auto from_conic = cross<true>(surface, ray).distance;
   const auto from_plane = hn::Neg(hn::Div(ray.z, ray.n));
@@ -186,7 +191,7 @@ HWY_ATTR HWY_INLINE void step_asphere(const KernelSurface<T>& surface, RayVector
   // From here on the distance is short, and so is its rounding.
   const auto size = hn::Add(hn::Abs(ray.x), hn::Add(hn::Abs(ray.y), hn::Abs(ray.z)));
   const auto tolerance = hn::MulAdd(size, hn::Set(d, asphere_share<T>), hn::Set(d, asphere_base_mm<T>));
-  const RayVector<T> start = ray;
+  const RayVector<T, measures> start = ray;
   auto distance = hn::Zero(d), gx = distance, gy = distance, slope = distance;
   auto close = hn::Lt(distance, distance);
   for (int i = 0; i < asphere_iterations; ++i) {

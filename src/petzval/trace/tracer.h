@@ -95,8 +95,9 @@ class Tracer {
 
 /// The radius of the aperture stop [mm]: `aperture.value` when the file gives it (stop_semi_diameter_mm),
 /// else the height at the stop surface of the real on-axis ray at the reference wavelength that is launched
-/// at the edge of the paraxial entrance pupil. \throws InputError if that ray does not reach the stop, saying
-/// which surface ends it.
+/// at the edge of the paraxial entrance pupil; never more than the stop surface's own clear radius, which
+/// counts alone when that ray does not reach the stop. \throws InputError if neither gives a radius, saying
+/// which surface ends the ray.
 double stop_radius_mm(const Lens& lens);
 
 }  // namespace petzval
