@@ -227,6 +227,32 @@ TEST(Batch, KeepsTheSignOfPathsWhereFacingSurfacesCross) {
   }
 }
 
+TEST(Batch, KeepsItsDigitsFromFarAway) {
+  // The same line launched 1 mm and 1 km in front of the lens, in units that a double holds exactly: after
+  // the lens all but the path must be the same. From 1 km the quadratic itself would lose ten of its digits.
+  const Lens lens = triplet_like();
+  const Tracer tracer(lens, 550);
+  const double m = 0.28, n = 0.96;  // 7² + 24² = 25²
+  for (const double length : {1e3, 1e6}) {
+    RayBatch batch;
+    for (int i = 0; i < 40; ++i) batch.push_back(0, 0.02 * i - m * length, -n * length, 0, m, n);
+    tracer.trace(batch, Tracer::Clip::none);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const Ray near =
+          tracer.trace(Ray{{0, 0.02 * static_cast<double>(i), 0}, {0, m, n}}, Tracer::Clip::none);
+      ASSERT_EQ(batch.status[i], RayStatus::ok);
+      // What the launch point itself is rounded to, times the lens's magnification of order one.
+      const double digits = 4e-16 * length + 1e-13;
+      EXPECT_NEAR(batch.y_mm[i], near.point_mm[1], 4 * digits);
+      EXPECT_NEAR(batch.m[i], near.direction[1], digits);
+      EXPECT_NEAR(batch.opl_mm[i] - length, near.opl_mm, 4 * digits);
+      const Ray single = tracer.trace(
+          Ray{{0, 0.02 * static_cast<double>(i) - m * length, -n * length}, {0, m, n}}, Tracer::Clip::none);
+      EXPECT_NEAR(single.opl_mm - length, near.opl_mm, 4 * digits);
+    }
+  }
+}
+
 TEST(Batch, ReachesAnAsphereFromFarAway) {
   // From 12 km: the distance itself has a rounding of 2e-9 mm, the point on the surface must not.
   Lens lens = of_every_kind();

@@ -155,6 +155,18 @@ TEST(Tracer, SaysHowARayFails) {
   EXPECT_EQ(reflected.failed_at, 1);
 }
 
+TEST(StopRadius, IsTheRimWhereTheParaxialPupilIsWiderThanTheGlass) {
+  // A ball of 10 mm radius asked for f/0.4: the paraxial pupil is wider than the ball.
+  Lens lens;
+  lens.name = "ball";
+  lens.surfaces = {surface(10, 20, 1.5), surface(-10, 2, 1), surface(0, 3, 1)};
+  lens.surfaces[2].stop = true;
+  lens.aperture = {Aperture::Kind::f_number, 0.4};
+  EXPECT_THROW(stop_radius_mm(lens), InputError);
+  lens.surfaces[2].semi_diameter_mm = 1.25;
+  EXPECT_EQ(stop_radius_mm(lens), 1.25);
+}
+
 TEST(Pencil, ChiefRayPassesTheStopCentre) {
   const Lens lens = triplet_like();
   const Tracer tracer(lens, 550);

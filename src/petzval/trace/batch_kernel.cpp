@@ -80,6 +80,13 @@ HWY_ATTR HWY_INLINE void load(const KernelPath<T>& path, const RayColumns<T>& ra
     ray.m = hn::Mul(ray.m, scale);
     ray.n = hn::Mul(ray.n, scale);
   }
+  // To the point nearest to the first vertex: from far away the quadratic would lose its digits.
+  const auto back = hn::MulAdd(ray.x, ray.l, hn::MulAdd(ray.y, ray.m, hn::Mul(ray.z, ray.n)));
+  ray.x = hn::NegMulAdd(back, ray.l, ray.x);
+  ray.y = hn::NegMulAdd(back, ray.m, ray.y);
+  ray.z = hn::NegMulAdd(back, ray.n, ray.z);
+  if constexpr (has_path<T> && !measures)
+    ray.opl = hn::NegMulAdd(hn::Set(d, path.surfaces.front().index_before), back, ray.opl);
   ray.worst = hn::Zero(d);
   ray.alive = hn::Eq(ray.z, ray.z);
 }

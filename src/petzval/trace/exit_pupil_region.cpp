@@ -15,6 +15,7 @@ namespace petzval {
 struct ExitPupilRegions::Probe {
   double film_radius_mm = 0;
   std::vector<PassingRegion> wavelengths;  ///< those that let any light through
+  double bend_u = 0, bend_v = 0;           ///< by how much the box departs from moving evenly here
 
   bool dark() const { return wavelengths.empty(); }
   LabelBox box() const {
@@ -54,7 +55,19 @@ ExitPupilRegions::ExitPupilRegions(std::span<const Tracer> tracers, double film_
       if (auto passing = find_passing_region(tracer, Pencil::from_image(tracer, probes[i].film_radius_mm)))
         probes[i].wavelengths.push_back(std::move(*passing));
   });
+  find_bends(probes);
   for (std::size_t i = 0; i + 1 < radii; ++i) zones_.push_back(zone_between(probes[i], probes[i + 1], step));
+}
+
+void ExitPupilRegions::find_bends(std::vector<Probe>& probes) {
+  for (std::size_t i = 1; i + 1 < probes.size(); ++i) {
+    if (probes[i - 1].dark() || probes[i].dark() || probes[i + 1].dark()) continue;
+    const LabelBox before = probes[i - 1].box(), here = probes[i].box(), after = probes[i + 1].box();
+    const auto bend = [](double a, double b, double c) { return std::abs(a - 2 * b + c); };
+    probes[i].bend_u = bend(before.high_u, here.high_u, after.high_u);
+    probes[i].bend_v =
+        std::max(bend(before.low_v, here.low_v, after.low_v), bend(before.high_v, here.high_v, after.high_v));
+  }
 }
 
 ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const Probe& outer,
@@ -72,6 +85,10 @@ ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const 
   zone.scale_u = std::max(from.high_u, to.high_u);
   zone.scale_v = 0.5 * std::max(from.high_v - from.low_v, to.high_v - to.low_v);
 
+  // Where an aperture begins to clip inside the zone, an edge goes a quarter of its bend off the straight
+  // way.
+  const double margin_u = 0.5 * std::max(inner.bend_u, outer.bend_u);
+  const double margin_v = 0.5 * std::max(inner.bend_v, outer.bend_v);
   const double width = sector_width(sectors);
   const auto cover = [&](double u, double v) {
     const double x = u / zone.scale_u, y = v / zone.scale_v;
@@ -82,8 +99,8 @@ ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const 
   for (const Probe* probe : {&lit, &other})
     for (const PassingRegion& passing : probe->wavelengths)
       for (const auto& [u, v] : passing.outline)
-        for (const double du : {-passing.cell_u, passing.cell_u})
-          for (const double dv : {-passing.cell_v, passing.cell_v}) {
+        for (const double du : {-passing.cell_u - margin_u, passing.cell_u + margin_u})
+          for (const double dv : {-passing.cell_v - margin_v, passing.cell_v + margin_v}) {
             const double offset = v + dv - (probe == &lit ? centre_from : centre_to);
             cover(u + du, offset);
             cover(-u - du, offset);

@@ -67,6 +67,7 @@ class ExitPupilRegions {
   struct Probe;
 
   static Zone zone_between(const Probe& inner, const Probe& outer, double step_mm);
+  static void find_bends(std::vector<Probe>& probes);
   const Zone& zone_at(double radius_mm) const;
   Place place(double x_mm, double y_mm) const;
 

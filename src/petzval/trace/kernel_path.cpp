@@ -44,7 +44,9 @@ KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backwa
   surface.kind = kind_of(from);
   surface.clips = std::isfinite(clip_radius_sq);
   surface.clear_radius_sq = surface.clips ? static_cast<T>(clip_radius_sq) : T(0);
-  surface.per_clear_radius_sq = surface.clips ? static_cast<T>(1 / clip_radius_sq) : T(0);
+  // Boundaries are sought at the rim itself.
+  surface.per_clear_radius_sq =
+      surface.clips ? static_cast<T>((1 + Tracer::rim_tolerance) / clip_radius_sq) : T(0);
   surface.curvature = static_cast<T>(flip * from.curvature);
   surface.conic = static_cast<T>(from.conic);
   surface.one_plus_conic = static_cast<T>(1 + from.conic);

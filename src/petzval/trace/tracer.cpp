@@ -13,12 +13,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Rays that are launched at a rim exactly are not to be lost to rounding.
-constexpr double rim_tolerance = 1e-9;
-
 SurfaceRay relative_to_vertex(const Ray& ray, double vertex_z) {
   return {ray.point_mm[0],  ray.point_mm[1], ray.point_mm[2] - vertex_z, ray.direction[0], ray.direction[1],
           ray.direction[2], ray.opl_mm};
+}
+
+/// To the ray's point nearest to the first vertex, at most a beam's width away: from the far end of a long
+/// way the quadratic of a surface would lose its digits.
+void come_near(const Tracer::PreparedSurface& first, bool backward, SurfaceRay& ray) {
+  const double distance = -(ray.x * ray.l + ray.y * ray.m + ray.z * ray.n);
+  ray.x += distance * ray.l;
+  ray.y += distance * ray.m;
+  ray.z += distance * ray.n;
+  ray.opl += distance * (backward ? first.index_after : first.index_before);
 }
 
 void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
@@ -37,6 +44,7 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
   const std::size_t count = surfaces.size();
   double vertex_z = surfaces[backward ? count - 1 : 0].vertex_z_mm;
   SurfaceRay at = relative_to_vertex(ray, vertex_z);
+  come_near(surfaces[backward ? count - 1 : 0], backward, at);
   for (std::size_t step = 0; step < count; ++step) {
     const std::size_t i = backward ? count - 1 - step : step;
     const Tracer::PreparedSurface& surface = surfaces[i];

@@ -53,6 +53,9 @@ class Tracer {
   double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
   /// Radius that the stop clips at [mm].
   double stop_radius_mm() const { return stop_radius_mm_; }
+  /// Rays that are launched at a rim exactly are not to be lost to rounding: what clips is this share of r²
+  /// wider.
+  static constexpr double rim_tolerance = 1e-9;
   /// The square of the radius that clips at a surface, a rounding wider than the clear aperture, so that rays
   /// launched at a rim exactly are not lost; infinity where nothing clips.
   double clip_radius_sq(std::size_t surface, Clip clip) const;
