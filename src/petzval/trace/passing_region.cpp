@@ -31,22 +31,21 @@ class Scan {
         cell_v_((box.high_v - box.low_v) / grid.rows) {
     const auto count = static_cast<std::size_t>(grid.columns * grid.rows);
     RadianceRays rays(count);
-    std::vector<std::uint8_t> exists(count, 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      // A label that has no ray gets one that fails.
-      const std::optional<Ray> ray = pencil.ray(u(column(i)), v(row(i)));
-      exists[i] = ray.has_value();
-      const Ray launched = ray.value_or(Ray{});
-      rays.x_mm[i] = static_cast<float>(launched.point_mm[0]);
-      rays.y_mm[i] = static_cast<float>(launched.point_mm[1]);
-      rays.z_mm[i] = static_cast<float>(launched.point_mm[2]);
-      rays.l[i] = static_cast<float>(launched.direction[0]);
-      rays.m[i] = static_cast<float>(launched.direction[1]);
-      rays.n[i] = static_cast<float>(launched.direction[2]);
-    }
+    std::size_t i = 0;
+    for (int r = 0; r < grid.rows; ++r)
+      for (int c = 0; c < grid.columns; ++c, ++i) {
+        // A label that has no ray keeps a direction of zeros, which fails.
+        const std::optional<Ray> ray = pencil.ray(u(c), v(r));
+        if (!ray) continue;
+        rays.x_mm[i] = static_cast<float>(ray->point_mm[0]);
+        rays.y_mm[i] = static_cast<float>(ray->point_mm[1]);
+        rays.z_mm[i] = static_cast<float>(ray->point_mm[2]);
+        rays.l[i] = static_cast<float>(ray->direction[0]);
+        rays.m[i] = static_cast<float>(ray->direction[1]);
+        rays.n[i] = static_cast<float>(ray->direction[2]);
+      }
     tracer.trace(rays);
     passes_ = std::move(rays.passes);
-    for (std::size_t i = 0; i < count; ++i) passes_[i] &= exists[i];
   }
 
   /// The box of what passes, a cell wider; nothing if nothing does.
@@ -90,8 +89,6 @@ class Scan {
   }
 
  private:
-  int column(std::size_t i) const { return static_cast<int>(i) % grid_.columns; }
-  int row(std::size_t i) const { return static_cast<int>(i) / grid_.columns; }
   double u(int column) const { return (column + 0.5) * cell_u_; }
   double v(int row) const { return box_.low_v + (row + 0.5) * cell_v_; }
   /// Beyond the axis lies the mirror image, beyond the box nothing.
