@@ -53,6 +53,24 @@ TEST(Irradiance, NpyIsWrittenButCannotBeReadForWantOfUnits) {
   EXPECT_THROW(write_irradiance(scratch.path("a.tiff"), example()), InputError);
 }
 
+TEST(Irradiance, CarriesLensLightAndPhotosite) {
+  const test::Scratch scratch;
+  SpectralImage image(2, 1, {450, 550}, 5, PixelAperture::photosite);
+  image.photosite = "ellipse 0.7 x 0.7 pitches";
+  image.lens = LensFacts{"a lens", 50, 2.8, -60};
+  image.illuminant = Spectrum({400, 700}, {0.1, 0.3});
+  write_irradiance(scratch.path("a.exr"), image);
+  const SpectralImage back = read_irradiance(scratch.path("a.exr"));
+  EXPECT_EQ(back.pixel_aperture(), PixelAperture::photosite);
+  EXPECT_EQ(back.photosite, image.photosite);
+  ASSERT_TRUE(back.lens && back.illuminant);
+  EXPECT_EQ(back.lens->name, "a lens");
+  EXPECT_EQ(back.lens->focal_length_mm, 50);
+  EXPECT_EQ(back.lens->f_number, 2.8);
+  EXPECT_EQ(back.lens->exit_pupil_mm, -60);
+  EXPECT_EQ(back.illuminant->values(), image.illuminant->values());
+}
+
 TEST(Irradiance, IsNotConfusedWithAnythingElse) {
   const test::Scratch scratch;
   write_irradiance(scratch.path("a.exr"), example());

@@ -115,7 +115,7 @@ TEST_F(SensorFile, WrongValuesAreNamedWithTheirLine) {
 }
 
 TEST_F(SensorFile, MissingKeyIsNamed) {
-  EXPECT_TRUE(contains(message_of(good_with(", \"source\": \"s\"", "")), "\"source\" is missing"));
+  EXPECT_TRUE(contains(message_of(good_with(", \"source\": \"s\"", "")), "has no \"source\""));
 }
 
 TEST_F(SensorFile, OtherFormatsAreRefused) {

@@ -2,16 +2,26 @@
 // The waist of the program: everything above makes a SpectralImage, everything below reads it.
 #pragma once
 
+#include <petzval/colour/spectrum.h>
+
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace petzval {
 
-/// What a pixel value stands for: the irradiance at the pixel's centre, or its mean over a square of one
-/// pitch.
-enum class PixelAperture { point, box };
+/// What a pixel value stands for: the irradiance at the pixel's centre, its mean over a square of one pitch,
+/// or its mean over the photosite of the sensor that it is made for.
+enum class PixelAperture { point, box, photosite };
+
+/// The lens that light came through, as far as a camera notes it in its files.
+struct LensFacts {
+  std::string name;
+  double focal_length_mm = 0, f_number = 0;  ///< the working f-number; 0: not known
+  double exit_pupil_mm = 0;  ///< from the sensor, negative in front of it; 0: not known, or at infinity
+};
 
 /// Spectral irradiance on the sensor [W·m⁻²·nm⁻¹]: `bands` planes of `rows` × `columns`, upright (the optical
 /// inversion is undone), row 0 on top, pixel centres at half-integers. With image-space x', y' of the real
@@ -51,6 +61,11 @@ class SpectralImage {
 
   /// How the picture came about, in one line; stored in files.
   std::string provenance;
+  /// What the photosite is like (Photosite::text), if the pixel aperture is one.
+  std::string photosite;
+  /// What else is known of it; stored in files.
+  std::optional<LensFacts> lens;
+  std::optional<Spectrum> illuminant;  ///< the light of the scene, on any scale
 
  private:
   int columns_ = 0, rows_ = 0;

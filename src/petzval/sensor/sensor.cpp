@@ -4,26 +4,19 @@
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/sensor/sensor.h>
+#include <petzval/sensor/sensor_reader.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace petzval {
 
-using nlohmann::json;
-
 namespace {
 
-// Far beyond any sensor built, and small enough that columns × rows cannot overflow.
-constexpr int max_side = 1 << 17;
-constexpr double max_pitch_um = 1000;
 constexpr std::size_t max_file_bytes = 1 << 20;
-constexpr std::array known_keys = {"format", "name", "source", "columns", "rows", "pitch_um"};
 
 template <typename Number>
 std::optional<Number> whole_number(std::string_view text) {
@@ -31,17 +24,6 @@ std::optional<Number> whole_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-/// What is wrong with the geometry, or nothing.
-std::string complaint(const SensorGeometry& geometry) {
-  for (int side : {geometry.columns, geometry.rows})
-    if (side < 1 || side > max_side)
-      return fmt::format("{} pixels on a side; 1 to {} would be right", side, max_side);
-  if (!(geometry.pitch_um > 0 && geometry.pitch_um <= max_pitch_um))
-    return fmt::format("a pitch of {} µm; above 0 and up to {} would be right", geometry.pitch_um,
-                       max_pitch_um);
-  return "";
 }
 
 /// "768x576@6.25", or nothing if the text is not of that form.
@@ -56,85 +38,65 @@ std::optional<SensorGeometry> parse_geometry(std::string_view text) {
   return SensorGeometry{*columns, *rows, *pitch_um};
 }
 
-int line_at(std::string_view text, std::size_t byte) {
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + std::min(byte, text.size()), '\n'));
-}
-
-/// One sensor file: the parsed document with the text it came from, for line numbers.
-class SensorDocument {
- public:
-  explicit SensorDocument(const std::string& path)
-      : path_(path), text_(read_whole_file(path, max_file_bytes)) {
-    try {
-      document_ = json::parse(text_);
-    } catch (const json::parse_error& error) {
-      throw InputError(path_, line_at(text_, error.byte),
-                       "is not JSON here; a sensor file is one JSON object");
-    }
-    if (!document_.is_object()) throw InputError(path_, 1, "is not a JSON object");
-    for (const auto& [key, value] : document_.items())
-      if (std::find(known_keys.begin(), known_keys.end(), key) == known_keys.end())
-        fail(key, fmt::format("unknown key \"{}\"; known are {}", key, fmt::join(known_keys, ", ")));
-  }
-
-  std::string string(const char* key) const {
-    const json& value = at(key);
-    if (!value.is_string()) fail(key, fmt::format("\"{}\" must be a string", key));
-    return value.get<std::string>();
-  }
-  int whole(const char* key) const {
-    const json& value = at(key);
-    if (!value.is_number_integer() || value.get<double>() > max_side || value.get<double>() < 1)
-      fail(key, fmt::format("\"{}\" must be a whole number from 1 to {}", key, max_side));
-    return value.get<int>();
-  }
-  double number(const char* key) const {
-    const json& value = at(key);
-    if (!value.is_number()) fail(key, fmt::format("\"{}\" must be a number", key));
-    return value.get<double>();
-  }
-  [[noreturn]] void fail(const std::string& key, const std::string& message) const {
-    throw InputError(path_, line_at(text_, text_.find(json(key).dump())), message);
-  }
-
- private:
-  const json& at(const char* key) const {
-    const auto found = document_.find(key);
-    if (found == document_.end()) throw InputError(path_, 1, fmt::format("the key \"{}\" is missing", key));
-    return *found;
-  }
-
-  std::string path_, text_;
-  json document_;
-};
-
-Sensor read_sensor_file(const std::string& path) {
-  const SensorDocument document(path);
-  if (const std::string format = document.string("format"); format != "petzval-sensor/1")
-    document.fail("format", fmt::format("format \"{}\"; \"petzval-sensor/1\" would be right", format));
-  Sensor sensor{document.string("name"),
-                document.string("source"),
-                {document.whole("columns"), document.whole("rows"), document.number("pitch_um")}};
-  if (const std::string wrong = complaint(sensor.geometry); !wrong.empty()) document.fail("pitch_um", wrong);
-  return sensor;
-}
-
 }  // namespace
 
 double SensorGeometry::half_diagonal_mm() const {
   return std::hypot(width_mm(), height_mm()) / 2;
 }
 
+std::string Photosite::text() const {
+  if (is_plain()) return "box";
+  std::string text =
+      fmt::format("{} {:g} x {:g} pitches", shape == Shape::ellipse ? "ellipse" : "rectangle", width, height);
+  if (low_pass > 0) text += fmt::format(", low-pass {:g} pitches", low_pass);
+  return text;
+}
+
+std::vector<std::string> SensorElectronics::channel_names() const {
+  std::vector<std::string> names;
+  for (const SensorChannel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
+double SensorElectronics::dark_current_at(double temperature_c) const {
+  return dark_current_e_per_s * std::exp2((temperature_c - dark_temperature_c) / dark_doubling_c);
+}
+
+double SensorElectronics::saturation_e(const GainMode& mode, double analog_gain) const {
+  return std::min(mode.full_well_e, (white_level_dn - black_level_dn) / (mode.dn_per_e * analog_gain));
+}
+
+const GainMode& SensorElectronics::gain_mode(const std::string& name) const {
+  if (name.empty()) return gain_modes.front();
+  std::vector<std::string> names;
+  for (const GainMode& mode : gain_modes) {
+    if (mode.name == name) return mode;
+    names.push_back(mode.name);
+  }
+  throw InputError(
+      fmt::format("the sensor has no conversion gain \"{}\"; it has {}", name, fmt::join(names, ", ")));
+}
+
+const SensorElectronics& Sensor::require_electronics() const {
+  if (!electronics)
+    throw InputError(
+        fmt::format("sensor {}: only its pixels are known, not how it turns light into numbers; a "
+                    "sensor with \"channels\", \"gain_modes\" and \"adc\" would be right (docs/SENSOR.md)",
+                    name));
+  return *electronics;
+}
+
 Sensor read_sensor(const std::string& text) {
   if (const auto geometry = parse_geometry(text)) {
-    if (const std::string wrong = complaint(*geometry); !wrong.empty())
+    if (const std::string wrong = complaint_about(*geometry); !wrong.empty())
       throw InputError(fmt::format("sensor {}: {}", text, wrong));
-    return {text, "given as columns x rows @ pitch", *geometry};
+    return {text, "given as columns x rows @ pitch", *geometry, {}, {}};
   }
   if (text.find('@') != std::string::npos && !std::filesystem::exists(text))
     throw InputError(
         fmt::format("sensor {}: a geometry is written 768x576@6.25 (columns x rows @ pitch in µm)", text));
-  return read_sensor_file(find_data_file("sensors", ".json", text, "sensor"));
+  const std::string path = find_data_file("sensors", ".json", text, "sensor");
+  return parse_sensor(read_whole_file(path, max_file_bytes), path);
 }
 
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/spectral_exr.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 namespace petzval {
 
@@ -15,6 +17,13 @@ namespace {
 
 constexpr const char* pitch_attribute = "pixelPitch_um";
 constexpr const char* aperture_attribute = "pixelAperture";
+const std::string photosite_prefix = "photosite: ";
+constexpr const char* illuminant_attribute = "sceneIlluminant";
+constexpr const char* lens_attribute = "lensName";
+constexpr std::pair<const char*, double LensFacts::*> lens_numbers[] = {
+    {"focalLength_mm", &LensFacts::focal_length_mm},
+    {"fNumber", &LensFacts::f_number},
+    {"exitPupil_mm", &LensFacts::exit_pupil_mm}};
 constexpr const char* provenance_attribute = "comments";  // OpenEXR's own name for it: viewers show it
 
 std::string extension_of(const std::string& path) {
@@ -32,16 +41,53 @@ SpectralExr description_of(const SpectralImage& image) {
   exr.wavelengths_nm = image.wavelengths_nm();
   exr.units = spectral_irradiance_units;
   exr.numbers[pitch_attribute] = image.pitch_um();
-  exr.strings[aperture_attribute] = image.pixel_aperture() == PixelAperture::box ? "box" : "point";
+  exr.strings[aperture_attribute] = image.pixel_aperture() == PixelAperture::box ? "box"
+                                    : image.pixel_aperture() == PixelAperture::point
+                                        ? "point"
+                                        : photosite_prefix + image.photosite;
   if (!image.provenance.empty()) exr.strings[provenance_attribute] = image.provenance;
+  if (image.illuminant) exr.strings[illuminant_attribute] = spectrum_text(*image.illuminant);
+  if (image.lens) {
+    if (!image.lens->name.empty()) exr.strings[lens_attribute] = image.lens->name;
+    for (const auto& [attribute, member] : lens_numbers)
+      if ((*image.lens).*member != 0) exr.numbers[attribute] = (*image.lens).*member;
+  }
   return exr;
 }
 
-PixelAperture aperture_of(const SpectralExr& exr, const std::string& path) {
+/// What the pixels stand for: "box", "point", or else the description of a photosite.
+std::string aperture_text(const SpectralExr& exr, const std::string& path) {
   const auto found = exr.strings.find(aperture_attribute);
-  if (found != exr.strings.end() && found->second == "box") return PixelAperture::box;
-  if (found != exr.strings.end() && found->second == "point") return PixelAperture::point;
-  throw InputError(path, fmt::format("needs the attribute {} = \"box\" or \"point\"", aperture_attribute));
+  if (found != exr.strings.end() &&
+      (found->second == "box" || found->second == "point" || found->second.starts_with(photosite_prefix)))
+    return found->second;
+  throw InputError(path, fmt::format("needs the attribute {} = \"box\", \"point\" or \"photosite: …\"",
+                                     aperture_attribute));
+}
+
+std::optional<LensFacts> lens_of(const SpectralExr& exr, const std::string& path) {
+  LensFacts lens;
+  bool known = false;
+  if (const auto name = exr.strings.find(lens_attribute); name != exr.strings.end())
+    lens.name = name->second, known = true;
+  for (const auto& [attribute, member] : lens_numbers) {
+    const auto found = exr.numbers.find(attribute);
+    if (found == exr.numbers.end()) continue;
+    if (!std::isfinite(found->second))
+      throw InputError(path, fmt::format("{} is {}", attribute, found->second));
+    lens.*member = found->second, known = true;
+  }
+  return known ? std::optional(lens) : std::nullopt;
+}
+
+std::optional<Spectrum> illuminant_of(const SpectralExr& exr, const std::string& path) {
+  const auto found = exr.strings.find(illuminant_attribute);
+  if (found == exr.strings.end()) return {};
+  try {
+    return parse_spectrum_text(found->second);
+  } catch (const InputError& error) {
+    throw InputError(path, fmt::format("the attribute {}: {}", illuminant_attribute, error.what()));
+  }
 }
 
 }  // namespace
@@ -68,15 +114,22 @@ SpectralImage read_irradiance(const std::string& path) {
   if (pitch == exr.numbers.end())
     throw InputError(path, fmt::format("has no pixel pitch; the attribute {} must give it", pitch_attribute));
   exr.validate(path);
-  const PixelAperture aperture = aperture_of(exr, path);
+  const std::string aperture = aperture_text(exr, path);
   if (!(pitch->second > 0) || std::isinf(pitch->second))
     throw InputError(path, fmt::format("{} is {}; it must be positive", pitch_attribute, pitch->second));
-  SpectralImage image(exr.width, exr.height, exr.wavelengths_nm, pitch->second, aperture);
+  SpectralImage image(exr.width, exr.height, exr.wavelengths_nm, pitch->second,
+                      aperture == "box"     ? PixelAperture::box
+                      : aperture == "point" ? PixelAperture::point
+                                            : PixelAperture::photosite);
+  if (image.pixel_aperture() == PixelAperture::photosite)
+    image.photosite = aperture.substr(photosite_prefix.size());
   for (int band = 0; band < image.bands(); ++band) {
     const std::span<const float> plane = exr.plane(static_cast<std::size_t>(band));
     std::copy(plane.begin(), plane.end(), image.band(band).begin());
   }
   image.provenance = exr.strings[provenance_attribute];
+  image.lens = lens_of(exr, path);
+  image.illuminant = illuminant_of(exr, path);
   return image;
 }
 

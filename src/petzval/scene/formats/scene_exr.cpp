@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace petzval {
@@ -19,33 +19,13 @@ constexpr const char* illuminant_attribute = "sceneIlluminant";  // "400:0.12 41
 constexpr const char* radiance_units_elsewhere = "W.m^-2.sr^-1";
 constexpr double reflectance_luminance_cd_m2 = 100;  // as of charts
 
-std::string text_of(const Spectrum& spectrum) {
-  std::string text;
-  for (std::size_t i = 0; i < spectrum.values().size(); ++i)
-    text += fmt::format("{}{}:{}", i == 0 ? "" : " ", spectrum.wavelengths_nm()[i], spectrum.values()[i]);
-  return text;
-}
-
-/// Reads what text_of wrote.
+/// \throws InputError naming the attribute.
 Spectrum spectrum_of(const std::string& text, const std::string& path) {
-  std::vector<double> wavelengths, values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  const auto number = [&](std::vector<double>& into, char separator) {
-    double value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    const bool separated = next != end && *next == separator;
-    if (error != std::errc() || (next != end && !separated) || (separator == ':' && !separated))
-      throw InputError(
-          path, fmt::format("the attribute {} is no list such as 400:0.12 410:0.13", illuminant_attribute));
-    into.push_back(value);
-    at = separated ? next + 1 : next;
-  };
-  while (at != end) {
-    number(wavelengths, ':');
-    number(values, ' ');
+  try {
+    return parse_spectrum_text(text);
+  } catch (const InputError& error) {
+    throw InputError(path, fmt::format("the attribute {}: {}", illuminant_attribute, error.what()));
   }
-  return Spectrum(std::move(wavelengths), std::move(values));
 }
 
 /// An attribute that is one number, if it is there.
@@ -127,7 +107,7 @@ void write_scene_exr(const std::string& path, const Scene& scene) {
   exr.numbers[angle_attribute] = scene.horizontal_angle_deg();
   if (scene.distance_m()) exr.numbers[distance_attribute] = *scene.distance_m();
   if (!scene.name.empty()) exr.strings[name_attribute] = scene.name;
-  if (scene.illuminant) exr.strings[illuminant_attribute] = text_of(*scene.illuminant);
+  if (scene.illuminant) exr.strings[illuminant_attribute] = spectrum_text(*scene.illuminant);
   write_spectral_exr(path, exr, scene.values());
 }
 
