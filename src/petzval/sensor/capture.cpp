@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/numeric/interpolation.h>
+#include <petzval/numeric/random.h>
+#include <petzval/sensor/capture.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+// What random numbers are for; temporal ones carry the frame in the upper bits.
+enum Purpose : std::uint32_t {
+  pixel_pattern = 1,
+  column_offsets = 2,
+  hot_pixels = 3,
+  dead_pixels = 4,
+  shot_noise = 5,
+  read_noise = 6,
+  row_offsets = 7
+};
+constexpr int frame_shift = 8;
+constexpr int max_frames = 1 << 16;
+
+std::uint32_t of_frame(Purpose purpose, int frame) {
+  return static_cast<std::uint32_t>(purpose) | static_cast<std::uint32_t>(frame) << frame_shift;
+}
+
+struct Defect {
+  std::uint64_t place;  ///< row × columns of the sensor + column
+  bool hot;
+  bool operator<(const Defect& other) const { return place < other.place; }
+};
+
+/// Where the sensor's defects are: a Poisson number of places, drawn with replacement.
+std::vector<Defect> defects_of(const Sensor& sensor, std::uint64_t serial) {
+  const SensorElectronics& electronics = *sensor.electronics;
+  const auto pixels =
+      static_cast<double>(sensor.geometry.columns) * static_cast<double>(sensor.geometry.rows);
+  std::vector<Defect> defects;
+  const auto draw = [&](Purpose purpose, double per_million, bool hot) {
+    RandomStream random(serial, purpose, 0);
+    const double count = random.poisson(pixels * per_million * 1e-6);
+    for (double i = 0; i < count; ++i)
+      defects.push_back({static_cast<std::uint64_t>(random.uniform() * pixels), hot});
+  };
+  draw(hot_pixels, electronics.hot_pixels_per_million, true);
+  draw(dead_pixels, electronics.dead_pixels_per_million, false);
+  std::stable_sort(defects.begin(), defects.end());
+  return defects;
+}
+
+/// Signal → signal as the converter sees it, both in electrons.
+class Linearity {
+ public:
+  Linearity(const SensorElectronics& electronics, double full_well_e)
+      : fractions_(electronics.linearity_fractions),
+        deviations_(electronics.linearity_deviations),
+        scale_(full_well_e) {}
+  bool is_exact() const { return fractions_.empty(); }
+  double operator()(double signal_e) const {
+    if (signal_e <= 0) return signal_e;
+    return signal_e * (1 + deviation(signal_e / scale_));
+  }
+  /// The signal that comes out as this; by bisection, since the curve rises.
+  double inverse(double out_e) const {
+    if (out_e <= 0) return out_e;
+    double low = 0, high = 2 * std::max(out_e, scale_);
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = (low + high) / 2;
+      ((*this)(middle) < out_e ? low : high) = middle;
+    }
+    return (low + high) / 2;
+  }
+
+ private:
+  double deviation(double fraction) const {
+    if (fractions_.size() == 1 || fraction <= fractions_.front()) return deviations_.front();
+    if (fraction >= fractions_.back()) return deviations_.back();
+    const std::size_t i = bracket(fractions_, fraction);
+    return deviations_[i] + (deviations_[i + 1] - deviations_[i]) * (fraction - fractions_[i]) /
+                                (fractions_[i + 1] - fractions_[i]);
+  }
+  std::vector<double> fractions_, deviations_;
+  double scale_;
+};
+
+/// One exposure's worth of numbers, settled before the pixels are walked.
+class Exposure {
+ public:
+  Exposure(const PhotoCurrent& current, const Sensor& sensor, double exposure_s,
+           const CaptureOptions& options)
+      : current_(current),
+        sensor_(sensor),
+        electronics_(*sensor.electronics),
+        options_(options),
+        mode_(electronics_.gain_mode(options.gain_mode)),
+        linearity_(options.has(NoiseSource::linearity) ? electronics_ : SensorElectronics{},
+                   mode_.full_well_e),
+        serial_(options.serial.value_or(electronics_.serial)),
+        exposure_s_(exposure_s),
+        dn_per_e_(mode_.dn_per_e * options.analog_gain) {
+    const double temperature = options.temperature_c.value_or(electronics_.dark_temperature_c);
+    if (options.has(NoiseSource::dark)) dark_e_ = electronics_.dark_current_at(temperature) * exposure_s;
+    hot_e_ = electronics_.hot_current_e_per_s *
+             std::exp2((temperature - electronics_.dark_temperature_c) / electronics_.dark_doubling_c) *
+             exposure_s;
+    if (options.has(NoiseSource::read))
+      read_e_ = std::hypot(mode_.read_noise_e, mode_.adc_noise_dn / dn_per_e_);
+    if (options.has(NoiseSource::prnu)) prnu_ = electronics_.prnu;
+    if (options.has(NoiseSource::dsnu)) dsnu_e_ = electronics_.dsnu_e;
+    if (options.has(NoiseSource::defects)) defects_ = defects_of(sensor, serial_);
+    column_offsets_e_.resize(static_cast<std::size_t>(current.columns));
+    if (options.has(NoiseSource::column) && electronics_.column_pattern_e > 0)
+      for (std::size_t c = 0; c < column_offsets_e_.size(); ++c)
+        column_offsets_e_[c] =
+            electronics_.column_pattern_e * RandomStream(serial_, Purpose::column_offsets,
+                                                         c + static_cast<std::uint64_t>(current.first_column))
+                                                .normal();
+  }
+
+  double dn_per_e() const { return dn_per_e_; }
+  double read_noise_e() const { return std::sqrt(read_e_ * read_e_ + 1 / (12 * dn_per_e_ * dn_per_e_)); }
+  const Linearity& linearity() const { return linearity_; }
+  /// As the converter sees it.
+  double saturation_e() const {
+    return std::min(linearity_.is_exact() ? mode_.full_well_e : linearity_(mode_.full_well_e),
+                    (electronics_.white_level_dn - electronics_.black_level_dn) / dn_per_e_);
+  }
+
+  /// Adds the numbers of one row of one frame to `sums`.
+  void expose_row(int row, int frame, std::span<std::uint32_t> sums) const {
+    const std::uint64_t first = place_of(row);
+    const bool rows_move = options_.has(NoiseSource::row) && electronics_.row_noise_e > 0;
+    const double row_e = rows_move ? electronics_.row_noise_e *
+                                         RandomStream(options_.seed, of_frame(row_offsets, frame),
+                                                      static_cast<std::uint64_t>(row + current_.first_row))
+                                             .normal()
+                                   : 0;
+    const float* rates =
+        current_.e_per_s.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(current_.columns);
+    auto defect = std::lower_bound(defects_.begin(), defects_.end(), Defect{first, false});
+    for (std::size_t c = 0; c < sums.size(); ++c) {
+      const std::uint64_t place = first + c;
+      double light_e = static_cast<double>(rates[c]) * exposure_s_, dark_e = dark_e_;
+      for (; defect != defects_.end() && defect->place == place; ++defect) {
+        if (defect->hot)
+          dark_e += hot_e_;
+        else
+          light_e = dark_e = 0;
+      }
+      sums[c] += number_of(light_e, dark_e, column_offsets_e_[c] + row_e, place, frame);
+    }
+  }
+
+ private:
+  std::uint64_t place_of(int row) const {
+    return static_cast<std::uint64_t>(row + current_.first_row) *
+               static_cast<std::uint64_t>(sensor_.geometry.columns) +
+           static_cast<std::uint64_t>(current_.first_column);
+  }
+
+  std::uint32_t number_of(double light_e, double dark_e, double offset_e, std::uint64_t place,
+                          int frame) const {
+    if (prnu_ > 0 || dsnu_e_ > 0) {
+      RandomStream pattern(serial_, pixel_pattern, place);
+      light_e *= std::max(0.0, 1 + prnu_ * pattern.normal());
+      offset_e += dsnu_e_ * pattern.normal();
+    }
+    double electrons = light_e + dark_e;
+    if (options_.has(NoiseSource::shot))
+      electrons = RandomStream(options_.seed, of_frame(shot_noise, frame), place).poisson(electrons);
+    double signal_e = std::min(electrons, mode_.full_well_e) + offset_e;
+    if (!linearity_.is_exact()) signal_e = linearity_(signal_e);
+    if (read_e_ > 0)
+      signal_e += read_e_ * RandomStream(options_.seed, of_frame(read_noise, frame), place).normal();
+    const double dn = std::floor(electronics_.black_level_dn + dn_per_e_ * signal_e + 0.5);
+    return static_cast<std::uint32_t>(std::clamp(dn, 0.0, electronics_.white_level_dn));
+  }
+
+  const PhotoCurrent& current_;
+  const Sensor& sensor_;
+  const SensorElectronics& electronics_;
+  const CaptureOptions& options_;
+  const GainMode& mode_;
+  Linearity linearity_;
+  std::uint64_t serial_;
+  double exposure_s_, dn_per_e_;
+  double dark_e_ = 0, hot_e_ = 0, read_e_ = 0, prnu_ = 0, dsnu_e_ = 0;
+  std::vector<Defect> defects_;
+  std::vector<double> column_offsets_e_;
+};
+
+void check(const SensorElectronics& electronics, double exposure_s, const CaptureOptions& options) {
+  const GainMode& mode = electronics.gain_mode(options.gain_mode);
+  if (!(options.analog_gain >= 1 && options.analog_gain <= mode.max_analog_gain))
+    throw InputError(fmt::format("an analog gain of {:g}; 1 to {:g} would be right", options.analog_gain,
+                                 mode.max_analog_gain));
+  constexpr double longest_s = 1e6;
+  if (!(exposure_s >= 0 && exposure_s <= longest_s))
+    throw InputError(fmt::format("an exposure of {:g} s; 0 to {:g} would be right", exposure_s, longest_s));
+  if (options.frames < 1 || options.frames > max_frames)
+    throw InputError(fmt::format("{} frames; 1 to {} would be right", options.frames, max_frames));
+  constexpr double coldest_c = -273.15, hottest_c = 300;
+  if (options.temperature_c && !(*options.temperature_c >= coldest_c && *options.temperature_c <= hottest_c))
+    throw InputError(fmt::format("a temperature of {:g} degrees; {} to {} would be right",
+                                 *options.temperature_c, coldest_c, hottest_c));
+}
+
+/// Steps to a DN in which the mean of frames is stored.
+int steps_for(int frames, double white_level_dn) {
+  int steps = 1;
+  while (2 * steps <= frames && 2 * steps * white_level_dn <= 65535) steps *= 2;
+  return steps;
+}
+
+/// Linear values by stored ones, in 16 bits; levels and gain of the image become those of linear values.
+void add_linearization(RawImage& raw, const Linearity& linearity, double greatest_stored) {
+  const double black = raw.black_level, stored_dn_per_e = raw.dn_per_e;
+  const double white_e = linearity.inverse((raw.white_level - black) / stored_dn_per_e);
+  const double scale = (65535 - black) / white_e;
+  for (double stored = 0; stored <= greatest_stored; ++stored) {
+    const double e = linearity.inverse((stored - black) / stored_dn_per_e);
+    raw.linearization.push_back(
+        static_cast<std::uint16_t>(std::clamp(std::round(black + scale * e), 0.0, 65535.0)));
+  }
+  raw.white_level = 65535;
+  raw.dn_per_e = scale;
+}
+
+}  // namespace
+
+const std::vector<std::string>& noise_source_names() {
+  static const std::vector<std::string> names = {"shot",      "dark",      "read",     "dsnu",
+                                                 "prnu",      "column",    "row",      "defects",
+                                                 "crosstalk", "microlens", "linearity"};
+  return names;
+}
+
+NoiseSource noise_source(const std::string& name) {
+  const auto& names = noise_source_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    throw InputError(
+        fmt::format("\"{}\" is no source of noise; these are: {}", name, fmt::join(names, ", ")));
+  return static_cast<NoiseSource>(found - names.begin());
+}
+
+RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double exposure_s,
+                 const CaptureOptions& options) {
+  const SensorElectronics& electronics = sensor.require_electronics();
+  check(electronics, exposure_s, options);
+  const Exposure exposure(current, sensor, exposure_s, options);
+  const int steps = steps_for(options.frames, electronics.white_level_dn);
+
+  RawImage raw;
+  raw.columns = current.columns;
+  raw.rows = current.rows;
+  raw.mosaic = electronics.mosaic;
+  raw.channels = electronics.channel_names();
+  raw.samples.resize(current.e_per_s.size());
+  raw.black_level = electronics.black_level_dn * steps;
+  raw.white_level =
+      std::floor(electronics.black_level_dn + exposure.dn_per_e() * exposure.saturation_e()) * steps;
+  raw.dn_per_e = exposure.dn_per_e() * steps;
+  raw.read_noise_e = exposure.read_noise_e() / std::sqrt(options.frames);
+  raw.exposure_s = exposure_s;
+  raw.sensor_name = sensor.name;
+
+  const auto columns = static_cast<std::size_t>(current.columns);
+  parallel_for(static_cast<std::size_t>(current.rows), [&](std::size_t row) {
+    std::vector<std::uint32_t> sums(columns);
+    for (int frame = 0; frame < options.frames; ++frame)
+      exposure.expose_row(static_cast<int>(row), frame, sums);
+    const double factor = static_cast<double>(steps) / options.frames;
+    for (std::size_t c = 0; c < columns; ++c)
+      raw.samples[row * columns + c] = static_cast<std::uint16_t>(std::floor(sums[c] * factor + 0.5));
+  });
+  if (!exposure.linearity().is_exact())
+    add_linearization(raw, exposure.linearity(), electronics.white_level_dn * steps);
+  return raw;
+}
+
+RawImage merge_bracket(const std::vector<RawImage>& frames) {
+  if (frames.empty()) throw InputError("a bracket needs at least one exposure");
+  const auto shortest =
+      std::min_element(frames.begin(), frames.end(),
+                       [](const RawImage& a, const RawImage& b) { return a.exposure_s < b.exposure_s; });
+  RawImage merged = *shortest;
+  for (const RawImage& frame : frames)
+    if (frame.samples.size() != merged.samples.size() || frame.columns != merged.columns ||
+        frame.dn_per_e != merged.dn_per_e || !(frame.exposure_s > 0))
+      throw InputError(
+          "the exposures of a bracket must be of one sensor at one gain, and longer than nothing");
+  constexpr double trusted = 0.9;  // of saturation
+  const double range = merged.white_level - merged.black_level;
+  constexpr double merged_black = 256;  // keeps the noise below zero
+  const double scale = (65535 - merged_black) / range;
+  const double limit = merged.black_level + trusted * range;
+  parallel_for(static_cast<std::size_t>(merged.rows), [&](std::size_t row) {
+    for (int column = 0; column < merged.columns; ++column) {
+      double sum = 0, seconds = 0;
+      for (const RawImage& frame : frames) {
+        const double value = frame.pixel(static_cast<int>(row), column);
+        if (value > limit && &frame != &*shortest) continue;
+        sum += value - frame.black_level;
+        seconds += frame.exposure_s;
+      }
+      const double dn = sum / seconds * shortest->exposure_s;
+      merged.samples[row * static_cast<std::size_t>(merged.columns) + static_cast<std::size_t>(column)] =
+          static_cast<std::uint16_t>(std::clamp(std::round(merged_black + scale * dn), 0.0, 65535.0));
+    }
+  });
+  merged.linearization.clear();
+  merged.black_level = merged_black;
+  merged.white_level = 65535;
+  merged.dn_per_e *= scale;
+  double seconds = 0;
+  for (const RawImage& frame : frames) seconds += frame.exposure_s;
+  // Read noise in the dark, where all frames count.
+  merged.read_noise_e *= std::sqrt(static_cast<double>(frames.size())) * shortest->exposure_s / seconds;
+  return merged;
+}
+
+}  // namespace petzval

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How long to expose, and how fast a sensor is.
+#pragma once
+
+#include <petzval/colour/spectrum.h>
+#include <petzval/sensor/photo_current.h>
+#include <petzval/sensor/sensor.h>
+
+namespace petzval {
+
+/// The rule of automatic exposure. It looks at the mean photoelectrons of every pixel of the raw frame,
+/// whatever its colour, before noise.
+struct Metering {
+  enum class Rule {
+    highlights,  ///< the level that 99 % of the pixels do not exceed comes to 80 % of saturation
+    average  ///< the mean comes to 12.7 % of saturation: 18 % grey with half a stop to spare (ISO 12232:2019)
+  };
+  Rule rule = Rule::highlights;
+  double compensation_ev = 0;  ///< +1 doubles the exposure
+
+  static constexpr double highlight_share = 0.99, highlight_level = 0.80, average_level = 0.127;
+};
+
+/// \param saturation_e  SensorElectronics::saturation_e. \throws InputError if there is no light to meter.
+double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering);
+
+/// Exposure time of an exposure value at ISO 100 as photographers count: t = N²/2^EV.
+double exposure_of_ev_s(double ev, double f_number);
+
+/// ISO 12232 saturation-based speed S_sat = 78/H_sat: H_sat [lx·s] is the exposure under `light` (any scale)
+/// at which the most sensitive channel saturates. \throws InputError for light without luminance or that no
+/// channel sees.
+double saturation_speed(const Sensor& sensor, const GainMode& mode, double analog_gain,
+                        const Spectrum& light);
+
+}  // namespace petzval
