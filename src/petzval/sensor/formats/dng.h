@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Digital negatives (Adobe DNG 1.4).
+#pragma once
+
+#include <petzval/sensor/raw_image.h>
+
+#include <string>
+
+namespace petzval {
+
+/// Writes a raw image as DNG: 16-bit samples without compression; mosaic, levels, linearization, two colour
+/// and forward matrices, white balance, noise profile; exposure, ISO, f-number, focal length and lens in
+/// EXIF. One channel is written as linear raw, without a mosaic. The same bytes for the same image: no date.
+/// \throws InputError for an image that contradicts itself, or with channels that DNG has no number for (it
+/// knows red, green, blue, cyan, magenta, yellow and white or clear); as WholeFile; Failure.
+void write_dng(const std::string& path, const RawImage& raw);
+
+/// Reads uncompressed and Deflate-compressed DNG files of 8 or 16 bits a sample with one black level: those
+/// of write_dng and many of others. \throws InputError for anything else, and for damaged files.
+RawImage read_dng(const std::string& path);
+
+}  // namespace petzval

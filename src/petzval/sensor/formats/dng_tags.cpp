@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/sensor/formats/dng_tags.h>
+#include <tiffio.h>
+
+#include <algorithm>
+#include <array>
+
+namespace petzval::dng {
+
+namespace {
+
+constexpr std::array<const char*, 7> names = {"red", "green", "blue", "cyan", "magenta", "yellow", "white"};
+
+}  // namespace
+
+void add_tags(tiff* handle) {
+  static char noise[] = "NoiseProfile", forward_1[] = "ForwardMatrix1", forward_2[] = "ForwardMatrix2";
+  static const TIFFFieldInfo fields[] = {
+      {noise_profile_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, noise},
+      {forward_matrix_1_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_1},
+      {forward_matrix_2_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_2}};
+  TIFFMergeFieldInfo(handle, fields, static_cast<std::uint32_t>(std::size(fields)));
+}
+
+std::optional<std::uint8_t> colour_number(const std::string& channel) {
+  const auto found = std::find(names.begin(), names.end(), channel == "clear" ? "white" : channel);
+  if (found == names.end()) return {};
+  return static_cast<std::uint8_t>(found - names.begin());
+}
+
+std::string channel_name(std::uint8_t colour_number) {
+  return colour_number < names.size() ? names[colour_number] : fmt::format("colour {}", colour_number);
+}
+
+}  // namespace petzval::dng

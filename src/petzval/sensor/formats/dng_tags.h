@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the writer and the reader of DNG files share: tags that libtiff 4.5 does not know, and numbers of
+// colours.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+struct tiff;
+
+namespace petzval::dng {
+
+inline constexpr std::uint32_t noise_profile_tag = 51041, forward_matrix_1_tag = 50964,
+                               forward_matrix_2_tag = 50965;
+inline constexpr std::uint16_t linear_raw = 34892, colour_filter_array = 32803;
+
+/// Tells libtiff of those tags; again after each change of directory.
+void add_tags(tiff* handle);
+
+/// The number that CFAPlaneColor has for a channel, and back.
+std::optional<std::uint8_t> colour_number(const std::string& channel);
+std::string channel_name(std::uint8_t colour_number);
+
+}  // namespace petzval::dng
