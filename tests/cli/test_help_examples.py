@@ -33,6 +33,12 @@ class HelpExamples(ProgramTest):
             self.assert_succeeds("optics", "build", "edmund-54852", "--sensor", "64x48@6.25", "-o", word)
         elif word == "edges.png":
             self.assert_succeeds("target", "--rectangle", "100x100@5", "-o", word)
+        elif word == "light.exr":
+            self.assert_succeeds("image", "studio", "--lens", "edmund-54852", "--sensor", "320x240@3.75", "--method", "none",
+                                 "--wavelengths", "400:20:700", "-o", word)
+        elif word == "raw.dng":
+            self.provide("light.exr")
+            self.assert_succeeds("sense", "light.exr", "--sensor", "third-inch-1280x960", "-o", word)
         elif word.endswith(".exr"):
             self.assert_succeeds("scene", "convert", "studio", word)
 

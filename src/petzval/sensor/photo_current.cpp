@@ -227,6 +227,20 @@ PhotoCurrent photo_current(const SpectralImage& image, const Sensor& sensor,
   return current;
 }
 
+std::vector<double> channel_means(const PhotoCurrent& current, const SensorElectronics& electronics) {
+  std::vector<double> sums(electronics.channels.size()), counts(electronics.channels.size());
+  for (int row = 0; row < current.rows; ++row)
+    for (int column = 0; column < current.columns; ++column) {
+      const auto channel = static_cast<std::size_t>(electronics.mosaic.channel(row, column));
+      sums[channel] += static_cast<double>(
+          current.e_per_s[static_cast<std::size_t>(row) * static_cast<std::size_t>(current.columns) +
+                          static_cast<std::size_t>(column)]);
+      ++counts[channel];
+    }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= std::max(1.0, counts[i]);
+  return sums;
+}
+
 std::vector<double> channel_currents(const Sensor& sensor, const Spectrum& irradiance) {
   std::vector<double> currents;
   for (const SensorChannel& channel : sensor.require_electronics().channels) {

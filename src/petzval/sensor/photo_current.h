@@ -37,6 +37,9 @@ std::vector<double> electron_weights(const Spectrum& quantum_efficiency,
 PhotoCurrent photo_current(const SpectralImage& image, const Sensor& sensor,
                            const PhotoCurrentOptions& options = {});
 
+/// Mean current [e/s] of the pixels of each channel.
+std::vector<double> channel_means(const PhotoCurrent& current, const SensorElectronics& electronics);
+
 /// Electrons per second in a pixel of each channel under this spectral irradiance [W·m⁻²·nm⁻¹].
 std::vector<double> channel_currents(const Sensor& sensor, const Spectrum& irradiance);
 

@@ -60,7 +60,11 @@ class Writer {
     png_set_IHDR(png_, info_, static_cast<png_uint_32>(layout_.columns),
                  static_cast<png_uint_32>(layout_.rows), layout_.bits, types[layout_.channels],
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (layout_.transfer == PngTransfer::srgb)
+    if (!layout_.icc_profile.empty())
+      png_set_iCCP(png_, info_, "ICC profile", PNG_COMPRESSION_TYPE_BASE,
+                   reinterpret_cast<png_const_bytep>(layout_.icc_profile.data()),
+                   static_cast<png_uint_32>(layout_.icc_profile.size()));
+    else if (layout_.transfer == PngTransfer::srgb)
       png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_RELATIVE);
     if (layout_.transfer == PngTransfer::linear) png_set_gAMA_fixed(png_, info_, PNG_GAMMA_LINEAR);
     write_text();

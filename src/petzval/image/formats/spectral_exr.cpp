@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/image/formats/exr_header.h>
+#include <petzval/image/formats/exr_stream.h>
 #include <petzval/image/formats/output_file.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/image/spectral_image.h>
@@ -11,14 +12,12 @@
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <new>
 
 namespace petzval {
@@ -112,37 +111,6 @@ SpectralExr read(const std::string& path) {
 }
 
 // ---- writing
-
-/// OpenEXR's own file stream loses the errors of its last bytes; this one loses none.
-class ExrStream : public Imf::OStream {
- public:
-  explicit ExrStream(OutputFile& file) : Imf::OStream(file.path().c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    guarded([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
-  }
-  uint64_t tellp() override { return file_.position(); }
-  void seekp(uint64_t position) override {
-    guarded([&] { file_.seek(position); });
-  }
-  /// Throws what a write threw, even one from OpenEXR's destructor, which swallows exceptions.
-  void rethrow() const {
-    if (reason_) std::rethrow_exception(reason_);
-  }
-
- private:
-  template <class Work>
-  void guarded(const Work& work) {
-    try {
-      work();
-    } catch (...) {
-      if (!reason_) reason_ = std::current_exception();
-      throw;
-    }
-  }
-
-  OutputFile& file_;
-  std::exception_ptr reason_;
-};
 
 void check(const std::string& path, const SpectralExr& exr, std::span<const float> values) {
   if (exr.width < 1 || exr.height < 1 || exr.wavelengths_nm.empty())

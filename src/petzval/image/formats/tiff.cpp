@@ -220,6 +220,7 @@ void write_tiff(const std::string& path, const TiffImage& image) {
 
 TiffImage read_tiff(const std::string& path) {
   const TiffStream stream = TiffStream::reader(path, read_whole_file(path));
+  stream.require_whole();
   const Layout layout = read_layout(stream);
   check_kind(path, layout);
   check_sizes(stream, layout);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <string_view>
 
 namespace petzval {
 
@@ -21,6 +22,7 @@ constexpr tmsize_t max_single_allocation = tmsize_t{1} << 32;
 struct Memory {
   std::string bytes, complaint;
   std::size_t position = 0;
+  bool is_cut_short = false;
 };
 
 tmsize_t read_bytes(thandle_t data, void* into, tmsize_t count) {
@@ -69,7 +71,13 @@ int keep_complaint(TIFF*, void* data, const char*, const char* format, va_list a
   return 1;
 }
 
-int ignore_warning(TIFF*, void*, const char*, const char*, va_list) {
+/// Warnings are no matter, but for one: that the value of a tag lies beyond the end of the file.
+int look_at_warning(TIFF*, void* data, const char*, const char* format, va_list arguments) {
+  Memory& memory = *static_cast<Memory*>(data);
+  if (std::string_view(format).starts_with("IO error")) {
+    memory.is_cut_short = true;
+    keep_complaint(nullptr, data, nullptr, format, arguments);
+  }
   return 1;
 }
 
@@ -78,7 +86,7 @@ TIFF* open(Memory& memory, const char* mode) {
   if (!options) throw std::bad_alloc();
   TIFFOpenOptionsSetMaxSingleMemAlloc(options, max_single_allocation);
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_complaint, &memory);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, ignore_warning, nullptr);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, look_at_warning, &memory);
   TIFF* handle = TIFFClientOpenExt("", mode, &memory, read_bytes, write_bytes, seek, close, size_of, nullptr,
                                    nullptr, options);
   TIFFOpenOptionsFree(options);
@@ -129,6 +137,10 @@ const std::string& TiffStream::path() const {
 
 std::size_t TiffStream::size() const {
   return state_->bytes.size();
+}
+
+void TiffStream::require_whole() const {
+  if (state_->is_cut_short) fail("the file is cut short");
 }
 
 void TiffStream::require(bool success) const {

@@ -34,6 +34,8 @@ class TiffStream {
   std::size_t size() const;  ///< bytes so far
   /// \throws InputError (reading) or Failure (writing) with libtiff's complaint, unless `success`.
   void require(bool success) const;
+  /// \throws InputError if a tag that has been read had its value beyond the end of the file.
+  void require_whole() const;
   /// Throws what require(false) would, about `what` if libtiff has said nothing.
   [[noreturn]] void fail(const std::string& what) const;
   /// Closes a written file and gives its bytes.

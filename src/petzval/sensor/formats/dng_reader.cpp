@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace petzval {
 
@@ -37,6 +38,7 @@ class DngReader {
     read_levels();
     read_samples();
     if (exif) read_exif(exif);
+    stream_.require_whole();
     check();
     return std::move(raw_);
   }
@@ -268,19 +270,27 @@ class DngReader {
     const auto columns = static_cast<std::uint32_t>(raw_.columns),
                rows = static_cast<std::uint32_t>(raw_.rows);
     const std::uint32_t width = std::min(block.columns, columns - left);
-    for (std::uint32_t r = 0; r < std::min(block.rows, rows - top); ++r)
-      for (std::uint32_t c = 0; c < width; ++c) {
-        const std::size_t at = std::size_t{r} * block.columns + c;
-        raw_.samples[std::size_t{top + r} * columns + left + c] =
-            bits_ == 8 ? bytes[at] : reinterpret_cast<const std::uint16_t*>(bytes.data())[at];
-      }
+    for (std::uint32_t r = 0; r < std::min(block.rows, rows - top); ++r) {
+      const std::uint8_t* from = bytes.data() + std::size_t{r} * block.columns * (bits_ / 8u);
+      std::uint16_t* into = raw_.samples.data() + std::size_t{top + r} * columns + left;
+      if (bits_ == 8)
+        std::copy_n(from, width, into);
+      else
+        std::memcpy(into, from, 2 * std::size_t{width});
+    }
   }
 
   void read_exif(std::uint64_t place) {
-    if (!TIFFReadEXIFDirectory(tiff_, place)) return;  // a picture without its EXIF is still a picture
+    stream_.require(TIFFReadEXIFDirectory(tiff_, place) != 0);
     const auto number = [&](std::uint32_t tag) {
+      // libtiff hands out fractions of EXIF as float or as double, and says which.
+      const TIFFField* field = TIFFFieldWithTag(tiff_, tag);
+      const bool wide = field && TIFFFieldSetGetSize(field) == sizeof(double);
       double value = 0;
-      return TIFFGetField(tiff_, tag, &value) && std::isfinite(value) && value > 0 ? value : 0;
+      float narrow = 0;
+      const bool there = wide ? TIFFGetField(tiff_, tag, &value) : TIFFGetField(tiff_, tag, &narrow);
+      if (!wide) value = static_cast<double>(narrow);
+      return there && std::isfinite(value) && value > 0 ? value : 0.0;
     };
     raw_.exposure_s = number(EXIFTAG_EXPOSURETIME);
     raw_.lens.f_number = number(EXIFTAG_FNUMBER);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval develop: from a raw file to a picture.
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/staged_files.h>
+#include <petzval/isp/display_picture.h>
+#include <petzval/sensor/formats/dng.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "develop_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct DevelopCommand {
+  std::string raw;
+  DevelopChoice choice;
+  std::vector<std::string> outputs;
+  int bits = 8;
+};
+
+const char* name_of(Demosaic method) {
+  switch (method) {
+    case Demosaic::bilinear:
+      return "bilinear";
+    case Demosaic::malvar:
+      return "malvar";
+    case Demosaic::gradient:
+      return "gradient";
+    case Demosaic::general:
+      return "general";
+  }
+  return "";
+}
+
+void develop(const DevelopCommand& command, const Shared& shared) {
+  for (const std::string& path : command.outputs)
+    require_extension(path, display_picture_extensions(), "a picture");
+  StagedFiles files;
+  std::vector<std::string> staged;
+  for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
+  const RawImage raw = read_dng(command.raw);
+  DevelopReport report;
+  const Planes picture =
+      command.choice.develop(raw, report, [&](const std::string& path) { return files.stage(path); });
+  const std::string provenance = fmt::format("petzval {} develop: {}", version(), raw.provenance);
+  for (const std::string& path : staged)
+    write_display_picture(path, picture, display_space(command.choice.space), command.bits, provenance);
+  files.commit();
+
+  if (shared.json) {
+    const nlohmann::ordered_json json = {{"columns", picture.columns},
+                                         {"rows_of_pixels", picture.rows},
+                                         {"mosaic", mosaic_text(raw.mosaic, raw.channels)},
+                                         {"demosaic", name_of(report.demosaic)},
+                                         {"neutral", report.neutral},
+                                         {"temperature_k", report.temperature_k},
+                                         {"defects_corrected", report.defects},
+                                         {"outputs", command.outputs}};
+    return fmt::print("{}\n", json.dump(2));
+  }
+  if (shared.quiet) return;
+  fmt::print("{} x {} pixels, {}, demosaic {}\n", picture.columns, picture.rows,
+             mosaic_text(raw.mosaic, raw.channels), name_of(report.demosaic));
+  fmt::print("  white {:.4f}{}, {} defects corrected\n", fmt::join(report.neutral, " "),
+             report.temperature_k > 0 ? fmt::format(", light of {:.0f} K", report.temperature_k) : "",
+             report.defects);
+}
+
+}  // namespace
+
+void add_develop_command(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<DevelopCommand>();
+  CLI::App* command = add_command(app, shared, "develop", "Develop a raw file: a picture",
+                                  "petzval develop raw.dng -o picture.png", true, [options, &shared] {
+                                    const ThreadLimit limit(shared.threads);
+                                    develop(*options, shared);
+                                  });
+  command->add_option("raw", options->raw, "RAW.dng")->required();
+  options->choice.add_to(*command);
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "PICTURE.png, .tif, .exr (linear) or .npy (linear); may be given several times")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("--bits", options->bits, "Of .png and .tif: 8 or 16")
+      ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str();
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval sense: irradiance onto a sensor, a raw image out.
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/staged_files.h>
+#include <petzval/image/formats/irradiance.h>
+#include <petzval/sensor/raw_file.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "sense_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct SenseCommand {
+  std::string irradiance, sensor;
+  SenseChoice choice;
+  std::vector<std::string> outputs;
+};
+
+/// Of one channel, in linear values less the black level.
+struct ChannelLevel {
+  std::string name;
+  double mean = 0, clipped = 0;  ///< clipped: share of its pixels at the white level
+};
+
+std::vector<ChannelLevel> channel_levels(const RawImage& raw) {
+  std::vector<ChannelLevel> levels(raw.channels.size());
+  std::vector<double> counts(raw.channels.size());
+  for (int row = 0; row < raw.rows; ++row)
+    for (int column = 0; column < raw.columns; ++column) {
+      const auto channel = static_cast<std::size_t>(raw.mosaic.channel(row, column));
+      const double value = raw.pixel(row, column);
+      levels[channel].mean += value - raw.black_level;
+      levels[channel].clipped += value >= raw.white_level;
+      ++counts[channel];
+    }
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    levels[i].name = raw.channels[i];
+    levels[i].mean /= std::max(1.0, counts[i]);
+    levels[i].clipped /= std::max(1.0, counts[i]);
+  }
+  return levels;
+}
+
+nlohmann::ordered_json summary_json(const RawImage& raw, const std::vector<std::string>& outputs) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const ChannelLevel& level : channel_levels(raw))
+    rows.push_back({{"channel", level.name},
+                    {"mean_dn", level.mean},
+                    {"mean_e", level.mean / raw.dn_per_e},
+                    {"clipped_percent", 100 * level.clipped}});
+  return {{"columns", raw.columns},
+          {"rows_of_pixels", raw.rows},
+          {"sensor", raw.sensor_name},
+          {"mosaic", mosaic_text(raw.mosaic, raw.channels)},
+          {"exposure_s", raw.exposure_s},
+          {"iso", raw.iso},
+          {"black_level_dn", raw.black_level},
+          {"white_level_dn", raw.white_level},
+          {"dn_per_e", raw.dn_per_e},
+          {"read_noise_e", raw.read_noise_e},
+          {"as_shot_neutral", raw.as_shot_neutral},
+          {"rows", rows},
+          {"outputs", outputs}};
+}
+
+void print_summary(const RawImage& raw) {
+  fmt::print("{} x {} pixels, {}, {}\n", raw.columns, raw.rows, mosaic_text(raw.mosaic, raw.channels),
+             raw.sensor_name);
+  fmt::print("  exposure  {:.4g} s, ISO {:.0f}\n", raw.exposure_s, raw.iso);
+  fmt::print("  levels    black {:g} DN, white {:g} DN, {:.4g} DN per electron, read noise {:.3g} e\n",
+             raw.black_level, raw.white_level, raw.dn_per_e, raw.read_noise_e);
+  for (const ChannelLevel& level : channel_levels(raw))
+    fmt::print("  {:<9} mean {:.1f} DN above black, {:.0f} e, {:.2f} % clipped\n", level.name, level.mean,
+               level.mean / raw.dn_per_e, 100 * level.clipped);
+}
+
+void sense(const SenseCommand& command, const Shared& shared) {
+  for (const std::string& path : command.outputs) require_extension(path, raw_extensions(), "a raw image");
+  StagedFiles files;
+  std::vector<std::string> staged;
+  for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
+  const Sensor sensor = read_sensor(command.sensor);
+  sensor.require_electronics();
+  const RawImage raw = command.choice.expose(read_irradiance(command.irradiance), sensor, shared);
+  for (const std::string& path : staged) write_raw(path, raw);
+  files.commit();
+  if (shared.json) return fmt::print("{}\n", summary_json(raw, command.outputs).dump(2));
+  if (!shared.quiet) print_summary(raw);
+}
+
+}  // namespace
+
+void add_sense_command(CLI::App& app, Shared& shared) {
+  auto options = std::make_shared<SenseCommand>();
+  CLI::App* command = add_command(app, shared, "sense", "Expose a sensor to an irradiance: a raw image",
+                                  "petzval sense light.exr --sensor third-inch-1280x960 -o raw.dng", true,
+                                  [options, &shared] {
+                                    const ThreadLimit limit(shared.threads);
+                                    sense(*options, shared);
+                                  });
+  command
+      ->add_option("irradiance", options->irradiance, "Spectral irradiance, .exr, as petzval image writes it")
+      ->required();
+  command->add_option("--sensor", options->sensor, "A sensor file or the name of a bundled one")->required();
+  options->choice.add_to(*command);
+  command
+      ->add_option("-o,--output", options->outputs, "RAW.dng, .tif, .npy or .exr; may be given several times")
+      ->required()
+      ->allow_extra_args(false);
+}
+
+}  // namespace petzval::app

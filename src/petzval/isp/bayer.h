@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Methods for the Bayer mosaic; demosaiced() chooses among them.
+#pragma once
+
+#include <petzval/isp/demosaic.h>
+
+namespace petzval {
+
+/// High-quality linear interpolation by 5 × 5 filters (Malvar, He & Cutler, "High-quality linear
+/// interpolation for demosaicing of Bayer-patterned color images", ICASSP 2004, figure 2).
+Planes bayer_malvar(const LinearMosaic& mosaic);
+
+/// Gradient-based threshold-free interpolation (Pekkucuksen & Altunbasak, "Gradient based threshold free
+/// color filter array interpolation", ICIP 2010): colour differences are estimated along rows and along
+/// columns; those of the four directions are weighted by the inverse square of their changes around the
+/// pixel; red and blue follow from green and the differences.
+Planes bayer_gradient(const LinearMosaic& mosaic);
+
+}  // namespace petzval

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/error.h>
+#include <petzval/isp/develop.h>
+
+#include <algorithm>
+
+namespace petzval {
+
+namespace {
+
+double range(const RawImage& raw) {
+  return raw.white_level - raw.black_level;
+}
+
+/// Variance of a linear value x is scale · x + offset.
+double noise_scale(const RawImage& raw) {
+  return raw.dn_per_e / range(raw);
+}
+double noise_offset(const RawImage& raw) {
+  const double k = noise_scale(raw);
+  return k * k * raw.read_noise_e * raw.read_noise_e;
+}
+
+std::vector<double> neutral_for(const RawImage& raw, const LinearMosaic& mosaic,
+                                const DevelopOptions& options) {
+  if (raw.channels.size() == 1) return {1};
+  if (options.grey_world) return grey_world_neutral(mosaic);
+  if (!options.neutral.empty()) return options.neutral;
+  return raw.as_shot_neutral.empty() ? grey_world_neutral(mosaic) : raw.as_shot_neutral;
+}
+
+/// Channels as they are, red, green and blue if there are so many.
+Planes as_they_are(const Planes& planes) {
+  const std::size_t last = planes.values.size() - 1;
+  return {planes.columns,
+          planes.rows,
+          {planes.values[0], planes.values[std::min<std::size_t>(1, last)],
+           planes.values[std::min<std::size_t>(2, last)]}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& develop_step_names() {
+  static const std::vector<std::string> names = {"linear",  "defects", "shading", "white-balance", "demosaic",
+                                                 "denoise", "colour",  "sharpen", "tone"};
+  return names;
+}
+
+Planes develop(const RawImage& raw, const DevelopOptions& options, DevelopReport* report,
+               const DevelopStep& step) {
+  DevelopReport done;
+  const auto tell_mosaic = [&](const char* name, const LinearMosaic& mosaic) {
+    if (step) step(name, {mosaic.columns, mosaic.rows, {mosaic.values}});
+  };
+  LinearMosaic mosaic = linearised(raw);
+  tell_mosaic("linear", mosaic);
+  if (options.defects && raw.dn_per_e > 0)
+    done.defects = correct_defects(mosaic, noise_scale(raw), noise_offset(raw));
+  tell_mosaic("defects", mosaic);
+  if (options.flat) correct_shading(mosaic, linearised(*options.flat));
+  tell_mosaic("shading", mosaic);
+  done.neutral = neutral_for(raw, mosaic, options);
+  balance_white(mosaic, done.neutral);
+  tell_mosaic("white-balance", mosaic);
+
+  done.demosaic = options.demosaic.value_or(is_bayer(mosaic) ? Demosaic::gradient : Demosaic::general);
+  Planes planes = demosaiced(mosaic, done.demosaic);
+  mosaic = {};
+  if (step) step("demosaic", planes);
+  denoise(planes, options.denoise_strength, noise_scale(raw), noise_offset(raw));
+  if (step) step("denoise", planes);
+
+  if (planes.values.size() == 1) {
+    planes = rendered(planes, {}, options.space);
+  } else if (!options.colours) {
+    planes = as_they_are(planes);
+  } else {
+    const CameraMatrix matrix = options.matrix ? *options.matrix : camera_matrix(raw, done.neutral);
+    done.temperature_k = matrix.temperature_k;
+    planes = rendered(planes, matrix, options.space);
+  }
+  if (step) step("colour", planes);
+  if (options.sharpen_amount != 0) sharpen(planes, options.sharpen_amount, options.sharpen_sigma_px);
+  if (step) step("sharpen", planes);
+  apply_tone(planes, options.exposure_ev, options.tone);
+  if (step) step("tone", planes);
+  if (report) *report = done;
+  return planes;
+}
+
+}  // namespace petzval

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/isp/filters.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+std::vector<float> gaussian(double sigma) {
+  const int radius = static_cast<int>(std::ceil(3 * sigma));
+  std::vector<float> weights;
+  double sum = 0;
+  for (int i = -radius; i <= radius; ++i) {
+    weights.push_back(static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma))));
+    sum += static_cast<double>(weights.back());
+  }
+  for (float& weight : weights) weight /= static_cast<float>(sum);
+  return weights;
+}
+
+/// Blurs along columns or along rows; the edge pixel is repeated.
+std::vector<float> blurred(const std::vector<float>& plane, int columns, int rows,
+                           const std::vector<float>& weights, bool across) {
+  std::vector<float> result(plane.size());
+  const int radius = static_cast<int>(weights.size()) / 2;
+  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t row) {
+    for (int c = 0; c < columns; ++c) {
+      float sum = 0;
+      for (int k = -radius; k <= radius; ++k) {
+        const int r = across ? static_cast<int>(row) : std::clamp(static_cast<int>(row) + k, 0, rows - 1);
+        const int from = across ? std::clamp(c + k, 0, columns - 1) : c;
+        sum += weights[static_cast<std::size_t>(k + radius)] *
+               plane[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
+                     static_cast<std::size_t>(from)];
+      }
+      result[row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)] = sum;
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+void denoise(Planes& planes, double strength, double noise_scale, double noise_offset, int radius) {
+  if (!(strength > 0) || noise_scale + noise_offset <= 0) return;
+  const Planes before = planes;
+  const auto columns = static_cast<std::size_t>(planes.columns);
+  const std::size_t channels = planes.values.size();
+  parallel_for(static_cast<std::size_t>(planes.rows), [&](std::size_t row) {
+    std::vector<float> sums(channels);
+    for (int c = 0; c < planes.columns; ++c) {
+      const std::size_t here = row * columns + static_cast<std::size_t>(c);
+      double variance = 0;
+      for (std::size_t k = 0; k < channels; ++k)
+        variance += noise_scale * std::max(0.0, static_cast<double>(before.values[k][here])) + noise_offset;
+      const auto inverse = static_cast<float>(1 / (2 * strength * strength * variance));
+      std::fill(sums.begin(), sums.end(), 0.0f);
+      float total = 0;
+      for (int dr = -radius; dr <= radius; ++dr)
+        for (int dc = -radius; dc <= radius; ++dc) {
+          const int r = std::clamp(static_cast<int>(row) + dr, 0, planes.rows - 1),
+                    k = std::clamp(c + dc, 0, planes.columns - 1);
+          const std::size_t there = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(k);
+          float difference = 0;
+          for (std::size_t i = 0; i < channels; ++i) {
+            const float d = before.values[i][there] - before.values[i][here];
+            difference += d * d;
+          }
+          const float spread =
+              2.0f * static_cast<float>(dr * dr + dc * dc) / static_cast<float>(radius * radius);
+          const float weight = std::exp(-difference * inverse - spread);
+          total += weight;
+          for (std::size_t i = 0; i < channels; ++i) sums[i] += weight * before.values[i][there];
+        }
+      for (std::size_t i = 0; i < channels; ++i) planes.values[i][here] = sums[i] / total;
+    }
+  });
+}
+
+void sharpen(Planes& planes, double amount, double sigma_px) {
+  constexpr double greatest_px = 50;
+  if (!(sigma_px > 0 && sigma_px <= greatest_px))
+    throw InputError(fmt::format("a sharpening radius of {:g} pixels; above 0 and up to {:g} would be right",
+                                 sigma_px, greatest_px));
+  const std::vector<float> weights = gaussian(sigma_px);
+  for (std::vector<float>& plane : planes.values) {
+    const std::vector<float> smooth = blurred(blurred(plane, planes.columns, planes.rows, weights, true),
+                                              planes.columns, planes.rows, weights, false);
+    for (std::size_t i = 0; i < plane.size(); ++i)
+      plane[i] += static_cast<float>(amount) * (plane[i] - smooth[i]);
+  }
+}
+
+void apply_tone(Planes& rgb, double exposure_ev, ToneCurve curve) {
+  const auto gain = static_cast<float>(std::exp2(exposure_ev));
+  const auto columns = static_cast<std::size_t>(rgb.columns);
+  constexpr float knee = 0.5f;
+  parallel_for(static_cast<std::size_t>(rgb.rows), [&](std::size_t row) {
+    float* p[3] = {rgb.values[0].data() + row * columns, rgb.values[1].data() + row * columns,
+                   rgb.values[2].data() + row * columns};
+    for (std::size_t c = 0; c < columns; ++c) {
+      for (float* plane : p) plane[c] = std::max(0.0f, gain * plane[c]);
+      const float most = std::max({p[0][c], p[1][c], p[2][c]});
+      if (curve == ToneCurve::none || most <= knee) continue;
+      // Slope 1 at the knee, 1 in the limit.
+      const float out = 1 - (1 - knee) * std::exp(-(most - knee) / (1 - knee));
+      for (float* plane : p) plane[c] *= out / most;
+    }
+  });
+}
+
+}  // namespace petzval

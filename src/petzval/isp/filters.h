@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps of development that are off unless asked for.
+#pragma once
+
+#include <petzval/isp/demosaic.h>
+
+namespace petzval {
+
+/// Bilateral filter (Tomasi & Manduchi, ICCV 1998) over (2·radius + 1)² pixels: a neighbour counts by its
+/// distance in the picture (a Gaussian of radius/2) and by its difference from the pixel over all planes
+/// together, measured in `strength` times the noise at that level. \param noise_scale, noise_offset  variance
+/// of the noise at a value x: scale · x + offset.
+void denoise(Planes& planes, double strength, double noise_scale, double noise_offset, int radius = 3);
+
+/// Unsharp masking: adds `amount` times the difference from a Gaussian blur of standard deviation `sigma_px`.
+/// \throws InputError for a sigma that is not above 0 or exceeds 50 pixels.
+void sharpen(Planes& planes, double amount, double sigma_px);
+
+enum class ToneCurve {
+  none,  ///< linear up to white, where it is cut
+  soft   ///< linear up to half of white, then a shoulder that reaches white only in the limit
+};
+
+/// Multiplies by 2^exposure_ev, then applies the curve to the greatest of the three planes and scales the
+/// others with it, so that hues stay. Values below 0 become 0.
+void apply_tone(Planes& rgb, double exposure_ev, ToneCurve curve);
+
+}  // namespace petzval

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/colour/observer.h>
+#include <petzval/sensor/colour_calibration.h>
+
+#include <numeric>
+
+#include "flat_sensor.h"
+
+namespace petzval {
+namespace {
+
+/// A sensor that sees as the eye does: its channels are the colour-matching functions (per photon).
+Sensor luther_sensor() {
+  Sensor sensor = test::bayer_sensor(4, 4);
+  const Observer& eye = Observer::cie_1931();
+  std::vector<double> nm;
+  for (double at = 380; at <= 730; at += 5) nm.push_back(at);
+  std::vector<double> x, y, z;
+  const std::vector<Xyz> weights = eye.weights(nm);
+  for (std::size_t i = 0; i < nm.size(); ++i) {
+    // What 5 nm weigh, per photon: energy per photon goes as 1/λ.
+    x.push_back(weights[i].x / 5 * 200 / nm[i]), y.push_back(weights[i].y / 5 * 200 / nm[i]);
+    z.push_back(weights[i].z / 5 * 200 / nm[i]);
+  }
+  sensor.electronics->channels = {
+      {"red", Spectrum(nm, x)}, {"green", Spectrum(nm, y)}, {"blue", Spectrum(nm, z)}};
+  return sensor;
+}
+
+TEST(ColourFit, IsExactForASensorThatSeesAsTheEyeDoes) {
+  // Luther's condition. What is left comes of the two piecewise linear forms of the functions: under 0.1.
+  const ColourFit fit = fit_colour(luther_sensor(), illuminant("D65"));
+  EXPECT_LT(fit.max_delta_e_2000, 0.1);
+}
+
+TEST(ColourFit, KeepsWhite) {
+  for (const char* name : {"A", "D50", "D65", "F11"}) {
+    const Spectrum light = illuminant(name);
+    const ColourFit fit = fit_colour(read_sensor("full-frame-24mp"), light);
+    const Xyz white = Observer::cie_1931().xyz(light);
+    const double expected[] = {white.x / white.y, 1, white.z / white.y};
+    for (std::size_t r = 0; r < 3; ++r) {
+      double sum = 0;
+      for (std::size_t c = 0; c < 3; ++c) sum += fit.xyz_from_camera[3 * r + c] * fit.neutral[c];
+      EXPECT_NEAR(sum, expected[r], 1e-9) << name;
+    }
+  }
+}
+
+TEST(ColourFit, BundledSensorsSeeColourChecker) {
+  // A mean below 3 under D65, for sensors that have green: red, clear and blue see greens and blues too much
+  // alike.
+  for (const std::string& name : bundled_names("sensors", ".json")) {
+    const Sensor sensor = read_sensor(name);
+    if (!sensor.electronics || sensor.electronics->channels.size() < 3) continue;
+    for (const char* light : {"D65", "D50", "A"}) {
+      const ColourFit fit = fit_colour(sensor, illuminant(light));
+      if (std::string(light) == "D65" && sensor.electronics->channels[1].name == "green") {
+        EXPECT_LT(fit.mean_delta_e_2000, 3) << name;
+      }
+      EXPECT_GT(fit.max_delta_e_2000, fit.mean_delta_e_2000);
+    }
+  }
+}
+
+TEST(Calibration, TakesBalancedWhiteToD50) {
+  for (const ColourCalibration& calibration : standard_calibrations(read_sensor("full-frame-24mp"))) {
+    const double d50[] = {0.9642, 1, 0.8251};  // ICC.1: the connection space's white, to four decimals
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto row = calibration.pcs_from_balanced.begin() + static_cast<std::ptrdiff_t>(3 * r);
+      EXPECT_NEAR(std::accumulate(row, row + 3, 0.0), d50[r], 3e-4);
+    }
+  }
+}
+
+TEST(Calibration, NeedsThreeChannels) {
+  EXPECT_TRUE(standard_calibrations(test::mono_sensor(4, 4)).empty());
+  EXPECT_THROW(fit_colour(test::mono_sensor(4, 4), illuminant("D65")), InputError);
+}
+
+}  // namespace
+}  // namespace petzval

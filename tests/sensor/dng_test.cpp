@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <libraw/libraw.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/numeric/random.h>
+#include <petzval/sensor/colour_calibration.h>
+#include <petzval/sensor/formats/dng.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "flat_sensor.h"
+
+namespace petzval {
+namespace {
+
+class Dng : public ::testing::Test {
+ protected:
+  Dng()
+      : folder_(::testing::TempDir() + "petzval-dng-" +
+                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~Dng() override { std::filesystem::remove_all(folder_); }
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+ private:
+  std::string folder_;
+};
+
+/// 60 x 44 random samples of a Bayer sensor with all facts of a camera.
+RawImage example(const std::string& order = "RGGB") {
+  const Sensor sensor = test::bayer_sensor(60, 44, order);
+  RawImage raw;
+  raw.columns = 60;
+  raw.rows = 44;
+  raw.mosaic = sensor.electronics->mosaic;
+  raw.channels = sensor.electronics->channel_names();
+  for (std::uint64_t i = 0; i < 60 * 44; ++i)
+    raw.samples.push_back(static_cast<std::uint16_t>(RandomStream(3, 0, i).bits() % 4096));
+  raw.black_level = 64;
+  raw.white_level = 4095;
+  raw.dn_per_e = 0.25;
+  raw.read_noise_e = 3;
+  raw.calibrations = standard_calibrations(sensor);
+  raw.as_shot_neutral = {0.5, 1, 0.7};
+  raw.exposure_s = 1.0 / 60;
+  raw.iso = 200;
+  raw.lens = {"Some Lens 35mm", 35, 2.8, 0};
+  raw.sensor_name = "Some Sensor";
+  return raw;
+}
+
+std::unique_ptr<LibRaw> opened(const std::string& path) {
+  auto libraw = std::make_unique<LibRaw>();
+  EXPECT_EQ(libraw->open_file(path.c_str()), LIBRAW_SUCCESS);
+  EXPECT_EQ(libraw->unpack(), LIBRAW_SUCCESS);
+  return libraw;
+}
+
+TEST_F(Dng, LibRawSeesWhatWasWritten) {
+  for (const std::string order : {"RGGB", "BGGR", "GRBG", "GBRG"}) {
+    const RawImage raw = example(order);
+    write_dng(path("a.dng"), raw);
+    const auto libraw = opened(path("a.dng"));
+    const auto& data = libraw->imgdata;
+    ASSERT_EQ(data.sizes.raw_width, raw.columns);
+    ASSERT_EQ(data.sizes.raw_height, raw.rows);
+    ASSERT_NE(data.rawdata.raw_image, nullptr);
+    for (int row = 0; row < raw.rows; ++row)
+      for (int column = 0; column < raw.columns; ++column)
+        ASSERT_EQ(data.rawdata.raw_image[row * static_cast<int>(data.sizes.raw_pitch / 2) + column],
+                  raw.samples[static_cast<std::size_t>(row * raw.columns + column)])
+            << row << ", " << column;
+    // Colours of the mosaic by LibRaw's own reckoning; its second green is number 3.
+    EXPECT_STREQ(data.idata.cdesc, "RGBG");
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column)
+        EXPECT_EQ("RGBG"[libraw->COLOR(row, column)],
+                  order[static_cast<std::size_t>(row % 2 * 2 + column % 2)]);
+    // A black level that all cells share is in `black`, or in the block that cblack[4], cblack[5] describe.
+    const unsigned block = data.color.cblack[4] * data.color.cblack[5];
+    EXPECT_EQ(data.color.black + (block > 0 ? data.color.cblack[6] : data.color.cblack[0]), 64u);
+    EXPECT_EQ(data.color.maximum, 4095u);
+  }
+}
+
+TEST_F(Dng, LibRawSeesTheCamera) {
+  const RawImage raw = example();
+  write_dng(path("a.dng"), raw);
+  const auto libraw = opened(path("a.dng"));
+  const auto& data = libraw->imgdata;
+  EXPECT_STREQ(data.idata.make, "Petzval");
+  EXPECT_NEAR(static_cast<double>(data.other.shutter), raw.exposure_s, 1e-7);  // a float
+  EXPECT_NEAR(static_cast<double>(data.other.aperture), 2.8, 1e-6);
+  EXPECT_NEAR(static_cast<double>(data.other.focal_len), 35, 1e-5);
+  EXPECT_NEAR(static_cast<double>(data.other.iso_speed), 200, 1e-5);
+  EXPECT_STREQ(data.lens.Lens, "Some Lens 35mm");
+  // White balance: multipliers are the inverse of the neutral.
+  EXPECT_NEAR(static_cast<double>(data.color.cam_mul[0] / data.color.cam_mul[1]), 2, 1e-6);
+  EXPECT_NEAR(static_cast<double>(data.color.cam_mul[2] / data.color.cam_mul[1]), 1 / 0.7, 1e-6);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(data.color.dng_color[i].illuminant, i == 0 ? 17 : 21);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        const auto at = static_cast<std::size_t>(3 * r + c);
+        const auto which = static_cast<std::size_t>(i);
+        // Floats as fractions: 1e-6 of the greatest, about 2.
+        EXPECT_NEAR(static_cast<double>(data.color.dng_color[i].colormatrix[r][c]),
+                    raw.calibrations[which].camera_from_xyz[at], 2e-6);
+        EXPECT_NEAR(static_cast<double>(data.color.dng_color[i].forwardmatrix[r][c]),
+                    raw.calibrations[which].pcs_from_balanced[at], 2e-6);
+      }
+  }
+}
+
+TEST_F(Dng, ComesBack) {
+  RawImage raw = example();
+  raw.provenance = "how it came about";
+  write_dng(path("a.dng"), raw);
+  const RawImage back = read_dng(path("a.dng"));
+  EXPECT_EQ(back.columns, raw.columns);
+  EXPECT_EQ(back.rows, raw.rows);
+  EXPECT_EQ(back.samples, raw.samples);
+  EXPECT_EQ(back.mosaic, raw.mosaic);
+  EXPECT_EQ(back.channels, raw.channels);
+  EXPECT_EQ(back.black_level, 64);
+  EXPECT_EQ(back.white_level, 4095);
+  EXPECT_NEAR(back.dn_per_e, 0.25, 1e-12);
+  EXPECT_NEAR(back.read_noise_e, 3, 1e-12);
+  ASSERT_EQ(back.calibrations.size(), 2u);
+  EXPECT_EQ(back.calibrations[1].exif_light_source, 21);
+  for (std::size_t i = 0; i < 9; ++i)
+    EXPECT_NEAR(back.calibrations[0].pcs_from_balanced[i], raw.calibrations[0].pcs_from_balanced[i], 2e-6);
+  ASSERT_EQ(back.as_shot_neutral.size(), 3u);
+  EXPECT_NEAR(back.as_shot_neutral[2], 0.7, 1e-6);
+  EXPECT_NEAR(back.exposure_s, raw.exposure_s, 1e-9);  // a float
+  EXPECT_EQ(back.iso, 200);
+  EXPECT_NEAR(back.lens.focal_length_mm, 35, 1e-6);
+  EXPECT_EQ(back.lens.name, raw.lens.name);
+  EXPECT_EQ(back.sensor_name, raw.sensor_name);
+  EXPECT_EQ(back.provenance, raw.provenance);
+  write_dng(path("b.dng"), raw);
+  EXPECT_EQ(read_whole_file(path("a.dng")), read_whole_file(path("b.dng")))
+      << "the same image, the same bytes";
+}
+
+TEST_F(Dng, OtherMosaicsComeBack) {
+  RawImage raw = example();
+  raw.calibrations.clear();
+  raw.as_shot_neutral.clear();
+  raw.channels = {"red", "green", "blue", "white"};
+  raw.mosaic = {2, 4, {3, 0, 3, 1, 1, 3, 2, 3}};
+  write_dng(path("a.dng"), raw);
+  EXPECT_EQ(read_dng(path("a.dng")).mosaic, raw.mosaic);
+  EXPECT_EQ(read_dng(path("a.dng")).channels, raw.channels);
+
+  raw.channels = {"grey"};
+  raw.mosaic = {};
+  write_dng(path("a.dng"), raw);
+  EXPECT_EQ(read_dng(path("a.dng")).samples, raw.samples);
+  EXPECT_EQ(read_dng(path("a.dng")).channels.size(), 1u);
+
+  raw.channels = {"red", "infrared"};
+  raw.mosaic = {1, 2, {0, 1}};
+  EXPECT_THROW(write_dng(path("c.dng"), raw), InputError);
+  EXPECT_FALSE(std::filesystem::exists(path("c.dng")));
+}
+
+TEST_F(Dng, LinearizationIsAppliedByLibRawAndByUs) {
+  RawImage raw = example();
+  for (int i = 0; i < 4096; ++i) raw.linearization.push_back(static_cast<std::uint16_t>(i * i / 300));
+  raw.white_level = 4095 * 4095 / 300;
+  write_dng(path("a.dng"), raw);
+  const RawImage back = read_dng(path("a.dng"));
+  const auto libraw = opened(path("a.dng"));
+  for (int row = 0; row < raw.rows; ++row)
+    for (int column = 0; column < raw.columns; ++column) {
+      const int stored = raw.samples[static_cast<std::size_t>(row * raw.columns + column)];
+      EXPECT_EQ(back.pixel(row, column), stored * stored / 300);
+      EXPECT_EQ(libraw->imgdata.rawdata.raw_image[row * raw.columns + column], stored * stored / 300);
+    }
+}
+
+TEST_F(Dng, ExiftoolFindsNothingWrong) {
+  if (std::system("exiftool -ver >/dev/null 2>&1") != 0) GTEST_SKIP() << "exiftool is not installed";
+  write_dng(path("a.dng"), example());
+  const std::string command =
+      "exiftool -validate -warning -error -a '" + path("a.dng") + "' > '" + path("said") + "'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(read_whole_file(path("said")), "Validate                        : OK\n");
+}
+
+TEST_F(Dng, DamageIsRefusedOrHarmless) {
+  write_dng(path("a.dng"), example());
+  const std::string bytes = read_whole_file(path("a.dng"));
+  const auto attempt = [&](const std::string& damaged) {
+    const std::string name = path("damaged.dng");
+    std::filesystem::remove(name);
+    std::FILE* file = std::fopen(name.c_str(), "wb");
+    std::fwrite(damaged.data(), 1, damaged.size(), file);
+    std::fclose(file);
+    try {
+      read_dng(name);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  for (std::size_t length = 0; length < bytes.size(); length += 97)
+    EXPECT_FALSE(attempt(bytes.substr(0, length))) << length;
+  // Samples lie in front; everything that can mislead stands behind them. Bits, bytes and words at random.
+  const std::size_t first = 2 * 60 * 44;
+  for (std::uint64_t i = 0; i < 4000; ++i) {
+    RandomStream random(8, 1, i);
+    std::string damaged = bytes;
+    const std::uint64_t changes = 1 + random.bits() % 3;
+    for (std::uint64_t k = 0; k < changes; ++k) {
+      const bool header = random.bits() % 16 == 0;
+      const std::size_t at = header ? random.bits() % 8 : first + random.bits() % (bytes.size() - first);
+      damaged[at] = random.bits() % 2 ? static_cast<char>(random.bits())
+                                      : static_cast<char>(damaged[at] ^ (1 << random.bits() % 8));
+    }
+    attempt(damaged);
+  }
+}
+
+}  // namespace
+}  // namespace petzval
