@@ -36,9 +36,13 @@ class HelpExamples(ProgramTest):
         elif word == "light.exr":
             self.assert_succeeds("image", "studio", "--lens", "edmund-54852", "--sensor", "320x240@3.75", "--method", "none",
                                  "--wavelengths", "400:20:700", "-o", word)
-        elif word == "raw.dng":
+        elif word.endswith(".dng"):
             self.provide("light.exr")
-            self.assert_succeeds("sense", "light.exr", "--sensor", "third-inch-1280x960", "-o", word)
+            exposure = {"dar": "0", "dim": "0.002", "bri": "0.005"}.get(word[:3], "auto")
+            self.assert_succeeds("sense", "light.exr", "--sensor", "third-inch-1280x960", "--exposure", exposure,
+                                 "--seed", str(sum(word.encode())), "-o", word)
+        elif word.endswith(".png"):
+            self.assert_succeeds("scene", "convert", "colorchecker", word)
         elif word.endswith(".exr"):
             self.assert_succeeds("scene", "convert", "studio", word)
 

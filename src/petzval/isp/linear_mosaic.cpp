@@ -111,7 +111,9 @@ int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offse
       const auto [low, high] = std::minmax_element(around.begin(), around.end());
       const float value = before[row * columns + static_cast<std::size_t>(c)];
       const double beyond = std::max(static_cast<double>(*low - value), static_cast<double>(value - *high));
-      if (beyond <= least_outlier) continue;
+      // Where the neighbours differ much among themselves there is detail, and one more difference is no
+      // defect.
+      if (beyond <= least_outlier || beyond <= static_cast<double>(*high - *low)) continue;
       const double level = std::max(0.0, static_cast<double>(value < *low ? *low : *high));
       if (beyond <= threshold * std::sqrt(noise_scale * level + noise_offset)) continue;
       std::nth_element(around.begin(), around.begin() + 4, around.end());

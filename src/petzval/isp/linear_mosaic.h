@@ -33,9 +33,9 @@ struct LinearMosaic {
 LinearMosaic linearised(const RawImage& raw);
 
 /// Replaces each pixel that lies outside the range of its eight nearest neighbours of the same channel by
-/// more than `threshold` times what noise explains there (and more than 2 % of white), by their median.
-/// \param noise_scale, noise_offset  variance of the noise at a value x: scale · x + offset. \returns how
-/// many were replaced.
+/// more than that range, than 2 % of white, and than `threshold` times what noise explains there, by their
+/// median. \param noise_scale, noise_offset  variance of the noise at a value x: scale · x + offset. \returns
+/// how many were replaced.
 int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset, double threshold = 6);
 
 /// Divides by a picture of a uniform surface with the same sensor and lens: each channel of it is smoothed

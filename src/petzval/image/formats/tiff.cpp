@@ -53,6 +53,10 @@ void set_layout(const TiffStream& stream, const TiffImage& image, int bits, bool
       TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, rgb ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK) &&
       TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
       TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows_per_strip));
+  // Every TIFF picture must state a resolution; this one says that there is none.
+  stream.require(TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 1.0) &&
+                 TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 1.0) &&
+                 TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE));
   const std::vector<std::uint16_t> extra(static_cast<std::size_t>(image.channels - (rgb ? 3 : 1)),
                                          EXTRASAMPLE_UNSPECIFIED);
   if (!extra.empty())

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a scene to a developed picture: sense, develop, measure, and what they refuse."""
+
+import json
+import unittest
+
+from petzval_cli import ProgramTest
+
+
+class SensorChain(ProgramTest):
+    def make_light(self, *options, sensor="96x64@3.75", name="light.exr"):
+        self.assert_succeeds("image", "studio", "--lens", "edmund-54852", "--sensor", sensor, "--method", "none",
+                             "--wavelengths", "400:20:700", "--quiet", "-o", name, *options)
+
+    def make_raw(self, *options, name="raw.dng"):
+        if not (self.folder / "light.exr").exists():
+            self.make_light()
+        return self.assert_succeeds("sense", "light.exr", "--sensor", "third-inch-1280x960", "--illuminant", "D65",
+                                    "-o", name, *options)
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        self.make_raw("--threads", "1", name="one.dng")
+        self.make_raw("--threads", "2", name="two.dng")
+        self.make_raw("--seed", "2", name="other.dng")
+        files = self.contents()
+        self.assertEqual(files["one.dng"], files["two.dng"])
+        self.assertNotEqual(files["one.dng"], files["other.dng"])
+
+    def test_automatic_exposure_stays_below_saturation(self):
+        self.make_light()
+        summary = self.json_of("sense", "light.exr", "--sensor", "third-inch-1280x960", "-o", "raw.dng", "--quiet")
+        self.assertGreater(summary["exposure_s"], 0)
+        for row in summary["rows"]:
+            self.assertLess(row["clipped_percent"], 1)
+        more = self.json_of("sense", "light.exr", "--sensor", "third-inch-1280x960", "--exposure-compensation", "1",
+                            "-o", "raw.dng", "--quiet")
+        self.assertAlmostEqual(more["exposure_s"] / summary["exposure_s"], 2, 9)
+
+    def test_outputs_appear_all_or_none(self):
+        self.make_light()
+        self.assert_refused("sense", "light.exr", "--sensor", "third-inch-1280x960", "-o", "a.dng", "-o", "b.jpg",
+                            words=["b.jpg", ".dng"])
+        self.assert_refused("sense", "light.exr", "--sensor", "third-inch-1280x960", "-o", "a.dng", "-o", "no/b.npy",
+                            words=["no"])
+
+    def test_light_for_another_sensor_is_refused(self):
+        self.make_light()
+        self.assert_refused("sense", "light.exr", "--sensor", "raspberry-pi-hq", "-o", "a.dng", words=["3.75", "1.55"])
+        self.assert_refused("sense", "light.exr", "--sensor", "96x64@3.75", "-o", "a.dng", words=["channels"])
+        self.assert_refused("sense", "light.exr", "--sensor", "third-inch-1280x960", "--without", "shots", "-o", "a.dng",
+                            words=["shots", "shot, dark"])
+        self.assert_refused("sense", "light.exr", "--sensor", "third-inch-1280x960", "--exposure", "soon", "-o", "a.dng",
+                            words=["soon", "auto"])
+
+    def test_develop_writes_every_step_and_format(self):
+        self.make_raw()
+        self.assert_succeeds("develop", "raw.dng", "-o", "a.png", "-o", "a.tif", "-o", "a.exr", "-o", "a.npy", "--step",
+                             "demosaic=d.exr", "--step", "linear=l.npy", "--space", "display-p3", "--quiet")
+        self.assertTrue({"a.png", "a.tif", "a.exr", "a.npy", "d.exr", "l.npy"} <= set(self.contents()))
+        for method in ("bilinear", "malvar", "gradient", "general"):
+            self.assertEqual(self.json_of("develop", "raw.dng", "--demosaic", method, "-o", "b.png")["demosaic"], method)
+        report = self.json_of("develop", "raw.dng", "-o", "b.png")
+        self.assertAlmostEqual(report["temperature_k"], 6504, delta=30)
+        self.assert_refused("develop", "raw.dng", "--step", "sky=a.png", "-o", "c.png", words=["sky"])
+        self.assert_refused("develop", "raw.dng", "--white-balance", "1,2", "-o", "c.png", words=["3 channels"])
+        self.assert_refused("develop", "light.exr", "-o", "c.png", words=["light.exr"])
+
+    def test_measures_print_rows(self):
+        self.make_raw()
+        sensor = self.json_of("measure", "sensor", "icx625-mono", "--csv", "t.csv", "--plot", "t.svg")
+        self.assertAlmostEqual(sensor["dn_per_e"], 2.7, delta=0.05)
+        self.assertGreater(len(sensor["rows"]), 10)
+        self.assertTrue({"t.csv", "t.svg"} <= set(self.contents()))
+        self.assertLess(self.json_of("measure", "matrix", "full-frame-24mp")["rows"][0]["mean_delta_e_2000"], 3)
+        self.assertEqual(len(self.json_of("measure", "shading", "raw.dng", "--cells", "3")["rows"]), 27)
+        self.assert_succeeds("develop", "raw.dng", "-o", "a.png", "--quiet")
+        self.assertEqual(self.json_of("measure", "scielab", "a.png", "a.png")["rows"][0]["max"], 0)
+        self.assert_refused("measure", "colour", "a.png", "--corners", "1,2,3", words=["8"])
+
+    def test_contradictory_sensors_are_refused_with_the_reason(self):
+        sound = json.loads(json.dumps({
+            "format": "petzval-sensor/1", "name": "n", "source": "s", "columns": 96, "rows": 64, "pitch_um": 3.75,
+            "channels": [{"name": "grey", "quantum_efficiency": [{"wavelengths_nm": [400, 700], "values": [0.5, 0.5]}]}],
+            "gain_modes": [{"name": "base", "full_well_e": 10000, "dn_per_e": 0.4, "read_noise_e": 3}],
+            "adc": {"bits": 12, "black_level_dn": 64}}))
+        self.make_light()
+        self.write("sound.json", sound)
+        self.assert_succeeds("sense", "light.exr", "--sensor", "sound.json", "-o", "raw.dng", "--quiet")
+        wrong = [
+            (lambda s: s["adc"].update(white_level_dn=5000), ["12 bits", "4095"]),
+            (lambda s: s["adc"].update(black_level_dn=4095), ["below the white level"]),
+            (lambda s: s["channels"][0]["quantum_efficiency"][0].update(values=[0.5, 1.5]), ["1.5", "700 nm"]),
+            (lambda s: s["gain_modes"][0].update(read_noise_e=-1), ["read_noise_e", "-1"]),
+            (lambda s: s.update(prnu_percent=-0.1), ["prnu_percent"]),
+            (lambda s: s.update(mosaic=[["grey", "pink"]]), ["pink"]),
+            (lambda s: s.update(crosstalk=[[0, 0.2, 0], [0.2, 0.9, 0.2], [0, 0.2, 0]]), ["1.7"]),
+            (lambda s: s.pop("channels"), ["channels"]),
+            (lambda s: s.update(gain_modes=[]), ["conversion gain"]),
+            (lambda s: s.update(photosite={"shape": "star", "width_um": 1, "height_um": 1}), ["star"]),
+            (lambda s: s.update(photosite={"shape": "ellipse", "width_um": 3, "height_um": 3}), ["box", "ellipse"]),
+        ]
+        for alter, words in wrong:
+            sensor = json.loads(json.dumps(sound))
+            alter(sensor)
+            self.write("wrong.json", sensor)
+            with self.subTest(words=words):
+                self.assert_refused("sense", "light.exr", "--sensor", "wrong.json", "-o", "a.dng", words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/image/formats/tiff.h>
+#include <petzval/isp/develop.h>
+#include <petzval/isp/display_picture.h>
+#include <petzval/sensor/colour_calibration.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "mosaic_samples.h"
+
+namespace petzval {
+namespace {
+
+/// Of uniform values a channel.
+RawImage flat_raw(const Sensor& sensor, const std::vector<double>& shares) {
+  RawImage raw;
+  raw.columns = 24;
+  raw.rows = 16;
+  raw.mosaic = sensor.electronics->mosaic;
+  raw.channels = sensor.electronics->channel_names();
+  raw.black_level = 100;
+  raw.white_level = 4100;
+  raw.dn_per_e = 0.5;
+  raw.read_noise_e = 3;
+  for (int r = 0; r < raw.rows; ++r)
+    for (int c = 0; c < raw.columns; ++c)
+      raw.samples.push_back(static_cast<std::uint16_t>(
+          std::lround(100 + 4000 * shares[static_cast<std::size_t>(raw.mosaic.channel(r, c))])));
+  return raw;
+}
+
+TEST(LinearMosaic, LevelsBecomeZeroAndOne) {
+  RawImage raw = flat_raw(read_sensor("full-frame-24mp"), {0, 0.5, 1});
+  const LinearMosaic mosaic = linearised(raw);
+  EXPECT_EQ(mosaic.values[0], 0);
+  EXPECT_EQ(mosaic.values[1], 0.5f);
+  EXPECT_EQ(mosaic.values[25], 1);
+  raw.samples[0] = 0;
+  EXPECT_FLOAT_EQ(linearised(raw).values[0], -100 / 4000.0f);
+  raw.linearization.assign(65536, 2100);
+  EXPECT_EQ(linearised(raw).values[7], 0.5f);
+  raw.white_level = 50;
+  EXPECT_THROW(linearised(raw), InputError);
+}
+
+TEST(LinearMosaic, DefectsAreFoundAndNothingElse) {
+  LinearMosaic mosaic =
+      test::bayer(40, 30, "RGGB", [](int channel, int, int c) { return 0.2 + 0.1 * channel + 0.001 * c; });
+  const std::vector<float> sound = mosaic.values;
+  for (const std::size_t at : {0u, 39u, 455u, 1199u}) mosaic.values[at] = 0.9f;
+  mosaic.values[610] = 0;
+  EXPECT_EQ(correct_defects(mosaic, 1e-5, 1e-7), 5);
+  for (std::size_t i = 0; i < sound.size(); ++i) EXPECT_NEAR(mosaic.values[i], sound[i], 0.005f);
+  EXPECT_EQ(correct_defects(mosaic, 1e-5, 1e-7), 0);
+}
+
+TEST(LinearMosaic, ShadingIsDividedOut) {
+  const auto fall_off = [](int r, int c) {
+    return 1 - 0.0004 * ((r - 20) * (r - 20) + (c - 25) * (c - 25)) / 2;
+  };
+  LinearMosaic picture = test::bayer(
+      50, 40, "RGGB", [&](int channel, int r, int c) { return (0.2 + 0.1 * channel) * fall_off(r, c); });
+  const LinearMosaic flat = test::bayer(
+      50, 40, "RGGB", [&](int channel, int r, int c) { return (0.5 + 0.1 * channel) * fall_off(r, c); });
+  correct_shading(picture, flat, 2);
+  // Smoothing rounds the top of the parabola: 0.0004/2 · 2 · 2 (the mean square of −2 … 2, twice), 8e-4.
+  for (int r = 6; r < 34; ++r)
+    for (int c = 6; c < 44; ++c)
+      EXPECT_NEAR(static_cast<double>(picture.row(r)[static_cast<std::size_t>(c)]) /
+                      (0.2 + 0.1 * picture.mosaic.channel(r, c)),
+                  1, 2e-3);
+  LinearMosaic black = flat;
+  for (float& value : black.values) value = 0;
+  EXPECT_THROW(correct_shading(picture, black, 2), InputError);
+  EXPECT_THROW(correct_shading(picture, test::bayer(48, 40, "RGGB", [](int, int, int) { return 1.0; }), 2),
+               InputError);
+}
+
+TEST(LinearMosaic, WhiteBalanceKeepsHighlightsWhite) {
+  LinearMosaic mosaic = test::bayer(8, 8, "RGGB", [](int channel, int, int) {
+    return channel == 0 ? 0.4 : channel == 1 ? 0.8 : 0.6;
+  });
+  for (const double part : grey_world_neutral(mosaic)) EXPECT_GT(part, 0);
+  EXPECT_NEAR(grey_world_neutral(mosaic)[0], 0.5, 1e-6);
+  balance_white(mosaic, {0.5, 1, 0.75});
+  for (const float value : mosaic.values) EXPECT_NEAR(value, 0.8f, 1e-6f);
+  for (float& value : mosaic.values) value = 1;
+  balance_white(mosaic, {0.5, 1, 0.75});
+  for (const float value : mosaic.values) EXPECT_EQ(value, 1);
+  EXPECT_THROW(balance_white(mosaic, {1, 1}), InputError);
+  EXPECT_THROW(balance_white(mosaic, {1, 0, 1}), InputError);
+}
+
+TEST(CameraMatrix, FindsTheLightOfTheNeutral) {
+  const Sensor sensor = read_sensor("full-frame-24mp");
+  RawImage raw = flat_raw(sensor, {0.3, 0.5, 0.4});
+  raw.calibrations = standard_calibrations(sensor);
+  // McCamy's polynomial is good to a few kelvins near D65, to some 10 K at A.
+  EXPECT_NEAR(camera_matrix(raw, neutral_of(sensor, illuminant("D65"))).temperature_k, 6504, 30);
+  EXPECT_NEAR(camera_matrix(raw, neutral_of(sensor, illuminant("A"))).temperature_k, 2856, 30);
+  const double d50 = camera_matrix(raw, neutral_of(sensor, illuminant("D50"))).temperature_k;
+  EXPECT_GT(d50, 4700);
+  EXPECT_LT(d50, 5300);
+  raw.calibrations.clear();
+  EXPECT_THROW(camera_matrix(raw, {1, 1, 1}), InputError);
+}
+
+TEST(Develop, ABalancedGreyIsGrey) {
+  for (const char* name : {"full-frame-24mp", "rgbw-1280x960", "quad-bayer-1280x960", "rccb-1280x960"}) {
+    const Sensor sensor = read_sensor(name);
+    for (const char* light : {"D65", "A"}) {
+      const std::vector<double> neutral = neutral_of(sensor, illuminant(light));
+      std::vector<double> shares = neutral;
+      for (double& share : shares) share *= 0.4;
+      RawImage raw = flat_raw(sensor, shares);
+      raw.calibrations = standard_calibrations(sensor);
+      raw.as_shot_neutral = neutral;
+      const Planes picture = develop(raw);
+      // A sample is rounded by 1/8000 of white; white balance and matrix weigh that up to 30 times in
+      // tungsten light.
+      for (const auto& plane : picture.values)
+        for (const float value : plane) ASSERT_NEAR(value, 0.4f, 4e-3f) << name << " " << light;
+    }
+  }
+}
+
+TEST(Develop, EveryStepIsTold) {
+  const Sensor sensor = read_sensor("full-frame-24mp");
+  RawImage raw = flat_raw(sensor, {0.3, 0.5, 0.4});
+  raw.calibrations = standard_calibrations(sensor);
+  std::vector<std::string> told;
+  develop(raw, {}, nullptr, [&](const std::string& name, const Planes& planes) {
+    told.push_back(name);
+    EXPECT_EQ(planes.values[0].size(), 24u * 16u);
+  });
+  EXPECT_EQ(told, develop_step_names());
+}
+
+TEST(Filters, DoWhatTheySay) {
+  Planes planes{
+      40,
+      40,
+      {std::vector<float>(1600, 0.5f), std::vector<float>(1600, 0.4f), std::vector<float>(1600, 0.3f)}};
+  for (std::size_t i = 0; i < 1600; ++i) planes.values[0][i] += (i * 7919 % 101) * 1e-4f;
+  const Planes noisy = planes;
+  denoise(planes, 3, 1e-5, 1e-5);
+  const auto spread = [](const Planes& p) {
+    double sum = 0, square = 0;
+    for (const float v : p.values[0])
+      sum += static_cast<double>(v), square += static_cast<double>(v) * static_cast<double>(v);
+    return std::sqrt(square / 1600 - sum / 1600 * (sum / 1600));
+  };
+  EXPECT_LT(spread(planes), 0.5 * spread(noisy));
+  Planes step{40, 1, {std::vector<float>(40, 0.0f)}};
+  for (std::size_t i = 20; i < 40; ++i) step.values[0][i] = 1;
+  denoise(step, 2, 1e-4, 1e-4);
+  EXPECT_NEAR(step.values[0][19], 0, 1e-3f) << "edges stay";
+  sharpen(step, 0.5, 1);
+  EXPECT_LT(step.values[0][19], -0.1f);
+  EXPECT_GT(step.values[0][20], 1.1f);
+  EXPECT_THROW(sharpen(step, 1, 0), InputError);
+  Planes bright{3, 1, {{-1, 0.2f, 4}, {0, 0.1f, 2}, {0, 0.1f, 1}}};
+  apply_tone(bright, 1, ToneCurve::soft);
+  EXPECT_EQ(bright.values[0][0], 0);
+  EXPECT_FLOAT_EQ(bright.values[0][1], 0.4f);
+  EXPECT_LE(bright.values[0][2], 1);
+  EXPECT_FLOAT_EQ(bright.values[0][2] / bright.values[2][2], 4) << "hue stays";
+}
+
+/// Four bytes of an ICC file as s15Fixed16Number.
+double fixed_at(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return static_cast<std::int32_t>(value) / 65536.0;
+}
+
+std::array<double, 3> colorant(const std::string& profile, const char* tag) {
+  const std::size_t entry = profile.find(tag, 128);
+  const auto start = static_cast<std::size_t>(std::lround(fixed_at(profile, entry + 4) * 65536));
+  return {fixed_at(profile, start + 8), fixed_at(profile, start + 12), fixed_at(profile, start + 16)};
+}
+
+TEST(IccProfile, HasThePublishedColorants) {
+  // The colorants of the sRGB profile of the ICC (sRGB2014.icc: 0.43607 0.22249 0.01392, …) and of Apple's
+  // Display P3 (0.51512 0.2412 -0.00105, …); they round their whites in other places, up to 5e-4.
+  const std::string srgb = icc_profile(DisplaySpace::srgb), p3 = icc_profile(DisplaySpace::display_p3);
+  const std::pair<const char*, std::array<double, 3>> expected_srgb[] = {
+      {"rXYZ", {0.43607, 0.22249, 0.01392}},
+      {"gXYZ", {0.38515, 0.71687, 0.09708}},
+      {"bXYZ", {0.14307, 0.06061, 0.71410}}};
+  const std::pair<const char*, std::array<double, 3>> expected_p3[] = {{"rXYZ", {0.51512, 0.24120, -0.00105}},
+                                                                       {"gXYZ", {0.29198, 0.69225, 0.04189}},
+                                                                       {"bXYZ", {0.15710, 0.06657, 0.78407}}};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(colorant(srgb, expected_srgb[i].first)[k], expected_srgb[i].second[k], 5e-4);
+      EXPECT_NEAR(colorant(p3, expected_p3[i].first)[k], expected_p3[i].second[k], 5e-4);
+    }
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < 4; ++i) size = size << 8 | static_cast<unsigned char>(srgb[i]);
+  EXPECT_EQ(size, srgb.size());
+  EXPECT_EQ(srgb.substr(36, 4), "acsp");
+}
+
+TEST(IccProfile, ExiftoolReadsIt) {
+  if (std::system("exiftool -ver >/dev/null 2>&1") != 0) GTEST_SKIP() << "exiftool is not installed";
+  const std::string folder = ::testing::TempDir() + "petzval-icc-";
+  Planes picture{2, 2, {{0, 0.5f, 1, 2}, {0, 0.5f, 1, 2}, {0, 0.5f, 1, 2}}};
+  for (const char* name : {"a.png", "a.tif"}) {
+    write_display_picture(folder + name, picture, DisplaySpace::display_p3, 8, "test");
+    const std::string command =
+        "exiftool -s3 -ICC_Profile:ProfileDescription -ICC_Profile:MediaWhitePoint -validate -warning '" +
+        folder + name + "' > '" + folder + "said'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(read_whole_file(folder + "said"), "Display P3\n0.9642 1 0.82491\nOK\n") << name;
+  }
+}
+
+TEST(DisplayPicture, CodesAreThoseOfTheCurve) {
+  // Against the curve itself, for every 16-bit code: within one code of rounding.
+  const std::string path = ::testing::TempDir() + "petzval-codes.tif";
+  Planes ramp{1024, 64, {{}}};
+  for (int i = 0; i < 65536; ++i) ramp.values[0].push_back(static_cast<float>(srgb_decoded(i / 65535.0)));
+  write_display_picture(path, ramp, DisplaySpace::srgb, 16, "");
+  const TiffImage image = read_tiff(path);
+  const auto& samples = std::get<std::vector<std::uint16_t>>(image.samples);
+  for (int i = 0; i < 65536; ++i) EXPECT_NEAR(samples[static_cast<std::size_t>(i)], i, 1);
+}
+
+}  // namespace
+}  // namespace petzval

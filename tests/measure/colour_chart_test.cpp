@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/colour/display.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/measure/colour_chart.h>
+
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+/// A chart of the right colours on grey, turned by an angle, its patches 0.8 of a pitch wide.
+ViewedPicture drawn_chart(int columns, int rows, double x, double y, double pitch, double angle,
+                          double exposure) {
+  const std::vector<Xyz> colours = chart_colours(illuminant("D65"));
+  ViewedPicture picture{columns, rows, {}};
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const double dx = c + 0.5 - x, dy = r + 0.5 - y;
+      const double u = (std::cos(angle) * dx + std::sin(angle) * dy) / pitch,
+                   v = (-std::sin(angle) * dx + std::cos(angle) * dy) / pitch;
+      const double column = std::floor(u + 0.5), row = std::floor(v + 0.5);
+      Xyz colour = 0.3 * display_white();
+      if (column >= 0 && column < 6 && row >= 0 && row < 4) {
+        const bool inside = std::abs(u - column) < 0.4 && std::abs(v - row) < 0.4;
+        colour = inside ? colours[static_cast<std::size_t>(6 * row + column)] : 0.02 * display_white();
+      }
+      picture.pixels.push_back(exposure * colour);
+    }
+  return picture;
+}
+
+TEST(ChartColours, WhiteIsNearlyWhiteAndBlackNearlyBlack) {
+  const std::vector<Xyz> colours = chart_colours(illuminant("D65"));
+  ASSERT_EQ(colours.size(), 24u);
+  // Charts differ and fade: this white reflects 0.82, where the maker states 0.9.
+  EXPECT_GT(colours[18].y, 0.8);
+  EXPECT_LT(colours[18].y, 0.95);
+  EXPECT_LT(colours[23].y, 0.05);
+  const Lab white = cielab(colours[18], display_white());
+  EXPECT_LT(std::hypot(white.a, white.b), 4) << "neutral, after adaptation";
+}
+
+TEST(FindChart, FindsDrawnCharts) {
+  for (const double angle : {0.0, 0.3, -1.2, 3.0})
+    for (const double exposure : {1.0, 0.4}) {
+      const double pitch = 50;
+      const double x = 320 - pitch * (2.5 * std::cos(angle) - 1.5 * std::sin(angle));
+      const double y = 240 - pitch * (2.5 * std::sin(angle) + 1.5 * std::cos(angle));
+      const ViewedPicture picture = drawn_chart(640, 480, x, y, pitch, angle, exposure);
+      const ChartCorners corners = find_chart(picture, illuminant("D65"));
+      // Patches of 40 px; the picture is halved for the search.
+      EXPECT_NEAR(corners.xy[0][0], x, 4) << angle;
+      EXPECT_NEAR(corners.xy[0][1], y, 4) << angle;
+      const ChartDifference difference = compare_chart(picture, corners, illuminant("D65"));
+      EXPECT_LT(difference.max_delta_e_2000, 1e-6) << angle;
+      EXPECT_NEAR(difference.exposure, 1 / exposure, 1e-9);
+    }
+}
+
+TEST(FindChart, DoesNotFindWhatIsNotThere) {
+  ViewedPicture picture{64, 48, std::vector<Xyz>(64 * 48, display_white())};
+  EXPECT_THROW(find_chart(picture, illuminant("D65")), InputError);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+    if ((i / 8 + i / (64 * 8)) % 2) picture.pixels[i] = {0, 0, 0};
+  EXPECT_THROW(find_chart(picture, illuminant("D65")), InputError);
+}
+
+TEST(CompareChart, GivesTheDifferenceOfAKnownShift) {
+  ViewedPicture picture = drawn_chart(640, 480, 195, 165, 50, 0, 1);
+  const ChartCorners corners{{{{195, 165}, {445, 165}, {445, 315}, {195, 315}}}};
+  for (Xyz& pixel : picture.pixels) {
+    Lab lab = cielab(pixel, display_white());
+    lab.a += 3, lab.b += 4;
+    pixel = xyz_of(lab, display_white());
+  }
+  const ChartDifference difference = compare_chart(picture, corners, illuminant("D65"));
+  for (const PatchDifference& patch : difference.patches) EXPECT_NEAR(patch.delta_e_ab, 5, 1e-6);
+  EXPECT_EQ(difference.patches[0].name, "dark skin");
+  EXPECT_THROW(
+      compare_chart(picture, {{{{-195, 165}, {445, 165}, {445, 315}, {195, 315}}}}, illuminant("D65")),
+      InputError);
+}
+
+}  // namespace
+}  // namespace petzval
