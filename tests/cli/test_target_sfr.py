@@ -138,7 +138,7 @@ class Sfr(ProgramTest):
             self.assertLess(abs(edge["lateral_offset_px"]), 2e-3)
 
     def test_files(self):
-        self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "300x300", *OPTICS, "-o", "t.png")
+        self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "300x300", *OPTICS, "--bits", 16, "-o", "t.png")
         self.assert_succeeds("sfr", "t.png", "--csv", "s.csv", "--plot", "s.svg", "--profile", "p.csv", "--annotate", "a.svg")
         with open(self.folder / "s.csv", newline="") as file:
             rows = list(csv.DictReader(file))

@@ -53,7 +53,7 @@ std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay
   ExitPupil exit(tracer, chief);
   if (!exit.find_outline(*pupil)) return {};
   // Every fourth azimuth from the second on: mirror symmetric like the whole.
-  exit.boundary_ = {pupil->centre_v, pupil->chief_v, {}};
+  exit.boundary_ = {pupil->centre_v, pupil->chief_v, pupil->stretch, {}};
   for (std::size_t i = 0; i < pupil->radius.size() / azimuth_stride; ++i)
     exit.boundary_.radius.push_back(
         0.5 * (pupil->radius[azimuth_stride * i + 1] + pupil->radius[azimuth_stride * i + 2]));

@@ -170,10 +170,10 @@ void limit_reach(FoundEdge& edge, const TargetOutline& outline) {
       // The part of that side abreast of this edge.
       const double ta = axis.along(a), tb = axis.along(b), da = axis.across(a), db = axis.across(b);
       if (std::max(ta, tb) < low || std::min(ta, tb) > high) continue;
-      const auto across_at = [&](double t) { return ta == tb ? da : da + (t - ta) / (tb - ta) * (db - da); };
-      for (const double d :
-           {across_at(std::clamp(ta, low, high)), across_at(std::clamp(tb, low, high)), ta == tb ? db : da}) {
-        if (ta != tb && d == da && (ta < low || ta > high)) continue;
+      const auto across_at = [&](double t) { return da + (t - ta) / (tb - ta) * (db - da); };
+      const bool end_on = ta == tb;
+      for (const double d : {end_on ? da : across_at(std::clamp(ta, low, high)),
+                             end_on ? db : across_at(std::clamp(tb, low, high))}) {
         if (d > 0) edge.reach_bright_px = std::min(edge.reach_bright_px, 0.6 * d);
         if (d < 0) edge.reach_dark_px = std::min(edge.reach_dark_px, -0.6 * d);
       }
