@@ -10,6 +10,7 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_info(*lens, shared);
   add_lens_draw(*lens, shared);
   add_lens_trace(*lens, shared);
+  add_lens_steps(*lens, shared);
   add_lens_distortion(*lens, shared);
   add_lens_illumination(*lens, shared);
   add_lens_psf(*lens, shared);

@@ -21,6 +21,7 @@ void add_lens_wavefront(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);
 void add_lens_mtf(CLI::App& lens, Shared& shared);
 void add_lens_focus(CLI::App& lens, Shared& shared);
+void add_lens_steps(CLI::App& lens, Shared& shared);
 void add_lens_report(CLI::App& lens, Shared& shared);
 void add_lens_fans(CLI::App& lens, Shared& shared);
 void add_lens_zernike(CLI::App& lens, Shared& shared);

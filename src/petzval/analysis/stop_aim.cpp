@@ -11,7 +11,7 @@ namespace {
 /// Distance to the neighbouring rays of a derivative, per pupil radius.
 constexpr double nudge_per_radius = 1e-5;
 /// A ray is aimed when it crosses the stop this near (in stop radii); Newton's last step squares its error.
-constexpr double aimed = 1e-10;
+constexpr double aim_tolerance = 1e-10;
 constexpr int newton_steps = 20;
 /// Strides from the chief ray when the short way fails.
 constexpr int strides = 12;
@@ -49,7 +49,7 @@ std::optional<StopAim::Found> StopAim::search(double x_mm, double y_mm, const Fo
     const auto at = trace(u, v), right = trace(u + nudge_, v), above = trace(u, v + nudge_);
     if (!at || !right || !above) return {};
     const double miss_x = x_mm - at->stop_x_mm, miss_y = y_mm - at->stop_y_mm;
-    if (std::hypot(miss_x, miss_y) < aimed * radius_mm_) return Found{x_mm, y_mm, u, v};
+    if (std::hypot(miss_x, miss_y) < aim_tolerance * radius_mm_) return Found{x_mm, y_mm, u, v};
     const double x_u = right->stop_x_mm - at->stop_x_mm, y_u = right->stop_y_mm - at->stop_y_mm;
     const double x_v = above->stop_x_mm - at->stop_x_mm, y_v = above->stop_y_mm - at->stop_y_mm;
     const double scale = nudge_ / (x_u * y_v - x_v * y_u);
@@ -60,7 +60,8 @@ std::optional<StopAim::Found> StopAim::search(double x_mm, double y_mm, const Fo
   return {};
 }
 
-std::optional<PupilRay> StopAim::ray(double x, double y) {
+/// Finds the ray, leaves it in last_, and says how it got through; nothing where it does not.
+std::optional<Tracer::Clearance> StopAim::aimed(double x, double y) {
   const double x_mm = x * radius_mm_, y_mm = y * radius_mm_;
   std::optional<Found> found = search(x_mm, y_mm, last_);
   for (int i = 1; !found && i <= strides; ++i) {
@@ -72,17 +73,28 @@ std::optional<PupilRay> StopAim::ray(double x, double y) {
   }
   if (!found) return {};
   last_ = *found;
-  const Tracer::Clearance traced = *trace(found->u, found->v);
-  if (traced.ray.status != RayStatus::ok || !(traced.worst <= rim_tolerance)) return {};
+  std::optional<Tracer::Clearance> traced = trace(found->u, found->v);
+  if (traced->ray.status != RayStatus::ok || !(traced->worst <= rim_tolerance)) return {};
+  return traced;
+}
+
+std::optional<PupilRay> StopAim::ray(double x, double y) {
+  const std::optional<Tracer::Clearance> traced = aimed(x, y);
+  if (!traced) return {};
   PupilRay ray;
-  ray.x_mm = traced.ray.point_mm[0];
-  ray.y_mm = traced.ray.point_mm[1] - chief_.image_height_mm;
-  ray.alpha = traced.ray.direction[0];
-  ray.beta = traced.ray.direction[1];
-  ray.path_mm = traced.ray.opl_mm - chief_.at_image.opl_mm;
-  ray.stop_x_mm = traced.stop_x_mm;
-  ray.stop_y_mm = traced.stop_y_mm;
+  ray.x_mm = traced->ray.point_mm[0];
+  ray.y_mm = traced->ray.point_mm[1] - chief_.image_height_mm;
+  ray.alpha = traced->ray.direction[0];
+  ray.beta = traced->ray.direction[1];
+  ray.path_mm = traced->ray.opl_mm - chief_.at_image.opl_mm;
+  ray.stop_x_mm = traced->stop_x_mm;
+  ray.stop_y_mm = traced->stop_y_mm;
   return ray;
+}
+
+std::optional<Ray> StopAim::launch(double x, double y) {
+  if (!aimed(x, y)) return {};
+  return pencil_.ray(last_.u, last_.v);
 }
 
 }  // namespace petzval

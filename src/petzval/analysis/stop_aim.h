@@ -21,6 +21,8 @@ class StopAim {
   /// The ray through (x, y) on the stop, its weights zero; nothing where the glass does not bring one there,
   /// or an aperture (as the tracer clips) stops it. Rays within a billionth of the rim pass.
   std::optional<PupilRay> ray(double x, double y);
+  /// The same ray as it sets out, from the object or from the plane through vertex 1 across the beam.
+  std::optional<Ray> launch(double x, double y);
 
  private:
   StopAim(const FieldTracer& tracer, const ChiefRay& chief, double nudge);
@@ -30,6 +32,7 @@ class StopAim {
   };
   std::optional<Found> search(double x_mm, double y_mm, const Found& from) const;
   std::optional<Tracer::Clearance> trace(double u, double v) const;
+  std::optional<Tracer::Clearance> aimed(double x, double y);
 
   const FieldTracer* tracer_;
   ChiefRay chief_;

@@ -58,7 +58,8 @@ font-size:.8rem;font-weight:500;pointer-events:none}
 .download{margin:.2rem 0 .8rem;font-size:.85rem}
 footer{margin-top:2rem;color:var(--soft);font-size:.88rem}
 @media print{body{max-width:none;padding:0;background:#fff;font-size:11pt}nav,.download,.wipe>input,.wipe>i{display:none}
-svg{max-height:21cm}table{font-size:8pt}th,td{padding-right:.5rem}
+@page{margin:14mm}svg{max-height:21cm}.scroll{overflow:visible}table{font-size:7.5pt;width:auto}
+th,td{padding:.15rem .45rem .15rem 0}td.number,th.number{white-space:normal}
 section{border:0;padding:0;margin:0 0 1.2rem}h2{break-after:avoid}figure,table,.row>*{break-inside:avoid}
 .wipe{grid-template-columns:1fr 1fr;gap:.5rem;max-width:none}.wipe>img{grid-area:auto}.wipe>img+img{clip-path:none}
 .wipe>b:last-of-type{right:.5rem}}

@@ -187,7 +187,9 @@ void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
 
 void draw_rays(XmlWriter& xml, const Scene& scene, const View& view) {
   for (const DrawnRay& ray : scene.rays)
-    xml.leaf("path", {{"class", ray.colour.empty() ? "pz-line" : "pz-data"},
+    xml.leaf("path", {{"class", std::string(ray.colour.empty() ? "pz-line" : "pz-data") +
+                                    (ray.style_class.empty() ? "" : " " + ray.style_class)},
+                      {"pathLength", ray.style_class.empty() ? "" : "1"},
                       {"d", path_of(view, ray.zy_mm, false)},
                       {"fill", "none"},
                       {"stroke", ray.colour},

@@ -16,6 +16,8 @@ namespace petzval {
 struct DrawnRay {
   std::vector<std::array<double, 2>> zy_mm;
   std::string colour{};  ///< "#rrggbb", by field or by wavelength; empty: ink
+  /// A class of its own for the line, whose length then counts as 1: a handle for the style of a page.
+  std::string style_class{};
 };
 
 struct LegendLabel {
