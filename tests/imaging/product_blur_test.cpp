@@ -92,26 +92,6 @@ TableRecipe strong_recipe(double lean) {
   return recipe;
 }
 
-/// Every cell from black to white at random, as fine as a texture can be.
-CellPlane texture(const SensorGeometry& grid) {
-  CellPlane plane(grid);
-  std::mt19937 random(1857);
-  std::uniform_real_distribution<float> uniform(0, 1);
-  for (float& value : plane.values) value = uniform(random);
-  return plane;
-}
-
-CellPlane tilted_checkerboard(const SensorGeometry& grid) {
-  CellPlane plane(grid);
-  for (std::size_t row = 0; row < plane.rows(); ++row)
-    for (std::size_t column = 0; column < plane.columns(); ++column) {
-      const double u = 0.97 * double(column) - 0.25 * double(row),
-                   v = 0.25 * double(column) + 0.97 * double(row);
-      plane.row(row)[column] = (std::lround(u / 9) + std::lround(v / 9)) % 2 == 0 ? 1.0F : 0.02F;
-    }
-  return plane;
-}
-
 TEST(ProductBlur, KeepsTheToleranceAskedFor) {
   for (const double lean : {0.0, 0.6}) {
     const PsfField psfs(make_table(strong_recipe(lean)), 550, pitch_um);

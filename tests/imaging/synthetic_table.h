@@ -115,6 +115,26 @@ inline CellPlane random_plane(const SensorGeometry& grid) {
   return plane;
 }
 
+/// Every cell from black to white at random, as fine as a texture can be.
+inline CellPlane texture(const SensorGeometry& grid) {
+  CellPlane plane(grid);
+  std::mt19937 random(1857);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (float& value : plane.values) value = uniform(random);
+  return plane;
+}
+
+inline CellPlane tilted_checkerboard(const SensorGeometry& grid) {
+  CellPlane plane(grid);
+  for (std::size_t row = 0; row < plane.rows(); ++row)
+    for (std::size_t column = 0; column < plane.columns(); ++column) {
+      const double u = 0.97 * double(column) - 0.25 * double(row),
+                   v = 0.25 * double(column) + 0.97 * double(row);
+      plane.row(row)[column] = (std::lround(u / 9) + std::lround(v / 9)) % 2 == 0 ? 1.0F : 0.02F;
+    }
+  return plane;
+}
+
 /// √Σ(a − b)² / √Σb².
 inline double relative_l2(const CellPlane& a, const CellPlane& b) {
   double difference = 0, total = 0;

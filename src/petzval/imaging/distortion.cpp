@@ -35,6 +35,17 @@ double radiance_at(std::span<const float> band, const Scene& scene, double colum
   return upper + below * (lower - upper);
 }
 
+/// The same well within the scene, where nothing needs to be asked.
+double radiance_inside(const float* band, std::ptrdiff_t width, double column, double row) {
+  const double u = column - 0.5, v = row - 0.5;
+  const auto j = static_cast<std::ptrdiff_t>(u), i = static_cast<std::ptrdiff_t>(v);
+  const double right = u - double(j), below = v - double(i);
+  const float *here = band + i * width + j, *next = here + width;
+  const double upper = double(here[0]) + right * (double(here[1]) - double(here[0]));
+  const double lower = double(next[0]) + right * (double(next[1]) - double(next[0]));
+  return upper + below * (lower - upper);
+}
+
 }  // namespace
 
 SceneMap::SceneMap(const RadialProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
@@ -61,18 +72,25 @@ SceneMap::SceneMap(const RadialProfile& lens, std::optional<double> object_to_se
         (ratio * height_mm - steps_[k - 1].samples_per_mm * below_mm) / (height_mm - below_mm);
     finest_samples_per_mm_ = std::max({finest_samples_per_mm_, radial, ratio});
   }
+  for (std::size_t k = 0; k + 1 < steps_.size(); ++k) {
+    steps_[k].samples_slope = (steps_[k + 1].samples_per_mm - steps_[k].samples_per_mm) * steps_per_square_;
+    steps_[k].g_source_slope = (steps_[k + 1].g_source_sr - steps_[k].g_source_sr) * steps_per_square_;
+  }
 }
 
-SceneMap::Place SceneMap::place(double x_mm, double y_mm) const {
-  const double square = x_mm * x_mm + y_mm * y_mm;
-  const bool dark = square > last_height_squared_ * (1 + 1e-12);  // rounding must not darken the rim
-  const double step = std::min(square, last_height_squared_) * steps_per_square_;
-  const auto k = static_cast<std::size_t>(step);
-  const double t = step - double(k);
-  const double ratio =
-      steps_[k].samples_per_mm + t * (steps_[k + 1].samples_per_mm - steps_[k].samples_per_mm);
-  const double g = steps_[k].g_source_sr + t * (steps_[k + 1].g_source_sr - steps_[k].g_source_sr);
-  return {middle_column_ - ratio * x_mm, middle_row_ + ratio * y_mm, dark ? 0.0 : g};
+SceneMap::Surroundings SceneMap::around(double x_mm, double y_mm) const {
+  const double square = std::min(x_mm * x_mm + y_mm * y_mm, last_height_squared_);
+  const auto k = static_cast<std::size_t>(square * steps_per_square_);
+  const Step& step = steps_[k];
+  const double further = steps_per_square_ > 0 ? square - double(k) / steps_per_square_ : 0;
+  return {middle_column_,
+          middle_row_,
+          last_height_squared_ * (1 + 1e-12),  // rounding must not darken the rim
+          square,
+          step.samples_per_mm + further * step.samples_slope,
+          step.samples_slope,
+          step.g_source_sr + further * step.g_source_slope,
+          step.g_source_slope};
 }
 
 SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid) {
@@ -100,17 +118,36 @@ CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, co
                            int parts, Surround surround) {
   CellPlane plane(grid);
   const std::span<const float> radiance = scene.band(band);
+  // From a cell's centre to its farthest point, in samples, and one more for the bilinear neighbours.
+  const double room = map.finest_samples_per_mm() * grid.pitch_um * mm_per_um + 1.5;
+  const double pitch_mm = grid.pitch_um * mm_per_um;
+  constexpr double rounding = 1e-6;
+  std::vector<std::vector<double>> offsets_mm(static_cast<std::size_t>(parts) + 1);
+  for (int count = 1; count <= parts; ++count)
+    for (int part = 0; part < count; ++part)
+      offsets_mm[static_cast<std::size_t>(count)].push_back(((part + 0.5) / count - 0.5) * pitch_mm);
   parallel_for(plane.rows(), [&](std::size_t row) {
+    const double y_mm = grid.y_mm(double(row) + 0.5);
     for (std::size_t column = 0; column < plane.columns(); ++column) {
+      const double x_mm = grid.x_mm(double(column) + 0.5);
+      const SceneMap::Surroundings near = map.around(x_mm, y_mm);
+      const SceneMap::Place centre = near.place(x_mm, y_mm);
+      const bool inside = centre.column > room && centre.column < scene.columns() - room &&
+                          centre.row > room && centre.row < scene.rows() - room;
+      // A distorted image shrinks the scene here more than there.
+      const double samples = near.finest_samples_per_mm() * pitch_mm;
+      const auto count =
+          static_cast<std::size_t>(std::clamp(std::ceil(samples - rounding), 1.0, double(parts)));
       double sum = 0;
-      for (int i = 0; i < parts; ++i)
-        for (int j = 0; j < parts; ++j) {
-          const SceneMap::Place place = map.place(grid.x_mm(double(column) + (j + 0.5) / parts),
-                                                  grid.y_mm(double(row) + (i + 0.5) / parts));
+      for (const double down_mm : offsets_mm[count])
+        for (const double across_mm : offsets_mm[count]) {
+          const SceneMap::Place place = near.place(x_mm + across_mm, y_mm + down_mm);
           if (place.g_source_sr == 0) continue;
-          sum += place.g_source_sr * radiance_at(radiance, scene, place.column, place.row, surround);
+          sum += place.g_source_sr *
+                 (inside ? radiance_inside(radiance.data(), scene.columns(), place.column, place.row)
+                         : radiance_at(radiance, scene, place.column, place.row, surround));
         }
-      plane.row(row)[column] = static_cast<float>(sum / (double(parts) * parts));
+      plane.row(row)[column] = static_cast<float>(sum / double(count * count));
     }
   });
   return plane;

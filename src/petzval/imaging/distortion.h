@@ -6,6 +6,7 @@
 #include <petzval/optics/table_interpolation.h>
 #include <petzval/scene/scene.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -38,7 +39,27 @@ class SceneMap {
   struct Place {
     double column, row, g_source_sr;  ///< g_source 0: no chief ray lands here
   };
-  Place place(double x_mm, double y_mm) const;
+  Place place(double x_mm, double y_mm) const { return around(x_mm, y_mm).place(x_mm, y_mm); }
+
+  /// The straight lines that hold about a point: places near it without looking anything up again.
+  struct Surroundings {
+    double middle_column, middle_row, last_square;
+    double square;  ///< r'² of the point
+    double samples_per_mm, samples_slope, g_source_sr, g_source_slope;
+
+    Place place(double x_mm, double y_mm) const {
+      const double at = x_mm * x_mm + y_mm * y_mm, further = at - square;
+      const double ratio = samples_per_mm + further * samples_slope;
+      const bool dark = at > last_square;
+      return {middle_column - ratio * x_mm, middle_row + ratio * y_mm,
+              dark ? 0.0 : g_source_sr + further * g_source_slope};
+    }
+    /// The most samples that a millimetre spans here, radially or tangentially.
+    double finest_samples_per_mm() const {
+      return std::max(samples_per_mm, samples_per_mm + 2 * square * samples_slope);
+    }
+  };
+  Surroundings around(double x_mm, double y_mm) const;
   /// Beyond it every place is dark.
   double last_height_mm() const { return last_height_mm_; }
   /// The most samples of the scene that a millimetre of the image spans, radially or tangentially.
@@ -48,8 +69,9 @@ class SceneMap {
   double middle_column_, middle_row_;
   double last_height_mm_, last_height_squared_, steps_per_square_;
   double finest_samples_per_mm_ = 0;
+  /// At one step, and per mm² from there to the next.
   struct Step {
-    double samples_per_mm, g_source_sr;
+    double samples_per_mm, g_source_sr, samples_slope = 0, g_source_slope = 0;
   };
   std::vector<Step> steps_;
 };
@@ -63,8 +85,8 @@ SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid);
 
 /// Irradiance before blur: radiance × g_source, at every cell of a grid.
 ///
-/// \param parts  the scene is taken at parts × parts points of each cell, spread evenly, and averaged: 1 (the
-/// centre)
+/// \param parts  the scene is taken at up to parts × parts points of each cell, spread evenly, and averaged:
+/// 1 (the centre)
 ///   where a sample of the scene is no smaller than a cell, more where it is finer, so that it is averaged
 ///   over the cell's footprint. Between sample centres radiance is bilinear; within half a sample of the
 ///   scene's edge it is that of the edge.
