@@ -55,6 +55,7 @@ void add_scene_commands(CLI::App& app, Shared& shared);
 void add_optics_commands(CLI::App& app, Shared& shared);
 void add_image_command(CLI::App& app, Shared& shared);
 void add_compare_command(CLI::App& app, Shared& shared);
+void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   app::add_optics_commands(program, shared);
   app::add_image_command(program, shared);
   app::add_compare_command(program, shared);
+  app::add_sweep_command(program, shared);
   app::add_demo_command(program, shared);
   try {
     app::refuse_unknown_command(program, argc, argv);
