@@ -10,7 +10,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numeric>
+#include <optional>
 
 namespace {
 
@@ -173,6 +175,54 @@ void sections_768x576(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(blur_sections(source, psfs, psfs.radius(), {16, 0}));
 }
 BENCHMARK(sections_768x576)->Unit(benchmark::kMillisecond);
+
+/// Seconds of the processor that this process has used.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// Filtering alone of `bands` planes, at 1e-3; what making the transfer functions took stands beside it.
+void filter_bands(benchmark::State& state, const SensorGeometry& frame, double psf_pixels, int bands) {
+  const ThreadLimit one_thread(1);
+  const double half_diagonal_mm = frame.half_diagonal_mm();
+  double kernel_seconds = 0;
+  for (auto _ : state) {
+    double filter_seconds = 0;
+    std::optional<ProductPlan> plan;
+    for (int band = 0; band < bands; ++band) {
+      const double nm = 400 + 10.0 * band;
+      const LensDataTable table = wide_table({nm}, psf_pixels, frame.pitch_um, half_diagonal_mm);
+      const PsfField psfs(table, nm, frame.pitch_um);
+      const CellPlane source = texture(grown(frame, psfs.radius()));
+      const double start = cpu_seconds();
+      plan = plan_product(psfs, source.grid, {1e-3}, plan);
+      if (!plan) return state.SkipWithError("no plan");
+      const ProductBlur blur(psfs, source.grid, *plan);
+      const double made = cpu_seconds();
+      benchmark::DoNotOptimize(blur.blur(source, psfs.radius()));
+      filter_seconds += cpu_seconds() - made;
+      kernel_seconds += made - start;
+    }
+    state.SetIterationTime(filter_seconds);
+    state.counters["nodes"] = plan->nodes;
+    state.counters["tile"] = plan->tile;
+    state.counters["transform"] = plan->transform;
+  }
+  state.counters["kernels_s"] = kernel_seconds / double(state.iterations());
+}
+
+void product_380x253_31_bands(benchmark::State& state) {
+  filter_bands(state, {380, 253, 12.5}, 16, 31);
+}
+BENCHMARK(product_380x253_31_bands)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+/// One of 31 bands.
+void product_4096x3072_band(benchmark::State& state) {
+  filter_bands(state, {4096, 3072, 2}, 64, 1);
+}
+BENCHMARK(product_4096x3072_band)->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
 
 /// What the cost model says of one layout, and what it takes: filtering, and making the kernels.
 void layout(benchmark::State& state) {

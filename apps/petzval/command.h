@@ -85,6 +85,7 @@ void add_sfr_command(CLI::App& app, Shared& shared);
 void add_sense_command(CLI::App& app, Shared& shared);
 void add_develop_command(CLI::App& app, Shared& shared);
 void add_measure_command(CLI::App& app, Shared& shared);
+void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   app::add_sense_command(program, shared);
   app::add_develop_command(program, shared);
   app::add_measure_command(program, shared);
+  app::add_sweep_command(program, shared);
   app::add_demo_command(program, shared);
   try {
     app::refuse_unknown_command(program, argc, argv);

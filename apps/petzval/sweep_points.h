@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a sweep: which parameters take which values.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace petzval::app {
+
+/// One `--vary KEY=VALUES`.
+struct SweptParameter {
+  std::string key;  ///< surfaces[4].thickness_mm, f-number, sensor, …
+  std::vector<std::string> values;
+};
+
+/// "KEY=FROM:TO:STEP" or "KEY=A,B,…". \throws InputError saying what would be right, or for more than 10,000
+/// values.
+SweptParameter parse_swept(const std::string& text);
+
+/// Values of all parameters at one point, in the order of the parameters.
+using SweepPoint = std::vector<std::pair<std::string, std::string>>;
+
+/// All combinations, the last parameter fastest. \throws InputError for a parameter given twice or more than
+/// 10,000 points.
+std::vector<SweepPoint> sweep_points(const std::vector<SweptParameter>& parameters);
+
+}  // namespace petzval::app

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_sheet.h"
+
+#include <petzval/image/formats/png.h>
+#include <petzval/scene/lettering.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace petzval::app {
+
+namespace {
+
+constexpr int thumbnail = 320, gap = 12, label_height = 12, label_room = 24;
+constexpr std::uint16_t paper = 245, ink = 30;
+
+/// An 8-bit RGB canvas.
+struct Canvas {
+  PngImage image;
+  Canvas(int columns, int rows) {
+    image.columns = columns;
+    image.rows = rows;
+    image.samples.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) * 3, paper);
+  }
+  std::uint16_t* at(int column, int row) {
+    return &image.samples[(static_cast<std::size_t>(row) * static_cast<std::size_t>(image.columns) +
+                           static_cast<std::size_t>(column)) *
+                          3];
+  }
+};
+
+/// The scale at which a picture fits a thumbnail; never enlarged.
+double fitting_scale(const PngImage& picture) {
+  return std::min(1.0, double(thumbnail) / std::max(picture.columns, picture.rows));
+}
+
+/// Draws a picture, each pixel the mean of those that fall on it.
+void draw(Canvas& canvas, const PngImage& picture, int left, int top) {
+  const double scale = fitting_scale(picture);
+  const int columns = std::max(1, static_cast<int>(std::lround(picture.columns * scale))),
+            rows = std::max(1, static_cast<int>(std::lround(picture.rows * scale)));
+  const int shift = picture.bits == 16 ? 8 : 0, channels = picture.channels;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const int x0 = column * picture.columns / columns, y0 = row * picture.rows / rows;
+      const int x1 = std::max(x0 + 1, (column + 1) * picture.columns / columns),
+                y1 = std::max(y0 + 1, (row + 1) * picture.rows / rows);
+      unsigned sums[3] = {};
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x)
+          for (int c = 0; c < 3; ++c)
+            sums[c] += static_cast<unsigned>(
+                picture.samples[(static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.columns) +
+                                 static_cast<std::size_t>(x)) *
+                                    static_cast<std::size_t>(channels) +
+                                static_cast<std::size_t>(channels < 3 ? 0 : c)] >>
+                shift);
+      for (int c = 0; c < 3; ++c)
+        canvas.at(left + column, top + row)[c] =
+            static_cast<std::uint16_t>(sums[c] / static_cast<unsigned>((x1 - x0) * (y1 - y0)));
+    }
+}
+
+void write_label(Canvas& canvas, std::string text, int left, int top) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return c == '_' ? '-' : static_cast<char>(std::toupper(c)); });
+  const double height =
+      std::min<double>(label_height, label_height * thumbnail / text_width(text, label_height));
+  Shape letters;
+  add_text(letters, text, left, top, height);
+  std::vector<double> coverage(static_cast<std::size_t>(canvas.image.columns));
+  for (int row = top - 1; row <= top + label_height + 1; ++row) {
+    letters.coverage(row, coverage);
+    for (int column = 0; column < canvas.image.columns; ++column)
+      for (int c = 0; c < 3; ++c) {
+        std::uint16_t& sample = canvas.at(column, row)[c];
+        const double share = coverage[static_cast<std::size_t>(column)];
+        sample = static_cast<std::uint16_t>(std::lround(sample + share * (double(ink) - sample)));
+      }
+  }
+}
+
+}  // namespace
+
+void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>& entries, int per_row) {
+  std::vector<PngImage> pictures(entries.size());
+  int tallest = label_height;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].picture.empty()) continue;
+    pictures[i] = read_png(entries[i].picture);
+    tallest = std::max(tallest, static_cast<int>(std::lround(pictures[i].rows * fitting_scale(pictures[i]))));
+  }
+  const int columns = std::min(per_row, static_cast<int>(entries.size()));
+  const int rows = (static_cast<int>(entries.size()) + per_row - 1) / per_row;
+  Canvas canvas(gap + columns * (thumbnail + gap), gap + rows * (tallest + label_room + gap));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const int left = gap + static_cast<int>(i) % per_row * (thumbnail + gap),
+              top = gap + static_cast<int>(i) / per_row * (tallest + label_room + gap);
+    if (!entries[i].picture.empty()) draw(canvas, pictures[i], left, top);
+    write_label(canvas, entries[i].label + (entries[i].picture.empty() ? " - FAILED" : ""), left,
+                top + tallest + 6);
+  }
+  write_png(path, canvas.image);
+}
+
+}  // namespace petzval::app
