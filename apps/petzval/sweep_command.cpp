@@ -69,10 +69,8 @@ std::vector<std::string> arguments_of(const CLI::App& app, const SweepCommand& o
       arguments.push_back(key + "=" + value);
     }
   }
-  for (const std::string& word : {"--threads", "--seed"}) {
-    arguments.push_back(word);
-    arguments.push_back(word == "--seed" ? std::to_string(shared.seed) : std::to_string(shared.threads));
-  }
+  arguments.insert(arguments.end(),
+                   {"--threads", std::to_string(shared.threads), "--seed", std::to_string(shared.seed)});
   arguments.push_back("--quiet");
   arguments.push_back("--json");
   return arguments;
@@ -286,7 +284,7 @@ void add_sweep_command(CLI::App& app, Shared& shared) {
             "--vary surfaces[4].thickness_mm=0.4:0.6:0.1 --vary f-number=2,4 -o sweep");
   add_swept(
       *sweeps, app, shared, "lens", "Sweep an analysis of petzval lens; what is not listed here goes to it",
-      "petzval sweep lens distortion edmund-54852 --fields 10 --vary surfaces[4].thickness_mm=0.4:0.6:0.1 "
+      "petzval sweep lens distortion edmund-54852 --fields 2 --vary surfaces[4].thickness_mm=0.4:0.6:0.1 "
       "-o sweep");
 }
 
