@@ -201,8 +201,8 @@ TEST(FurnaceOfRoughMetal, TwoWaysOfFindingTheSkyAgree) {
 /// A smooth metal shows the sky times Fresnel's reflectance, in the colour of copper.
 TEST(FurnaceOfRoughMetal, MirrorIsFresnel) {
   const double radiance = furnace_radiance("Material \"conductor\"", 0.5, PathOptions::Lights::both, 4);
-  // Copper at 550 nm, Johnson & Christy: between 2.26 eV (1.02, 2.577) and 2.14 eV (0.70, 2.704).
-  const double share = (550 - 1239.84198 / 2.26) / (1239.84198 / 2.14 - 1239.84198 / 2.26);
+  // Copper at 550 nm, Johnson & Christy: between 2.26 eV (1.02, 2.577) and 2.13 eV (0.70, 2.704).
+  const double share = (550 - 1239.84198 / 2.26) / (1239.84198 / 2.13 - 1239.84198 / 2.26);
   const double n = 1.02 + share * (0.70 - 1.02), k = 2.577 + share * (2.704 - 2.577);
   EXPECT_NEAR(radiance, conductor_reflectance(std::sqrt(0.75), n, k), 2e-4);
 }
