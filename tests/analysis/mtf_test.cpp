@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "analysis/stigmatic_lens.h"
 #include "golden_lenses.h"
 
 namespace petzval {
@@ -74,27 +75,9 @@ TEST_P(GoldenMtf, GeometricHasConverged) {
 
 INSTANTIATE_TEST_SUITE_P(Lenses, GoldenMtf, golden_lenses());
 
-/// A plano-hyperbolic lens of focal length 40 mm, perfect on the axis.
-Lens perfect_lens(double semi_aperture_mm) {
-  Lens lens;
-  lens.name = "plano-hyperbolic lens";
-  Surface front, back;
-  front.thickness_mm = 2;
-  front.material = Material(Material::Constant{1.5});
-  front.stop = true;
-  back.curvature_per_mm = -1.0 / 20;
-  back.conic = -2.25;
-  back.thickness_mm = 40;
-  lens.surfaces = {front, back};
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, semi_aperture_mm};
-  lens.wavelengths_nm = {550};
-  lens.reference_wavelength_nm = 550;
-  return lens;
-}
-
 TEST(Mtf, OfAPerfectLensIsTheOverlapOfTwoCircles) {
   for (const double semi : {0.5, 2.0}) {
-    const Lens lens = perfect_lens(semi);
+    const Lens lens = stigmatic_lens(semi);
     FieldTracer tracer(lens, 550);
     const ChiefRay chief = *tracer.chief_ray(0);
     const ExitPupil pupil = *ExitPupil::of(tracer, chief);

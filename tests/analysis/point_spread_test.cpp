@@ -8,26 +8,10 @@
 
 #include <cmath>
 
+#include "analysis/stigmatic_lens.h"
+
 namespace petzval {
 namespace {
-
-/// A plano-hyperbolic lens: free of aberration on the axis (k = −n²), f = 40 mm, stop on its flat front.
-Lens perfect_lens(double semi_aperture_mm) {
-  Lens lens;
-  lens.name = "plano-hyperbolic lens";
-  Surface front, back;
-  front.thickness_mm = 2;
-  front.material = Material(Material::Constant{1.5});
-  front.stop = true;
-  back.curvature_per_mm = -1.0 / 20;
-  back.conic = -2.25;
-  back.thickness_mm = 40;
-  lens.surfaces = {front, back};
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, semi_aperture_mm};
-  lens.wavelengths_nm = {550};
-  lens.reference_wavelength_nm = 550;
-  return lens;
-}
 
 Psf axial_psf(const Lens& lens, const PsfOptions& options = {}) {
   FieldTracer tracer(lens, 550);
@@ -40,7 +24,7 @@ TEST(PointSpread, OfAnAberrationFreeLensIsTheAiryDisc) {
     PsfOptions options;
     options.size = 41;
     options.spacing_um = 0.25 * lambda_n_um;
-    const Psf psf = axial_psf(perfect_lens(semi), options);
+    const Psf psf = axial_psf(stigmatic_lens(semi), options);
     const double peak = psf.at(20, 20);
     for (int j = 20; j < 41; j += 2) {
       const double x = pi * 0.25 * (j - 20);
@@ -127,7 +111,7 @@ TEST(PointSpread, OfADefocusedLensIsTheDiscOfSimilarTriangles) {
   // All rays of a stigmatic lens cross in one point; a sensor δ behind it sees the exit pupil's shadow. Both
   // ways of summing: 60 and 730 λN wide.
   for (const double behind_mm : {3.0, 40.0}) {
-    Lens lens = perfect_lens(2);
+    Lens lens = stigmatic_lens(2);
     lens.surfaces.back().thickness_mm += behind_mm;
     const Psf psf = axial_psf(lens);
     EXPECT_GE(psf.captured, 0.99);
