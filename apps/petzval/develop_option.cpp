@@ -80,15 +80,16 @@ std::map<std::string, std::string> step_files(const std::vector<std::string>& st
 
 }  // namespace
 
-void DevelopChoice::add_to(CLI::App& command) {
+void DevelopChoice::add_to(CLI::App& command, bool after_image) {
   command
       .add_option("--white-balance", white_balance,
                   "as-shot, grey-world, a light (D65, A, 3200K, a file), or the channels' response to white: "
                   "0.5,1,0.7")
       ->capture_default_str();
-  command.add_option(
-      "--sensor", sensor,
-      "With a light for white balance: fit the colour matrix to this sensor under this very light");
+  if (!after_image)
+    command.add_option(
+        "--sensor", sensor,
+        "With a light for white balance: fit the colour matrix to this sensor under this very light");
   command
       .add_option("--matrix", matrix,
                   "Colour matrix: auto (from the raw file), or none, to see the channels as they are")

@@ -18,7 +18,8 @@ struct DevelopChoice {
   double denoise = 0, sharpen = 0, sharpen_radius_px = 1, brightness_ev = 0;
   std::vector<std::string> steps;  ///< NAME=FILE
 
-  void add_to(CLI::App& command);
+  /// \param after_image  of `image`, whose --sensor is another.
+  void add_to(CLI::App& command, bool after_image = false);
   /// Linear light of the display. Steps are written to where `stage` says that their files go.
   Planes develop(const RawImage& raw, DevelopReport& report,
                  const std::function<std::string(const std::string&)>& stage) const;

@@ -24,6 +24,7 @@
 
 #include "field_option.h"
 #include "scene_option.h"
+#include "shot_option.h"
 
 namespace petzval::app {
 
@@ -38,7 +39,8 @@ struct ImageCommand {
   std::optional<double> f_number;
   SectionOptions sections;
   ProductOptions product;
-  int supersample = 1, bits = 8;
+  int supersample = 1;
+  ShotChoice shot;
   std::vector<std::string> outputs;
 };
 
@@ -50,10 +52,11 @@ std::string extension_of(const std::string& path) {
 }
 
 void check_outputs(const std::vector<std::string>& outputs) {
+  const std::vector<std::string> known = {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"};
   for (const std::string& path : outputs) {
-    const std::string extension = extension_of(path);
-    if (extension != ".exr" && extension != ".npy" && extension != ".png")
-      throw InputError(path, "irradiance is written as .exr or .npy, a picture as .png");
+    if (std::find(known.begin(), known.end(), extension_of(path)) == known.end())
+      throw InputError(
+          path, "irradiance is written as .exr or .npy, a raw file as .dng, a picture as .png or .tif");
     WholeFile(std::string(path));  // says if there is no such folder
   }
 }
@@ -233,33 +236,45 @@ std::string distance_text(const Scene& scene) {
 
 nlohmann::ordered_json summary_json(const SpectralImage& image, const Scene& scene,
                                     const LensDataTable& table, const ImagingReport& report,
-                                    const std::string& method, const std::vector<std::string>& outputs) {
-  return {{"columns", image.columns()},
-          {"rows", image.rows()},
-          {"pitch_um", image.pitch_um()},
-          {"wavelengths_nm", image.wavelengths_nm()},
-          {"scene", scene.name},
-          {"scene_angle_deg", scene.horizontal_angle_deg()},
-          {"scene_distance_m", number_or_null(scene.distance_m().value_or(INFINITY))},
-          {"lens", table.lens_name},
-          {"working_f_number", number_or_null(table.first_order.working_f_number)},
-          {"method", method},
-          {"margin_cells", report.margin_cells},
-          {"scene_points_per_cell", report.scene_points_per_cell * report.scene_points_per_cell},
-          {"least_captured", report.least_captured},
-          {"irradiance_unit", "W.m^-2.nm^-1"},
-          {"irradiance_min", report.darkest},
-          {"irradiance_max", report.brightest},
-          {"estimated_error", report.product.estimated_error},
-          {"distortion_seconds", report.distortion_seconds},
-          {"blur_seconds", report.blur_seconds},
-          {"kernel_seconds", report.kernel_seconds},
-          {"notes", report.notes},
-          {"outputs", outputs}};
+                                    const std::string& method, const std::optional<Shot>& shot,
+                                    const std::vector<std::string>& outputs) {
+  nlohmann::ordered_json json = {
+      {"columns", image.columns()},
+      {"rows", image.rows()},
+      {"pitch_um", image.pitch_um()},
+      {"wavelengths_nm", image.wavelengths_nm()},
+      {"scene", scene.name},
+      {"scene_angle_deg", scene.horizontal_angle_deg()},
+      {"scene_distance_m", number_or_null(scene.distance_m().value_or(INFINITY))},
+      {"lens", table.lens_name},
+      {"working_f_number", number_or_null(table.first_order.working_f_number)},
+      {"method", method},
+      {"margin_cells", report.margin_cells},
+      {"scene_points_per_cell", report.scene_points_per_cell * report.scene_points_per_cell},
+      {"least_captured", report.least_captured},
+      {"irradiance_unit", "W.m^-2.nm^-1"},
+      {"irradiance_min", report.darkest},
+      {"irradiance_max", report.brightest},
+      {"estimated_error", report.product.estimated_error},
+      {"distortion_seconds", report.distortion_seconds},
+      {"blur_seconds", report.blur_seconds},
+      {"kernel_seconds", report.kernel_seconds},
+      {"notes", report.notes},
+      {"outputs", outputs}};
+  if (shot) {
+    json["exposure_s"] = shot->raw.exposure_s;
+    json["iso"] = shot->raw.iso;
+    json["as_shot_neutral"] = shot->raw.as_shot_neutral;
+  }
+  if (shot && shot->development) {
+    json["temperature_k"] = shot->development->temperature_k;
+    json["defects_corrected"] = shot->development->defects;
+  }
+  return json;
 }
 
 void print_summary(const SpectralImage& image, const Scene& scene, const LensDataTable& table,
-                   const ImagingReport& report, const std::string& method) {
+                   const ImagingReport& report, const std::string& method, const std::optional<Shot>& shot) {
   const auto& bands = image.wavelengths_nm();
   fmt::print("{} x {} pixels of {:.5g} um, ", image.columns(), image.rows(), image.pitch_um());
   if (bands.size() == 1)
@@ -272,6 +287,12 @@ void print_summary(const SpectralImage& image, const Scene& scene, const LensDat
              table.first_order.working_f_number);
   fmt::print("  method      {}\n", method);
   fmt::print("  irradiance  {:.4g} to {:.4g} W/(m2 nm)\n", report.darkest, report.brightest);
+  if (!shot) return;
+  fmt::print("  exposure    {:.4g} s, ISO {:.0f}, on {}\n", shot->raw.exposure_s, shot->raw.iso,
+             shot->raw.sensor_name);
+  if (shot->development && shot->raw.channels.size() > 1)
+    fmt::print("  developed   white {:.4f}, {} defects corrected\n",
+               fmt::join(shot->development->neutral, " "), shot->development->defects);
 }
 
 /// The white of the scene, if its light in these bands can be taken for white at all: two or three narrow
@@ -290,28 +311,36 @@ std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& sc
   }
 }
 
-void write_outputs(const ImageCommand& command, const SpectralImage& image, const Scene& scene,
-                   const Shared& shared) {
+std::optional<Shot> write_outputs(const ImageCommand& command, const SpectralImage& image, const Scene& scene,
+                                  const std::optional<Sensor>& sensor, const Shared& shared) {
   StagedFiles files;
   for (const std::string& path : command.outputs) {
-    const std::string staged = files.stage(path);
-    if (extension_of(path) != ".png") {
-      write_irradiance(staged, image);
-      continue;
+    const std::string extension = extension_of(path);
+    if (extension == ".exr" || extension == ".npy") {
+      write_irradiance(files.stage(path), image);
+    } else if (extension == ".png" && !command.shot.develops(sensor)) {
+      PictureOptions options;
+      options.scene_white = usable_white(image, scene, shared);
+      note(shared,
+           fmt::format("{}: {}", path, write_picture(files.stage(path), image, options, command.shot.bits)));
     }
-    PictureOptions options;
-    options.scene_white = usable_white(image, scene, shared);
-    note(shared, fmt::format("{}: {}", path, write_picture(staged, image, options, command.bits)));
   }
+  std::optional<Shot> shot = command.shot.shoot(image, sensor, command.outputs, files, shared);
   files.commit();
+  return shot;
 }
 
-void image(const ImageCommand& command, const Shared& shared) {
+void image(const ImageCommand& command, const CLI::App& app, const Shared& shared) {
   check_outputs(command.outputs);
   check_sources(command);
   const ImagingOptions options = imaging_options(command);
+  std::optional<Sensor> camera_sensor;
   std::optional<SensorGeometry> wanted;
-  if (!command.sensor.empty()) wanted = read_sensor(command.sensor).geometry;
+  if (!command.sensor.empty()) {
+    camera_sensor = read_sensor(command.sensor);
+    wanted = camera_sensor->geometry;
+  }
+  command.shot.check(camera_sensor, command.outputs, app);
 
   ProgressBar bar(!shared.quiet);
   auto [scene, table] = command.optics.empty() ? from_lens(command, wanted, bar.callback(), shared)
@@ -327,9 +356,10 @@ void image(const ImageCommand& command, const Shared& shared) {
       fmt::format("petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
                   distance_text(scene), table.lens_name, table.first_order.working_f_number, method);
   for (const std::string& line : report.notes) note(shared, line);
-  write_outputs(command, picture, scene, shared);
-  if (shared.json) return print_json(summary_json(picture, scene, table, report, method, command.outputs));
-  if (!shared.quiet) print_summary(picture, scene, table, report, method);
+  const std::optional<Shot> shot = write_outputs(command, picture, scene, camera_sensor, shared);
+  if (shared.json)
+    return print_json(summary_json(picture, scene, table, report, method, shot, command.outputs));
+  if (!shared.quiet) print_summary(picture, scene, table, report, method, shot);
 }
 
 void add_lens_options(CLI::App& command, ImageCommand& options) {
@@ -394,25 +424,29 @@ void add_method_options(CLI::App& command, ImageCommand& options) {
 
 void add_image_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<ImageCommand>();
-  CLI::App* command =
-      add_command(app, shared, "image", "Image a scene through a lens onto a sensor",
-                  "petzval image studio --lens edmund-54852 --sensor 320x240@15 -o studio.png "
-                  "-o studio.exr",
-                  true, [options, &shared] {
-                    const ThreadLimit limit(shared.threads);
-                    image(*options, shared);
-                  });
+  CLI::App* command = add_command(
+      app, shared, "image", "Image a scene through a lens onto a sensor",
+      "petzval image studio --lens edmund-54852 --sensor 320x240@15 -o studio.png "
+      "-o studio.exr\n  petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 "
+      "-o shot.dng -o shot.png",
+      true, [options, &shared, &app] {
+        const ThreadLimit limit(shared.threads);
+        image(*options, *app.get_subcommand("image"), shared);
+      });
   options->scene.add_to(*command);
   add_lens_options(*command, *options);
   command->add_option("--sensor", options->sensor,
                       "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
   add_method_options(*command, *options);
   command
-      ->add_option("-o,--output", options->outputs,
-                   "Irradiance as .exr or .npy, a picture as .png; may be given several times")
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
+          "may be given several times")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--bits", options->bits, "Of the picture: 8 or 16")
+  options->shot.add_to(*command);
+  command->add_option("--bits", options->shot.bits, "Of the picture: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
 }

@@ -65,7 +65,7 @@ std::vector<double> neutral(const SenseChoice& choice, const SpectralImage& imag
 
 }  // namespace
 
-void SenseChoice::add_to(CLI::App& command) {
+void SenseChoice::add_to(CLI::App& command, bool after_image) {
   command.add_option("--exposure", exposure, "auto, seconds, or an exposure value at ISO 100 (ev:12)")
       ->capture_default_str();
   command
@@ -77,7 +77,8 @@ void SenseChoice::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--exposure-compensation", compensation_ev, "More light by this many stops [EV]")
       ->capture_default_str();
-  command.add_option("--f-number", f_number, "For exposure values; default: the lens's, where known");
+  if (!after_image)
+    command.add_option("--f-number", f_number, "For exposure values; default: the lens's, where known");
   command.add_option("--conversion-gain", conversion_gain,
                      "Of a sensor with several: its name; default: the first");
   command.add_option("--gain", gain, "Analog gain")->capture_default_str();
@@ -90,8 +91,9 @@ void SenseChoice::add_to(CLI::App& command) {
   command
       .add_option("--without", without, fmt::format("Switch off: {}", fmt::join(noise_source_names(), ", ")))
       ->delimiter(',');
-  command.add_option("--illuminant", illuminant,
-                     "Light of the scene, for white balance; default: as the irradiance says");
+  if (!after_image)
+    command.add_option("--illuminant", illuminant,
+                       "Light of the scene, for white balance; default: as the irradiance says");
   command.add_option("--exit-pupil", exit_pupil_mm,
                      "From the sensor, negative in front of it [mm]; for microlenses");
 }

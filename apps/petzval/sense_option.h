@@ -22,7 +22,8 @@ struct SenseChoice {
   std::vector<double> bracket_ev;
   int frames = 1;
 
-  void add_to(CLI::App& command);
+  /// \param after_image  of `image`, which has an --f-number and an --illuminant of its own.
+  void add_to(CLI::App& command, bool after_image = false);
   /// Exposes the sensor to the light; complete with colours, white balance and facts of the lens.
   RawImage expose(const SpectralImage& image, const Sensor& sensor, const Shared& shared) const;
 };

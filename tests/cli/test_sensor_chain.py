@@ -7,6 +7,15 @@ import unittest
 from petzval_cli import ProgramTest
 
 
+SMALL_BAYER = {
+    "format": "petzval-sensor/1", "name": "small", "source": "made up", "columns": 96, "rows": 64, "pitch_um": 3.75,
+    "channels": [{"name": name, "quantum_efficiency": [{"set": "nikon_d100", "spectrum": name, "scale": 0.5}]}
+                 for name in ("red", "green", "blue")],
+    "mosaic": [["red", "green"], ["green", "blue"]],
+    "gain_modes": [{"name": "base", "full_well_e": 10000, "dn_per_e": 0.4, "read_noise_e": 3}],
+    "adc": {"bits": 12, "black_level_dn": 64}, "dsnu_e": 1, "prnu_percent": 1}
+
+
 class SensorChain(ProgramTest):
     def make_light(self, *options, sensor="96x64@3.75", name="light.exr"):
         self.assert_succeeds("image", "studio", "--lens", "edmund-54852", "--sensor", sensor, "--method", "none",
@@ -35,6 +44,53 @@ class SensorChain(ProgramTest):
         more = self.json_of("sense", "light.exr", "--sensor", "third-inch-1280x960", "--exposure-compensation", "1",
                             "-o", "raw.dng", "--quiet")
         self.assertAlmostEqual(more["exposure_s"] / summary["exposure_s"], 2, 9)
+
+    IMAGE = ("image", "colorchecker", "--lens", "edmund-54852", "--method", "none", "--wavelengths", "400:20:700")
+
+    def test_image_runs_the_lot_as_by_halves(self):
+        self.write("small.json", SMALL_BAYER)
+        exposing = ("--exposure", "0.004", "--gain", "1", "--frames", "2", "--without", "prnu", "--seed", "7")
+        developing = ("--demosaic", "malvar", "--space", "display-p3", "--sharpen", "0.5")
+        said = self.json_of(*self.IMAGE, "--sensor", "small.json", *exposing, *developing, "--step", "linear=one.npy",
+                            "-o", "light.exr", "-o", "one.dng", "-o", "one.png", "-o", "one.tif", "--quiet")
+        self.assertEqual(said["exposure_s"], 0.004)
+        self.assert_succeeds("sense", "light.exr", "--sensor", "small.json", *exposing, "-o", "two.dng")
+        self.assert_succeeds("develop", "two.dng", *developing, "--step", "linear=two.npy", "-o", "two.png", "-o",
+                             "two.tif")
+        files = self.contents()
+        for extension in ("dng", "png", "tif", "npy"):
+            self.assertEqual(files[f"one.{extension}"], files[f"two.{extension}"], extension)
+        # The picture is the same without the raw file, and with an exposure by EV, whose f-number is the lens's.
+        self.assert_succeeds(*self.IMAGE, "--sensor", "small.json", *exposing, *developing, "-o", "alone.png")
+        self.assertEqual(self.contents()["alone.png"], files["one.png"])
+        self.assert_succeeds(*self.IMAGE, "--sensor", "small.json", "--exposure", "ev:8", "-o", "ev1.dng", "-o", "l.exr")
+        self.assert_succeeds("sense", "l.exr", "--sensor", "small.json", "--exposure", "ev:8", "-o", "ev2.dng")
+        files = self.contents()
+        self.assertEqual(files["ev1.dng"], files["ev2.dng"])
+        self.assertIn(b"Edmund Optics 54-852", files["ev1.dng"])
+
+    def test_image_shows_the_light_itself_where_that_is_asked_for(self):
+        self.write("small.json", SMALL_BAYER)
+        self.assert_succeeds(*self.IMAGE, "--sensor", "96x64@3.75", "-o", "frame.png", "--quiet")
+        self.assert_succeeds(*self.IMAGE, "--sensor", "small.json", "--picture", "irradiance", "-o", "light.png",
+                             "-o", "shot.dng", "--quiet")
+        self.assert_succeeds(*self.IMAGE, "--sensor", "small.json", "-o", "shot.png", "--quiet")
+        files = self.contents()
+        self.assertEqual(files["frame.png"], files["light.png"])
+        self.assertNotEqual(files["frame.png"], files["shot.png"])
+
+    def test_image_refuses_what_its_sensor_cannot_do(self):
+        self.write("small.json", SMALL_BAYER)
+        refuse = lambda *options, words: self.assert_refused(*self.IMAGE, *options, words=words)
+        refuse("--sensor", "96x64@3.75", "-o", "a.exr", "-o", "a.dng", words=["channels"])
+        refuse("-o", "a.dng", words=["--sensor"])
+        refuse("--sensor", "96x64@3.75", "-o", "a.tif", words=["a.tif", "developed"])
+        refuse("--sensor", "96x64@3.75", "--exposure", "1", "-o", "a.png", words=["--exposure", "no effect"])
+        refuse("--sensor", "small.json", "--sharpen", "1", "-o", "a.dng", words=["--sharpen", "no effect"])
+        refuse("--sensor", "small.json", "--picture", "developed", "-o", "a.dng", words=["--picture"])
+        refuse("--sensor", "small.json", "-o", "a.dng", "-o", "no/a.png", words=["no"])
+        refuse("--sensor", "small.json", "--exposure", "soon", "-o", "a.exr", "-o", "a.png", words=["soon"])
+        refuse("--sensor", "small.json", "--white-balance", "1,2", "-o", "a.dng", "-o", "a.png", words=["3 channels"])
 
     def test_outputs_appear_all_or_none(self):
         self.make_light()

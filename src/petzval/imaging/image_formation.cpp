@@ -163,6 +163,14 @@ void finish(ImagingReport& report, const SpectralImage& image, const ImagingOpti
                     report.margin_cells));
 }
 
+/// What a camera would note of the lens; what is infinite or not known is 0.
+LensFacts lens_facts(const LensDataTable& table) {
+  const auto finite = [](double value) { return std::isfinite(value) ? value : 0.0; };
+  const FirstOrder& lens = table.first_order;
+  return {table.lens_name, finite(lens.efl_mm), finite(lens.working_f_number),
+          finite(lens.exit_pupil.position_mm)};
+}
+
 }  // namespace
 
 SectionOptions ImagingOptions::section_options() const {
@@ -223,6 +231,8 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     says.least_captured = std::min(says.least_captured, plan.least_captured);
     if (progress) progress((band + 1.0) / scene.bands(), "image");
   }
+  image.lens = lens_facts(table);
+  image.illuminant = scene.illuminant;
   finish(says, image, options);
   return image;
 }

@@ -14,9 +14,15 @@ namespace petzval {
 /// \throws InputError for an image that contradicts itself, or with channels that DNG has no number for (it
 /// knows red, green, blue, cyan, magenta, yellow and white or clear); as WholeFile; Failure.
 void write_dng(const std::string& path, const RawImage& raw);
+/// Whether DNG has numbers for all channels of the image.
+bool fits_dng(const RawImage& raw);
+/// The bytes of that file. \param path  for messages.
+std::string dng_bytes(const RawImage& raw, const std::string& path);
 
 /// Reads uncompressed and Deflate-compressed DNG files of 8 or 16 bits a sample with one black level: those
 /// of write_dng and many of others. \throws InputError for anything else, and for damaged files.
 RawImage read_dng(const std::string& path);
+/// The same of a file's bytes. \param path  for messages.
+RawImage parse_dng(std::string bytes, const std::string& path);
 
 }  // namespace petzval

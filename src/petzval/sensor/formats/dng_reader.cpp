@@ -21,8 +21,8 @@ constexpr int max_mosaic_side = 64;
 
 class DngReader {
  public:
-  explicit DngReader(const std::string& path)
-      : path_(path), stream_(TiffStream::reader(path, read_whole_file(path))), tiff_(stream_.handle()) {
+  DngReader(const std::string& path, std::string bytes)
+      : path_(path), stream_(TiffStream::reader(path, std::move(bytes))), tiff_(stream_.handle()) {
     dng::add_tags(tiff_);
   }
 
@@ -326,8 +326,12 @@ class DngReader {
 
 }  // namespace
 
+RawImage parse_dng(std::string bytes, const std::string& path) {
+  return DngReader(path, std::move(bytes)).image();
+}
+
 RawImage read_dng(const std::string& path) {
-  return DngReader(path).image();
+  return parse_dng(read_whole_file(path), path);
 }
 
 }  // namespace petzval

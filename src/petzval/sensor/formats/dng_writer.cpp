@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace petzval {
 
@@ -179,9 +180,22 @@ class DngWriter {
 
 }  // namespace
 
-void write_dng(const std::string& path, const RawImage& raw) {
+bool fits_dng(const RawImage& raw) {
+  std::set<std::uint8_t> numbers;
+  return raw.channels.size() == 1 ||
+         std::all_of(raw.channels.begin(), raw.channels.end(), [&](const std::string& channel) {
+           const auto number = dng::colour_number(channel);
+           return number && numbers.insert(*number).second;
+         });
+}
+
+std::string dng_bytes(const RawImage& raw, const std::string& path) {
   raw.validate();
-  write_whole_file(path, DngWriter(path, raw).bytes());
+  return DngWriter(path, raw).bytes();
+}
+
+void write_dng(const std::string& path, const RawImage& raw) {
+  write_whole_file(path, dng_bytes(raw, path));
 }
 
 }  // namespace petzval
