@@ -333,12 +333,13 @@ std::optional<Shot> write_outputs(const ImageCommand& command, const SpectralIma
 void image(const ImageCommand& command, const CLI::App& app, const Shared& shared) {
   check_outputs(command.outputs);
   check_sources(command);
-  const ImagingOptions options = imaging_options(command);
+  ImagingOptions options = imaging_options(command);
   std::optional<Sensor> camera_sensor;
   std::optional<SensorGeometry> wanted;
   if (!command.sensor.empty()) {
     camera_sensor = read_sensor(command.sensor);
     wanted = camera_sensor->geometry;
+    options.photosite = camera_sensor->photosite;
   }
   command.shot.check(camera_sensor, command.outputs, app);
 
@@ -406,7 +407,9 @@ void add_method_options(CLI::App& command, ImageCommand& options) {
       .add_option("--transform", options.sections.transform,
                   "Size of the Fourier transforms; 0: the smallest")
       ->capture_default_str();
-  command.add_option("--supersample", options.supersample, "Source cells along a side of a pixel")
+  command
+      .add_option("--supersample", options.supersample,
+                  "Source cells along a side of a pixel; 3 or more for scenes finer than a pixel")
       ->capture_default_str();
   command.add_option("--interpolate", options.interpolate, "What is interpolated between the table's fields")
       ->check(CLI::IsMember({"psf", "otf"}))

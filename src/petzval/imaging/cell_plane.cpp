@@ -24,18 +24,4 @@ SensorGeometry subdivided(const SensorGeometry& grid, int factor) {
   return {grid.columns * factor, grid.rows * factor, grid.pitch_um / factor};
 }
 
-CellPlane averaged(const CellPlane& plane, int factor) {
-  if (factor == 1) return plane;
-  CellPlane result({plane.grid.columns / factor, plane.grid.rows / factor, plane.grid.pitch_um * factor});
-  const auto step = static_cast<std::size_t>(factor);
-  for (std::size_t row = 0; row < result.rows(); ++row)
-    for (std::size_t column = 0; column < result.columns(); ++column) {
-      double sum = 0;
-      for (std::size_t i = 0; i < step; ++i)
-        for (std::size_t j = 0; j < step; ++j) sum += double(plane.row(row * step + i)[column * step + j]);
-      result.row(row)[column] = static_cast<float>(sum / (double(factor) * factor));
-    }
-  return result;
-}
-
 }  // namespace petzval

@@ -29,7 +29,5 @@ struct CellPlane {
 SensorGeometry grown(const SensorGeometry& grid, int margin);
 /// The grid with every cell cut into factor × factor.
 SensorGeometry subdivided(const SensorGeometry& grid, int factor);
-/// Means of factor × factor cells: from a plane on subdivided(grid, factor) to one on `grid`.
-CellPlane averaged(const CellPlane& plane, int factor);
 
 }  // namespace petzval

@@ -13,7 +13,7 @@ namespace petzval {
 
 double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                           const ImagingOptions& options) {
-  const SensorGeometry frame = subdivided(sensor, options.supersample);
+  const SensorGeometry frame = options.cells_of(sensor);
   const SeenExtent seen = seen_extent(plan_bands(scene, table, frame, options), frame);
   const double half_columns = std::max(seen.columns, seen.rows * scene.columns() / scene.rows());
   constexpr double room = 1 + 1e-6;  // so that rounding does not make the scene too small again
@@ -44,9 +44,9 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
     return SensorGeometry{columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
   };
   const std::vector<BandPlan> plans =
-      plan_bands(scene, table, subdivided(frame_of(scene.columns()), options.supersample), options);
+      plan_bands(scene, table, options.cells_of(frame_of(scene.columns())), options);
   const auto covered = [&](int columns) {
-    const SeenExtent seen = seen_extent(plans, subdivided(frame_of(columns), options.supersample));
+    const SeenExtent seen = seen_extent(plans, options.cells_of(frame_of(columns)));
     return 2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows();
   };
   int fits = 0, too_large = scene.columns() + 1;

@@ -5,6 +5,7 @@
 #include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/exact_blur.h>
 #include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/pixel_gather.h>
 #include <petzval/imaging/product_blur.h>
 
 #include <algorithm>
@@ -177,10 +178,21 @@ SectionOptions ImagingOptions::section_options() const {
   return {sections.section, sections.transform, method == BlurMethod::blended};
 }
 
+int ImagingOptions::cells_per_pixel() const {
+  return cells_for(photosite, method == BlurMethod::none ? 1 : 2, supersample);
+}
+
+SensorGeometry ImagingOptions::cells_of(const SensorGeometry& sensor) const {
+  const int cells = cells_per_pixel();
+  const int reach = photosite.is_plain() ? 0 : pixel_taps(photosite, cells, 0).reach;
+  return grown(subdivided(sensor, cells), reach);
+}
+
 void ImagingOptions::validate() const {
   constexpr int most = 16;
   if (supersample < 1 || supersample > most)
     throw InputError(fmt::format("supersampling of {}: 1 to {} is right", supersample, most));
+  pixel_taps(photosite, supersample, 0);
   product.validate();
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
@@ -202,12 +214,30 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
   scene.validate();
   table.validate();
   check_distances(scene, table);
-  SpectralImage image(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
-  const SensorGeometry frame = subdivided(sensor, options.supersample);
+  SpectralImage image(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um,
+                      options.photosite.is_plain() ? PixelAperture::box : PixelAperture::photosite);
+  if (!options.photosite.is_plain()) image.photosite = options.photosite.text();
+  const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   check_coverage(scene, plans, frame, options.surround, says.notes);
   note_dark_corners(plans, frame, says.notes);
   says.scene_points_per_cell = points_per_cell(plans, frame);
+
+  // Boxes that the light goes through before the taps: its cell's, if that sees a mean, and the receiving
+  // one's.
+  const int boxes = (says.scene_points_per_cell > 1 ? 1 : 0) + (options.method == BlurMethod::none ? 0 : 1);
+  const PixelTaps taps = pixel_taps(options.photosite, options.cells_per_pixel(), boxes);
+  says.cells_per_pixel = taps.cells;
+  if (taps.cells > options.supersample)
+    says.notes.push_back(fmt::format("the photosite ({}) needs {} x {} cells to a pixel",
+                                     options.photosite.text(), taps.cells, taps.cells));
+
+  constexpr int freely_weighted = 3;  // cells along a side from which on taps can make good the second box
+  if (boxes > 1 && taps.cells < freely_weighted)
+    says.notes.push_back(fmt::format(
+        "the scene is finer than a cell of 1/{} pixel, which blurs it twice: fine detail comes out "
+        "softer than it is; --supersample {} or more applies the pixel aperture once",
+        taps.cells, freely_weighted));
 
   BandBlur blur(table, options, says);
   for (int band = 0; band < scene.bands(); ++band) {
@@ -225,7 +255,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     const CellPlane blurred = blur(std::move(ideal), wavelength_nm, plan.margin, within_band);
     says.blur_seconds += seconds_since(start_of_blur);
 
-    const CellPlane pixels = averaged(blurred, options.supersample);
+    const CellPlane pixels = gathered(blurred, taps);
     std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
     says.margin_cells = std::max(says.margin_cells, plan.margin);
     says.least_captured = std::min(says.least_captured, plan.least_captured);

@@ -34,7 +34,13 @@ struct ImagingOptions {
   RadialFit fit;        ///< of distortion and g_source over image height
   int supersample = 1;  ///< S: source cells are S × S to a pixel, 1 to 16
   Surround surround = Surround::error;
+  Photosite photosite;  ///< of the sensor, with its optical low-pass filter
 
+  /// S, or more if the photosite needs it (cells_for).
+  int cells_per_pixel() const;
+  /// The cells whose light makes the pixels of a sensor: S × S to a pixel, and those that a filter reaches
+  /// beyond.
+  SensorGeometry cells_of(const SensorGeometry& sensor) const;
   bool by_sections() const { return method == BlurMethod::sections || method == BlurMethod::blended; }
   /// The sections of the method.
   SectionOptions section_options() const;
@@ -47,8 +53,9 @@ struct ImagingReport {
   /// Things a user should know, one line each: how the edges were treated, dark corners, light outside the
   /// PSF windows, undershoot.
   std::vector<std::string> notes;
-  int margin_cells = 0;    ///< how far light may come in from outside the frame, the most of all bands
-  int transform_size = 0;  ///< the largest, of `sections`
+  int cells_per_pixel = 1;  ///< along a side
+  int margin_cells = 0;     ///< how far light may come in from outside the frame, the most of all bands
+  int transform_size = 0;   ///< the largest, of `sections`
   /// Of `product`: what was chosen, for the band whose estimated error is the largest; a plan without a
   /// transform stands for blended sections of `tile` cells, which PSFs beyond its transforms need.
   ProductPlan product;
@@ -70,7 +77,10 @@ struct ImagingReport {
 /// blur_exact().
 ///    The light of a cell starts from its centre, so that scenes much finer than a cell want S > 1.
 ///    Light may come in from outside the frame; light that leaves it is lost.
-/// 4. S × S cells are averaged into a pixel: mean irradiance over a box of one pitch (PixelAperture::box).
+/// 4. The cells in and about a pixel share in it as its photosite and filter say (pixel_taps). From S = 3 on
+/// the pixel
+///    aperture is the photosite's, once, whatever the scene; below, the cells themselves are as large as
+///    details of a scene that is finer than they, and blur it by their size again.
 ///
 /// \param scene  radiance; its bands must lie within the table's wavelengths, its distance must be the
 /// table's (to

@@ -44,14 +44,6 @@ double SensorGeometry::half_diagonal_mm() const {
   return std::hypot(width_mm(), height_mm()) / 2;
 }
 
-std::string Photosite::text() const {
-  if (is_plain()) return "box";
-  std::string text =
-      fmt::format("{} {:g} x {:g} pitches", shape == Shape::ellipse ? "ellipse" : "rectangle", width, height);
-  if (low_pass > 0) text += fmt::format(", low-pass {:g} pitches", low_pass);
-  return text;
-}
-
 std::vector<std::string> SensorElectronics::channel_names() const {
   std::vector<std::string> names;
   for (const SensorChannel& channel : channels) names.push_back(channel.name);

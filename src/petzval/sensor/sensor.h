@@ -4,6 +4,7 @@
 
 #include <petzval/colour/spectrum.h>
 #include <petzval/sensor/mosaic.h>
+#include <petzval/wave/photosite.h>
 
 #include <array>
 #include <cstdint>
@@ -25,22 +26,6 @@ struct SensorGeometry {
   /// half-integers).
   double x_mm(double column) const { return (columns / 2.0 - column) * pitch_um * 1e-3; }
   double y_mm(double row) const { return (row - rows / 2.0) * pitch_um * 1e-3; }
-};
-
-/// Where within a pixel light is gathered, and the optical low-pass filter before it. Whoever makes the
-/// irradiance applies them, once. The default is a box of one pitch and no filter.
-struct Photosite {
-  enum class Shape { rectangle, ellipse };
-  Shape shape = Shape::rectangle;
-  double width = 1, height = 1;  ///< in pitches, centred in the pixel
-  /// Distance [pitches] between the images of a filter that makes four of one point, at the corners of a
-  /// square; 0: none.
-  double low_pass = 0;
-
-  bool is_plain() const { return shape == Shape::rectangle && width == 1 && height == 1 && low_pass == 0; }
-  /// "box", or in one line what differs from it; the aperture that a file of irradiance states.
-  std::string text() const;
-  bool operator==(const Photosite&) const = default;
 };
 
 /// A channel of the colour filter array.
@@ -101,6 +86,8 @@ struct SensorElectronics {
 struct Sensor {
   std::string name, source;
   SensorGeometry geometry;
+  /// Where within a pixel light is gathered, and the optical low-pass filter before it, in pitches. Whoever
+  /// makes the irradiance applies them, once. The default is a box of one pitch and no filter.
   Photosite photosite;
   std::optional<SensorElectronics> electronics;  ///< absent: a frame for images, no more
 

@@ -163,7 +163,11 @@ Mosaic read_mosaic(const JsonEntry& entry, const std::vector<SensorChannel>& cha
 
 Photosite read_photosite(const JsonEntry& root, double pitch_um) {
   Photosite site;
-  if (const auto entry = root.find("photosite")) {
+  if (const auto entry = root.find("photosite"); entry && entry->find("fill_factor")) {
+    entry->allow_only({"fill_factor"});
+    constexpr double least_share = 1e-4;
+    site = Photosite::square(number_in(entry->at("fill_factor"), least_share, 1, ""));
+  } else if (entry) {
     entry->allow_only({"shape", "width_um", "height_um"});
     const std::string shape = entry->at("shape").text("\"rectangle\" or \"ellipse\"");
     if (shape != "rectangle" && shape != "ellipse")
@@ -174,7 +178,8 @@ Photosite read_photosite(const JsonEntry& root, double pitch_um) {
     site.height = number_in(entry->at("height_um"), least_um, pitch_um, "µm") / pitch_um;
   }
   constexpr double most_pitches = 4;
-  site.low_pass = number_in(root, "low_pass_um", 0, most_pitches * pitch_um, "µm", 0) / pitch_um;
+  site.separation_x = site.separation_y =
+      number_in(root, "low_pass_um", 0, most_pitches * pitch_um, "µm", 0) / pitch_um;
   return site;
 }
 

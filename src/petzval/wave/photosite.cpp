@@ -52,6 +52,28 @@ Photosite Photosite::square(double fill_factor) {
   return site;
 }
 
+bool Photosite::is_plain() const {
+  return shape == Shape::rectangle && width == 1 && height == 1 && separation_x == 0 && separation_y == 0;
+}
+
+std::string Photosite::text() const {
+  if (is_plain()) return "box";
+  std::string text;
+  if (shape == Shape::none) {
+    text = "point";
+  } else if (shape == Shape::polygon) {
+    text = "polygon";
+    for (const auto& [x, y] : vertices) text += fmt::format(" {:g},{:g}", x, y);
+    text += " pitches";
+  } else {
+    text = fmt::format("{} {:g} x {:g} pitches", shape == Shape::ellipse ? "ellipse" : "rectangle", width,
+                       height);
+  }
+  if (separation_x != 0 || separation_y != 0)
+    text += fmt::format(", low-pass {:g} x {:g} pitches", separation_x, separation_y);
+  return text;
+}
+
 void Photosite::validate() const {
   constexpr double largest = 100;
   if (shape == Shape::rectangle || shape == Shape::ellipse) {

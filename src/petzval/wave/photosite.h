@@ -3,6 +3,7 @@
 #pragma once
 
 #include <complex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Photosite {
   double separation_x = 0, separation_y = 0;
 
   static Photosite square(double fill_factor = 1);  ///< sides √fill_factor
+
+  /// Whether it is the whole square pixel, without a filter.
+  bool is_plain() const;
+  /// "box", "point", or in one line what it is: the aperture that a file of irradiance states.
+  std::string text() const;
+  bool operator==(const Photosite&) const = default;
 
   /// \throws InputError for sizes that are not positive or above 100 pixels, or a polygon of no area.
   void validate() const;
