@@ -10,6 +10,7 @@
 #include <petzval/target/formats/polygon_file.h>
 #include <petzval/target/formats/svg_shapes.h>
 #include <petzval/target/render_target.h>
+#include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
 
 #include <algorithm>
@@ -22,6 +23,8 @@
 #include "field_option.h"
 #include "target_optics.h"
 #include "target_output.h"
+#include "target_plot.h"
+#include "target_sensor.h"
 
 namespace petzval::app {
 
@@ -30,7 +33,8 @@ namespace {
 struct TargetCommand {
   TargetOptics optics;
   TargetOutput output;
-  std::string rectangle, polygons, chart, at, size, bayer, exact_sfr, plot;
+  TargetSensor sensor;
+  std::string rectangle, polygons, chart, text, text_height = "40", at, size, bayer, exact_sfr, plot;
   std::optional<double> half_plane_deg;
   double noise = 0;
 };
@@ -79,12 +83,35 @@ struct Picture {
   Frame frame;
 };
 
+/// In the middle of a picture that leaves twice the letters' height around it.
+Picture picture_of_text(const TargetCommand& command, const std::optional<Frame>& asked) {
+  TextStyle style;
+  const std::size_t sign = command.text_height.find('@');
+  const std::string whole = command.text_height + (sign == std::string::npos ? "@0" : "");
+  std::tie(style.height_px, style.angle_deg) = pair_of(whole, '@', "--text-height");
+  const double width = text_width(command.text, style), height = style.height_px;
+  const double c = std::cos(style.angle_deg * pi / 180), s = std::sin(style.angle_deg * pi / 180);
+  const auto side = [&](double extent) {
+    return static_cast<int>(std::clamp(std::ceil(extent + 4 * height), 64.0, 16384.0));
+  };
+  const double across = std::abs(c) * width + std::abs(s) * height,
+               down = std::abs(s) * width + std::abs(c) * height;
+  Picture picture;
+  picture.frame = asked.value_or(Frame{side(across), side(down)});
+  Vertex centre{0.5 * picture.frame.columns, 0.5 * picture.frame.rows};
+  if (!command.at.empty()) std::tie(centre.x, centre.y) = pair_of(command.at, ',', "--at");
+  const Vertex corner{centre.x - 0.5 * (c * width - s * height), centre.y - 0.5 * (s * width + c * height)};
+  picture.scene.polygons = text_polygons(command.text, corner, style);
+  return picture;
+}
+
 Picture picture_of(const TargetCommand& command) {
   const int given = !command.rectangle.empty() + !command.polygons.empty() + !command.chart.empty() +
-                    command.half_plane_deg.has_value();
+                    !command.text.empty() + command.half_plane_deg.has_value();
   if (given != 1)
     throw InputError(
-        "give one target: --rectangle WxH@DEG, --half-plane DEG, --polygons FILE or --chart NAME");
+        "give one target: --rectangle WxH@DEG, --half-plane DEG, --polygons FILE, --text WORDS or --chart "
+        "NAME");
   Picture picture;
   const std::optional<Frame> asked = frame_of(command.size);
   if (!command.polygons.empty()) {
@@ -106,6 +133,7 @@ Picture picture_of(const TargetCommand& command) {
     const int side = static_cast<int>(std::clamp(2.4 * std::max(width, height), 64.0, 16384.0));
     usual = {side, side};
   }
+  if (!command.text.empty()) return picture_of_text(command, asked);
   picture.frame = asked.value_or(usual);
   if (!command.chart.empty()) {
     picture.scene = test_chart(command.chart, picture.frame.columns, picture.frame.rows);
@@ -157,6 +185,7 @@ TargetImage mosaic(const TargetCommand& command, const TargetScene& scene, const
 
 void run(TargetCommand& command, const Shared& shared) {
   command.optics.prepare(shared);
+  command.sensor.prepare(command.optics);
   command.optics.validate();
   command.output.validate();
   Picture picture = picture_of(command);
@@ -174,6 +203,7 @@ void run(TargetCommand& command, const Shared& shared) {
                                             : mosaic(command, picture.scene, options);
   command.output.to_levels(image);
   add_noise(image.values, command.noise, shared.seed);
+  if (command.sensor.is_named()) command.sensor.expose(image, shared);
 
   StagedFiles files;
   for (const std::string& path : command.output.paths)
@@ -203,9 +233,16 @@ void add_target_command(CLI::App& app, Shared& shared) {
                       "Polygons: MTF Mapper's text format, or the shapes of an .svg");
   command->add_option("--chart", options->chart,
                       fmt::format("A chart: {}", fmt::join(test_chart_names(), ", ")));
-  command->add_option("--at", options->at,
-                      "Where X,Y the rectangle's centre or the half-plane's edge is [pixels]; "
-                      "default: the middle");
+  command->add_option("--text", options->text,
+                      "Writing in straight strokes; small letters are small capitals");
+  command
+      ->add_option("--text-height", options->text_height,
+                   "Height of the capitals H@DEG [pixels, degrees clockwise]")
+      ->capture_default_str();
+  command->add_option(
+      "--at", options->at,
+      "Where X,Y the middle of the rectangle, the writing or the half-plane's edge is [pixels]; "
+      "default: the middle");
   command->add_option("--size", options->size,
                       "Size WxH of the picture [pixels]; default: what the target needs");
   options->optics.add_to(*command);
@@ -214,6 +251,7 @@ void add_target_command(CLI::App& app, Shared& shared) {
                       "A mosaic, rggb and so on, with a wavelength for each colour");
   command->add_option("--noise", options->noise,
                       "Standard deviation of Gaussian noise, on the scale of --white");
+  options->sensor.add_to(*command);
   command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv");
   command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg");
 }

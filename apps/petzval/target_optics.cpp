@@ -30,7 +30,8 @@ std::pair<double, double> pair_of(const std::string& text, char separator, const
 
 void TargetOptics::add_to(CLI::App& command) {
   command
-      .add_option("--psf", psf, "airy, wavefront (with --w020 and so on), gaussian (with --sigma) or lens")
+      .add_option("--psf", psf,
+                  "airy, wavefront (with --w020, --zernike and so on), gaussian (with --sigma) or lens")
       ->check(CLI::IsMember({"airy", "wavefront", "gaussian", "lens"}));
   lens.add_to(command, false, false);
   command.add_option("--field", field,
@@ -42,11 +43,7 @@ void TargetOptics::add_to(CLI::App& command) {
       ->delimiter(',');
   command.add_option("--weights", weights, "Light of each wavelength; default: equal")->delimiter(',');
   command.add_option("--pixel-pitch", pitch_um, "Pixel pitch [um]")->capture_default_str();
-  command.add_option("--w020", w020, "Defocus at the rim of the pupil [waves of the first wavelength]");
-  command.add_option("--w040", w040, "Spherical aberration at the rim [waves]");
-  command.add_option("--w060", w060, "Term in the sixth power of the radius [waves]");
-  command.add_option("--w080", w080, "Term in the eighth power of the radius [waves]");
-  command.add_option("--obstruction", obstruction, "Radius of a central obstruction over the pupil's");
+  pupil.add_to(command);
   command.add_option("--sigma", sigma_um, "Standard deviation of a Gaussian PSF along each axis [um]");
   command
       .add_option(
@@ -66,26 +63,30 @@ void TargetOptics::prepare(const Shared& shared) {
 }
 
 void TargetOptics::validate() const {
-  const bool aberrated = w020 || w040 || w060 || w080;
-  if (psf != "wavefront" && aberrated)
+  if (psf != "wavefront" && pupil.is_aberrated())
     throw InputError(fmt::format(
-        "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080", psf));
+        "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080, --zernike", psf));
   if ((psf == "gaussian") != (sigma_um != 0))
     throw InputError("--psf gaussian and --sigma [um] belong together; give both or neither");
-  if (psf == "gaussian" && obstruction != 0) throw InputError("a Gaussian PSF has no --obstruction");
+  if ((psf == "gaussian" || psf == "lens") && pupil.is_shaped())
+    throw InputError(fmt::format(
+        "--psf {} brings its own pupil; --blades and --obstruction belong to airy and wavefront", psf));
   if (wavelengths_nm.empty()) throw InputError("--wavelength: at least one is needed");
   if (!weights.empty() && weights.size() != wavelengths_nm.size())
     throw InputError(fmt::format("--weights: {} for {} wavelengths; give one a wavelength", weights.size(),
                                  wavelengths_nm.size()));
-  if (fill_factor != 1 && photosite != "square")
+  if (fill_factor != 1 && photosite != "square" && !sensor_site)
     throw InputError("--fill-factor belongs to --photosite square");
   if (!(pitch_um > 0) || !std::isfinite(pitch_um))
     throw InputError(fmt::format("--pixel-pitch {}: a positive number [um] is right", pitch_um));
   site().validate();
 }
 
-RadialPupil TargetOptics::pupil() const {
-  return {{w020.value_or(0), w040.value_or(0), w060.value_or(0), w080.value_or(0)}, obstruction};
+double TargetOptics::geometric_blur_um() const {
+  if (psf != "wavefront") return 0;
+  const GeneralPupil general = pupil.at(wavelengths_nm.front());
+  const double radius = general.is_radial() ? geometric_radius(general.radial()) : 2 * general.steepest();
+  return 2 * radius * wavelengths_nm.front() * 1e-3 * f_number;
 }
 
 std::shared_ptr<const Otf> TargetOptics::at_wavelength(double wavelength_nm) const {
@@ -100,9 +101,10 @@ std::shared_ptr<const Otf> TargetOptics::at_wavelength(double wavelength_nm) con
                                    field.value_or(0), wavelength_nm));
     return std::make_shared<SampledOtf>(*spread);
   }
-  RadialPupil scaled = pupil();
-  for (double& w : scaled.w_waves) w *= wavelengths_nm.front() / wavelength_nm;
-  return radial_pupil_otf(scaled, wavelength_nm, f_number);
+  GeneralPupil scaled = pupil.at(wavelengths_nm.front());
+  for (std::vector<double>* waves : {&scaled.w_waves, &scaled.zernike_waves})
+    for (double& w : *waves) w *= wavelengths_nm.front() / wavelength_nm;
+  return general_pupil_otf(scaled, wavelength_nm, f_number);
 }
 
 std::shared_ptr<const Otf> TargetOptics::mixed() const {
@@ -114,6 +116,7 @@ std::shared_ptr<const Otf> TargetOptics::mixed() const {
 }
 
 Photosite TargetOptics::site() const {
+  if (sensor_site) return *sensor_site;
   Photosite result;
   const std::size_t colon = photosite.find(':');
   const std::string kind = photosite.substr(0, colon);

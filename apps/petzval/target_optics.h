@@ -12,15 +12,18 @@
 #include <vector>
 
 #include "command.h"
+#include "pupil_option.h"
 
 namespace petzval::app {
 
-/// --psf, --f-number, --wavelength, --weights, the aberrations, --sigma, --pixel-pitch and the photosite.
+/// --psf, --f-number, --wavelength, --weights, the pupil, --sigma, --pixel-pitch and the photosite.
 struct TargetOptics {
   std::string psf = "airy", photosite = "square", low_pass;
-  double f_number = 8, pitch_um = 4.73, sigma_um = 0, obstruction = 0, fill_factor = 1;
+  double f_number = 8, pitch_um = 4.73, sigma_um = 0, fill_factor = 1;
   std::vector<double> wavelengths_nm{550}, weights;
-  std::optional<double> w020, w040, w060, w080, field;
+  std::optional<double> field;
+  PupilChoice pupil;
+  std::optional<Photosite> sensor_site;  ///< in place of --photosite and --low-pass
   LensChoice lens;
 
   /// Reads the lens, if one is named. Call it before the others.
@@ -28,7 +31,8 @@ struct TargetOptics {
   void add_to(CLI::App& command);
   /// \throws InputError for options that contradict each other.
   void validate() const;
-  RadialPupil pupil() const;
+  /// Diameter of the blur that geometry alone would make, twice the largest transverse aberration [um].
+  double geometric_blur_um() const;
   /// Of one wavelength: the aberrations are waves of the first wavelength.
   std::shared_ptr<const Otf> at_wavelength(double wavelength_nm) const;
   /// Of all wavelengths with their weights.

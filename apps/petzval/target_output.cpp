@@ -10,7 +10,6 @@
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/image/formats/tiff.h>
-#include <petzval/report/svg_plot.h>
 
 #include <algorithm>
 #include <cmath>
@@ -110,7 +109,9 @@ void TargetOutput::add_to(CLI::App& command) {
       ->required()
       ->take_all()
       ->allow_extra_args(false);
-  command.add_option("--black", black, "Linear level of dark areas, 1 being full scale")
+  command
+      .add_option("--black", black,
+                  "Linear level of dark areas, 1 being full scale; with --sensor: saturation")
       ->capture_default_str();
   command.add_option("--white", white, "Linear level of the light ground")->capture_default_str();
   command.add_option("--bits", bits, "Bits of .png and .tif")
@@ -163,40 +164,13 @@ void write_exact_sfr(const std::string& path, const TargetScene& scene, const Ot
   write_whole_file(path, text);
 }
 
-void write_target_plot(const std::string& path, const TargetOptics& optics, const Otf& otf,
-                       const TargetOptions& options) {
-  Plot mtf;
-  mtf.title = fmt::format("MTF: {} PSF{}, {} photosite, {:g} um pixels", optics.psf,
-                          optics.psf == "gaussian" ? "" : fmt::format(" at f/{:g}", optics.f_number),
-                          optics.photosite, optics.pitch_um);
-  mtf.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
-  mtf.y = {"modulation", "", PlotScale::linear, 0.0, 1.0};
-  const auto curve = [&](const std::string& label, auto&& value) {
-    std::vector<double> x, y;
-    for (int i = 0; i <= 400; ++i) {
-      x.push_back(i / 400.0);
-      y.push_back(value(x.back()));
-    }
-    return &mtf.line(label, x, y);
-  };
-  curve("whole chain, edges along the pixels", [&](double f) { return modulation(otf, options, f, 0); });
-  curve("whole chain, edges at 45 deg", [&](double f) {
-    return modulation(otf, options, f, pi / 4);
-  })->stroke = PlotStroke::dashed;
-  curve("optics alone", [&](double f) { return std::abs(otf.at(f * 1e3 / options.pitch_um, 0)); })->stroke =
-      PlotStroke::dotted;
-  mtf.guides.push_back({PlotGuide::At::x, 0.5, "Nyquist"});
-  write_whole_file(path, mtf.svg());
-}
-
 void print_target_summary(const TargetOptics& optics, const Otf& otf, const TargetOptions& options,
                           const TargetScene& scene, const TargetImage& image, const Shared& shared) {
   const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
   double mtf50 = 0;
   while (mtf50 < 4 && modulation(otf, options, mtf50, 0) > 0.5) mtf50 += 1e-4;
   const double cutoff = otf.cutoff_cpmm() * options.pitch_um * 1e-3;
-  const double blur =
-      geometric_radius(optics.pupil()) * 2 * optics.wavelengths_nm.front() * 1e-3 * optics.f_number;
+  const double blur = optics.geometric_blur_um();
   if (shared.json) {
     nlohmann::ordered_json json = {
         {"columns", image.columns}, {"rows", image.rows}, {"polygons", scene.polygons.size()}};
@@ -204,7 +178,7 @@ void print_target_summary(const TargetOptics& optics, const Otf& otf, const Targ
     json["cutoff_cpp"] = cutoff;
     json["cutoff_cpmm"] = otf.cutoff_cpmm();
     json["mtf50_cpp"] = mtf50;
-    json["geometric_blur_diameter_um"] = optics.psf == "gaussian" ? 0 : blur;
+    json["geometric_blur_diameter_um"] = blur;
     json["least_value"] = *low;
     json["greatest_value"] = *high;
     return print_json(json);

@@ -31,9 +31,6 @@ struct TargetOutput {
 void write_exact_sfr(const std::string& path, const TargetScene& scene, const Otf& otf,
                      const TargetOptions& options);
 
-void write_target_plot(const std::string& path, const TargetOptics& optics, const Otf& otf,
-                       const TargetOptions& options);
-
 void print_target_summary(const TargetOptics& optics, const Otf& otf, const TargetOptions& options,
                           const TargetScene& scene, const TargetImage& image, const Shared& shared);
 

@@ -67,8 +67,59 @@ class Target(ProgramTest):
                 expected = red if row % 2 == column % 2 == 0 else blue if row % 2 == column % 2 == 1 else green
                 self.assertEqual(mosaic[i], expected[i])
 
+    def test_zernike_terms_of_a_lens_make_the_pictures_of_that_lens(self):
+        """`lens zernike` writes W in Fringe terms over the stop; through these `target` must see what it sees through the lens itself,
+        comatic tail on the same side. The two pupils differ by the distortion between stop and exit pupil: 3e-3 of the contrast of 0.32;
+        mirrored they would differ by 0.15."""
+        rows = self.json_of("lens", "zernike", "cooke-triplet", "--wavelengths", 550, "--order", "fringe", "--fields", 5)["rows"]
+        self.write("terms.txt", "# Fringe, waves\n" + "".join(f"{row['index']:.0f} {row['coefficient_waves']!r}\n" for row in rows))
+        common = ["target", "--rectangle", "3x3", "--size", "40x40", "--wavelength", 550, "--pixel-pitch", 2]
+        self.assert_succeeds(*common, "--psf", "wavefront", "--f-number", 5, "--zernike", "terms.txt", "-o", "z.npy")
+        self.assert_succeeds(*common, "--psf", "lens", "--lens", "cooke-triplet", "--field", 5, "-o", "l.npy")
+        zernike, lens = (npy_values(self.folder / name)[1] for name in ("z.npy", "l.npy"))
+        self.assertLess(max(abs(a - b) for a, b in zip(zernike, lens)), 5e-3)
+        self.assertGreater(max(abs(a - b) for a, b in zip(zernike[::-1], lens)), 0.1)
+
+    def test_coefficients_in_lists_files_and_units(self):
+        common = ["target", "--rectangle", "12x8@5", "--size", "24x24", *OPTICS, "--psf", "wavefront"]
+        self.write("noll.csv", "4, 0.1375  # um\n\n11,-0.055\n")
+        self.assert_succeeds(*common, "--zernike-order", "noll", "--zernike", "4=0.25,11=-0.1", "-o", "a.npy")
+        self.assert_succeeds(*common, "--zernike-order", "noll", "--zernike-unit", "um", "--zernike", "noll.csv", "-o", "b.npy")
+        # Noll 4 is √3(2ρ² − 1) and Noll 11 √5(6ρ⁴ − 6ρ² + 1).
+        w020, w040 = 2 * 3 ** 0.5 * 0.25 + 6 * 5 ** 0.5 * 0.1, -6 * 5 ** 0.5 * 0.1
+        self.assert_succeeds(*common, "--w020", w020, "--w040", w040, "-o", "c.npy")
+        a, b, c = (npy_values(self.folder / name)[1] for name in ("a.npy", "b.npy", "c.npy"))
+        self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 1e-12)
+        # A table of general pupils is good to 1e-6.
+        self.assertLess(max(abs(x - y) for x, y in zip(a, c)), 2e-6)
+
+    def test_a_sensor_records_with_its_photosite_and_its_noise(self):
+        """third-inch-1280x960: pixels of 3.75 um, a full well of 24,500 e."""
+        noises = "shot,dark,read,dsnu,prnu,column,row,defects,linearity"
+        common = ["target", "--rectangle", "20x20@5", "--size", "64x64", "--f-number", 8, "--black", 0.05, "--white", 0.8]
+        sensor = ["--sensor", "third-inch-1280x960"]
+        self.assert_succeeds(*common, *sensor, "--without", noises, "-o", "quiet.npy")
+        self.assert_succeeds(*common, "--pixel-pitch", 3.75, "-o", "exact.npy")
+        quiet, exact = (npy_values(self.folder / name)[1] for name in ("quiet.npy", "exact.npy"))
+        # Nothing is left but rounding: half a step of 3920.
+        self.assertLess(max(abs(a - b) for a, b in zip(quiet, exact)), 0.51 / 3920)
+        self.assert_succeeds(*common, *sensor, "--without", noises.replace("shot,", ""), "--seed", 3, "-o", "shot.npy")
+        pairs = [(a, b) for a, b in zip(npy_values(self.folder / "shot.npy")[1], exact) if b > 0.79]
+        variance = sum((a - b) ** 2 for a, b in pairs) / len(pairs)
+        # Poisson: 0.8·24,500 electrons; 3,500 pixels know a variance to 2.4 %.
+        self.assertAlmostEqual(variance / (0.8 / 24500), 1, delta=0.1)
+        self.assert_succeeds(*common, *sensor, "--seed", 3, "-o", "a.npy")
+        self.assert_succeeds(*common, *sensor, "--seed", 3, "--threads", 1, "-o", "b.npy")
+        files = self.contents()
+        self.assertEqual(files["a.npy"], files["b.npy"])
+
+    def test_writing(self):
+        self.assert_succeeds("target", "--text", "Petzval 1840", "--text-height", "20@10", *OPTICS, "-o", "t.png", "--plot", "p.svg")
+        self.assertIn(b"PSF", (self.folder / "p.svg").read_bytes())
+
     def test_refusals(self):
         out = ["-o", "t.png"]
+        self.write("zernike.txt", "4 0.1\n5\n")
         rectangle = ["--rectangle", "30x20@5"]
         self.write("bad.txt", "4 0 0 10 10 20")
         self.write("empty.svg", "<svg/>")
@@ -80,6 +131,21 @@ class Target(ProgramTest):
                 (["--rectangle", "30xnan", *out], ["two numbers"]),
                 ([*rectangle, "--w020", 1, *out], ["--psf wavefront"]),
                 ([*rectangle, "--psf", "gaussian", *out], ["--sigma"]),
+                ([*rectangle, "--zernike", "4=0.1", *out], ["--psf wavefront"]),
+                ([*rectangle, "--psf", "wavefront", "--zernike", "4=x", *out], ["--zernike", "coefficient"]),
+                ([*rectangle, "--psf", "wavefront", "--zernike", "4=1,4=2", *out], ["twice"]),
+                ([*rectangle, "--psf", "wavefront", "--zernike", "38=1", *out], ["Fringe", "1 to 37"]),
+                ([*rectangle, "--psf", "wavefront", "--zernike", "zernike.txt", *out], ["zernike.txt:2", "4 0.25"]),
+                ([*rectangle, "--psf", "wavefront", "--zernike", "none.txt", *out], ["none.txt"]),
+                ([*rectangle, "--blades", 2, *out], ["3 to 1000"]),
+                (["--text", "caf\u00e9", *out], ["no shape", "A to Z"]),
+                (["--text", "A", "--text-height", "0", *out], ["positive height"]),
+                ([*rectangle, "--sensor", "third-inch-vga", *out], ["only its pixels"]),
+                ([*rectangle, "--sensor", "third-inch-1280x960", "--noise", 0.1, *out], ["--noise", "--sensor"]),
+                ([*rectangle, "--sensor", "third-inch-1280x960", "--without", "shott", *out], ["shott", "shot, "]),
+                ([*rectangle, "--sensor", "third-inch-1280x960", "--size", "1281x64", *out], ["1280 x 960"]),
+                ([*rectangle, "--blade-curvature", 0.5, *out], ["--blades"]),
+                ([*rectangle, "--blades", 4, "--obstruction", 0.8, *out], ["reaches the blades"]),
                 ([*rectangle, "--f-number", 0, *out], ["f-number", "positive"]),
                 ([*rectangle, "--pixel-pitch", 1e9, *out], ["cycles/pixel"]),
                 ([*rectangle, "--size", "1e9x1e9", *out], ["--size"]),

@@ -4,10 +4,12 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/target/render_target.h>
+#include <petzval/wave/pupil_otf.h>
 
 #include <boost/math/special_functions/bessel.hpp>
 #include <cmath>
 
+#include "../wave/clipped_blades.h"
 #include "edge_spread.h"
 
 namespace petzval {
@@ -65,6 +67,33 @@ TEST(RenderTarget, HalfPlaneIsTheClosedFormTo1e6) {
         EXPECT_NEAR(image.at(column, row), 1 - test::edge_spread(along, cutoff, d), 1e-6)
             << c.angle_deg << " deg, f/" << c.f_number << ", W020 " << c.w020 << ", d " << d;
       }
+  }
+}
+
+TEST(RenderTarget, HalfPlaneThroughBladesIsTheClosedFormToo) {
+  // The transfer function of straight blades from clipped polygons; edges along a spike, across it, and
+  // between.
+  const double wavelength = 550, f_number = 8;
+  for (const auto& [blades, angle_deg] : {std::pair{6, 10.0}, {5, 93.0}}) {
+    GeneralPupil pupil;
+    pupil.shape = {blades, 10 * pi / 180, 0, 0};
+    const TargetOptions options = frame(64, 64);
+    const auto otf = general_pupil_otf(pupil, wavelength, f_number);
+    const TargetImage image = render_target(one(half_plane({32.3, 31.9}, angle_deg)), *otf, options);
+    const double cutoff = options.pitch_um / (wavelength * 1e-3 * f_number);
+    const double cosine = std::cos(angle_deg * pi / 180), sine = std::sin(angle_deg * pi / 180);
+    const auto along = [&](double nu) {
+      // The picture's x runs against the pupil's.
+      return test::sinc_of(nu * cosine) * test::sinc_of(nu * sine) *
+             test::blade_otf(blades, 10, nu / cutoff, 180 - angle_deg);
+    };
+    double worst = 0;
+    for (int row = 0; row < 64; row += 21)
+      for (int column = 0; column < 64; column += 7) {
+        const double d = (column + 0.5 - 32.3) * cosine + (row + 0.5 - 31.9) * sine;
+        worst = std::max(worst, std::abs(image.at(column, row) - 1 + test::edge_spread(along, cutoff, d)));
+      }
+    EXPECT_LT(worst, 5e-6) << blades << " blades, " << angle_deg << " deg";
   }
 }
 

@@ -60,8 +60,12 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
   const double cutoff = otf.cutoff_cpmm() * options.pitch_um * 1e-3;
   const PsfTail tail = otf.tail();
   const bool has_tail = tail.k3_um != 0;
-  // The tail must hold at the margin: eight times the geometric blur.
-  const double least = has_tail ? std::max(64.0, 8 * reach) : reach + 2;
+  constexpr double largest = 1 << 16;
+  // The tail must hold at the margin: eight times the geometric blur, and where it has settled if that can be
+  // had.
+  const double room = 0.25 * (largest - std::max(options.columns, options.rows));
+  const double settled = std::min(tail.settled_um / options.pitch_um, std::max(room, 0.0));
+  const double least = has_tail ? std::max({64.0, 8 * reach, settled}) : reach + 2;
   double best_margin = least, best_cost = 0;
   for (double margin = least; has_tail && margin <= 16 * least; margin *= 1.3) {
     const double spacing = margin / (5 * heights_in_margin);
@@ -72,7 +76,6 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
     const double cost = transform_ns + far_ns;
     if (margin == least || cost < best_cost) best_cost = cost, best_margin = margin;
   }
-  constexpr double largest = 1 << 16;
   if (std::max(options.columns, options.rows) + 2 * best_margin > largest)
     throw InputError(
         fmt::format("a picture of {} x {} pixels with a blur that reaches {:.0f} pixels needs a period above "

@@ -4,6 +4,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
 
 #include <algorithm>
@@ -92,6 +93,63 @@ TargetScene pinch(const Frame& frame) {
   return scene;
 }
 
+/// Nine bars whose frequency grows evenly from 0.05 to 0.55 cycles/pixel on the way down: as the hyperbolic
+/// wedges of ISO 12233.
+TargetScene trumpet(const Frame& frame) {
+  TargetScene scene;
+  constexpr int bars = 9;
+  constexpr double lowest = 0.05, highest = 0.55;
+  const double top = 0.08 * frame.height, bottom = 0.92 * frame.height;
+  const double first = std::max(lowest, bars / (0.9 * frame.width));
+  // A bar's edge is half_bars/(2f): its bend, the second derivative, is half_bars (slope of f)²/f³.
+  const double slope = (highest - first) / (bottom - top);
+  const double bend = bars * slope * slope / (first * first * first);
+  const int pieces = 1 + static_cast<int>((bottom - top) * std::sqrt(bend / (8 * 1e-4)));
+  for (int i = 0; i < bars; ++i) {
+    const double place = 2 * (i - bars / 2);
+    Contour contour;
+    const auto side = [&](double half_bars, int from, int to, int step) {
+      for (int j = from; j != to; j += step) {
+        const double share = static_cast<double>(j) / pieces;
+        contour.push_back({frame.centre().x + half_bars / (2 * (first + (highest - first) * share)),
+                           top + (bottom - top) * share});
+      }
+    };
+    side(place + 0.5, 0, pieces + 1, 1);
+    side(place - 0.5, pieces, -1, -1);
+    add(scene, std::move(contour));
+  }
+  return scene;
+}
+
+/// Lines of writing, each three quarters as high as the one above it, that say how high their capitals are.
+TargetScene text_lines_chart(const Frame& frame) {
+  constexpr double ratio = 0.8, smallest_px = 3, tilt_deg = 2;
+  constexpr double used = 0.86;        // of the picture
+  constexpr double least_pitch = 1.6;  // of the capitals' height
+  const auto text_at = [](double height) { return fmt::format("{:.1f} Petzval 1840", height); };
+  const double largest = std::min(used * frame.width / text_width(text_at(99.9), {1, 0, 0}),
+                                  used * frame.height * (1 - ratio) / least_pitch);
+  std::vector<double> heights;
+  double sum = 0;
+  for (double height = largest; height >= smallest_px; height *= ratio) {
+    heights.push_back(height);
+    sum += height;
+  }
+  TargetScene scene;
+  const double pitch = used * frame.height / sum;
+  double y = 0.5 * (1 - used) * frame.height;
+  for (const double height : heights) {
+    const TextStyle style{height, tilt_deg, 0};
+    const std::string text = text_at(height);
+    const std::vector<Polygon> line =
+        text_polygons(text, {0.5 * (frame.width - text_width(text, style)), y}, style);
+    scene.polygons.insert(scene.polygons.end(), line.begin(), line.end());
+    y += pitch * height;
+  }
+  return scene;
+}
+
 TargetScene zone_plate(const Frame& frame) {
   // The phase is π r²/(2R): its frequency r/(2R) is 0.5 cycles/pixel at the rim R. Dark where the cosine is
   // negative.
@@ -112,7 +170,8 @@ TargetScene zone_plate(const Frame& frame) {
 }  // namespace
 
 std::vector<std::string> test_chart_names() {
-  return {"checkerboard", "pinch", "siemens", "slanted-edges", "slanted-star", "zone-plate"};
+  return {"checkerboard", "pinch", "siemens", "slanted-edges",
+          "slanted-star", "text",  "trumpet", "zone-plate"};
 }
 
 TargetScene test_chart(const std::string& name, int columns, int rows) {
@@ -126,6 +185,8 @@ TargetScene test_chart(const std::string& name, int columns, int rows) {
   if (name == "siemens") return sectors(frame, 36, 0);
   if (name == "checkerboard") return checkerboard(frame);
   if (name == "pinch") return pinch(frame);
+  if (name == "trumpet") return trumpet(frame);
+  if (name == "text") return text_lines_chart(frame);
   if (name == "zone-plate") return zone_plate(frame);
   throw InputError(fmt::format("no chart '{}'; the nearest are {}", name,
                                fmt::join(nearest_names(name, test_chart_names()), ", ")));

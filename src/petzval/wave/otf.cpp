@@ -59,7 +59,7 @@ std::unique_ptr<RadialOtf> radial_pupil_otf(const RadialPupil& pupil, double wav
   // Fine enough for the oscillations that aberrations bring: an error of 1e-11 with a cubic.
   const int steps = std::min(1 << 20, 4096 + 256 * static_cast<int>(std::ceil(radius)));
   return std::make_unique<RadialOtf>(radial_otf_table(pupil, steps), 1e3 / unit_um,
-                                     PsfTail{tail.k3 * unit_um, tail.k5 * unit_um * unit_um * unit_um},
+                                     PsfTail{tail.k3 * unit_um, tail.k5 * unit_um * unit_um * unit_um, 0},
                                      (radius + 2) * unit_um);
 }
 
@@ -110,6 +110,7 @@ PsfTail MixedOtf::tail() const {
     const PsfTail one = part.otf->tail();
     sum.k3_um += part.weight * one.k3_um;
     sum.k5_um3 += part.weight * one.k5_um3;
+    sum.settled_um = std::max(sum.settled_um, one.settled_um);
   }
   return sum;
 }

@@ -14,6 +14,9 @@ namespace petzval {
 /// Mean of a PSF over direction and over its own ripple, far away: share of light per µm² → k3/r³ + k5/r⁵.
 struct PsfTail {
   double k3_um = 0, k5_um3 = 0;
+  /// From this distance on, at the least, what the PSF has beyond these terms (spikes, further powers) may be
+  /// left out; 0: as soon as the PSF's reach is passed.
+  double settled_um = 0;
 };
 
 /// OTF(f) = ∬ PSF(x) exp(−2πi f·x) d²x, with the PSF's integral 1; x to the right and y down in the stored

@@ -41,7 +41,7 @@ SampledOtf::SampledOtf(const Psf& psf) {
 }
 
 PsfTail SampledOtf::tail() const {
-  return {(1 - captured_) * radius_um_ / (2 * pi), 0};
+  return {(1 - captured_) * radius_um_ / (2 * pi), 0, 0};
 }
 
 std::complex<double> SampledOtf::table_at(int k, int l) const {
