@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/numeric/random.h>
+#include <petzval/numeric/random_lanes.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -136,6 +137,53 @@ TEST(RandomStream, PoissonTakesTheEdges) {
   EXPECT_EQ(random.poisson(1e-300), 0);
   EXPECT_THROW(random.poisson(std::numeric_limits<double>::quiet_NaN()), InputError);
   EXPECT_THROW(random.poisson(std::numeric_limits<double>::infinity()), InputError);
+}
+
+// A number that is no multiple of any vector's lanes, at places whose lower half overflows on the way.
+constexpr std::size_t many = 100'003;
+constexpr std::uint64_t early = (std::uint64_t{7} << 32) - 1000;
+
+TEST(RandomLanes, HaveTheBitsOfTheStreams) {
+  std::vector<double> first(many), second(many), alone(many);
+  uniform_numbers(0x123456789abcdef, 5, early, first, second);
+  uniform_numbers(0x123456789abcdef, 5, early, alone, {});
+  for (std::size_t i = 0; i < many; ++i) {
+    RandomStream stream(0x123456789abcdef, 5, early + i);
+    ASSERT_EQ(first[i], stream.uniform()) << i;
+    ASSERT_EQ(second[i], stream.uniform()) << i;
+    ASSERT_EQ(alone[i], first[i]) << i;
+  }
+}
+
+TEST(RandomLanes, AreNormalAsTheQuantileIs) {
+  std::vector<double> values(many);
+  uniform_numbers(3, 1, 0, values, {});
+  // Where its pieces meet, and far out.
+  const std::vector<double> special = {0.5,     0.075, 0.925,   1e-11,      1.3e-11,
+                                       1.5e-11, 1e-16, 0x1p-53, 1 - 0x1p-53};
+  values.insert(values.begin() + 1000, special.begin(), special.end());
+  const std::vector<double> probabilities = values;
+  to_normal(values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double expected = normal_quantile(probabilities[i]);
+    // Fused multiplications and another logarithm: some units of 1.1e-16.
+    ASSERT_NEAR(values[i], expected, 1e-14 * std::abs(expected)) << probabilities[i];
+  }
+}
+
+TEST(RandomLanes, CountAsTheStreamsDo) {
+  const double kinds[] = {0, -1, 1e-5, 0.3, 5, 9.999, 10, 10.5, 50, 1e3, 2e4, 1e9, 1e15};
+  std::vector<double> means(many), numbers(many);
+  for (std::size_t i = 0; i < many; ++i) means[i] = kinds[i % std::size(kinds)];
+  poisson_numbers(11, 4, early, means, numbers);
+  for (std::size_t i = 0; i < many; ++i)
+    ASSERT_EQ(numbers[i], RandomStream(11, 4, early + i).poisson(means[i])) << means[i];
+  poisson_numbers(11, 4, early, means, means);  // in place
+  EXPECT_EQ(means, numbers);
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), 2e15}) {
+    std::vector<double> one = {wrong};
+    EXPECT_THROW(poisson_numbers(1, 1, 1, one, one), InputError);
+  }
 }
 
 }  // namespace

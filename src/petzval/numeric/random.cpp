@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
+#include <petzval/numeric/normal_quantile_terms.h>
 #include <petzval/numeric/random.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@ namespace petzval {
 
 namespace {
 
+using namespace normal_quantile_terms;
 using Words = std::array<std::uint32_t, 4>;
 
 Words philox_round(const Words& c, std::uint32_t key0, std::uint32_t key1) {
@@ -23,43 +25,6 @@ double polynomial(const double (&coefficients)[N], double x) {
   for (std::size_t i = N - 1; i-- > 0;) sum = sum * x + coefficients[i];
   return sum;
 }
-
-// Coefficients of AS 241, PPND16: near the middle, in the flanks, in the tails.
-constexpr double middle_over[] = {
-    3.3871328727963666080e0,  1.3314166789178437745e+2, 1.9715909503065514427e+3, 1.3731693765509461125e+4,
-    4.5921953931549871457e+4, 6.7265770927008700853e+4, 3.3430575583588128105e+4, 2.5090809287301226727e+3};
-constexpr double middle_under[] = {1.0,
-                                   4.2313330701600911252e+1,
-                                   6.8718700749205790830e+2,
-                                   5.3941960214247511077e+3,
-                                   2.1213794301586595867e+4,
-                                   3.9307895800092710610e+4,
-                                   2.8729085735721942674e+4,
-                                   5.2264952788528545610e+3};
-constexpr double flank_over[] = {1.42343711074968357734e0,  4.63033784615654529590e0,
-                                 5.76949722146069140550e0,  3.64784832476320460504e0,
-                                 1.27045825245236838258e0,  2.41780725177450611770e-1,
-                                 2.27238449892691845833e-2, 7.74545014278341407640e-4};
-constexpr double flank_under[] = {1.0,
-                                  2.05319162663775882187e0,
-                                  1.67638483018380384940e0,
-                                  6.89767334985100004550e-1,
-                                  1.48103976427480074590e-1,
-                                  1.51986665636164571966e-2,
-                                  5.47593808499534494600e-4,
-                                  1.05075007164441684324e-9};
-constexpr double tail_over[] = {6.65790464350110377720e0,  5.46378491116411436990e0,
-                                1.78482653991729133580e0,  2.96560571828504891230e-1,
-                                2.65321895265761230930e-2, 1.24266094738807843860e-3,
-                                2.71155556874348757815e-5, 2.01033439929228813265e-7};
-constexpr double tail_under[] = {1.0,
-                                 5.99832206555887937690e-1,
-                                 1.36929880922735805310e-1,
-                                 1.48753612908506148525e-2,
-                                 7.86869131145613259100e-4,
-                                 1.84631831751005468180e-5,
-                                 1.42151175831644588870e-7,
-                                 2.04426310338993978564e-15};
 
 /// log k!, by table below 128 and by Stirling's series above (next term below 1e-17).
 class LogFactorial {
@@ -118,13 +83,14 @@ double RandomStream::uniform() {
 
 double normal_quantile(double probability) {
   const double q = probability - 0.5;
-  if (std::abs(q) <= 0.425) {
-    const double r = 0.180625 - q * q;
+  if (std::abs(q) <= middle_half_width) {
+    const double r = middle_square - q * q;
     return q * polynomial(middle_over, r) / polynomial(middle_under, r);
   }
   const double r = std::sqrt(-std::log(q < 0 ? probability : 1 - probability));
-  const double value = r <= 5 ? polynomial(flank_over, r - 1.6) / polynomial(flank_under, r - 1.6)
-                              : polynomial(tail_over, r - 5) / polynomial(tail_under, r - 5);
+  const double value =
+      r <= tail_start ? polynomial(flank_over, r - flank_start) / polynomial(flank_under, r - flank_start)
+                      : polynomial(tail_over, r - tail_start) / polynomial(tail_under, r - tail_start);
   return q < 0 ? -value : value;
 }
 
@@ -136,8 +102,7 @@ double RandomStream::poisson(double mean) {
   constexpr double greatest = 1e15;  // above, whole numbers are no longer exact in the sums
   if (!(mean <= greatest)) throw InputError("the mean of a Poisson variable must be a number up to 1e15");
   if (mean <= 0) return 0;
-  constexpr double change_over = 10;
-  return mean < change_over ? poisson_by_inversion(mean) : poisson_by_rejection(mean);
+  return mean < poisson_rejection_least_mean ? poisson_by_inversion(mean) : poisson_by_rejection(mean);
 }
 
 double RandomStream::poisson_by_inversion(double mean) {

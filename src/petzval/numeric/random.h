@@ -50,6 +50,9 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
+/// From this mean on Poisson numbers are drawn by rejection.
+constexpr double poisson_rejection_least_mean = 10;
+
 /// The standard normal deviate below which the share `probability` in (0, 1) of all lie; see
 /// RandomStream::normal.
 double normal_quantile(double probability);

@@ -4,6 +4,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/numeric/interpolation.h>
 #include <petzval/numeric/random.h>
+#include <petzval/numeric/random_lanes.h>
 #include <petzval/sensor/capture.h>
 
 #include <algorithm>
@@ -144,17 +145,25 @@ class Exposure {
                                    : 0;
     const float* rates =
         current_.e_per_s.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(current_.columns);
-    auto defect = std::lower_bound(defects_.begin(), defects_.end(), Defect{first, false});
-    for (std::size_t c = 0; c < sums.size(); ++c) {
-      const std::uint64_t place = first + c;
-      double light_e = static_cast<double>(rates[c]) * exposure_s_, dark_e = dark_e_;
-      for (; defect != defects_.end() && defect->place == place; ++defect) {
-        if (defect->hot)
-          dark_e += hot_e_;
-        else
-          light_e = dark_e = 0;
-      }
-      sums[c] += number_of(light_e, dark_e, column_offsets_e_[c] + row_e, place, frame);
+    const std::size_t columns = sums.size();
+    std::vector<double> electrons(columns), offsets(column_offsets_e_), random(columns);
+    for (double& offset : offsets) offset += row_e;
+    for (std::size_t c = 0; c < columns; ++c) electrons[c] = static_cast<double>(rates[c]) * exposure_s_;
+    if (prnu_ > 0 || dsnu_e_ > 0) add_pixel_patterns(first, electrons, offsets, random);
+    for (double& e : electrons) e += dark_e_;
+    add_defects(first, electrons);
+    if (options_.has(NoiseSource::shot))
+      poisson_numbers(options_.seed, of_frame(shot_noise, frame), first, electrons, electrons);
+    if (read_e_ > 0) {
+      uniform_numbers(options_.seed, of_frame(read_noise, frame), first, random, {});
+      to_normal(random);
+    }
+    for (std::size_t c = 0; c < columns; ++c) {
+      double signal_e = std::min(electrons[c], mode_.full_well_e) + offsets[c];
+      if (!linearity_.is_exact()) signal_e = linearity_(signal_e);
+      if (read_e_ > 0) signal_e += read_e_ * random[c];
+      const double dn = std::floor(electronics_.black_level_dn + dn_per_e_ * signal_e + 0.5);
+      sums[c] += static_cast<std::uint32_t>(std::clamp(dn, 0.0, electronics_.white_level_dn));
     }
   }
 
@@ -165,22 +174,25 @@ class Exposure {
            static_cast<std::uint64_t>(current_.first_column);
   }
 
-  std::uint32_t number_of(double light_e, double dark_e, double offset_e, std::uint64_t place,
-                          int frame) const {
-    if (prnu_ > 0 || dsnu_e_ > 0) {
-      RandomStream pattern(serial_, pixel_pattern, place);
-      light_e *= std::max(0.0, 1 + prnu_ * pattern.normal());
-      offset_e += dsnu_e_ * pattern.normal();
+  /// The two deviates of each pixel's stream: of its gain and of its offset.
+  void add_pixel_patterns(std::uint64_t first, std::span<double> light_e, std::span<double> offsets_e,
+                          std::span<double> random) const {
+    std::vector<double> second(light_e.size());
+    uniform_numbers(serial_, pixel_pattern, first, random, second);
+    to_normal(random);
+    to_normal(second);
+    for (std::size_t c = 0; c < light_e.size(); ++c) {
+      light_e[c] *= std::max(0.0, 1 + prnu_ * random[c]);
+      offsets_e[c] += dsnu_e_ * second[c];
     }
-    double electrons = light_e + dark_e;
-    if (options_.has(NoiseSource::shot))
-      electrons = RandomStream(options_.seed, of_frame(shot_noise, frame), place).poisson(electrons);
-    double signal_e = std::min(electrons, mode_.full_well_e) + offset_e;
-    if (!linearity_.is_exact()) signal_e = linearity_(signal_e);
-    if (read_e_ > 0)
-      signal_e += read_e_ * RandomStream(options_.seed, of_frame(read_noise, frame), place).normal();
-    const double dn = std::floor(electronics_.black_level_dn + dn_per_e_ * signal_e + 0.5);
-    return static_cast<std::uint32_t>(std::clamp(dn, 0.0, electronics_.white_level_dn));
+  }
+
+  void add_defects(std::uint64_t first, std::span<double> electrons) const {
+    for (auto defect = std::lower_bound(defects_.begin(), defects_.end(), Defect{first, false});
+         defect != defects_.end() && defect->place < first + electrons.size(); ++defect) {
+      double& e = electrons[defect->place - first];
+      e = defect->hot ? e + hot_e_ : 0;
+    }
   }
 
   const PhotoCurrent& current_;
