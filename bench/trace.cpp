@@ -6,7 +6,6 @@
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/parallel.h>
 #include <petzval/lens/lens_file.h>
-#include <petzval/optics/build.h>
 #include <petzval/trace/exit_pupil_region.h>
 #include <petzval/trace/radiance_tracer.h>
 
@@ -40,6 +39,10 @@ void use_target(benchmark::State& state) {
   hwy::SetSupportedTargetsForTest(target);
   state.SetLabel(hwy::TargetName(target));
 }
+/// Leaves all instruction sets to whoever comes next.
+struct TargetsGivenBack {
+  ~TargetsGivenBack() { hwy::SetSupportedTargetsForTest(0); }
+};
 #define EACH_TARGET Arg(HWY_AVX3)->Arg(HWY_AVX2)->Arg(HWY_SSE4)
 
 template <class T>
@@ -67,6 +70,7 @@ BENCHMARK(plain_loop<float>);
 BENCHMARK(plain_loop<double>);
 
 void batch_float(benchmark::State& state) {
+  const TargetsGivenBack at_the_end;
   use_target(state);
   const Lens lens = read_lens("dgauss-50mm").lens;
   const RadianceTracer tracer(Tracer(lens, 587.5618), RadianceTracer::Direction::forward, Tracer::Clip::none);
@@ -89,6 +93,7 @@ void batch_float(benchmark::State& state) {
 BENCHMARK(batch_float)->EACH_TARGET;
 
 void batch_double(benchmark::State& state) {
+  const TargetsGivenBack at_the_end;
   use_target(state);
   const Lens lens = read_lens("dgauss-50mm").lens;
   const Tracer tracer(lens, 587.5618);
@@ -145,17 +150,5 @@ void diffraction_psf(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(point_spread(tracer, chief, options));
 }
 BENCHMARK(diffraction_psf)->Arg(64)->Arg(128)->Unit(benchmark::kMillisecond);
-
-/// 21 fields × 31 wavelengths with 64 × 64 PSFs, one thread.
-void lens_data_table(benchmark::State& state) {
-  const ThreadLimit one(1);
-  const Lens lens = read_lens("dgauss-50mm").lens;
-  TableOptions options;
-  for (int i = 0; i < 31; ++i) options.wavelengths_nm.push_back(400 + 10 * i);
-  options.max_image_height_mm = 15;
-  options.psf_size = 64;
-  for (auto _ : state) benchmark::DoNotOptimize(build_lens_data_table(lens, options));
-}
-BENCHMARK(lens_data_table)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 }  // namespace

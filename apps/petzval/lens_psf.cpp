@@ -17,6 +17,7 @@
 
 #include "field_option.h"
 #include "lens_commands.h"
+#include "loss_option.h"
 
 namespace petzval::app {
 
@@ -26,6 +27,7 @@ struct PsfCommand {
   LensChoice lens;
   FieldChoice fields;
   PsfOptions psf;
+  LossChoice losses;
   std::string method = "rays";
   int pupil_samples = 256;
   std::string output;
@@ -69,6 +71,7 @@ std::vector<PsfRow> psf_rows(const PsfCommand& options, const Lens& lens, const 
     const double object = object_field(lens, request.field_kind, field);
     for (const double wavelength : request.wavelengths_nm) {
       FieldTracer tracer(lens, wavelength, request.clip);
+      tracer.set_losses(request.losses);
       const std::optional<ChiefRay> chief = tracer.chief_ray(object);
       const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options.psf) : std::nullopt;
       if (!psf)
@@ -133,7 +136,8 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
 void psf(const PsfCommand& options, const Shared& shared) {
   if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
   const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
-  const FieldTableRequest request = options.fields.request(lens);
+  FieldTableRequest request = options.fields.request(lens);
+  request.losses = options.losses.losses(lens, shared);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);
   if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);
   if (shared.json) {
@@ -200,6 +204,7 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
   command->add_option("--pupil-samples", options->pupil_samples, "Points across the pupil of --method fft")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
+  options->losses.add_to(*command);
   command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy");
 }
 

@@ -20,6 +20,7 @@
 #include <memory>
 
 #include "field_option.h"
+#include "loss_option.h"
 
 namespace petzval::app {
 
@@ -28,6 +29,7 @@ namespace {
 struct BuildCommand {
   LensChoice lens;
   FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
+  LossChoice losses;
   std::string output, wavelengths, sensor;
   std::string focus = "design";
   std::optional<double> f_number, image_height_mm;
@@ -94,10 +96,11 @@ void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
 }
 
 void build(const BuildCommand& command, const Shared& shared) {
-  const TableOptions options = table_options(command);
+  TableOptions options = table_options(command);
   Camera camera(command.apertures.prepare(command.lens.read(shared), shared));
   if (command.f_number) camera.set_f_number(*command.f_number);
   take_focus(camera, command.focus);
+  options.losses = command.losses.losses(camera.lens(), shared);
   ProgressBar bar(!shared.quiet);
   const LensDataTable table = build_lens_data_table(camera.lens(), options, bar.callback());
   note_short_table(table, options.max_image_height_mm, shared);
@@ -276,6 +279,7 @@ void add_build(CLI::App& optics, Shared& shared) {
       ->check(CLI::IsMember({"file", "from-fields"}));
   command->add_flag("--ignore-apertures", options->apertures.ignore_apertures,
                     "Let nothing but the stop clip the rays");
+  options->losses.add_to(*command);
 }
 
 struct ImportCommand {

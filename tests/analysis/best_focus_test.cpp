@@ -53,7 +53,8 @@ TEST(BestSpotFocus, OfAPerfectLensIsItsFocus) {
   const FieldTableRequest request = FieldTableRequest::of(lens);
   const BestFocus spot = best_spot_focus(lens, request), mtf = best_mtf_focus(lens, request, 50);
   EXPECT_NEAR(spot.shift_mm, -0.3, 1e-9);
-  EXPECT_NEAR(spot.after, 0, 1e-5);  // µm: the root of rounding, 1e-16 of the square of the beam's 4 mm · 0.01
+  EXPECT_NEAR(spot.after, 0,
+              1e-5);  // µm: the root of rounding, 1e-16 of the square of the beam's 4 mm · 0.01
   EXPECT_NEAR(mtf.shift_mm, -0.3, 1e-4);
   EXPECT_GT(mtf.after, mtf.before + 0.3);
 }

@@ -203,6 +203,73 @@ TEST(PointSpread, HoldsTheWantedShareOfTheLight) {
   }
 }
 
+/// Light of the cells about the middle, by their place, in two windows of the same cells.
+double worst_over_peak_where_both_are(const Psf& small, const Psf& large) {
+  double worst = 0, peak = 0;
+  const int shift = large.size / 2 - small.size / 2;
+  for (int i = 0; i < small.size; ++i)
+    for (int j = 0; j < small.size; ++j) {
+      const double one = small.at(i, j) * small.captured,
+                   other = large.at(i + shift, j + shift) * large.captured;
+      worst = std::max(worst, std::abs(one - other));
+      peak = std::max(peak, other);
+    }
+  return worst / peak;
+}
+
+TEST(PointSpread, OfAVignettedPupilDoesNotDependOnItsWindow) {
+  // More samples take more chords and nodes. Too few of them fold light from outside into the window: 1e-3 of
+  // the peak where only the pupil's height counts and not the rim that ends the chords.
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  FieldTracer tracer(lens, 650);
+  for (const double field : {10.0, 20.0}) {
+    const SmoothPupil pupil = *fit_pupil(tracer, *tracer.chief_ray(field));
+    ASSERT_FALSE(pupil.corners.empty());
+    PsfOptions options;
+    options.size = 64;
+    const Psf own = point_spread(pupil, options);
+    const auto at = [&](int size) { return sum_chords(pupil, {size, own.spacing_um, 7}); };
+    EXPECT_LT(worst_over_peak_where_both_are(at(64), at(112)), 5e-6) << field << ": single precision";
+  }
+}
+
+Losses bare_glass() {
+  Losses losses;
+  losses.fresnel = true;
+  return losses;
+}
+
+TEST(PointSpread, OfCoatedSurfacesHasTheSameShape) {
+  // A reflectance that is the same for all rays dims the pupil and leaves its form.
+  const Lens lens = read_lens("cooke-triplet").lens;
+  FieldTracer clear(lens, 550), coated(lens, 550);
+  Losses losses;
+  losses.air_glass = CoatingReflectance::constant(0.02);
+  coated.set_losses(losses);
+  const ChiefRay chief = *clear.chief_ray(12);
+  const SmoothPupil bright = *fit_pupil(clear, chief), dim = *fit_pupil(coated, chief);
+  EXPECT_NEAR(dim.flux / bright.flux, std::pow(0.98, 6), 1e-12) << "three lenses, six surfaces";
+  const Psf one = point_spread(bright), other = point_spread(dim);
+  ASSERT_EQ(one.size, other.size);
+  EXPECT_LT(worst_over_peak_where_both_are(one, other), 1e-6);
+  EXPECT_NEAR(one.captured, other.captured, 1e-6);
+}
+
+TEST(PointSpread, CountsLossesTheSameByChordsAndByNodes) {
+  // Bare glass reflects more towards the rim, more so at the image's end of a fast lens.
+  const Lens lens = read_lens("edmund-54852").lens;
+  FieldTracer clear(lens, 550), lossy(lens, 550);
+  lossy.set_losses(bare_glass());
+  const ChiefRay chief = *clear.chief_ray(-100);
+  const SmoothPupil fitted = *fit_pupil(lossy, chief);
+  const PupilWaves nodes = *pupil_waves(lossy, chief, 32, 128);
+  EXPECT_NEAR(fitted.flux / nodes.flux, 1, 2e-4) << "128 azimuths cut corners";
+  EXPECT_NEAR(fitted.flux / lossy.object_flux(chief), 1, 1e-4);
+  EXPECT_LT(fitted.flux / fit_pupil(clear, chief)->flux, 0.7) << "ten bare surfaces";
+  const Psf chords = sum_chords(fitted, {48, 0.5, 1}), waves = sum_plane_waves(nodes, 48, 0.5);
+  EXPECT_LT(worst_over_peak_where_both_are(chords, waves), 1e-3);
+}
+
 TEST(PupilFit, MeetsTheTracedPupil) {
   // Vignetted by two or three apertures: corners.
   for (const auto& [name, field] :

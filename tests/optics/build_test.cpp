@@ -32,6 +32,9 @@ TEST(BuildTable, ReachesTheAskedHeightAndAPsfRadiusMore) {
   }
   EXPECT_TRUE(table.finite_object());
   EXPECT_DOUBLE_EQ(table.vertex_to_sensor_mm, lens.total_track_mm());
+  EXPECT_EQ(table.stop_semi_diameter_mm, stop_radius_mm(lens));
+  EXPECT_GT(std::abs(*table.stop_semi_diameter_mm - table.first_order.stop_semi_diameter_mm), 1e-6)
+      << "the paraxial one is another";
 }
 
 TEST(BuildTable, HoldsWhatTheFieldTracerSays) {
@@ -45,6 +48,29 @@ TEST(BuildTable, HoldsWhatTheFieldTracerSays) {
     // The tracer's boundary of 256 azimuths cuts the corners of a vignetted pupil.
     EXPECT_NEAR(table.g_source_sr[f] / tracer.g_source_sr(chief), 1, f == 0 ? 1e-7 : 5e-5);
   }
+}
+
+TEST(BuildTable, CountsLosses) {
+  const Lens lens = read_lens("cooke-triplet").lens;
+  TableOptions options = small({550}, 8);
+  const LensDataTable clear = build_lens_data_table(lens, options);
+  options.losses.air_glass = CoatingReflectance::constant(0.01);
+  const LensDataTable coated = build_lens_data_table(lens, options);
+  options.losses = {};
+  options.losses.fresnel = true;
+  const LensDataTable bare = build_lens_data_table(lens, options);
+  for (std::size_t f = 0; f < clear.fields.size(); ++f) {
+    EXPECT_NEAR(coated.g_source_sr[f] / clear.g_source_sr[f], std::pow(0.99, 6), 1e-9);
+    EXPECT_NEAR(coated.g_sensor_sr[f] / clear.g_sensor_sr[f], std::pow(0.99, 6), 1e-5)
+        << "nodes for the area";
+    FieldTracer tracer(lens, 550);
+    tracer.set_losses(options.losses);
+    const ChiefRay chief = *tracer.chief_ray(bare.fields[f]);
+    EXPECT_NEAR(bare.g_source_sr[f] / tracer.g_source_sr(chief), 1, 1e-4);
+    EXPECT_NEAR(bare.g_sensor_sr[f] / tracer.g_sensor_sr(chief), 1, 1e-11) << "chief rays to rounding";
+    EXPECT_LT(bare.g_source_sr[f], 0.75 * clear.g_source_sr[f]) << "five per cent and more at six surfaces";
+  }
+  EXPECT_NE(coated.provenance, clear.provenance);
 }
 
 TEST(BuildTable, HoldsTheLightOfADefocusedLens) {

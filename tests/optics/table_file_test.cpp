@@ -98,7 +98,9 @@ TEST_F(TableFileTest, KeepsTheFirstOrderData) {
         &written.lagrange_invariant_mm})
     *number = next++;
   written.petzval_radius_mm = -INFINITY;
+  table.stop_semi_diameter_mm = 0.5;
   write_table(table, path("t.h5"));
+  EXPECT_EQ(read_table(path("t.h5")).stop_semi_diameter_mm, 0.5);
   const FirstOrder read = read_table(path("t.h5")).first_order;
   // every member is a double: the whole struct can be compared
   static_assert(sizeof(FirstOrder) == 18 * sizeof(double));

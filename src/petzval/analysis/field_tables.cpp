@@ -56,6 +56,22 @@ std::vector<Row> tabulate(const Lens& lens, const FieldTableRequest& request, Ma
   return rows;
 }
 
+/// h'/ideal − 1 [%] of the paraxial chief ray on the image surface: the limit of distortion at small fields.
+/// It is not zero where the sensor stands beside the paraxial image.
+double distortion_on_axis_percent(const Lens& lens, double wavelength_nm) {
+  constexpr double tangent = 1;  // any: the paraxial chief ray is linear
+  const double pupil = first_order(lens, wavelength_nm).entrance_pupil.position_mm;
+  double field = degrees(std::atan(tangent)), slope = tangent, height = -tangent * pupil;
+  if (lens.object_distance_mm) {
+    field = *lens.object_distance_mm;
+    const double to_pupil = field + pupil;
+    slope = std::isfinite(to_pupil) ? -field / to_pupil : 0;
+    height = field + slope * *lens.object_distance_mm;
+  }
+  const double ideal = ideal_image_height_mm(lens, field, wavelength_nm);
+  return 100 * (trace_paraxial(lens, height, slope, wavelength_nm).height_mm.back() / ideal - 1);
+}
+
 }  // namespace
 
 FieldTableRequest FieldTableRequest::of(const Lens& lens) {
@@ -74,7 +90,8 @@ std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRe
     row.paraxial_image_height_mm =
         has_ideal ? ideal_image_height_mm(lens, object_field, wavelength) : not_a_number;
     const auto percent = [&](double ideal) {
-      return ideal == 0 ? 0.0 : 100 * (row.image_height_mm - ideal) / ideal;
+      return object_field == 0 ? distortion_on_axis_percent(lens, wavelength)
+                               : 100 * (row.image_height_mm - ideal) / ideal;
     };
     row.distortion_percent = percent(row.paraxial_image_height_mm);
     if (!lens.object_distance_mm)

@@ -62,10 +62,14 @@ double FieldTracer::g_sensor_sr(const ChiefRay& chief) const {
   return pupil ? n * n * lit_area(Pencil::from_image(tracer_, chief.image_height_mm), *pupil) : 0.0;
 }
 
-double FieldTracer::g_source_sr(const ChiefRay& chief) {
+double FieldTracer::object_flux(const ChiefRay& chief) const {
   const std::optional<PupilBoundary> pupil = object_pupil(chief);
-  if (!pupil) return 0.0;
-  return lit_area(Pencil::from_object(lens_, chief.object_field), *pupil) * object_area_per_image_area(chief);
+  return pupil ? lit_area(Pencil::from_object(lens_, chief.object_field), *pupil) : 0.0;
+}
+
+double FieldTracer::g_source_sr(const ChiefRay& chief) {
+  const double flux = object_flux(chief);
+  return flux > 0 ? flux * object_area_per_image_area(chief) : 0.0;
 }
 
 void FieldTracer::set_losses(const Losses& losses) {

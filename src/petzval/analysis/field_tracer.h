@@ -30,11 +30,14 @@ class FieldTracer {
   FieldTracer(const FieldTracer&) = delete;
   FieldTracer& operator=(const FieldTracer&) = delete;
 
-  /// From now on g_sensor and g_source count these losses. \throws InputError as LensTransmittance.
+  /// From now on g_sensor, g_source and the waves of PSFs count these losses. \throws InputError as
+  /// LensTransmittance.
   void set_losses(const Losses& losses);
 
   const Lens& lens() const { return lens_; }
   const Tracer& tracer() const { return tracer_; }
+  /// Of the losses that were set; null: none are counted.
+  const LensTransmittance* transmittance() const { return transmittance_ ? &*transmittance_ : nullptr; }
   Tracer::Clip clip() const { return clip_; }
 
   /// Nothing where no chief ray reaches the image surface.
@@ -54,6 +57,12 @@ class FieldTracer {
   /// The flux of one object point per area of its chief-ray image, per radiance [sr]; 0 where no ray passes.
   /// (docs/CONVENTIONS.md, "Radiometry".)
   double g_source_sr(const ChiefRay& chief);
+  /// ∬ T dq over the object pupil [mm² or sr]: g_source without object_area_per_image_area(); 0 where no ray
+  /// passes.
+  double object_flux(const ChiefRay& chief) const;
+
+  /// ∬ T du dv over a pupil, T of the losses that are counted, in the unit of PupilBoundary::area().
+  double lit_area(const Pencil& pencil, const PupilBoundary& pupil) const;
 
   /// dA_object/dA_chief: solid angle [sr/mm²] (infinity) or object area [mm²/mm²] per area of chief-ray
   /// image. \throws InputError where the chief ray's image stops moving outwards.
@@ -66,9 +75,6 @@ class FieldTracer {
   static constexpr int default_azimuths = 256;
 
  private:
-  /// ∬ T du dv.
-  double lit_area(const Pencil& pencil, const PupilBoundary& pupil) const;
-
   Lens lens_;
   Tracer tracer_;
   Tracer::Clip clip_;

@@ -187,9 +187,10 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
     waves.alpha.push_back(ray.alpha);
     waves.beta.push_back(ray.beta);
     waves.phase_waves.push_back(ray.phase_waves);
-    // a dα dβ = du dv / a.
-    waves.amplitude.push_back(ray.amplitude > 0 ? nodes[node].weight / ray.amplitude : 0);
-    waves.flux += 2 * nodes[node].weight;
+    // a dα dβ = T du dv / a.
+    const double light = nodes[node].weight * ray.transmittance;
+    waves.amplitude.push_back(ray.amplitude > 0 ? light / ray.amplitude : 0);
+    waves.flux += 2 * light;
   }
   if (waves.size() == 0) return {};
   return waves;

@@ -57,8 +57,13 @@ class RimWalk {
 
   /// Regula falsi (Illinois) from a bracket about both neighbours; they differ by little.
   double radius_at(double azimuth, double one, double other) const {
-    double inside = 0.8 * std::min(one, other), outside = 1.2 * std::max(one, other);
+    const double spread = 2 * std::abs(one - other) + corner_tolerance * one;
+    double inside = std::min(one, other) - spread, outside = std::max(one, other) + spread;
     double worst_inside = clearance(azimuth, inside).worst, worst_outside = clearance(azimuth, outside).worst;
+    if (!(worst_inside < 0) || !(worst_outside > 0)) {
+      inside = 0.8 * std::min(one, other), outside = 1.2 * std::max(one, other);
+      worst_inside = clearance(azimuth, inside).worst, worst_outside = clearance(azimuth, outside).worst;
+    }
     if (!(worst_inside < 0) || !(worst_outside > 0)) return 0.5 * (one + other);
     int side = 0;
     for (int i = 0; i < 60 && outside - inside > corner_tolerance * outside; ++i) {
@@ -172,7 +177,8 @@ std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& 
   if (!take_surfaces(rays, limits, pupil)) return {};
   pupil.flux = pupil.amplitude_square_integral();
   // What the boundary says of the same area knows nothing of outline, corners and amplitude.
-  if (!(std::abs(pupil.flux / boundary->area() - 1) < flux_tolerance)) return {};
+  const double area = tracer.lit_area(Pencil::from_object(tracer.lens(), chief.object_field), *boundary);
+  if (!(std::abs(pupil.flux / area - 1) < flux_tolerance)) return {};
   return pupil;
 }
 

@@ -43,9 +43,10 @@ std::optional<Psf> traced_spot(const FieldTracer& tracer, const ChiefRay& chief,
   };
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (!rays[n].passes) continue;
-    drop(rays[n].s_mm, rays[n].t_mm, nodes[n].weight);
-    drop(-rays[n].s_mm, rays[n].t_mm, nodes[n].weight);
-    all += 2 * nodes[n].weight;
+    const double light = nodes[n].weight * rays[n].transmittance;
+    drop(rays[n].s_mm, rays[n].t_mm, light);
+    drop(-rays[n].s_mm, rays[n].t_mm, light);
+    all += 2 * light;
   }
   if (!(inside > 0)) return {};
   Psf psf;

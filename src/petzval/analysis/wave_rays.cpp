@@ -32,6 +32,15 @@ RayBatch trace_with_neighbours(const FieldTracer& tracer, const Pencil& pencil,
   return rays;
 }
 
+/// T of the ray that was launched at a node.
+double transmittance_at(const FieldTracer& tracer, const Pencil& pencil, const PupilNode& node) {
+  if (!tracer.transmittance()) return 1;
+  const Ray launched = *pencil.ray(node.u, node.v);
+  std::vector<Intersection> path;
+  tracer.tracer().trace(launched, Tracer::Clip::none, &path);
+  return tracer.transmittance()->along(launched, path);
+}
+
 /// |∂(α, β)/∂(u, v)| from a ray and its two neighbours; 0 where one of them fails.
 double exit_jacobian(const RayBatch& rays, std::size_t ray, double nudge) {
   if (rays.status[ray + 1] != RayStatus::ok || rays.status[ray + 2] != RayStatus::ok) return 0;
@@ -62,9 +71,10 @@ std::vector<WaveRay> trace_wave_rays(const FieldTracer& tracer, const ChiefRay& 
     wave.alpha = rays.l[ray];
     wave.beta = outwards * rays.m[ray];
     wave.phase_waves = (rays.opl_mm[ray] + index * to_foot_mm - chief.at_image.opl_mm) / lambda_mm;
+    wave.transmittance = transmittance_at(tracer, pencil, nodes[node]);
     // dq = du dv, and dα dβ = |∂(α, β)/∂(u, v)| du dv.
     const double jacobian = exit_jacobian(rays, ray, nudge);
-    wave.amplitude = jacobian > 0 ? 1 / std::sqrt(jacobian) : 0;
+    wave.amplitude = jacobian > 0 ? std::sqrt(wave.transmittance / jacobian) : 0;
     wave.s_mm = x_mm;
     wave.t_mm = outwards * y_mm;
   }

@@ -12,7 +12,8 @@ namespace petzval {
 struct WaveRay {
   double alpha = 0, beta = 0;  ///< exit direction cosines, β towards positive t
   double phase_waves = 0;      ///< φ of PupilWaves
-  double amplitude = 0;        ///< a = √(dq/(dα dβ)), from the ray's real neighbours
+  double amplitude = 0;        ///< a = √(T dq/(dα dβ)), from the ray's real neighbours
+  double transmittance = 1;    ///< T, of the losses that the tracer counts
   double s_mm = 0, t_mm = 0;   ///< on the image surface, from the chief ray's point
   bool passes = false;         ///< reached the image; apertures are not asked
 };

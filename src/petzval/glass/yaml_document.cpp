@@ -76,7 +76,8 @@ class YamlReader {
         for (Event key = next(); key->type != YAML_MAPPING_END_EVENT; key = next()) {
           if (key->type != YAML_SCALAR_EVENT) fail(*key, "a key that is no plain text");
           const Event value = next();
-          result.members.emplace_back(scalar(*key), node(*value, depth + 1));
+          result.keys.push_back(scalar(*key));
+          result.items.push_back(node(*value, depth + 1));
         }
         return result;
       default:
@@ -92,8 +93,8 @@ class YamlReader {
 }  // namespace
 
 const YamlNode* YamlNode::find(std::string_view key) const {
-  for (const auto& [name, value] : members)
-    if (name == key) return &value;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (keys[i] == key) return &items[i];
   return nullptr;
 }
 

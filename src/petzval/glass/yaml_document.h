@@ -4,7 +4,6 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -13,11 +12,11 @@ namespace petzval {
 struct YamlNode {
   enum class Kind { scalar, list, mapping } kind = Kind::scalar;
   int line = 0;
-  std::string text;                                       ///< of a scalar
-  std::vector<YamlNode> items;                            ///< of a list
-  std::vector<std::pair<std::string, YamlNode>> members;  ///< of a mapping
+  std::string text;               ///< of a scalar
+  std::vector<std::string> keys;  ///< of a mapping, one an item
+  std::vector<YamlNode> items;    ///< of a list or a mapping
 
-  /// The member of that key; null if there is none or this is no mapping.
+  /// The item of that key; null if there is none or this is no mapping.
   const YamlNode* find(std::string_view key) const;
 };
 

@@ -155,9 +155,26 @@ TableOptions completed(const Lens& lens, TableOptions options) {
   return options;
 }
 
-void fill_entry(FieldTracer& tracer, double object_field, const PsfOptions& options, LensDataTable& table,
-                std::size_t entry) {
-  const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+/// One chief ray, and object_area_per_image_area() there; nothing where there is none.
+struct TableRay {
+  std::optional<ChiefRay> chief;
+  double object_area = 0;
+};
+
+/// Those of all fields at a wavelength, each found from the last.
+std::vector<TableRay> table_rays(FieldTracer& tracer, double sign, const std::vector<double>& fields) {
+  std::vector<TableRay> rays;
+  for (const double field : fields) {
+    TableRay ray{tracer.chief_ray(sign * field)};
+    if (ray.chief) ray.object_area = tracer.object_area_per_image_area(*ray.chief);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+void fill_entry(const FieldTracer& tracer, double object_field, const TableRay& ray,
+                const PsfOptions& options, LensDataTable& table, std::size_t entry) {
+  const std::optional<ChiefRay>& chief = ray.chief;
   const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief) : std::nullopt;
   std::optional<Psf> psf;
   if (pupil) psf = point_spread(*pupil, options);
@@ -167,8 +184,7 @@ void fill_entry(FieldTracer& tracer, double object_field, const PsfOptions& opti
                                  object_field, tracer.tracer().wavelength_nm()));
   table.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
   // The fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
-  table.g_source_sr[entry] =
-      pupil ? pupil->flux * tracer.object_area_per_image_area(*chief) : tracer.g_source_sr(*chief);
+  table.g_source_sr[entry] = ray.object_area * (pupil ? pupil->flux : tracer.object_flux(*chief));
   table.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
   table.psf[entry] = *psf;
 }
@@ -193,10 +209,13 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
   LensDataTable table;
   table.lens_name = lens.name;
   table.lens_json = lens_to_json(lens);
-  table.provenance = fmt::format("petzval {} lens data table from the prescription", version());
+  table.provenance =
+      fmt::format("petzval {} lens data table from the prescription{}", version(),
+                  options.losses.any() ? ", losses in the glass and at its surfaces counted" : "");
   table.object_distance_mm = lens.object_distance_mm;
   table.vertex_to_sensor_mm = lens.total_track_mm();
   table.first_order = first_order(lens);
+  if (const double radius = stop_radius_mm(lens); std::isfinite(radius)) table.stop_semi_diameter_mm = radius;
   table.wavelengths_nm = options.wavelengths_nm;
   table.fields = choose_fields(lens, options);
   const std::size_t fields = table.fields.size(), entries = fields * table.wavelengths_nm.size();
@@ -208,10 +227,16 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
   const PsfOptions psf_options = psf_options_of(options);
   const double sign = towards_positive_image(lens);
   std::atomic<std::size_t> done{0};
+  std::vector<std::vector<TableRay>> rays(table.wavelengths_nm.size());
+  parallel_for(rays.size(), [&](std::size_t w) {
+    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
+    rays[w] = table_rays(tracer, sign, table.fields);
+  });
   parallel_for(entries, [&](std::size_t entry) {
     const std::size_t w = entry / fields, f = entry % fields;
     FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    fill_entry(tracer, sign * table.fields[f], psf_options, table, table.index(f, w));
+    tracer.set_losses(options.losses);
+    fill_entry(tracer, sign * table.fields[f], rays[w][f], psf_options, table, table.index(f, w));
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(entries), "lens data table");
   });
   table.validate();

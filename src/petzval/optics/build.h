@@ -4,6 +4,7 @@
 
 #include <petzval/base/progress.h>
 #include <petzval/optics/lens_data_table.h>
+#include <petzval/trace/losses.h>
 #include <petzval/trace/tracer.h>
 
 #include <vector>
@@ -20,6 +21,7 @@ struct TableOptions {
   int psf_size = 0;      ///< cells a side of every PSF, as wide as each one needs; 0: as many as needed, too
   int largest_psf_size = 256;
   Tracer::Clip clip = Tracer::Clip::apertures;
+  Losses losses = {};  ///< that g_source, g_sensor and the PSFs count
 
   /// \throws InputError saying what would be right.
   void validate() const;

@@ -20,6 +20,9 @@ struct LensDataTable {
   std::string lens_json;   ///< the prescription it was built from, native JSON; may be empty
   std::optional<double> object_distance_mm;  ///< object to vertex 1; absent = infinity
   double vertex_to_sensor_mm = 0;            ///< vertex 1 to the image surface, along the axis
+  /// Real height at the stop of the rays that its rim lets through; absent where it is not known, as in
+  /// tables of other programs.
+  std::optional<double> stop_semi_diameter_mm;
   FirstOrder first_order;
 
   /// Object field, from 0, increasing: degrees when the object is at infinity, mm when it is finite.

@@ -38,7 +38,7 @@ void for_each_first_order(FirstOrderOrConst& data, const Visit& visit) {
   visit("petzval_radius_mm", data.petzval_radius_mm);
   visit("total_track_mm", data.total_track_mm);
   visit("paraxial_image_mm", data.paraxial_image_mm);
-  visit("stop_semi_diameter_mm", data.stop_semi_diameter_mm);
+  visit("paraxial_stop_semi_diameter_mm", data.stop_semi_diameter_mm);
   visit("lagrange_invariant_mm", data.lagrange_invariant_mm);
 }
 

@@ -157,6 +157,8 @@ void read_header(const TableFile& file, LensDataTable& table) {
   if (const double distance = file.number(file.root(), "object_distance_mm"); !std::isinf(distance))
     table.object_distance_mm = distance;
   table.vertex_to_sensor_mm = file.number(file.root(), "vertex_to_sensor_mm");
+  if (H5Aexists(file.root(), "stop_semi_diameter_mm") > 0)
+    table.stop_semi_diameter_mm = file.number(file.root(), "stop_semi_diameter_mm");
   const Hdf5Handle group = file.group(table_layout::first_order);
   table_layout::for_each_first_order(
       table.first_order, [&](const char* name, double& number) { number = file.number(group.id(), name); });

@@ -191,6 +191,7 @@ void write_header(hid_t file, const LensDataTable& table) {
   write_number(file, "object_distance_mm",
                table.object_distance_mm.value_or(std::numeric_limits<double>::infinity()));
   write_number(file, "vertex_to_sensor_mm", table.vertex_to_sensor_mm);
+  if (table.stop_semi_diameter_mm) write_number(file, "stop_semi_diameter_mm", *table.stop_semi_diameter_mm);
   const Hdf5Handle group =
       checked(H5Gcreate2(file, table_layout::first_order, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   table_layout::for_each_first_order(

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace petzval {
 
@@ -43,22 +44,37 @@ class PupilSearch {
 
   /// The meridional ray that clears the apertures best: the clearance is quasi-convex along v, so a coarse
   /// scan and a golden section find it. Nothing if none passes.
-  std::optional<double> best_centre(double chief_v, double scale) const {
-    if (worst(0, chief_v) < comfortable_clearance) return chief_v;
-    constexpr int steps = 60;
+  std::optional<double> best_centre(double chief_v, double scale, ClearanceBatch& clearances) const {
     double best = chief_v, best_worst = worst(0, chief_v);
-    for (int i = -steps; i <= steps; ++i) {
-      const double v = chief_v + 3.0 * scale * i / steps, w = worst(0, v);
-      if (w < best_worst) {
-        best = v;
-        best_worst = w;
+    if (best_worst < comfortable_clearance) return chief_v;
+    constexpr int steps = 60;
+    std::vector<double> v;
+    for (int i = -steps; i <= steps; ++i) v.push_back(chief_v + 3.0 * scale * i / steps);
+    const std::vector<double> u(v.size(), 0.0);
+    std::vector<double> scanned(v.size());
+    clearances.measure(u, v, scanned);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (scanned[i] < best_worst) {
+        best = v[i];
+        best_worst = scanned[i];
       }
-    }
     double low = best - 3.0 * scale / steps, high = best + 3.0 * scale / steps;
+    constexpr int section_steps = 40;  // to 1e-8 of the interval: any inner point will do
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
-    for (int i = 0; i < 60; ++i) {
-      const double a = high - golden * (high - low), b = low + golden * (high - low);
-      (worst(0, a) < worst(0, b) ? high : low) = worst(0, a) < worst(0, b) ? b : a;
+    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double at_a = worst(0, a), at_b = worst(0, b);
+    for (int i = 0; i < section_steps; ++i) {
+      if (at_a < at_b) {
+        high = std::exchange(b, a);
+        at_b = at_a;
+        a = high - golden * (high - low);
+        at_a = worst(0, a);
+      } else {
+        low = std::exchange(a, b);
+        at_a = at_b;
+        b = low + golden * (high - low);
+        at_b = worst(0, b);
+      }
     }
     const double refined = 0.5 * (low + high);
     if (worst(0, refined) < best_worst) best = refined;
@@ -200,13 +216,13 @@ std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& penc
     throw InputError("a pupil boundary needs an even number of azimuths, 8 or more");
   const PupilSearch search(tracer, pencil, clip);
   const double scale = search.stop_scale(chief_v);
-  const std::optional<double> centre = search.best_centre(chief_v, scale);
+  ClearanceBatch clearances(tracer, pencil, clip);
+  const std::optional<double> centre = search.best_centre(chief_v, scale, clearances);
   if (!centre) return {};
   PupilBoundary boundary;
   boundary.centre_v = *centre;
   boundary.chief_v = chief_v;
   const double worst_at_centre = search.worst(0, *centre);
-  ClearanceBatch clearances(tracer, pencil, clip);
   find_radii(first_azimuths, worst_at_centre, scale, clearances, boundary);
   boundary.stretch = stretch_of(boundary);
   const double guess = *std::max_element(boundary.radius.begin(), boundary.radius.end());

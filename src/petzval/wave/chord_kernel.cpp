@@ -1,70 +1,137 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <hwy/aligned_allocator.h>
 #include <petzval/wave/chord_kernel.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <memory>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/wave/chord_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: after highway.h
-#include <hwy/contrib/math/math-inl.h>
-// clang-format on
+
+#ifndef PETZVAL_WAVE_CELL_SHARES
+#define PETZVAL_WAVE_CELL_SHARES
+namespace petzval {
+namespace {
+
+/// What one sample gives to one cell.
+struct CellShare {
+  std::size_t sample, cell;
+  float share;
+};
+
+/// What a sample gives to the cell beside it, if it is the last of its own: its interval holds
+/// f + (f₊ − 2f + f₋)/24, to fourth order in the spacing.
+constexpr float to_neighbour = 1.0F / 24;
+
+/// By sample; what would go beyond the ends stays.
+std::vector<CellShare> shares_of_samples(std::size_t samples, std::size_t cell) {
+  std::vector<CellShare> shares;
+  for (std::size_t sample = 0; sample < samples; ++sample) {
+    const std::size_t own = sample / cell;
+    float kept = 1;
+    const auto give = [&](std::size_t to) {
+      if (to == own) return;
+      shares.push_back({sample, to, to_neighbour});
+      kept -= to_neighbour;
+    };
+    if (cell > 1 && sample > 0) give((sample - 1) / cell);
+    if (cell > 1 && sample + 1 < samples) give((sample + 1) / cell);
+    shares.push_back({sample, own, kept});
+  }
+  return shares;
+}
+
+/// The same where cell 0 lies about s = 0, so that what is left of it mirrors its right.
+std::vector<CellShare> shares_of_columns(std::size_t columns, std::size_t cell) {
+  std::vector<CellShare> shares = shares_of_samples(columns, cell);
+  if (cell > 1 && cell < columns)
+    for (CellShare& share : shares) {
+      if (share.sample == 0) share.share -= to_neighbour;
+      if (share.sample == cell && share.cell == 0) share.share += to_neighbour;
+    }
+  return shares;
+}
+
+}  // namespace
+}  // namespace petzval
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::ScalableTag<double>;
-using Floats = hn::ScalableTag<float>;
+using Floats = hn::CappedTag<float, ChordSum::chords_together>;
+using Doubles = hn::Repartition<double, Floats>;
 using HalfFloats = hn::Rebind<float, Doubles>;
 using Double = hn::Vec<Doubles>;
+using Float = hn::Vec<Floats>;
 
 constexpr double two_pi = 6.283185307179586477;
-/// Pairs of sample rows about the middle row that are summed together.
-constexpr std::size_t row_pairs = 2;
-/// Pairs of columns about a middle that share the nodes' waves there; a power of two.
+/// Pairs of columns about a middle that share the nodes' waves there; a power of two, at least four.
 constexpr std::size_t pairs = 8;
+/// Nodes of each chord that are summed together: what is kept of them fits the first-level cache.
+constexpr std::size_t block_nodes = 24;
+constexpr std::size_t block_values = block_nodes * ChordSum::chords_together;
 
-/// e^{2πi cycles}.
+/// e^{2πi cycles}: Taylor's series about the nearest quarter turn, to 1e-16.
 HWY_ATTR HWY_INLINE void turn_by(Double cycles, Double& cosine, Double& sine) {
   const Doubles d;
-  const auto angle = hn::Mul(hn::Sub(cycles, hn::Round(cycles)), hn::Set(d, two_pi));
-  cosine = hn::Cos(d, angle);
-  sine = hn::Sin(d, angle);
+  const hn::RebindToSigned<Doubles> whole;
+  const auto quarters = hn::Round(hn::Mul(cycles, hn::Set(d, 4.0)));
+  const auto angle = hn::Mul(hn::NegMulAdd(quarters, hn::Set(d, 0.25), cycles), hn::Set(d, two_pi));
+  const auto square = hn::Mul(angle, angle);
+  constexpr double factorials[] = {1.0 / 1307674368000, 1.0 / 6227020800, 1.0 / 39916800, 1.0 / 362880,
+                                   1.0 / 5040,          1.0 / 120,        1.0 / 6,        1.0};
+  constexpr double even[] = {1.0 / 20922789888000, 1.0 / 87178291200, 1.0 / 479001600, 1.0 / 3628800,
+                             1.0 / 40320,          1.0 / 720,         1.0 / 24,        1.0 / 2};
+  auto s = hn::Set(d, -factorials[0]), c = hn::Set(d, even[0]);
+  double sign = 1;
+  for (std::size_t i = 1; i < std::size(factorials); ++i, sign = -sign) {
+    s = hn::MulAdd(s, square, hn::Set(d, sign * factorials[i]));
+    c = hn::MulAdd(c, square, hn::Set(d, -sign * even[i]));
+  }
+  s = hn::Mul(s, angle);
+  c = hn::MulAdd(c, square, hn::Set(d, 1.0));
+  // A quarter turn takes (c, s) to (−s, c).
+  const auto turns = hn::ConvertTo(whole, quarters);
+  const auto one = hn::Set(whole, 1), two = hn::Set(whole, 2);
+  const auto odd = hn::RebindMask(d, hn::TestBit(turns, one));
+  const auto cosine_negative = hn::RebindMask(d, hn::TestBit(hn::Add(turns, one), two));
+  const auto sine_negative = hn::RebindMask(d, hn::TestBit(turns, two));
+  cosine = hn::IfThenElse(odd, s, c);
+  sine = hn::IfThenElse(odd, c, s);
+  cosine = hn::IfThenElse(cosine_negative, hn::Neg(cosine), cosine);
+  sine = hn::IfThenElse(sine_negative, hn::Neg(sine), sine);
 }
 
-/// Clenshaw's sum of a Chebyshev series at u.
-HWY_ATTR HWY_INLINE Double chebyshev_sum(const double* series, std::size_t terms, Double u) {
+/// Clenshaw's sum of one Chebyshev series a lane at u; terms are `stride` apart.
+HWY_ATTR HWY_INLINE Double chebyshev_sum(const double* series, std::size_t terms, std::size_t stride,
+                                         Double u) {
   const Doubles d;
   const auto twice = hn::Add(u, u);
   auto later = hn::Zero(d), latest = hn::Zero(d);
   for (std::size_t m = terms - 1; m > 0; --m) {
-    const auto next = hn::Add(hn::MulSub(twice, latest, later), hn::Set(d, series[m]));
+    const auto next = hn::Add(hn::MulSub(twice, latest, later), hn::LoadU(d, series + m * stride));
     later = latest;
     latest = next;
   }
-  return hn::Add(hn::MulSub(u, latest, later), hn::Set(d, series[0]));
+  return hn::Add(hn::MulSub(u, latest, later), hn::LoadU(d, series));
 }
 
-/// The nodes of one chord. Columns come in groups of 2·pairs about a middle: kα(middle ± (p + ½) step).
+/// Nodes of as many chords as there are lanes, node after node. Columns come in groups of 2·pairs about a
+/// middle: kα(middle ± (p + ½) step).
 struct Nodes {
-  std::size_t count;  ///< padded to whole vectors of floats
-  std::vector<double> cosine, sine, turn_cosine,
-      turn_sine;                              ///< at the group's middle, and from one to the next
-  std::vector<float> re, im;                  ///< 2g
-  std::vector<float> pair_cosine, pair_sine;  ///< pairs × count, of kα(p + ½) step
-  std::vector<float> group_re_c, group_im_c, group_re_s,
-      group_im_s;  ///< 2g times cosine and sine of the group
-
-  explicit Nodes(std::size_t padded) : count(padded) {
-    for (std::vector<double>* column : {&cosine, &sine, &turn_cosine, &turn_sine}) column->resize(count);
-    for (std::vector<float>* column : {&re, &im, &group_re_c, &group_im_c, &group_re_s, &group_im_s})
-      column->resize(count);
-    pair_cosine.resize(pairs * count);
-    pair_sine.resize(pairs * count);
-  }
+  std::size_t count = 0;                                                  ///< of nodes a chord
+  alignas(64) double cosine[block_values], sine[block_values];            ///< at the group's middle
+  alignas(64) double turn_cosine[block_values], turn_sine[block_values];  ///< from one middle to the next
+  alignas(64) float re[block_values], im[block_values];                   ///< 2g
+  alignas(64) float pair_cosine[pairs][block_values], pair_sine[pairs][block_values];  ///< of kα(p + ½) step
+  alignas(64) float re_c[block_values], im_c[block_values];  ///< 2g times cosine and sine of the group
+  alignas(64) float re_s[block_values], im_s[block_values];
 };
 
 /// (c + is)².
@@ -74,45 +141,47 @@ HWY_ATTR HWY_INLINE void square(Double& c, Double& s) {
   c = real;
 }
 
-HWY_ATTR void start_chord(const ChordSum& sum, const std::vector<double>& node,
-                          const std::vector<double>& node_weight, std::size_t chord, Nodes& nodes) {
+/// The nodes from `first` on of the chords from `chord` on, a vector of doubles of them.
+HWY_ATTR void start_nodes(const ChordSum& sum, std::size_t chord, std::size_t lane, std::size_t first,
+                          Nodes& nodes) {
   const Doubles d;
   const HalfFloats f;
-  const double half = sum.half_chord[chord];
-  const double* phase = &sum.phase[chord * sum.terms];
-  const double* amplitude = &sum.amplitude[chord * sum.terms];
+  const std::size_t lanes = hn::Lanes(Floats()), chords = sum.beta.size(), own = chord + lane;
+  const QuadratureRule& rule = sum.along[chord / ChordSum::chords_together];
   const double middle_mm = sum.first_column_mm + (static_cast<double>(pairs) - 0.5) * sum.step_mm;
   const double middle_row_mm = sum.first_row_mm + 0.5 * (sum.rows - 1) * sum.step_mm;
-  const double row_waves = sum.beta[chord] * sum.waves_per_mm * middle_row_mm;
-  const double weight = 2 * half * sum.weight[chord];
-  for (std::size_t j = 0; j < nodes.count; j += hn::Lanes(d)) {
-    const auto alpha = hn::Mul(hn::Set(d, half), hn::LoadU(d, &node[j]));
+  const auto half = hn::LoadU(d, &sum.half_chord[own]);
+  const auto weight = hn::Mul(hn::Add(half, half), hn::LoadU(d, &sum.weight[own]));
+  const auto row_waves = hn::Mul(hn::LoadU(d, &sum.beta[own]), hn::Set(d, sum.waves_per_mm * middle_row_mm));
+  for (std::size_t j = 0; j < nodes.count; ++j) {
+    const std::size_t at = j * lanes + lane;
+    const auto alpha = hn::Mul(half, hn::Set(d, rule.nodes[first + j]));
     const auto ratio = hn::Mul(alpha, hn::Set(d, 1 / sum.alpha_scale));
     const auto u = hn::MulSub(hn::Add(ratio, ratio), ratio, hn::Set(d, 1.0));
-    const auto strength = hn::Mul(hn::Mul(hn::Set(d, weight), hn::LoadU(d, &node_weight[j])),
-                                  chebyshev_sum(amplitude, sum.terms, u));
+    const auto strength = hn::Mul(hn::Mul(weight, hn::Set(d, rule.weights[first + j])),
+                                  chebyshev_sum(&sum.amplitude[own], sum.terms, chords, u));
     Double c, s;
-    turn_by(hn::Add(chebyshev_sum(phase, sum.terms, u), hn::Set(d, row_waves)), c, s);
-    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, c)), f, &nodes.re[j]);
-    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, s)), f, &nodes.im[j]);
+    turn_by(hn::Add(chebyshev_sum(&sum.phase[own], sum.terms, chords, u), row_waves), c, s);
+    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, c)), f, &nodes.re[at]);
+    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, s)), f, &nodes.im[at]);
     const auto waves_per_mm = hn::Mul(alpha, hn::Set(d, sum.waves_per_mm));
     turn_by(hn::Mul(waves_per_mm, hn::Set(d, middle_mm)), c, s);
-    hn::StoreU(c, d, &nodes.cosine[j]);
-    hn::StoreU(s, d, &nodes.sine[j]);
+    hn::StoreU(c, d, &nodes.cosine[at]);
+    hn::StoreU(s, d, &nodes.sine[at]);
     // Half a step, and by its square the steps from pair to pair and from group to group.
     turn_by(hn::Mul(waves_per_mm, hn::Set(d, 0.5 * sum.step_mm)), c, s);
     Double step_c = c, step_s = s;
     square(step_c, step_s);
     for (std::size_t p = 0; p < pairs; ++p) {
-      hn::StoreU(hn::DemoteTo(f, c), f, &nodes.pair_cosine[p * nodes.count + j]);
-      hn::StoreU(hn::DemoteTo(f, s), f, &nodes.pair_sine[p * nodes.count + j]);
+      hn::StoreU(hn::DemoteTo(f, c), f, &nodes.pair_cosine[p][at]);
+      hn::StoreU(hn::DemoteTo(f, s), f, &nodes.pair_sine[p][at]);
       const auto next = hn::MulSub(c, step_c, hn::Mul(s, step_s));
       s = hn::MulAdd(s, step_c, hn::Mul(c, step_s));
       c = next;
     }
     for (std::size_t steps = 1; steps < 2 * pairs; steps *= 2) square(step_c, step_s);
-    hn::StoreU(step_c, d, &nodes.turn_cosine[j]);
-    hn::StoreU(step_s, d, &nodes.turn_sine[j]);
+    hn::StoreU(step_c, d, &nodes.turn_cosine[at]);
+    hn::StoreU(step_s, d, &nodes.turn_sine[at]);
   }
 }
 
@@ -120,155 +189,181 @@ HWY_ATTR void start_chord(const ChordSum& sum, const std::vector<double>& node,
 HWY_ATTR void next_group(Nodes& nodes) {
   const Doubles d;
   const HalfFloats f;
-  for (std::size_t j = 0; j < nodes.count; j += hn::Lanes(d)) {
+  for (std::size_t j = 0; j < nodes.count * hn::Lanes(Floats()); j += hn::Lanes(d)) {
     const auto c = hn::LoadU(d, &nodes.cosine[j]), s = hn::LoadU(d, &nodes.sine[j]);
     const auto tc = hn::LoadU(d, &nodes.turn_cosine[j]), ts = hn::LoadU(d, &nodes.turn_sine[j]);
     const auto re = hn::LoadU(f, &nodes.re[j]), im = hn::LoadU(f, &nodes.im[j]);
     const auto fc = hn::DemoteTo(f, c), fs = hn::DemoteTo(f, s);
-    hn::StoreU(hn::Mul(re, fc), f, &nodes.group_re_c[j]);
-    hn::StoreU(hn::Mul(im, fc), f, &nodes.group_im_c[j]);
-    hn::StoreU(hn::Mul(re, fs), f, &nodes.group_re_s[j]);
-    hn::StoreU(hn::Mul(im, fs), f, &nodes.group_im_s[j]);
+    hn::StoreU(hn::Mul(re, fc), f, &nodes.re_c[j]);
+    hn::StoreU(hn::Mul(im, fc), f, &nodes.im_c[j]);
+    hn::StoreU(hn::Mul(re, fs), f, &nodes.re_s[j]);
+    hn::StoreU(hn::Mul(im, fs), f, &nodes.im_s[j]);
     hn::StoreU(hn::MulSub(c, tc, hn::Mul(s, ts)), d, &nodes.cosine[j]);
     hn::StoreU(hn::MulAdd(s, tc, hn::Mul(c, ts)), d, &nodes.sine[j]);
   }
 }
 
-/// Two pairs of a group: Σ 2g cos(middle ± δ) = Σ 2g cos(middle) cos δ ∓ Σ 2g sin(middle) sin δ.
-HWY_ATTR HWY_INLINE void sum_two_pairs(const Nodes& nodes, std::size_t pair, float* group_re,
-                                       float* group_im) {
-  const Floats d;
-  const float* cosine = &nodes.pair_cosine[pair * nodes.count];
-  const float* sine = &nodes.pair_sine[pair * nodes.count];
-  auto re_c0 = hn::Zero(d), im_c0 = re_c0, re_s0 = re_c0, im_s0 = re_c0;
-  auto re_c1 = re_c0, im_c1 = re_c0, re_s1 = re_c0, im_s1 = re_c0;
-  for (std::size_t j = 0; j < nodes.count; j += hn::Lanes(d)) {
-    const auto rc = hn::LoadU(d, &nodes.group_re_c[j]), ic = hn::LoadU(d, &nodes.group_im_c[j]);
-    const auto rs = hn::LoadU(d, &nodes.group_re_s[j]), is = hn::LoadU(d, &nodes.group_im_s[j]);
-    const auto c0 = hn::LoadU(d, cosine + j), c1 = hn::LoadU(d, cosine + nodes.count + j);
-    const auto s0 = hn::LoadU(d, sine + j), s1 = hn::LoadU(d, sine + nodes.count + j);
-    re_c0 = hn::MulAdd(rc, c0, re_c0);
-    im_c0 = hn::MulAdd(ic, c0, im_c0);
-    re_s0 = hn::MulAdd(rs, s0, re_s0);
-    im_s0 = hn::MulAdd(is, s0, im_s0);
-    re_c1 = hn::MulAdd(rc, c1, re_c1);
-    im_c1 = hn::MulAdd(ic, c1, im_c1);
-    re_s1 = hn::MulAdd(rs, s1, re_s1);
-    im_s1 = hn::MulAdd(is, s1, im_s1);
-  }
-  const auto put = [&](std::size_t p, const auto& c, const auto& s, float* group) HWY_ATTR {
-    group[pairs + p] = hn::GetLane(hn::SumOfLanes(d, hn::Sub(c, s)));
-    group[pairs - 1 - p] = hn::GetLane(hn::SumOfLanes(d, hn::Add(c, s)));
-  };
-  put(pair, re_c0, re_s0, group_re);
-  put(pair, im_c0, im_s0, group_im);
-  put(pair + 1, re_c1, re_s1, group_re);
-  put(pair + 1, im_c1, im_s1, group_im);
-}
-
-/// weight_i e^{ikβ_i t} F_i at every column and at the t of the middle row, a vector of columns after
-/// another: [column / lanes][chord][column mod lanes].
+/// weight_i e^{ikβ_i t} F_i at every column and at the t of the middle row, padded to whole groups of
+/// columns: [batch of chords][column][lane].
 struct ChordFields {
-  std::size_t chords, lanes;
-  std::vector<float> re, im;
+  std::size_t lanes, batches, columns;
+  hwy::AlignedFreeUniquePtr<float[]> re, im;
 
-  ChordFields(std::size_t chord_count, std::size_t columns)
-      : chords(chord_count), lanes(hn::Lanes(Floats())), re(chords * columns), im(chords * columns) {}
-  std::size_t at(std::size_t column, std::size_t chord) const {
-    return (column / lanes * chords + chord) * lanes + column % lanes;
+  ChordFields(std::size_t chords, std::size_t padded_columns)
+      : lanes(hn::Lanes(Floats())),
+        batches(chords / lanes),
+        columns(padded_columns),
+        re(hwy::AllocateAligned<float>(chords * columns)),
+        im(hwy::AllocateAligned<float>(chords * columns)) {
+    std::fill_n(re.get(), chords * columns, 0.0F);
+    std::fill_n(im.get(), chords * columns, 0.0F);
+  }
+  std::size_t at(std::size_t batch, std::size_t column) const { return (batch * columns + column) * lanes; }
+};
+
+/// Σ 2g cos(middle) cos δ and Σ 2g sin(middle) sin δ of one pair of columns.
+struct PairSum {
+  Float re_c, im_c, re_s, im_s;
+
+  HWY_ATTR PairSum() { re_c = im_c = re_s = im_s = hn::Zero(Floats()); }
+  HWY_ATTR HWY_INLINE void add(Float rc, Float ic, Float rs, Float is, Float cosine, Float sine) {
+    re_c = hn::MulAdd(rc, cosine, re_c);
+    im_c = hn::MulAdd(ic, cosine, im_c);
+    re_s = hn::MulAdd(rs, sine, re_s);
+    im_s = hn::MulAdd(is, sine, im_s);
+  }
+  /// Σ 2g cos(middle ± δ) is the difference and the sum of the two.
+  HWY_ATTR HWY_INLINE void put(std::size_t left, std::size_t right, ChordFields& fields) const {
+    const Floats d;
+    const auto increase = [&](float* at, Float by)
+                              HWY_ATTR { hn::StoreU(hn::Add(hn::LoadU(d, at), by), d, at); };
+    increase(&fields.re[right], hn::Sub(re_c, re_s));
+    increase(&fields.im[right], hn::Sub(im_c, im_s));
+    increase(&fields.re[left], hn::Add(re_c, re_s));
+    increase(&fields.im[left], hn::Add(im_c, im_s));
   }
 };
 
-/// \param columns  a multiple of the lanes and of the groups.
+/// Four pairs of the group from `column` on.
+HWY_ATTR HWY_INLINE void add_four_pairs(const Nodes& nodes, std::size_t pair, std::size_t batch,
+                                        std::size_t column, ChordFields& fields) {
+  const Floats d;
+  PairSum first, second, third, fourth;
+  for (std::size_t j = 0; j < nodes.count * hn::Lanes(d); j += hn::Lanes(d)) {
+    const auto rc = hn::LoadU(d, nodes.re_c + j), ic = hn::LoadU(d, nodes.im_c + j);
+    const auto rs = hn::LoadU(d, nodes.re_s + j), is = hn::LoadU(d, nodes.im_s + j);
+    const auto cosine = [&](std::size_t p) HWY_ATTR { return hn::LoadU(d, nodes.pair_cosine[pair + p] + j); };
+    const auto sine = [&](std::size_t p) HWY_ATTR { return hn::LoadU(d, nodes.pair_sine[pair + p] + j); };
+    first.add(rc, ic, rs, is, cosine(0), sine(0));
+    second.add(rc, ic, rs, is, cosine(1), sine(1));
+    third.add(rc, ic, rs, is, cosine(2), sine(2));
+    fourth.add(rc, ic, rs, is, cosine(3), sine(3));
+  }
+  const std::size_t right = column + pairs + pair, left = column + pairs - 1 - pair;
+  first.put(fields.at(batch, left), fields.at(batch, right), fields);
+  second.put(fields.at(batch, left - 1), fields.at(batch, right + 1), fields);
+  third.put(fields.at(batch, left - 2), fields.at(batch, right + 2), fields);
+  fourth.put(fields.at(batch, left - 3), fields.at(batch, right + 3), fields);
+}
+
+/// \param columns  a multiple of the groups.
 HWY_ATTR ChordFields chord_fields(const ChordSum& sum, std::size_t columns) {
-  const std::size_t lanes = hn::Lanes(Floats());
-  Nodes nodes((sum.node.size() + lanes - 1) / lanes * lanes);
-  std::vector<double> node = sum.node, node_weight = sum.node_weight;
-  node.resize(nodes.count, 0.0);
-  node_weight.resize(nodes.count, 0.0);
-  ChordFields fields(sum.beta.size(), columns);
-  float group_re[2 * pairs], group_im[2 * pairs];
-  for (std::size_t i = 0; i < sum.beta.size(); ++i) {
-    start_chord(sum, node, node_weight, i, nodes);
-    for (std::size_t c = 0; c < columns; c += 2 * pairs) {
-      next_group(nodes);
-      for (std::size_t p = 0; p < pairs; p += 2) sum_two_pairs(nodes, p, group_re, group_im);
-      for (std::size_t k = 0; k < 2 * pairs; ++k) {
-        fields.re[fields.at(c + k, i)] = group_re[k];
-        fields.im[fields.at(c + k, i)] = group_im[k];
+  const std::size_t lanes = hn::Lanes(Floats()), chords = sum.beta.size();
+  ChordFields fields(chords, columns);
+  const auto nodes = std::make_unique<Nodes>();
+  for (std::size_t chord = 0; chord < chords; chord += lanes) {
+    const std::size_t count = sum.along[chord / ChordSum::chords_together].nodes.size();
+    for (std::size_t first = 0; first < count; first += block_nodes) {
+      nodes->count = std::min(block_nodes, count - first);
+      for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(Doubles()))
+        start_nodes(sum, chord, lane, first, *nodes);
+      for (std::size_t c = 0; c < columns; c += 2 * pairs) {
+        next_group(*nodes);
+        for (std::size_t p = 0; p < pairs; p += 4) add_four_pairs(*nodes, p, chord / lanes, c, fields);
       }
     }
   }
   return fields;
 }
 
-/// e^{ikβ_i δ} at the distances δ of a group of row pairs from the middle row, by turns from group to group.
+/// e^{ikβ_i δ} at distances δ from the middle row, one a lane.
 struct RowWaves {
-  std::vector<double> cosine, sine, turn_cosine, turn_sine;  ///< chords; the next distance
-  std::vector<float> re, im;                                 ///< chords × row_pairs
+  std::vector<double> cosine, sine;            ///< chords × lanes
+  std::vector<double> turn_cosine, turn_sine;  ///< chords: to the next vector of distances
+  hwy::AlignedFreeUniquePtr<float[]> re, im;   ///< chords × lanes
 };
 
-HWY_ATTR RowWaves start_rows(const ChordSum& sum) {
+/// \param first_mm  δ of lane 0; rows are a step apart.
+HWY_ATTR RowWaves start_rows(const ChordSum& sum, double first_mm) {
   const Doubles d;
-  const std::size_t lanes = hn::Lanes(d), padded = (sum.beta.size() + lanes - 1) / lanes * lanes;
-  std::vector<double> beta = sum.beta;
-  beta.resize(padded, 0.0);
+  const std::size_t lanes = hn::Lanes(Floats()), chords = sum.beta.size();
   RowWaves waves;
-  for (std::vector<double>* column : {&waves.cosine, &waves.sine, &waves.turn_cosine, &waves.turn_sine})
-    column->resize(padded);
-  waves.re.resize(padded * row_pairs);
-  waves.im.resize(padded * row_pairs);
-  const double first_mm = sum.rows % 2 == 0 ? 0.5 * sum.step_mm : 0;
-  for (std::size_t i = 0; i < padded; i += lanes) {
-    const auto waves_per_mm = hn::Mul(hn::LoadU(d, &beta[i]), hn::Set(d, sum.waves_per_mm));
-    Double cosine, sine;
-    turn_by(hn::Mul(waves_per_mm, hn::Set(d, first_mm)), cosine, sine);
-    hn::StoreU(cosine, d, &waves.cosine[i]);
-    hn::StoreU(sine, d, &waves.sine[i]);
-    turn_by(hn::Mul(waves_per_mm, hn::Set(d, sum.step_mm)), cosine, sine);
-    hn::StoreU(cosine, d, &waves.turn_cosine[i]);
-    hn::StoreU(sine, d, &waves.turn_sine[i]);
+  waves.cosine.resize(chords * lanes), waves.sine.resize(chords * lanes);
+  waves.re = hwy::AllocateAligned<float>(chords * lanes);
+  waves.im = hwy::AllocateAligned<float>(chords * lanes);
+  waves.turn_cosine.resize(chords), waves.turn_sine.resize(chords);
+  Double c, s;
+  for (std::size_t i = 0; i < chords; ++i)
+    for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d)) {
+      const auto row = hn::Iota(d, static_cast<double>(lane));
+      const auto mm = hn::MulAdd(row, hn::Set(d, sum.step_mm), hn::Set(d, first_mm));
+      turn_by(hn::Mul(mm, hn::Set(d, sum.beta[i] * sum.waves_per_mm)), c, s);
+      hn::StoreU(c, d, &waves.cosine[i * lanes + lane]);
+      hn::StoreU(s, d, &waves.sine[i * lanes + lane]);
+    }
+  const double stride_waves = static_cast<double>(lanes) * sum.step_mm * sum.waves_per_mm;
+  for (std::size_t i = 0; i < chords; i += hn::Lanes(d)) {  // whole vectors, as chords_together are
+    turn_by(hn::Mul(hn::LoadU(d, &sum.beta[i]), hn::Set(d, stride_waves)), c, s);
+    hn::StoreU(c, d, &waves.turn_cosine[i]);
+    hn::StoreU(s, d, &waves.turn_sine[i]);
   }
   return waves;
 }
 
-/// Fills re and im for the next distances.
+/// Fills re and im for the next vector of distances.
 HWY_ATTR void next_rows(RowWaves& waves) {
-  for (std::size_t i = 0; i < waves.cosine.size(); ++i)
-    for (std::size_t r = 0; r < row_pairs; ++r) {
-      waves.re[i * row_pairs + r] = static_cast<float>(waves.cosine[i]);
-      waves.im[i * row_pairs + r] = static_cast<float>(waves.sine[i]);
-      const double c = waves.cosine[i], s = waves.sine[i];
-      waves.cosine[i] = c * waves.turn_cosine[i] - s * waves.turn_sine[i];
-      waves.sine[i] = s * waves.turn_cosine[i] + c * waves.turn_sine[i];
+  const Doubles d;
+  const HalfFloats f;
+  const std::size_t lanes = hn::Lanes(Floats());
+  for (std::size_t i = 0; i < waves.turn_cosine.size(); ++i) {
+    const auto tc = hn::Set(d, waves.turn_cosine[i]), ts = hn::Set(d, waves.turn_sine[i]);
+    for (std::size_t at = i * lanes; at < (i + 1) * lanes; at += hn::Lanes(d)) {
+      const auto c = hn::LoadU(d, &waves.cosine[at]), s = hn::LoadU(d, &waves.sine[at]);
+      hn::StoreU(hn::DemoteTo(f, c), f, &waves.re[at]);
+      hn::StoreU(hn::DemoteTo(f, s), f, &waves.im[at]);
+      hn::StoreU(hn::MulSub(c, tc, hn::Mul(s, ts)), d, &waves.cosine[at]);
+      hn::StoreU(hn::MulAdd(s, tc, hn::Mul(c, ts)), d, &waves.sine[at]);
     }
+  }
 }
 
-/// |U|² of a group of row pairs at the vector of columns from `column` on: with C = Σ F cos and S = Σ F sin
-/// of kβδ, U(±δ) = C ± iS. \param intensity  2 · row_pairs rows of `columns`, the upper row of each pair
-/// first.
-HWY_ATTR HWY_INLINE void sum_tile(const RowWaves& waves, const ChordFields& fields, std::size_t column,
-                                  std::size_t columns, float* intensity) {
+/// |U|² in the rows of the waves at two columns: with C = Σ F cos and S = Σ F sin of kβδ, U(±δ) = C ± iS.
+/// \param intensity  the upper and the lower rows of the first column, and of the second.
+HWY_ATTR HWY_INLINE void sum_two_columns(const RowWaves& waves, const ChordFields& fields, std::size_t column,
+                                         float* intensity) {
   const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
   auto c_re0 = hn::Zero(d), c_im0 = c_re0, s_re0 = c_re0, s_im0 = c_re0;
   auto c_re1 = c_re0, c_im1 = c_re0, s_re1 = c_re0, s_im1 = c_re0;
-  const float* field_re = &fields.re[fields.at(column, 0)];
-  const float* field_im = &fields.im[fields.at(column, 0)];
-  for (std::size_t i = 0; i < fields.chords; ++i) {
-    const auto re = hn::LoadU(d, field_re + i * fields.lanes), im = hn::LoadU(d, field_im + i * fields.lanes);
-    const auto c0 = hn::Set(d, waves.re[i * row_pairs]), s0 = hn::Set(d, waves.im[i * row_pairs]);
-    const auto c1 = hn::Set(d, waves.re[i * row_pairs + 1]), s1 = hn::Set(d, waves.im[i * row_pairs + 1]);
-    c_re0 = hn::MulAdd(re, c0, c_re0);
-    c_im0 = hn::MulAdd(im, c0, c_im0);
-    s_re0 = hn::MulAdd(re, s0, s_re0);
-    s_im0 = hn::MulAdd(im, s0, s_im0);
-    c_re1 = hn::MulAdd(re, c1, c_re1);
-    c_im1 = hn::MulAdd(im, c1, c_im1);
-    s_re1 = hn::MulAdd(re, s1, s_re1);
-    s_im1 = hn::MulAdd(im, s1, s_im1);
+  const float *wave_re = waves.re.get(), *wave_im = waves.im.get();
+  for (std::size_t batch = 0; batch < fields.batches; ++batch) {
+    const float *re = &fields.re[fields.at(batch, column)], *im = &fields.im[fields.at(batch, column)];
+    for (std::size_t i = 0; i < lanes; ++i, wave_re += lanes, wave_im += lanes) {
+      const auto c = hn::LoadU(d, wave_re), s = hn::LoadU(d, wave_im);
+      const auto r0 = hn::Set(d, re[i]), i0 = hn::Set(d, im[i]);
+      const auto r1 = hn::Set(d, re[lanes + i]), i1 = hn::Set(d, im[lanes + i]);
+      c_re0 = hn::MulAdd(r0, c, c_re0);
+      c_im0 = hn::MulAdd(i0, c, c_im0);
+      s_re0 = hn::MulAdd(r0, s, s_re0);
+      s_im0 = hn::MulAdd(i0, s, s_im0);
+      c_re1 = hn::MulAdd(r1, c, c_re1);
+      c_im1 = hn::MulAdd(i1, c, c_im1);
+      s_re1 = hn::MulAdd(r1, s, s_re1);
+      s_im1 = hn::MulAdd(i1, s, s_im1);
+    }
   }
   const auto put = [&](std::size_t row, const auto& re, const auto& im) HWY_ATTR {
-    hn::StoreU(hn::MulAdd(re, re, hn::Mul(im, im)), d, intensity + row * columns + column);
+    hn::StoreU(hn::MulAdd(re, re, hn::Mul(im, im)), d, intensity + row * lanes);
   };
   put(0, hn::Sub(c_re0, s_im0), hn::Add(c_im0, s_re0));
   put(1, hn::Add(c_re0, s_im0), hn::Sub(c_im0, s_re0));
@@ -276,54 +371,42 @@ HWY_ATTR HWY_INLINE void sum_tile(const RowWaves& waves, const ChordFields& fiel
   put(3, hn::Add(c_re1, s_im1), hn::Sub(c_im1, s_re1));
 }
 
-/// What a sample gives to the cell beside it, if it is the last of its own: its interval holds
-/// f + (f₊ − 2f + f₋)/24, to fourth order in the spacing.
-constexpr double to_neighbour = 1.0 / 24;
-
-template <class Add>
-void share_out(std::size_t sample, std::size_t samples, std::size_t cell, double value, const Add& add) {
-  const std::size_t own = sample / cell;
-  const std::size_t before = sample > 0 ? (sample - 1) / cell : own;
-  const std::size_t after = sample + 1 < samples ? (sample + 1) / cell : own;
-  if (cell == 1 || (before == own && after == own)) return add(own, value);
-  add(own, (1 - 2 * to_neighbour) * value);
-  add(before, to_neighbour * value);
-  add(after, to_neighbour * value);
-}
-
-/// One row of samples in cells; cell 0 lies about s = 0, so that what is left of it mirrors its right.
-void bin_columns(const float* intensity, std::size_t columns, std::size_t cell, std::vector<double>& cells) {
-  std::fill(cells.begin(), cells.end(), 0.0);
-  for (std::size_t j = 0; j < columns; ++j)
-    share_out(j, columns, cell, static_cast<double>(intensity[j]),
-              [&](std::size_t to, double value) { cells[to] += value; });
-  if (cell > 1 && cell < columns)
-    cells[0] += to_neighbour * (static_cast<double>(intensity[cell]) - static_cast<double>(intensity[0]));
-}
-
 HWY_ATTR void sum_cells(const ChordSum& sum, double* cells) {
-  const std::size_t lanes = hn::Lanes(Floats()), unit = std::max(lanes, 2 * pairs);
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
   const auto columns = static_cast<std::size_t>(sum.columns), rows = static_cast<std::size_t>(sum.rows);
   const auto cell = static_cast<std::size_t>(sum.cell), cell_columns = columns / cell;
-  const std::size_t padded = (columns + unit - 1) / unit * unit;
-  const ChordFields fields = chord_fields(sum, padded);
-  RowWaves waves = start_rows(sum);
-  std::vector<float> intensity(2 * row_pairs * padded);
-  std::vector<double> in_cells(cell_columns);
-  const auto bin_row = [&](std::size_t row, const float* samples) {
-    bin_columns(samples, columns, cell, in_cells);
-    share_out(row, rows, cell, 1.0, [&](std::size_t to, double share) {
-      for (std::size_t j = 0; j < cell_columns; ++j) cells[to * cell_columns + j] += share * in_cells[j];
-    });
-  };
+  const ChordFields fields = chord_fields(sum, (columns + 2 * pairs - 1) / (2 * pairs) * (2 * pairs));
+  const std::vector<CellShare> column_shares = shares_of_columns(columns, cell),
+                               row_shares = shares_of_samples(rows, cell);
+  const double first_mm = rows % 2 == 0 ? 0.5 * sum.step_mm : 0;
+  RowWaves waves = start_rows(sum, first_mm);
+  // The light of a vector of upper and one of lower rows in the columns of cells.
+  std::vector<float> in_cells(cell_columns * 2 * lanes), intensity(4 * lanes);
   const std::size_t half = (rows + 1) / 2;  // pairs, the middle row with itself when their number is odd
-  for (std::size_t pair = 0; pair < half; pair += row_pairs) {
+  for (std::size_t pair = 0; pair < half; pair += lanes) {
     next_rows(waves);
-    for (std::size_t c = 0; c < padded; c += lanes) sum_tile(waves, fields, c, padded, intensity.data());
-    for (std::size_t r = 0; r < std::min(row_pairs, half - pair); ++r) {
-      const std::size_t upper = rows / 2 + pair + r, lower = rows - 1 - upper;
-      bin_row(upper, &intensity[2 * r * padded]);
-      if (lower != upper) bin_row(lower, &intensity[(2 * r + 1) * padded]);
+    std::fill(in_cells.begin(), in_cells.end(), 0.0F);
+    auto share = column_shares.begin();
+    for (std::size_t c = 0; c < columns; c += 2) {
+      sum_two_columns(waves, fields, c, intensity.data());
+      for (; share != column_shares.end() && share->sample < c + 2; ++share)
+        for (std::size_t part = 0; part < 2; ++part) {
+          float* to = &in_cells[(2 * share->cell + part) * lanes];
+          const auto light = hn::LoadU(d, &intensity[(2 * (share->sample - c) + part) * lanes]);
+          hn::StoreU(hn::MulAdd(hn::Set(d, share->share), light, hn::LoadU(d, to)), d, to);
+        }
+    }
+    const std::size_t upper = rows / 2 + pair, count = std::min(lanes, half - pair);
+    const std::size_t lowest = rows - upper - count;
+    for (const CellShare& row : row_shares) {
+      const bool above = row.sample >= upper && row.sample < upper + count;
+      const bool below = row.sample >= lowest && row.sample < lowest + count;
+      if (!above && !below) continue;
+      const std::size_t lane = above ? row.sample - upper : rows - 1 - upper - row.sample;
+      const float* from = &in_cells[(above ? 0 : lanes) + lane];
+      for (std::size_t j = 0; j < cell_columns; ++j)
+        cells[row.cell * cell_columns + j] += static_cast<double>(row.share * from[2 * j * lanes]);
     }
   }
 }
