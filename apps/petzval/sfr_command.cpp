@@ -96,6 +96,7 @@ class Measurement {
       : command_(command), channels_(channels), guide_(picture.luminance()) {
     options_.edge_order = command.edge_order;
     options_.clip_low = picture.clip_low, options_.clip_high = picture.clip_high;
+    options_.code_levels = picture.code_levels;
     if (!command.bayer.empty()) guide_ = smoothed(guide_);
     try {
       found_ = find_edges(guide_);

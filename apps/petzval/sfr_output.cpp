@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "field_option.h"
 
@@ -47,6 +48,7 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
     json["tail_px"] = edge.exact.tail_px;
     json["samples"] = edge.exact.samples;
   }
+  if (!edge.exact.notes.empty()) json["notes"] = edge.exact.notes;
   json["roi"] = {edge.roi.x, edge.roi.y, edge.roi.width, edge.roi.height};
   json["frequencies_cpp"] = edge.frequencies();
   json["sfr"] = edge.sfr();
@@ -57,6 +59,15 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
 }  // namespace
 
 void print_sfr(const SfrReport& report, const Shared& shared) {
+  // What several edges share is said once.
+  std::map<std::string, std::string> edges_by_note;
+  for (std::size_t i = 0; i < report.edges.size(); ++i)
+    for (const std::string& text : report.edges[i].exact.notes) {
+      std::string& names = edges_by_note[text];
+      names += (names.empty() ? "" : "; ") + name_of(report.edges[i], i);
+    }
+  for (const auto& [text, names] : edges_by_note)
+    note(shared, fmt::format("{}: {}: {}", report.image, names, text));
   if (shared.json) {
     nlohmann::ordered_json json = {
         {"image", report.image}, {"columns", report.columns}, {"rows", report.rows}};

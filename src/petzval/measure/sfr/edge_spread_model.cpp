@@ -14,9 +14,7 @@ namespace {
 
 constexpr double b = 1;  // pixels: scale of the closed-form part
 
-/// What diffraction-limited and moderately aberrated pupils leave at a distance d, times d [pixels]: 0.0645
-/// λN; the prior covers f/2 to f/22 on pixels of 1 to 10 µm.
-constexpr double usual_tail_px = 0.06, usual_tail_spread_px = 0.06;
+constexpr double usual_tail_spread_px = 0.06;
 
 /// Third differences of the splines' coefficients count this much against the data.
 constexpr double smoothness = 1e-10;
@@ -160,7 +158,8 @@ std::complex<double> EdgeSpreadModel::transform(double f) const {
 
 std::vector<double> EdgeSpreadModel::modulus_deviation(std::span<const double> frequencies_cpp,
                                                        std::span<const EdgePoint> points,
-                                                       std::span<const double> variance) const {
+                                                       std::span<const double> variance,
+                                                       const QuantisationNoise& rounding) const {
   const auto n = static_cast<Eigen::Index>(coefficients_.size());
   const Eigen::Map<const Eigen::MatrixXd> factor(factor_.data(), n, n);
   std::vector<double> deviation;
@@ -176,6 +175,7 @@ std::vector<double> EdgeSpreadModel::modulus_deviation(std::span<const double> f
     factor.triangularView<Eigen::Lower>().solveInPlace(gradient);
     factor.transpose().triangularView<Eigen::Upper>().solveInPlace(gradient);
     double sum = 0;
+    std::vector<double> influence(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
       double values[fixed + support];
       fixed_values(points[i].distance, values);
@@ -184,9 +184,10 @@ std::vector<double> EdgeSpreadModel::modulus_deviation(std::span<const double> f
       const int first = spline_values(points[i].distance, values);
       for (int k = 0; k < support && first > -support; ++k)
         if (first + k >= 0 && first + k < splines_) change += values[k] * gradient[fixed + first + k];
+      influence[i] = change;
       sum += variance[i] * change * change;
     }
-    deviation.push_back(std::sqrt(sum));
+    deviation.push_back(std::sqrt(sum + rounding.variance(influence)));
   }
   return deviation;
 }

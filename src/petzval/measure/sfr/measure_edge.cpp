@@ -4,6 +4,7 @@
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
+#include <petzval/measure/sfr/sample_comb.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -210,13 +211,13 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, double highest_c
 }
 
 void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Profile& profile,
-                 const std::vector<double>& variance) {
+                 const std::vector<double>& variance, const QuantisationNoise& rounding, double comb_px) {
   for (int percent = 90; percent >= 10; percent -= 10)
     result.mtf.push_back(find_level(model, percent / 100.0, std::max(1.0, result.frequencies_cpp.back())));
   std::vector<double> at;
   for (const MtfLevel& level : result.mtf)
     if (std::isfinite(level.frequency_cpp)) at.push_back(level.frequency_cpp);
-  const std::vector<double> deviation = model.modulus_deviation(at, profile.points, variance);
+  const std::vector<double> deviation = model.modulus_deviation(at, profile.points, variance, rounding);
   std::size_t i = 0;
   for (MtfLevel& level : result.mtf) {
     if (!std::isfinite(level.frequency_cpp)) continue;
@@ -224,7 +225,8 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Pr
     const double slope = (std::abs(model.transform(level.frequency_cpp + h)) -
                           std::abs(model.transform(level.frequency_cpp - h))) /
                          (2 * h);
-    level.deviation_cpp = deviation[i++] / std::max(1e-9, std::abs(slope));
+    level.deviation_cpp = std::hypot(deviation[i++], alias_deviation(model, comb_px, level.frequency_cpp)) /
+                          std::max(1e-9, std::abs(slope));
   }
 }
 
@@ -241,6 +243,13 @@ void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const Pr
   }
   result.overshoot = most - 1;
   result.undershoot = -least;
+}
+
+/// A value far from the edge as diffraction has it. Where rounding has flattened a tail, the profile does not
+/// tell through how much of a step the light still runs.
+double usual_tail_at(double distance, const EdgeMeasurement& edge) {
+  const double missing = usual_tail_px * (edge.bright - edge.dark) / distance;
+  return (distance > 0 ? edge.bright : edge.dark) - missing;
 }
 
 std::vector<double> usual_frequencies() {
@@ -290,6 +299,12 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
     if (round > 2 && shift < std::max(at_rest_px, 1e-3 * noise / model->step())) break;
   }
 
+  const double comb_px = sample_comb_px(profile.points);
+  if (comb_px > 0) {
+    join_rows(profile.points);
+    model.emplace(profile.points, model_options(profile, guess.scale_px, noise));
+  }
+
   EdgeMeasurement result;
   result.line = line;
   result.samples = profile.points.size();
@@ -302,19 +317,34 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
   const Noise spread = noise_about(profile, *model);
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);
-  std::vector<double> variance;
+  std::vector<double> variance, unrounded;
   for (const EdgePoint& point : profile.points) {
-    const double share = std::clamp((model->value(point.distance) - model->dark()) / model->step(), 0.0, 1.0);
+    const double value = model->value(point.distance);
+    const double share = std::clamp((value - model->dark()) / model->step(), 0.0, 1.0);
+    unrounded.push_back(
+        std::abs(point.distance) > 1.5 * result.rise_px ? usual_tail_at(point.distance, result) : value);
     variance.push_back(spread.dark + share * (spread.bright - spread.dark));
   }
+  const QuantisationNoise rounding(options.code_levels, unrounded, variance);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
   for (const double f : result.frequencies_cpp) {
     const std::complex<double> value = model->transform(f);
     result.sfr.push_back(std::abs(value));
     result.phase_rad.push_back(std::arg(value));
   }
-  result.sfr_deviation = model->modulus_deviation(result.frequencies_cpp, profile.points, variance);
-  fill_levels(result, *model, profile, variance);
+  result.sfr_deviation = model->modulus_deviation(result.frequencies_cpp, profile.points, variance, rounding);
+  for (std::size_t i = 0; i < result.sfr.size(); ++i)
+    result.sfr_deviation[i] =
+        std::hypot(result.sfr_deviation[i], alias_deviation(*model, comb_px, result.frequencies_cpp[i]));
+  // With rows half a pixel apart the alias of Nyquist's frequency lies beyond what lenses and pixels
+  // pass.
+  if (constexpr double harmless_px = 0.5; comb_px > harmless_px)
+    result.notes.push_back(
+        fmt::format("the edge runs along the pixel grid or its diagonal, so that its profile is known only "
+                    "every {:.2f} pixels; a tilt "
+                    "by half a degree is enough to tell what lies between",
+                    comb_px));
+  fill_levels(result, *model, profile, variance, rounding, comb_px);
   fill_curves(result, *model, profile);
   return result;
 }

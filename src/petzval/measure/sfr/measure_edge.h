@@ -22,13 +22,15 @@ struct SfrOptions {
   std::function<double(double x, double y)> missing_target;
   /// Pixel values from which on the sensor clips, or up to which it does: such pixels spoil an edge.
   std::optional<double> clip_low, clip_high;
+  /// The light of each code value, rising, where values have been rounded to them; empty: they have not.
+  std::vector<double> code_levels;
 };
 
 /// Contrast at which SFR falls below a level for the first time.
 struct MtfLevel {
   double level = 0.5;
   double frequency_cpp = 0;  ///< NaN if the table ends before
-  double deviation_cpp = 0;  ///< standard deviation from the noise
+  double deviation_cpp = 0;  ///< standard deviation from noise and rounding
 };
 
 struct EdgeMeasurement {
@@ -41,7 +43,7 @@ struct EdgeMeasurement {
   double overshoot = 0, undershoot = 0;  ///< beyond bright and dark, over the step
   std::vector<double> frequencies_cpp, sfr;
   std::vector<double> phase_rad;
-  std::vector<double> sfr_deviation;          ///< standard deviation from the noise
+  std::vector<double> sfr_deviation;          ///< standard deviation from noise and rounding
   std::vector<MtfLevel> mtf;                  ///< at 0.9, 0.8, … 0.1
   std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
   std::size_t samples = 0;

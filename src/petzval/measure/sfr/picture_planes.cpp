@@ -38,6 +38,12 @@ double to_light(double code, bool linear) {
   return linear ? code : srgb_decoded(code);
 }
 
+/// What only files of whole numbers, 0 to `full`, have.
+void add_codes(PicturePlanes& picture, double full, bool linear) {
+  picture.clip_low = 0, picture.clip_high = 1;
+  for (double code = 0; code <= full; ++code) picture.code_levels.push_back(to_light(code / full, linear));
+}
+
 PicturePlanes from_png(const std::string& path, PictureTransfer transfer) {
   const PngImage png = read_png(path);
   const bool linear = transfer == PictureTransfer::linear ||
@@ -46,7 +52,7 @@ PicturePlanes from_png(const std::string& path, PictureTransfer transfer) {
   PicturePlanes picture =
       deinterleaved(png.columns, png.rows, png.channels, png.channels < 3 ? 1 : 3,
                     [&](std::size_t i) { return to_light(png.samples[i] / full, linear); });
-  picture.clip_low = 0, picture.clip_high = 1;
+  add_codes(picture, full, linear);
   return picture;
 }
 
@@ -66,7 +72,8 @@ PicturePlanes from_tiff(const std::string& path, PictureTransfer transfer) {
             [&](std::size_t i) { return to_light(static_cast<double>(samples[i]) / full, linear); });
       },
       tiff.samples);
-  if (!floats) picture.clip_low = 0, picture.clip_high = 1;
+  if (!floats)
+    add_codes(picture, std::holds_alternative<std::vector<std::uint8_t>>(tiff.samples) ? 255 : 65535, linear);
   return picture;
 }
 

@@ -22,6 +22,8 @@ struct PicturePlanes {
   bool rgb = false;
   /// Values at which the file's numbers end; only formats with whole numbers have them.
   std::optional<double> clip_low, clip_high;
+  /// The light of each of their code values; empty for other formats.
+  std::vector<double> code_levels;
 
   /// 0.2126 R + 0.7152 G + 0.0722 B for RGB, the mean of the planes else.
   Plane luminance() const;

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What rounding to whole code values does to quantities that are measured from many pixels.
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace petzval {
+
+/// Rounding is no noise that averages out: pixels of the same light are all wrong by the same amount. Its
+/// error is a sawtooth of the value, Σ_k (−1)^k sin(2πkx)/(πk) steps at x steps. Where in a step a value
+/// truly lies is not known, so its phase counts as random; nearby values share it, values more than a step or
+/// two apart do not. Noise of σ steps blurs the sawtooth: harmonic k loses the factor exp(−2π²k²σ²), and what
+/// it loses is scatter, which is seen in the residuals. (B. Widrow & I. Kollár, Quantization Noise, Cambridge
+/// 2008, chapters 4 and 5.)
+class QuantisationNoise {
+ public:
+  /// None.
+  QuantisationNoise() = default;
+  /// \param levels  the light of each code value, rising, at least two \param values  expected light of each
+  /// sample \param variance  of the residuals of each sample about it.
+  QuantisationNoise(std::span<const double> levels, std::span<const double> values,
+                    std::span<const double> variance);
+
+  /// Variance of Σ influence_i · value_i. `influence` has one entry a sample.
+  double variance(std::span<const double> influence) const;
+
+ private:
+  static constexpr int harmonics = 6;
+  /// Samples that lie in the same sixteenth of a step.
+  struct Cell {
+    int window = 0;                        ///< the step that they lie above
+    double lower = 0, upper = 0;           ///< share in this window and in the next
+    std::complex<double> turn[harmonics];  ///< amplitude · exp(2πikx)
+  };
+  std::vector<std::size_t> cell_of_;  ///< of each sample
+  std::vector<double> step_;          ///< size of a step at each sample
+  std::vector<Cell> cells_;           ///< by rising value
+};
+
+}  // namespace petzval
