@@ -18,9 +18,10 @@
 #include <cstdlib>
 #include <optional>
 
-namespace petzval::fuzz {
+#include "raw_formats.h"
+#include "require.h"
 
-namespace {
+namespace petzval::fuzz {
 
 void require(bool holds, const char* what) {
   if (holds) return;
@@ -34,6 +35,8 @@ void require_one_line(const InputError& error) {
   require(!message.empty() && message.size() < longest, "an empty or endless message");
   require(message.find_first_of("\n\r") == message.npos, "a message of several lines");
 }
+
+namespace {
 
 /// Three glasses are quickly searched, and their nearest names quickly found.
 const LensReadOptions& options() {
@@ -188,6 +191,14 @@ const std::vector<Format>& formats() {
        {"  - type: formula 4\n", "  - type: tabulated nk\n", "    data: |\n", "formula 9", "formula 6",
         "DATA:\n", "&a ", "*a", "[", "{", "---\n", "    wavelength_range: 0.4 0.7\n", "n_is_absolute: true",
         "PROPERTIES:\n", "? "}},
+      {"sensor",
+       try_sensor,
+       {"\"photosite\": {\"fill_factor\": 0.5},", "\"low_pass_um\": 2,", "\"serial\": 3,", "\"dark\": {}",
+        "\"row_noise_e\": 1,", "{}", "[]", "null", "\"scale\": 0.5", "\"quantum_efficiency\": []"}},
+      {"dng",
+       try_dng,
+       {std::string(4, '\xFF'), std::string(4, '\0'), std::string("\1\0\1\0", 4), std::string("\x8D\x82", 2),
+        std::string("\x2C\xC6", 2), std::string("\x08\0", 2)}},
       {"packed", packed, {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
   };
   return all;

@@ -19,7 +19,7 @@ struct Format {
   std::vector<std::string> words;  ///< that mean something in the format
 };
 
-/// native, zmx, seq, pbrt, iset, agf, yaml, packed.
+/// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng.
 const std::vector<Format>& formats();
 /// Null if there is none of that name.
 const Format* find_format(std::string_view name);

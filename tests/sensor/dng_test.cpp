@@ -7,6 +7,7 @@
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/sensor/formats/dng.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -114,6 +115,24 @@ TEST_F(Dng, LibRawSeesTheCamera) {
                     raw.calibrations[which].pcs_from_balanced[at], 2e-6);
       }
   }
+}
+
+TEST_F(Dng, TablesOfAllSamplesComeBack) {
+  // One entry more than libtiff counts: the greatest sample, which is white, keeps its value.
+  RawImage raw = example();
+  raw.white_level = 65535;
+  for (int stored = 0; stored <= 65535; ++stored)
+    raw.linearization.push_back(
+        static_cast<std::uint16_t>(std::lround(stored * (0.9 + 0.1 * stored / 65535))));
+  raw.samples[0] = 65535;
+  raw.samples[1] = 65533;
+  raw.samples[2] = 0;
+  write_dng(path("t.dng"), raw);
+  const RawImage back = read_dng(path("t.dng"));
+  for (int row = 0; row < raw.rows; ++row)
+    for (int column = 0; column < raw.columns; ++column)
+      ASSERT_EQ(back.pixel(row, column), raw.pixel(row, column));
+  EXPECT_EQ(back.pixel(0, 0), 65535);
 }
 
 TEST_F(Dng, ComesBack) {

@@ -115,14 +115,26 @@ class DngWriter {
     set_rationals(TIFFTAG_BLACKLEVEL, {raw_.black_level});
     const auto white = static_cast<std::uint32_t>(std::lround(raw_.white_level));
     set(TIFFTAG_WHITELEVEL, 1, &white);
-    if (!raw_.linearization.empty())
-      set(TIFFTAG_LINEARIZATIONTABLE, static_cast<int>(raw_.linearization.size()), raw_.linearization.data());
+    if (!raw_.linearization.empty()) {
+      const std::vector<std::uint16_t> table = linearization_table();
+      set(TIFFTAG_LINEARIZATIONTABLE, static_cast<int>(table.size()), table.data());
+    }
     if (raw_.dn_per_e > 0) {
       // Variance of x in 0 … 1 is S x + O; the same for every channel.
       const double k = raw_.dn_per_e / (raw_.white_level - raw_.black_level);
       const double profile[] = {k, k * k * raw_.read_noise_e * raw_.read_noise_e};
       set(dng::noise_profile_tag, static_cast<std::uint32_t>(std::size(profile)), profile);
     }
+  }
+
+  /// Beyond a table its last value goes on, and libtiff counts to 65,535: of a whole one the last two values
+  /// share that of the last, so that what is white stays white.
+  std::vector<std::uint16_t> linearization_table() const {
+    std::vector<std::uint16_t> table = raw_.linearization;
+    while (table.size() > 1 && table[table.size() - 2] == table.back()) table.pop_back();
+    constexpr std::size_t most = 65535;
+    if (table.size() > most) table.erase(table.begin() + most - 1);
+    return table;
   }
 
   void set_colour() {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What entries hold what they read to.
+#pragma once
+
+#include <petzval/base/error.h>
+
+namespace petzval::fuzz {
+
+/// Aborts with the message unless it holds.
+void require(bool holds, const char* what);
+/// A refusal is one line that is not endless.
+void require_one_line(const InputError& error);
+
+}  // namespace petzval::fuzz
