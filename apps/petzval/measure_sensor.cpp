@@ -123,6 +123,11 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
   const GainMode& mode = electronics.gain_mode(command.conversion_gain);
   const double daylight_speed = saturation_speed(sensor, mode, command.gain, illuminant("D55"));
   const double tungsten_speed = saturation_speed(sensor, mode, command.gain, illuminant("3200K"));
+  const auto by_noise = [&](double snr) {
+    return noise_speed(sensor, mode, command.gain, illuminant("D55"), snr);
+  };
+  constexpr double excellent = 40, acceptable = 10;
+  const std::optional<double> speed_40 = by_noise(excellent), speed_10 = by_noise(acceptable);
   command.outputs.write(table_of(test.transfer), plot_of(test.transfer, sensor.name + ": photon transfer"));
   if (shared.json) {
     ordered_json json = figures(test.transfer);
@@ -130,6 +135,8 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
     json["prnu_percent"] = test.uniformity.prnu_percent;
     json["iso_saturation_daylight"] = daylight_speed;
     json["iso_saturation_tungsten"] = tungsten_speed;
+    json["iso_noise_40_daylight"] = speed_40 ? ordered_json(*speed_40) : ordered_json(nullptr);
+    json["iso_noise_10_daylight"] = speed_10 ? ordered_json(*speed_10) : ordered_json(nullptr);
     json["rows"] = rows_of(test.transfer);
     return fmt::print("{}\n", json.dump(2));
   }
@@ -140,6 +147,11 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
   fmt::print("  PRNU            {:.3f} %\n", test.uniformity.prnu_percent);
   fmt::print("  ISO speed       {:.0f} in daylight (D55), {:.0f} in tungsten light (3200 K), by saturation\n",
              daylight_speed, tungsten_speed);
+  const auto said = [](std::optional<double> speed) {
+    return speed ? fmt::format("{:.0f}", *speed) : "none";
+  };
+  fmt::print("                  {} in daylight for a pixel's S/N of 40, {} for 10\n", said(speed_40),
+             said(speed_10));
 }
 
 void measure_noise(const NoiseCommand& command, const Shared& shared) {

@@ -157,5 +157,30 @@ TEST(Exposure, SaturationSpeedIsByItsDefinition) {
   EXPECT_NEAR(saturation_speed(sensor, mode, 2, light), 78 / (65435 / e_per_s * 683), 2e-4 * speed);
 }
 
+TEST(Exposure, NoiseSpeedsAreByTheirDefinition) {
+  Sensor sensor = test::mono_sensor(4, 4);
+  SensorElectronics& electronics = *sensor.electronics;
+  GainMode& mode = electronics.gain_modes[0];
+  const Spectrum light({555}, {1});
+  const double lx_s_per_e = 683 / (0.5 * 25e-12 * 555e-9 / (h_js * c_m_per_s));
+  electronics.dsnu_e = electronics.prnu = mode.adc_noise_dn = 0;
+  // Shot noise, and quantisation in steps of 2 e: 1600 e give 40 but for 1/3 e² of variance.
+  mode.read_noise_e = 0;
+  EXPECT_NEAR(*noise_speed(sensor, mode, 1, light, 40) * lx_s_per_e, 10.0 / 1600, 10.0 / 1600 * 4e-4);
+  // Whatever the noises are, the ratio at that exposure is what was asked for.
+  mode.read_noise_e = 7, mode.adc_noise_dn = 1.5, electronics.dsnu_e = 2, electronics.prnu = 0.01;
+  for (const double snr : {10.0, 40.0}) {
+    const double e = 10 / (*noise_speed(sensor, mode, 1, light, snr) * lx_s_per_e);
+    const double step_e = 1 / mode.dn_per_e;
+    const double variance = e + 49 + (2.25 + 1.0 / 12) * step_e * step_e + 4 + 1e-4 * e * e;
+    EXPECT_NEAR(e / std::sqrt(variance), snr, 1e-3 * snr);
+  }
+  electronics.prnu = 0.03;  // never better than 33
+  EXPECT_FALSE(noise_speed(sensor, mode, 1, light, 40));
+  EXPECT_TRUE(noise_speed(sensor, mode, 1, light, 10));
+  mode.full_well_e = 50;
+  EXPECT_FALSE(noise_speed(sensor, mode, 1, light, 10));
+}
+
 }  // namespace
 }  // namespace petzval

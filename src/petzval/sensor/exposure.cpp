@@ -25,6 +25,16 @@ double level_to_meter(const PhotoCurrent& current, Metering::Rule rule) {
   return static_cast<double>(*std::max_element(levels.begin(), levels.end()));
 }
 
+/// Exposure that gives the most sensitive channel an electron.
+double lx_s_per_electron(const Sensor& sensor, const Spectrum& light) {
+  const double lux = luminance(light);  // of an irradiance: its illuminance
+  const std::vector<double> currents = channel_currents(sensor, light);
+  const double fastest = *std::max_element(currents.begin(), currents.end());
+  if (!(lux > 0 && fastest > 0))
+    throw InputError("a speed needs light that the eye and the sensor see; D55, for example");
+  return lux / fastest;
+}
+
 }  // namespace
 
 double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering) {
@@ -41,14 +51,25 @@ double exposure_of_ev_s(double ev, double f_number) {
 
 double saturation_speed(const Sensor& sensor, const GainMode& mode, double analog_gain,
                         const Spectrum& light) {
-  const double lux = luminance(light);  // of an irradiance: its illuminance
-  const std::vector<double> currents = channel_currents(sensor, light);
-  const double fastest = *std::max_element(currents.begin(), currents.end());
-  if (!(lux > 0 && fastest > 0))
-    throw InputError("a speed needs light that the eye and the sensor see; D55, for example");
-  const double saturation_lx_s = sensor.electronics->saturation_e(mode, analog_gain) * lux / fastest;
   constexpr double saturation_constant = 78;
-  return saturation_constant / saturation_lx_s;
+  return saturation_constant /
+         (sensor.require_electronics().saturation_e(mode, analog_gain) * lx_s_per_electron(sensor, light));
+}
+
+std::optional<double> noise_speed(const Sensor& sensor, const GainMode& mode, double analog_gain,
+                                  const Spectrum& light, double snr) {
+  const SensorElectronics& electronics = sensor.require_electronics();
+  const double dn_per_e = mode.dn_per_e * analog_gain, square = snr * snr;
+  const double quantised_e2 = (mode.adc_noise_dn * mode.adc_noise_dn + 1.0 / 12) / (dn_per_e * dn_per_e);
+  const double dark_e2 =
+      mode.read_noise_e * mode.read_noise_e + quantised_e2 + electronics.dsnu_e * electronics.dsnu_e;
+  // mean² = snr² (mean + dark + PRNU² mean²)
+  const double rest = 1 - square * electronics.prnu * electronics.prnu;
+  if (!(rest > 0)) return {};
+  const double mean_e = (square + std::sqrt(square * square + 4 * rest * square * dark_e2)) / (2 * rest);
+  if (mean_e > electronics.saturation_e(mode, analog_gain)) return {};
+  constexpr double noise_constant = 10;
+  return noise_constant / (mean_e * lx_s_per_electron(sensor, light));
 }
 
 }  // namespace petzval

@@ -6,6 +6,8 @@
 #include <petzval/sensor/photo_current.h>
 #include <petzval/sensor/sensor.h>
 
+#include <optional>
+
 namespace petzval {
 
 /// The rule of automatic exposure. It looks at the mean photoelectrons of every pixel of the raw frame,
@@ -32,5 +34,13 @@ double exposure_of_ev_s(double ev, double f_number);
 /// channel sees.
 double saturation_speed(const Sensor& sensor, const GainMode& mode, double analog_gain,
                         const Spectrum& light);
+
+/// ISO 12232 noise-based speed 10/H: H [lx·s] is the exposure at which a pixel of the most sensitive channel
+/// has this ratio of signal to noise, 40 ("excellent") or 10 ("acceptable"). The noise is that of the raw
+/// file, temporal and fixed, without dark current; the standard looks at developed pictures, whose noise
+/// depends on the development. Absent if saturation or PRNU come first. \throws InputError as
+/// saturation_speed.
+std::optional<double> noise_speed(const Sensor& sensor, const GainMode& mode, double analog_gain,
+                                  const Spectrum& light, double snr);
 
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/image/formats/exr_header.h>
 #include <petzval/image/formats/exr_stream.h>
 #include <petzval/image/formats/output_file.h>
@@ -16,6 +17,7 @@
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -93,8 +95,15 @@ void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralE
   file.readPixels(window.min.y, window.max.y);
 }
 
+/// Threads for compression beside our own; 0 works in ours alone. The bytes do not depend on it.
+int compression_threads() {
+  const int threads = thread_count() > 1 ? thread_count() : 0;
+  Imf::setGlobalThreadCount(threads);
+  return threads;
+}
+
 SpectralExr read(const std::string& path) {
-  Imf::InputFile file(path.c_str());
+  Imf::InputFile file(path.c_str(), compression_threads());
   SpectralExr exr;
   const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
   for (const Band& band : bands) exr.wavelengths_nm.push_back(band.wavelength_nm);
@@ -149,7 +158,7 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
   }
   ExrStream stream(output);
   try {
-    Imf::OutputFile file(stream, header);
+    Imf::OutputFile file(stream, header, compression_threads());
     file.setFrameBuffer(buffer);
     file.writePixels(exr.height);
   } catch (...) {
