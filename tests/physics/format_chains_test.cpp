@@ -39,7 +39,7 @@ class PlausibleLens {
   explicit PlausibleLens(unsigned seed) : bits_(seed) {}
 
   Lens operator()() {
-    // Rows of numbers hold the plain ones; even aspheres, conics and glasses make the others.
+    // Rows of numbers hold the plain ones; aspheres, conics and glasses make the others.
     const bool plain = chance(0.5);
     Lens lens;
     lens.name = "plausible";
@@ -89,7 +89,7 @@ class PlausibleLens {
       if (plain || chance(0.7)) surface.semi_diameter_mm = 5 + 3 * uniform();
       if (!plain && chance(0.3)) surface.conic = uniform() - 0.5;
       if (!plain && chance(0.3))
-        for (int power = 4; power <= 20; power += 2)
+        for (int power = 3, step = chance(0.5) ? 1 : 2; power <= 20; power += power % 2 ? 1 : step)
           if (chance(0.4)) surface.asphere[power] = (uniform() - 0.5) * std::pow(10, -power);
     }
   }

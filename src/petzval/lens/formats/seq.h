@@ -14,12 +14,16 @@ namespace petzval {
 /// \throws InputError naming line and surface for everything that changes rays and is not modelled.
 LensFile read_seq(const std::string& text, const std::string& file, const LensReadOptions& options);
 
-/// By curvature, so that every double survives. \throws InputError for what such a file cannot hold: odd
-/// powers of r and those above 20, an aperture given at the stop, model glasses off the normal line.
+/// By curvature, so that every double survives; aspheres as ASP, or as SPS ODD where ASP does not hold them.
+/// \throws InputError for what such a file cannot hold: powers of r above 30, an aperture given at the stop,
+/// model glasses off the normal line.
 std::string seq_text(const Lens& lens);
 
 /// The letters of the coefficients of r^4, r^6 … r^20.
 inline constexpr std::string_view seq_asphere_letters = "ABCDEFGHJ";
 inline constexpr int seq_lowest_asphere_power = 4;
+/// The odd polynomial SPS ODD: SCO C1 is the conic K, C(p + 1) or ARp the coefficient of r^p, C33 the radius
+/// NRADIUS that r is divided by, 0 for none.
+inline constexpr int seq_highest_odd_power = 30, seq_odd_radius_term = 33;
 
 }  // namespace petzval

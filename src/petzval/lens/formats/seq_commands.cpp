@@ -27,7 +27,7 @@ class LineSplitter {
       if (c == ';') {
         fresh_ = true;
         ++at_;
-      } else if (is_rest_blank_after_ampersand()) {
+      } else if (is_rest_blank_after_ampersand(at_)) {
         return true;
       } else if (is_quote(c)) {
         add(quoted());
@@ -41,9 +41,9 @@ class LineSplitter {
   }
 
  private:
-  bool is_rest_blank_after_ampersand() const {
-    if (text_[at_] != '&') return false;
-    const std::string rest = trimmed(std::string_view(text_).substr(at_ + 1));
+  bool is_rest_blank_after_ampersand(std::size_t at) const {
+    if (text_[at] != '&') return false;
+    const std::string rest = trimmed(std::string_view(text_).substr(at + 1));
     return rest.empty() || rest.front() == '!';
   }
   std::string quoted() {
@@ -54,7 +54,9 @@ class LineSplitter {
     return word;
   }
   std::string plain() {
-    const std::size_t end = std::min(text_.find_first_of(" \t\f\v;!'\"", at_ + 1), text_.size());
+    std::size_t end = std::min(text_.find_first_of(" \t\f\v;!'\"", at_ + 1), text_.size());
+    // "650.0&": the line goes on, though no blank says so.
+    if (end - at_ > 1 && text_[end - 1] == '&' && is_rest_blank_after_ampersand(end - 1)) --end;
     const std::string word = text_.substr(at_, end - at_);
     at_ = end;
     return word;

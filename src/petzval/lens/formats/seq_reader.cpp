@@ -35,17 +35,18 @@ const std::map<std::string, Keyword, std::less<>>& keywords() {
     };
     // Names, weights, how a program varies, solves and draws; the present value of a solve is written out.
     add(Role::harmless,
-        {"LEN", "GO",  "INI", "WTW", "WTF", "CWL", "DER", "SLB", "COM", "CON", "ASP", "CCY", "CCX",
-         "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC",
-         "YDC", "ZDC", "ADC", "BDC", "CDC", "PFR", "MFL", "WID", "DAR", "REV", "RET", "SAV", "RES",
-         "VIE", "LIS", "CIN", "TOR", "UMY", "UMC", "UIY", "HMY", "HCY", "UCY", "CAI", "DLC", "DLT"},
+        {"LEN", "GO",  "INI", "WTW", "WTF", "CWL", "DER", "SLB", "COM", "CON", "ASP", "CCY", "CCX", "THC",
+         "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
+         "ADC", "BDC", "CDC", "PFR", "MFL", "WID", "DAR", "REV", "RET", "SAV", "RES", "DOR", "UID", "SCC",
+         "FRZ", "VIE", "LIS", "CIN", "TOR", "UMY", "UMC", "UIY", "HMY", "HCY", "UCY", "CAI", "DLC", "DLT"},
         "");
     add(Role::vignetting_factor, {"VUX", "VLX", "VUY", "VLY"}, "");
     add(Role::refused_unless_zero, {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"}, "a tilt or a decentre");
     add(Role::refused_unless_zero, {"ADX", "ADY", "ARO"}, "a decentred aperture");
+    add(Role::refused_unless_zero, {"CUF"}, "a Fresnel surface");
     add(Role::refused, {"BEN", "NSS", "NSC"}, "a bent or non-sequential path");
     add(Role::refused, {"XTO", "YTO", "CYL", "AAS", "RDX", "CUX"}, "a surface that is not round");
-    add(Role::refused, {"SPS", "SCO", "SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
+    add(Role::refused, {"SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
     add(Role::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
         "a grating or a hologram");
     add(Role::refused, {"GRN", "UDG", "THM"}, "a graded index");

@@ -32,6 +32,25 @@ int asphere_power(const std::string& name) {
   return letter == seq_asphere_letters.npos ? 0 : seq_lowest_asphere_power + 2 * static_cast<int>(letter);
 }
 
+/// Number of a term of SPS ODD by its name: K, AR3, C4, NRADIUS; 0 for none.
+int odd_term(const std::string& name) {
+  if (name == "K") return 1;
+  if (name == "NRADIUS") return seq_odd_radius_term;
+  const bool by_power = name.substr(0, 2) == "AR", by_number = !by_power && name.substr(0, 1) == "C";
+  const auto number = parse_integer(name.substr(std::min<std::size_t>(name.size(), by_power ? 2 : 1)));
+  if ((!by_power && !by_number) || !number || *number > seq_odd_radius_term) return 0;
+  const int term = *number + (by_power ? 1 : 0);
+  const bool known = (term >= (by_power ? 2 : 1) && term <= seq_highest_odd_power + 1) ||
+                     (by_number && term == seq_odd_radius_term);
+  return known ? term : 0;
+}
+
+/// A value of the present system that a solve or a pickup gives: CODE V writes the number on the surface's
+/// line.
+bool is_solve(const SeqCommand& command, std::size_t first) {
+  return command.has(first) && !parse_number(command.words[first]) && command.words[first].size() >= 3;
+}
+
 }  // namespace
 
 std::string SeqSurfaces::where() const {
@@ -160,10 +179,48 @@ void SeqSurfaces::apply_aperture(SeqSurface& surface, const SeqCommand& command,
   context.fail(command, "must have a radius", where());
 }
 
+void SeqSurfaces::apply_special(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                                const SeqContext& context) {
+  const std::string kind = command.has(first) ? upper_case(command.words[first]).substr(0, 3) : "";
+  if (kind != "ODD")
+    context.fail(command, fmt::format("{} (a special surface) is not modelled; SPS ODD is", quotable(kind)),
+                 where());
+  surface.odd_polynomial = true;
+  surface.asphere.clear();
+  surface.odd_radius = command.has(first + 1) ? context.number(command, first + 1, where()) : 0;
+}
+
+void SeqSurfaces::apply_coefficient(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                                    const SeqContext& context) {
+  if (!surface.odd_polynomial)
+    context.fail(command, "is a coefficient of a special surface, and no SPS ODD comes before it", where());
+  const std::string name = command.has(first) ? upper_case(command.words[first]) : "";
+  const int term = odd_term(name);
+  if (term == 0)
+    context.fail(command,
+                 fmt::format("{} is not modelled; K, AR1 to AR{}, C1 to C{} and NRADIUS are", quotable(name),
+                             seq_highest_odd_power, seq_highest_odd_power + 1),
+                 where());
+  const double value = context.number(command, first + 1, where());
+  if (term == 1)
+    surface.conic = value;
+  else if (term == seq_odd_radius_term)
+    surface.odd_radius = value;
+  else
+    surface.asphere[term - 1] = value;
+}
+
 bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                               const SeqContext& context) {
   const std::string& name = command.name;
-  if (name == "RDY" || name == "CUY") {
+  if ((name == "RDY" || name == "CUY" || name == "THI") && is_solve(command, first)) {
+    context.notes.push_back(fmt::format("{}:{}: {}{}: a solve; the number on the surface's own line counts",
+                                        context.file, command.line, where(), name));
+  } else if (name == "SPS") {
+    apply_special(surface, command, first, context);
+  } else if (name == "SCO") {
+    apply_coefficient(surface, command, first, context);
+  } else if (name == "RDY" || name == "CUY") {
     surface.curvature = curvature(command, first, name == "RDY", context);
   } else if (name == "THI") {
     surface.thickness = context.number(command, first, where());
@@ -183,6 +240,7 @@ bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, st
   } else if (name == "SPH") {
     surface.conic = 0;
     surface.asphere.clear();
+    surface.odd_polynomial = false;
   } else if (name == "RMD") {
     if (command.has(first) && upper_case(command.words[first]).substr(0, 4) != "REFR")
       context.fail(command, fmt::format("{} is not modelled; REFR is", quotable(command.words[first])),
@@ -200,8 +258,8 @@ bool SeqSurfaces::apply(const SeqCommand& command, const SeqContext& context) {
     return true;
   }
   if (enter_surface(command, context)) return true;
-  static const std::vector<std::string> names{"STO", "RDY", "CUY", "THI", "K",  "GLA",
-                                              "GL1", "CIR", "PIM", "SPH", "RMD"};
+  static const std::vector<std::string> names{"STO", "RDY", "CUY", "THI", "K",   "GLA", "GL1",
+                                              "CIR", "PIM", "SPH", "RMD", "SPS", "SCO"};
   if (std::find(names.begin(), names.end(), command.name) == names.end() && !asphere_power(command.name))
     return false;
   std::size_t first = 0;
@@ -242,8 +300,13 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
       context.fail(from.command, "is infinitely far from the next surface; only the object may be");
     surface.thickness_mm = from.thickness * mm_per_unit;
     surface.conic = from.conic;
+    if (from.odd_radius < 0)
+      context.fail(from.command, "has a negative NRADIUS; a positive one, or 0 for none, would be right");
+    const double radius_mm = mm_per_unit * (from.odd_radius > 0 ? from.odd_radius : 1);
     for (const auto& [power, value] : from.asphere)
-      if (value != 0) surface.asphere[power] = value * std::pow(mm_per_unit, 1 - power);
+      // One that is zero, or too small for a number in mm, is no term.
+      if (const double scaled = value * mm_per_unit * std::pow(radius_mm, -power); scaled != 0)
+        surface.asphere[power] = scaled;
     if (from.semi_diameter) surface.semi_diameter_mm = *from.semi_diameter * mm_per_unit;
     surface.stop = i == stop;
     if (from.glass) try {

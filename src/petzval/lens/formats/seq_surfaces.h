@@ -17,6 +17,8 @@ struct SeqSurface {
   SeqCommand command;  ///< that entered it
   double curvature = 0, thickness = 0, conic = 0;
   std::map<int, double> asphere;
+  bool odd_polynomial = false;      ///< SPS ODD
+  double odd_radius = 0;            ///< that r is divided by, 0 for none
   std::optional<SeqCommand> glass;  ///< the command whose first word names it
   std::optional<double> semi_diameter;
   bool solves_image_distance = false;  ///< PIM
@@ -44,6 +46,10 @@ class SeqSurfaces {
   bool enter_surface(const SeqCommand& command, const SeqContext& context);
   bool apply_shape(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                    const SeqContext& context);
+  void apply_special(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                     const SeqContext& context);
+  void apply_coefficient(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                         const SeqContext& context);
   void apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                       const SeqContext& context);
   double curvature(const SeqCommand& command, std::size_t i, bool is_radius, const SeqContext& context) const;

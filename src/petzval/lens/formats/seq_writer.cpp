@@ -74,16 +74,32 @@ struct GlassText {
   }
 };
 
+/// Powers that ASP has no letters for.
+bool is_odd_polynomial(const Surface& surface) {
+  return std::any_of(surface.asphere.begin(), surface.asphere.end(), [](const auto& term) {
+    const int letter = (term.first - seq_lowest_asphere_power) / 2;
+    return term.first % 2 != 0 || term.first < seq_lowest_asphere_power ||
+           letter >= static_cast<int>(seq_asphere_letters.size());
+  });
+}
+
+std::string odd_polynomial_text(const Surface& surface, std::size_t i) {
+  std::string text = fmt::format("  SPS ODD 0.0\n  SCO K {}\n", number_text(surface.conic));
+  for (const auto& [power, coefficient] : surface.asphere) {
+    if (power > seq_highest_odd_power)
+      refuse(i, "asphere", fmt::format("r^{}; it holds powers up to {}", power, seq_highest_odd_power));
+    text += fmt::format("  SCO AR{} {}\n", power, number_text(coefficient));
+  }
+  return text;
+}
+
 std::string asphere_text(const Surface& surface, std::size_t i) {
+  if (is_odd_polynomial(surface)) return odd_polynomial_text(surface, i);
   std::string text = "  ASP\n";
   if (surface.conic != 0) text += fmt::format("  K {}\n", number_text(surface.conic));
   for (const auto& [power, coefficient] : surface.asphere) {
-    const int letter = (power - seq_lowest_asphere_power) / 2;
-    if (power % 2 != 0 || power < seq_lowest_asphere_power ||
-        letter >= static_cast<int>(seq_asphere_letters.size()))
-      refuse(i, "asphere", fmt::format("r^{}; it holds r^4, r^6 … r^20", power));
-    text += fmt::format("  {} {}\n", seq_asphere_letters[static_cast<std::size_t>(letter)],
-                        number_text(coefficient));
+    const auto letter = static_cast<std::size_t>((power - seq_lowest_asphere_power) / 2);
+    text += fmt::format("  {} {}\n", seq_asphere_letters[letter], number_text(coefficient));
   }
   return text;
 }

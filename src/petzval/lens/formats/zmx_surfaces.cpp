@@ -22,15 +22,18 @@ bool is_infinite(const ZmxRecord& thickness) {
   return std::abs(parse_number(thickness.values[0]).value_or(0)) >= infinite_distance;
 }
 
-/// Coefficient i (from 1) of PARM is that of r^(step·i). An extended asphere has them in XDAT instead, after
+/// Coefficient i (from 1) of PARM is that of r^(step·i). Extended aspheres have them in XDAT instead, after
 /// their number and a radius R that r is divided by.
 struct SurfaceType {
   const char* name;
   int power_step;  ///< 0: no polynomial
   bool extended;
 };
-constexpr SurfaceType surface_types[] = {
-    {"STANDARD", 0, false}, {"EVENASPH", 2, false}, {"ODDASPHE", 1, false}, {"XASPHERE", 2, true}};
+constexpr SurfaceType surface_types[] = {{"STANDARD", 0, false},
+                                         {"EVENASPH", 2, false},
+                                         {"ODDASPHE", 1, false},
+                                         {"XASPHERE", 2, true},
+                                         {"XOSPHERE", 1, true}};
 constexpr int most_parameters = 8, most_extra_data = 300;
 
 /// What stands for the name of a glass that has none.
@@ -42,9 +45,9 @@ const SurfaceType& surface_type(const ZmxFile& file, const ZmxBlock& block) {
   const std::string name = record->has(0) ? record->values[0] : "";
   for (const SurfaceType& type : surface_types)
     if (name == type.name) return type;
-  file.fail(
-      block, record->line,
-      fmt::format("TYPE {} is not modelled; STANDARD, EVENASPH, ODDASPHE and XASPHERE are", quotable(name)));
+  file.fail(block, record->line,
+            fmt::format("TYPE {} is not modelled; STANDARD, EVENASPH, ODDASPHE, XASPHERE and XOSPHERE are",
+                        quotable(name)));
 }
 
 void read_polynomial(const ZmxContext& context, const ZmxBlock& block, int power_step, Surface& surface) {
@@ -57,11 +60,13 @@ void read_polynomial(const ZmxContext& context, const ZmxBlock& block, int power
           block, record.line,
           fmt::format("PARM {} is not a coefficient of this surface; 1 to {} are", i, most_parameters));
     const int power = power_step * static_cast<int>(i);
-    surface.asphere[power] = value * std::pow(context.mm_per_unit, 1 - power);
+    if (const double scaled = value * std::pow(context.mm_per_unit, 1 - power); scaled != 0)
+      surface.asphere[power] = scaled;
   }
 }
 
-void read_extended_polynomial(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
+void read_extended_polynomial(const ZmxContext& context, const ZmxBlock& block, int power_step,
+                              Surface& surface) {
   const ZmxFile& file = context.file;
   std::map<int, double> data;
   for (const ZmxRecord& record : block.records) {
@@ -77,8 +82,11 @@ void read_extended_polynomial(const ZmxContext& context, const ZmxBlock& block, 
     const int term = i - first_coefficient + 1;
     if (term < 1 || term > terms || value == 0) continue;
     if (!(radius_mm > 0))
-      file.fail(block, block.line, "an XASPHERE without a positive normalisation radius (XDAT 2)");
-    surface.asphere[2 * term] = value * context.mm_per_unit * std::pow(radius_mm, -2 * term);
+      file.fail(block, block.line, "an extended asphere without a positive normalisation radius (XDAT 2)");
+    const int power = power_step * term;
+    // One too small for a number in mm is no term.
+    if (const double scaled = value * context.mm_per_unit * std::pow(radius_mm, -power); scaled != 0)
+      surface.asphere[power] = scaled;
   }
 }
 
@@ -155,7 +163,7 @@ Surface read_surface(const ZmxContext& context, const ZmxBlock& block) {
   surface.stop = block.find("STOP") != nullptr;
   surface.semi_diameter_mm = read_semi_diameter(context, block);
   if (type.extended)
-    read_extended_polynomial(context, block, surface);
+    read_extended_polynomial(context, block, type.power_step, surface);
   else if (type.power_step)
     read_polynomial(context, block, type.power_step, surface);
   if (const ZmxRecord* glass = block.find("GLAS")) surface.material = read_glass(context, block, *glass);

@@ -82,29 +82,27 @@ struct GlassText {
   }
 };
 
-/// Even powers of any height, r measured in mm.
-std::string extended_shape_text(const Surface& surface) {
+/// Powers of any height that are multiples of `step`, r measured in mm.
+std::string extended_shape_text(const Surface& surface, int step) {
   const auto datum = [](int i, const std::string& value) {
     return fmt::format("  XDAT {} {} 0 0 1 0 0 \"\"\n", i, value);
   };
-  std::string text = "  TYPE XASPHERE\n";
-  text += datum(1, fmt::format("{}", surface.asphere.rbegin()->first / 2)) + datum(2, "1.0");
+  std::string text = fmt::format("  TYPE {}\n", step == 2 ? "XASPHERE" : "XOSPHERE");
+  text += datum(1, fmt::format("{}", surface.asphere.rbegin()->first / step)) + datum(2, "1.0");
   for (const auto& [power, coefficient] : surface.asphere)
-    text += datum(power / 2 + 2, number_text(coefficient));
+    text += datum(power / step + 2, number_text(coefficient));
   return text;
 }
 
-/// Even powers up to 16 make an EVENASPH, higher ones an XASPHERE, powers up to 8 an ODDASPHE.
-std::string shape_text(const Surface& surface, std::size_t i) {
+/// Even powers up to 16 make an EVENASPH, higher ones an XASPHERE, any powers up to 8 an ODDASPHE, higher
+/// ones an XOSPHERE.
+std::string shape_text(const Surface& surface) {
   if (surface.asphere.empty()) return "  TYPE STANDARD\n";
   constexpr int parameters = 8;
   const bool even = std::all_of(surface.asphere.begin(), surface.asphere.end(),
                                 [](const auto& term) { return term.first % 2 == 0; });
   const int step = even ? 2 : 1, highest = surface.asphere.rbegin()->first;
-  if (highest > parameters * step && even) return extended_shape_text(surface);
-  if (highest > parameters * step)
-    throw InputError(fmt::format(
-        "surfaces[{}].asphere: a .zmx file holds even powers, or all powers up to 8, not r^{}", i, highest));
+  if (highest > parameters * step) return extended_shape_text(surface, step);
   std::string text = even ? "  TYPE EVENASPH\n" : "  TYPE ODDASPHE\n";
   for (const auto& [power, coefficient] : surface.asphere)
     text += fmt::format("  PARM {} {}\n", power / step, number_text(coefficient));
@@ -113,8 +111,7 @@ std::string shape_text(const Surface& surface, std::size_t i) {
 
 std::string surface_text(const Lens& lens, std::size_t i) {
   const Surface& surface = lens.surfaces[i];
-  std::string text =
-      fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface, i));
+  std::string text = fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface));
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
   text += fmt::format("  DISZ {}\n", number_text(surface.thickness_mm));
