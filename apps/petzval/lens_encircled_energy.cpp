@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/encircled_energy.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/report/colours.h>
-#include <petzval/report/svg_plot.h>
+#include <petzval/report/analysis_plots.h>
 
 #include <algorithm>
 
@@ -20,36 +19,6 @@ struct EncircledEnergyCommand : AnalysisCommand {
   bool about_chief = false;
 };
 
-Plot energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows) {
-  Plot plot;
-  plot.title = "Encircled energy, dashed without aberration";
-  plot.x = {"radius", "µm"};
-  plot.x.from = 0;
-  plot.y = {"share of the light", ""};
-  plot.y.from = 0;
-  plot.y.to = 1;
-  for (std::size_t start = 0, end = 0; start < rows.size(); start = end) {
-    std::vector<double> radius, share, airy;
-    for (end = start; end < rows.size() && rows[end].field == rows[start].field &&
-                      rows[end].wavelength_nm == rows[start].wavelength_nm;
-         ++end) {
-      radius.push_back(rows[end].radius_um);
-      share.push_back(rows[end].encircled_energy);
-      airy.push_back(rows[end].airy);
-    }
-    const std::string colour = series_colour(plot.series.size() / 2).hex();
-    PlotSeries& line = plot.line(
-        fmt::format("{:g} {}, {:g} nm", rows[start].field, field_unit(kind), rows[start].wavelength_nm),
-        radius, share);
-    line.colour = colour;
-    PlotSeries& limit = plot.line("", radius, airy);
-    limit.colour = colour;
-    limit.stroke = PlotStroke::dashed;
-    limit.width_px = 1;
-  }
-  return plot;
-}
-
 void encircled_energy(const EncircledEnergyCommand& command, const Shared& shared) {
   const Lens lens = command.fields.prepare(command.lens.read(shared), shared);
   const FieldTableRequest request = command.fields.request(lens);
@@ -58,7 +27,8 @@ void encircled_energy(const EncircledEnergyCommand& command, const Shared& share
   std::sort(options.radii_um.begin(), options.radii_um.end());
   const std::vector<EncircledEnergyRow> rows = encircled_energy_table(lens, request, options);
   if (!command.plot.empty())
-    write_whole_file(command.plot, plot_grid_svg({energy_plot(request.field_kind, rows)}, 1, lens.name));
+    write_whole_file(command.plot,
+                     plot_grid_svg({encircled_energy_plot(request.field_kind, rows)}, 1, lens.name));
   if (shared.json) {
     nlohmann::ordered_json json = analysis_json(lens, request);
     json["about"] = options.about_centroid ? "centroid" : "chief ray";

@@ -31,8 +31,12 @@ void report(const ReportCommand& options, const Shared& shared) {
   LensReportOptions chosen = options.report;
   if (!options.sensor.empty()) {
     const Sensor sensor = read_sensor(options.sensor);
-    chosen.sensor =
-        ReportSensor{sensor.name, sensor.geometry.pitch_um, sensor.geometry.half_diagonal_mm(), 1, 1, {}, {}};
+    chosen.sensor = ReportSensor{
+        sensor.name, sensor.geometry.pitch_um, sensor.geometry.half_diagonal_mm(), sensor.photosite, {}, {}};
+    if (sensor.electronics && sensor.electronics->microlens) {
+      chosen.sensor->microlens_heights_mm = sensor.electronics->microlens->design_heights_mm;
+      chosen.sensor->microlens_angles_deg = sensor.electronics->microlens->design_angles_deg;
+    }
   }
   std::vector<ReportLens> lenses;
   for (const std::string& name : options.lenses) {

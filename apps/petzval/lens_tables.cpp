@@ -32,8 +32,8 @@ nlohmann::ordered_json table_json(const Lens& lens, const FieldTableRequest& req
 
 /// Rows [field][wavelength] as one curve a wavelength over `x`.
 template <class Row, class X, class Y>
-void write_plot(const std::string& path, Plot plot, const std::vector<Row>& rows, std::size_t wavelengths,
-                X&& x, Y&& y) {
+void write_plot(const std::string& path, const std::string& title, Plot plot, const std::vector<Row>& rows,
+                std::size_t wavelengths, X&& x, Y&& y) {
   for (std::size_t w = 0; w < wavelengths; ++w) {
     std::vector<double> xs, ys;
     for (std::size_t i = w; i < rows.size(); i += wavelengths) {
@@ -45,7 +45,7 @@ void write_plot(const std::string& path, Plot plot, const std::vector<Row>& rows
     line.colour = wavelength_colour(rows[w].wavelength_nm).hex();
     line.marker = PlotMarker::dot;
   }
-  write_whole_file(path, plot.svg());
+  write_whole_file(path, plot_grid_svg({plot}, 1, title));
 }
 
 void distortion(const TableCommand& options, const Shared& shared) {
@@ -55,11 +55,11 @@ void distortion(const TableCommand& options, const Shared& shared) {
   const std::vector<DistortionRow> rows = distortion_table(lens, request);
   if (!options.plot.empty()) {
     Plot plot;
-    plot.title = lens.name + ": distortion";
+    plot.title = "Distortion";
     plot.x = {"real image height", "mm", PlotScale::linear, {}, {}};
     plot.y = {"distortion", "%", PlotScale::linear, {}, {}};
     write_plot(
-        options.plot, plot, rows, request.wavelengths_nm.size(),
+        options.plot, lens.name, plot, rows, request.wavelengths_nm.size(),
         [](const DistortionRow& row) { return row.image_height_mm; },
         [](const DistortionRow& row) { return row.distortion_percent; });
   }
@@ -103,11 +103,11 @@ void illumination(const TableCommand& options, const Shared& shared) {
                        row.field, row.wavelength_nm));
   if (!options.plot.empty()) {
     Plot plot;
-    plot.title = lens.name + ": relative illumination";
+    plot.title = "Relative illumination";
     plot.x = {"real image height", "mm", PlotScale::linear, {}, {}};
     plot.y = {"g_sensor / g_sensor on axis", "", PlotScale::linear, 0.0, {}};
     write_plot(
-        options.plot, plot, rows, request.wavelengths_nm.size(),
+        options.plot, lens.name, plot, rows, request.wavelengths_nm.size(),
         [](const IlluminationRow& row) { return row.real_image_height_mm; },
         [](const IlluminationRow& row) { return row.relative_illumination; });
   }

@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Analyses of a lens as their users meet them: rows by name, pictures, focus and stop, and what is refused."""
 
+import base64
+import csv
+import json
+import pathlib
+import re
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 from petzval_cli import ProgramTest
 
+SENSORS = pathlib.Path(__file__).parents[2] / "data" / "sensors"
 ANALYSES = {
     "fans": {"pupil", "x_um", "y_um", "opd_waves", "fan"},
     "zernike": {"index", "n", "m", "name", "coefficient_waves"},
@@ -83,6 +89,26 @@ class LensAnalyses(ProgramTest):
         page = (self.folder / "report.html").read_text()
         self.assertIn("Comparison", page)
         self.assertEqual(page.count("On the sensor 1/3 inch, VGA"), 2)
+
+    def test_report_knows_the_microlenses_of_the_sensor(self):
+        sensor = json.loads((SENSORS / "third-inch-1280x960.json").read_text())
+        sensor["microlens"] = {"angles_deg": [0, 30], "response": [1, 0.7],
+                               "design_heights_mm": [0, 3], "design_angles_deg": [0, 12]}
+        (self.folder / "sensor.json").write_text(json.dumps(sensor))
+        self.assert_succeeds("lens", "report", "edmund-54852", "--wavelengths", "587.56", "--sensor", "sensor.json",
+                             "-o", "report.html")
+        page = (self.folder / "report.html").read_text()
+        data = re.search('download="sensor.csv" href="data:text/csv;base64,([^"]*)"', page)[1]
+        rows = list(csv.DictReader(base64.b64decode(data).decode().splitlines()))
+        heights = [float(list(row.values())[0]) for row in rows]
+        self.assertEqual(len(rows), 6)
+        for height, row in zip(heights, rows):
+            *_, angle, designed, mismatch = [float(value) for value in row.values()]
+            self.assertAlmostEqual(designed, 4 * height, 9)
+            self.assertAlmostEqual(mismatch, angle - designed, 9)
+        angles = self.json_of("lens", "chief-ray-angle", "edmund-54852", "--wavelengths", "587.5618", "--field-type",
+                              "real_image_height_mm", "--fields", repr(heights[3]))["rows"]
+        self.assertAlmostEqual(float(list(rows[3].values())[5]), angles[0]["chief_ray_angle_deg"], 6)
 
     def test_threads_do_not_matter(self):
         for threads in (1, 3):

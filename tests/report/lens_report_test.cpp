@@ -47,7 +47,8 @@ TEST(LensReport, HoldsEveryAnalysisAndLoadsNothing) {
   const std::string page = lens_report_html({small_report("cooke-triplet")}, {});
   for (const char* section :
        {"Layout and first-order data", "Prescription", "Spots", "Ray and OPD fans", "Wavefront",
-        "field curves, distortion", "Colour", "MTF", "Illumination, vignetting", "Seidel sums", "Zernike"})
+        "field curves, distortion", "Colour", "Point spread and encircled energy", "MTF",
+        "Illumination, vignetting", "Seidel sums", "Zernike"})
     EXPECT_NE(page.find(section), std::string::npos) << section;
   // Nothing from outside: every address is within the page or its data.
   const std::regex address("(?:href|src)=\"([^\"]{0,8})");
@@ -67,10 +68,10 @@ TEST(LensReport, TheDataBehindPlotsAreThoseOfTheAnalyses) {
   EXPECT_EQ(spots, to_csv(tabulate(report.request.field_kind, spot_table(report.lens, report.request))));
   EXPECT_EQ(count(spots, "\n"), 1U + 2);
   for (const char* name :
-       {"fans.csv", "mtf.csv", "mtf_over_field.csv", "mtf_through_focus.csv", "spot_diagrams.csv",
-        "wavefront_maps.csv", "longitudinal.csv", "field_curvature.csv", "distortion.csv",
-        "lateral_colour.csv", "illumination.csv", "vignetting.csv", "chief_ray_angle.csv", "seidel.csv",
-        "zernike.csv", "prescription.csv"})
+       {"fans.csv", "mtf.csv", "mtf_geometric.csv", "psf.csv", "encircled_energy.csv", "mtf_over_field.csv",
+        "mtf_through_focus.csv", "spot_diagrams.csv", "wavefront_maps.csv", "longitudinal.csv",
+        "field_curvature.csv", "distortion.csv", "lateral_colour.csv", "illumination.csv", "vignetting.csv",
+        "chief_ray_angle.csv", "seidel.csv", "zernike.csv", "prescription.csv"})
     EXPECT_GT(count(downloaded(page, name), "\n"), 2U) << name;
 }
 
@@ -84,7 +85,7 @@ TEST(LensReport, ComparesSeveralLenses) {
 
 TEST(LensReport, PutsTheLensOnASensor) {
   LensReportOptions options;
-  options.sensor = ReportSensor{"test sensor", 10, 3, 1, 1, {0, 3}, {0, 12}};
+  options.sensor = ReportSensor{"test sensor", 10, 3, {}, {0, 3}, {0, 12}};
   const std::string page = lens_report_html({small_report("cooke-triplet")}, options);
   const std::string table = downloaded(page, "sensor.csv");
   // Nyquist of 10 µm pixels is 50 cycles/mm, where a full pixel passes 2/π; each row: lens MTF, then times

@@ -188,6 +188,36 @@ Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows) 
   return plot;
 }
 
+Plot encircled_energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows) {
+  Plot plot;
+  plot.title = "Encircled energy, dashed without aberration";
+  plot.x = {"radius", "µm"};
+  plot.x.from = 0;
+  plot.y = {"share of the light", ""};
+  plot.y.from = 0;
+  plot.y.to = 1;
+  for (std::size_t start = 0, end = 0; start < rows.size(); start = end) {
+    std::vector<double> radius, share, airy;
+    for (end = start; end < rows.size() && rows[end].field == rows[start].field &&
+                      rows[end].wavelength_nm == rows[start].wavelength_nm;
+         ++end) {
+      radius.push_back(rows[end].radius_um);
+      share.push_back(rows[end].encircled_energy);
+      airy.push_back(rows[end].airy);
+    }
+    const std::string colour = series_colour(plot.series.size() / 2).hex();
+    PlotSeries& line = plot.line(
+        fmt::format("{:g} {}, {:g} nm", rows[start].field, field_unit(kind), rows[start].wavelength_nm),
+        radius, share);
+    line.colour = colour;
+    PlotSeries& limit = plot.line("", radius, airy);
+    limit.colour = colour;
+    limit.stroke = PlotStroke::dashed;
+    limit.width_px = 1;
+  }
+  return plot;
+}
+
 Plot lateral_colour_plot(Fields::Kind kind, const std::vector<LateralColourRow>& rows) {
   Plot plot;
   plot.title = "Lateral colour against the reference wavelength";

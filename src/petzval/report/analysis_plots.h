@@ -28,6 +28,9 @@ Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows);
 Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
 Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows);
 
+/// A curve a field and wavelength over the radius; dashed beside it what an Airy pattern holds.
+Plot encircled_energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows);
+
 Plot lateral_colour_plot(Fields::Kind kind, const std::vector<LateralColourRow>& rows);
 Plot illumination_plot(const std::vector<IlluminationRow>& rows);
 Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows);

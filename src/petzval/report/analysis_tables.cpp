@@ -85,6 +85,15 @@ Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows) {
   return make<Row>(kind, rows, columns);
 }
 
+Table tabulate(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows) {
+  using Row = EncircledEnergyRow;
+  return make<Row>(
+      kind, rows,
+      {{{"radius", "µm", 3, "radius_um"}, [](const Row& row) { return row.radius_um; }},
+       {{"encircled energy", "", 5, "encircled_energy"}, [](const Row& row) { return row.encircled_energy; }},
+       {{"Airy", "", 5, "airy"}, [](const Row& row) { return row.airy; }}});
+}
+
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
   using Row = DistortionRow;
   return make<Row>(

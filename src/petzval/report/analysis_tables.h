@@ -4,6 +4,7 @@
 
 #include <petzval/analysis/aberration_fans.h>
 #include <petzval/analysis/chromatic.h>
+#include <petzval/analysis/encircled_energy.h>
 #include <petzval/analysis/field_curvature.h>
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/mtf.h>
@@ -29,6 +30,7 @@ Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<VignettingRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<ChiefRayAngleRow>& rows);
+Table tabulate(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows);
 
 /// One row a point, a term or a sample.
 Table tabulate(Fields::Kind kind, const std::vector<AberrationFans>& rows);

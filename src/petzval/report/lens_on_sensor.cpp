@@ -15,12 +15,6 @@ namespace petzval {
 
 namespace {
 
-/// Transfer of a pixel that gathers light over a width [pitches], at a frequency [cycles/pixel].
-double pixel_mtf(double width, double cycles_per_pixel) {
-  const double x = pi * width * cycles_per_pixel;
-  return x == 0 ? 1 : std::abs(std::sin(x) / x);
-}
-
 /// Those of the image heights that a chief ray reaches, none beyond the first that fails.
 std::vector<double> reachable(const Lens& lens, const std::vector<double>& heights_mm) {
   FieldTracer tracer(lens, lens.reference_wavelength_nm);
@@ -55,8 +49,8 @@ void add_sensor_section(html::Page& page, const ReportLens& report, const Report
   FieldTableRequest one = request;
   one.wavelengths_nm = {report.lens.reference_wavelength_nm};
   const std::vector<ChiefRayAngleRow> angles = chief_ray_angle_table(report.lens, one);
-  const double across = pixel_mtf(sensor.photosite_width, nyquist),
-               along = pixel_mtf(sensor.photosite_height, nyquist);
+  const double across = std::abs(sensor.photosite.transform(nyquist, 0)),
+               along = std::abs(sensor.photosite.transform(0, nyquist));
   const bool microlens = sensor.microlens_heights_mm.size() > 1;
   Table table{{{"image height", "mm", 3},
                {"lens MTF, tangential", "", 3},

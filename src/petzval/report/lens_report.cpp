@@ -21,7 +21,8 @@ namespace petzval {
 namespace {
 
 /// Fields of curves, zones of the longitudinal aberration, rays of fans, samples of maps, rings of spots.
-constexpr int curve_fields = 33, mtf_fields = 21, curve_zones = 41, fan_rays = 65, map_samples = 64, spot_rings = 8;
+constexpr int curve_fields = 33, mtf_fields = 21, curve_zones = 41, fan_rays = 65, map_samples = 64,
+              spot_rings = 8;
 /// Zernike terms in the table.
 constexpr int zernike_terms = 16;
 
@@ -144,6 +145,7 @@ class LensSections {
     wavefronts();
     field_curves();
     colour();
+    add_light_spread_section(page_, report_, end_);
     transfer();
     light();
     third_order();
@@ -251,6 +253,14 @@ class LensSections {
                     "height.",
                     request_.wavelengths_nm.size()),
         "mtf.csv", tabulate(kind_, rows)));
+    MtfOptions by_rays = options;
+    by_rays.geometric = true;
+    const std::vector<MtfRow> geometric = mtf_table(lens_, request_, by_rays);
+    Plot plot = mtf_plot(kind_, geometric, options.frequencies_cpmm.size());
+    plot.title = "Geometric MTF, tangential solid, sagittal dashed";
+    page_.add(figure_with_data(plot.svg(),
+                               "The same by rays alone: the transform of the spots, without diffraction.",
+                               "mtf_geometric.csv", tabulate(kind_, geometric)));
     options.frequencies_cpmm = options_.frequencies_cpmm;
     const std::vector<MtfRow> over_field = mtf_table(lens_, dense(request_, mtf_fields), options);
     const double slowest =

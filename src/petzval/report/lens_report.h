@@ -5,6 +5,7 @@
 
 #include <petzval/analysis/field_tables.h>
 #include <petzval/lens/lens.h>
+#include <petzval/wave/photosite.h>
 
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ namespace petzval {
 struct ReportSensor {
   std::string name;
   double pitch_um = 0, half_diagonal_mm = 0;
-  double photosite_width = 1, photosite_height = 1;  ///< of the light-gathering rectangle, in pitches
+  Photosite photosite;  ///< and optical low-pass
   /// The chief-ray angle that the microlenses are made for, against image height; empty: not known.
   std::vector<double> microlens_heights_mm, microlens_angles_deg;
 };

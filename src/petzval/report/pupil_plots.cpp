@@ -42,6 +42,8 @@ Plot spot_plot(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams,
   plot.equal_aspect = true;
   plot.width_px = 1000;
   const double pitch = 2.2 * reach;
+  plot.x.from = -0.5 * pitch;
+  plot.x.to = (static_cast<double>(fields) - 0.5) * pitch;
   constexpr double stroke_px = 1.3;
   const double stroke = stroke_px * pitch * static_cast<double>(fields) / plot.width_px;
   for (std::size_t w = 0; w < wavelengths; ++w) {
