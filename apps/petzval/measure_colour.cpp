@@ -6,6 +6,7 @@
 #include <petzval/base/staged_files.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/measure/chart_scielab.h>
 #include <petzval/measure/colour_chart.h>
 #include <petzval/measure/scielab.h>
 #include <petzval/sensor/colour_calibration.h>
@@ -15,6 +16,8 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
 
 #include "measure_command.h"
 
@@ -28,6 +31,8 @@ struct ColourCommand {
   std::string picture, light = "D65";
   std::vector<double> corners;
   bool keep_exposure = false;
+  std::optional<double> distance_mm;  ///< with S-CIELAB
+  double pitch_um = 250;
   MeasureOutputs outputs;
 };
 
@@ -50,7 +55,8 @@ struct ShadingCommand {
 
 // ---- colour
 
-Table table_of(const ChartDifference& difference) {
+/// \param scielab  of each patch, or nothing.
+Table table_of(const ChartDifference& difference, const std::vector<double>& scielab) {
   Table table{{{"patch", "", 0},
                {"x", "px", 1},
                {"y", "px", 1},
@@ -67,6 +73,9 @@ Table table_of(const ChartDifference& difference) {
     table.rows.push_back({patch.name, patch.x, patch.y, patch.seen.l, patch.seen.a, patch.seen.b,
                           patch.wanted.l, patch.wanted.a, patch.wanted.b, patch.delta_e_ab,
                           patch.delta_e_2000});
+  if (scielab.empty()) return table;
+  table.columns.push_back({"S-CIELAB", "", 2});
+  for (std::size_t i = 0; i < table.rows.size(); ++i) table.rows[i].push_back(scielab[i]);
   return table;
 }
 
@@ -104,7 +113,13 @@ void measure_colour(const ColourCommand& command, const Shared& shared) {
     for (std::size_t i = 0; i < 8; ++i) corners.xy[i / 2][i % 2] = command.corners[i];
   }
   const ChartDifference difference = compare_chart(picture, corners, light, !command.keep_exposure);
-  command.outputs.write(table_of(difference), plot_of(difference));
+  std::vector<double> seen;
+  if (command.distance_mm)
+    seen = chart_scielab(picture, corners, difference, light,
+                         pixels_per_degree(*command.distance_mm, command.pitch_um));
+  const double mean_seen = std::accumulate(seen.begin(), seen.end(), 0.0) /
+                           static_cast<double>(std::max<std::size_t>(1, seen.size()));
+  command.outputs.write(table_of(difference, seen), plot_of(difference));
   if (shared.json) {
     ordered_json rows = ordered_json::array();
     for (const PatchDifference& patch : difference.patches)
@@ -119,18 +134,26 @@ void measure_colour(const ColourCommand& command, const Shared& shared) {
                       {"b_wanted", patch.wanted.b},
                       {"delta_e_ab", patch.delta_e_ab},
                       {"delta_e_2000", patch.delta_e_2000}});
-    const ordered_json json = {{"mean_delta_e_ab", difference.mean_delta_e_ab},
-                               {"mean_delta_e_2000", difference.mean_delta_e_2000},
-                               {"max_delta_e_2000", difference.max_delta_e_2000},
-                               {"exposure", difference.exposure},
-                               {"found", command.corners.empty()},
-                               {"rows", rows}};
+    for (std::size_t i = 0; i < seen.size(); ++i) rows[i]["scielab"] = seen[i];
+    ordered_json json = {{"mean_delta_e_ab", difference.mean_delta_e_ab},
+                         {"mean_delta_e_2000", difference.mean_delta_e_2000},
+                         {"max_delta_e_2000", difference.max_delta_e_2000},
+                         {"exposure", difference.exposure},
+                         {"found", command.corners.empty()},
+                         {"rows", rows}};
+    if (!seen.empty()) json["mean_scielab"] = mean_seen;
     return fmt::print("{}\n", json.dump(2));
   }
-  fmt::print("{:<16}{:>8}{:>8}{:>9}{:>9}\n", "patch", "x [px]", "y [px]", "DE*ab", "DE2000");
-  for (const PatchDifference& patch : difference.patches)
-    fmt::print("{:<16}{:>8.1f}{:>8.1f}{:>9.2f}{:>9.2f}\n", patch.name, patch.x, patch.y, patch.delta_e_ab,
-               patch.delta_e_2000);
+  fmt::print("{:<16}{:>8}{:>8}{:>9}{:>9}{}\n", "patch", "x [px]", "y [px]", "DE*ab", "DE2000",
+             seen.empty() ? "" : "  S-CIELAB");
+  for (std::size_t i = 0; i < difference.patches.size(); ++i) {
+    const PatchDifference& patch = difference.patches[i];
+    fmt::print("{:<16}{:>8.1f}{:>8.1f}{:>9.2f}{:>9.2f}{}\n", patch.name, patch.x, patch.y, patch.delta_e_ab,
+               patch.delta_e_2000, seen.empty() ? "" : fmt::format("{:>10.2f}", seen[i]));
+  }
+  if (!seen.empty())
+    fmt::print("mean S-CIELAB {:.2f}, from {:g} mm at {:g} um a pixel of the display\n", mean_seen,
+               *command.distance_mm, command.pitch_um);
   fmt::print("mean DE*ab {:.2f}, mean DE2000 {:.2f}, max DE2000 {:.2f}, luminance times {:.4g}\n",
              difference.mean_delta_e_ab, difference.mean_delta_e_2000, difference.max_delta_e_2000,
              difference.exposure);
@@ -275,6 +298,16 @@ void add_measure_colour(CLI::App& measure, Shared& shared) {
       ->delimiter(',');
   command->add_flag("--keep-exposure", options->keep_exposure,
                     "Do not match the luminance of the greys first");
+  CLI::Option* distance =
+      command
+          ->add_option(
+              "--distance", options->distance_mm,
+              "S-CIELAB of each patch too, noise included, for an eye at this distance from the display [mm]")
+          ->check(CLI::PositiveNumber);
+  command->add_option("--pixel-pitch", options->pitch_um, "Of the display [um]")
+      ->check(CLI::PositiveNumber)
+      ->needs(distance)
+      ->capture_default_str();
   options->outputs.add_to(*command);
 }
 

@@ -56,7 +56,8 @@ TEST(ColourChain, BringsColourCheckerBack) {
   // The matrices in the raw image are those for A and D65; D50 lies between. The bound for D65 is 3; the
   // sensors themselves allow 1 and 2 (measure matrix). 31 bands, clipping to the display's gamut (cyan) and
   // interpolation of matrices come on top.
-  for (const char* name : {"full-frame-24mp", "third-inch-1280x960", "quad-bayer-1280x960", "rgbw-1280x960"})
+  for (const char* name :
+       {"full-frame-24mp", "third-inch-1280x960", "quad-bayer-1280x960", "rgbw-1280x960", "rccb-1280x960"})
     for (const char* light : {"D65", "D50", "A"}) {
       const ChartDifference difference = through(name, light, false);
       RecordProperty(std::string(name) + " " + light, std::to_string(difference.mean_delta_e_2000));

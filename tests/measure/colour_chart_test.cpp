@@ -3,7 +3,9 @@
 #include <petzval/base/error.h>
 #include <petzval/colour/display.h>
 #include <petzval/colour/illuminants.h>
+#include <petzval/measure/chart_scielab.h>
 #include <petzval/measure/colour_chart.h>
+#include <petzval/numeric/random.h>
 
 #include <cmath>
 
@@ -82,6 +84,37 @@ TEST(CompareChart, GivesTheDifferenceOfAKnownShift) {
   EXPECT_THROW(
       compare_chart(picture, {{{{-195, 165}, {445, 165}, {445, 315}, {195, 315}}}}, illuminant("D65")),
       InputError);
+}
+
+TEST(ChartScielab, SeesWhatMeansOfPatchesDoNot) {
+  const double pitch = 50;
+  const Spectrum light = illuminant("D65");
+  ViewedPicture picture = drawn_chart(400, 300, 75, 75, pitch, 0, 1);
+  const ChartCorners corners{{{{75, 75}, {325, 75}, {325, 225}, {75, 225}}}};
+  const auto seen = [&](double per_degree) {
+    const ChartDifference difference = compare_chart(picture, corners, light, false);
+    return chart_scielab(picture, corners, difference, light, per_degree);
+  };
+  constexpr double near = 10, far = 300;
+  for (const double patch : seen(near)) EXPECT_LT(patch, 1e-3);  // floats
+  // An even shift of an even surface is what CIELAB says, at any distance.
+  for (Xyz& pixel : picture.pixels) pixel = 1.1 * pixel;
+  const ChartDifference shifted = compare_chart(picture, corners, light, false);
+  for (const double per_degree : {near, far}) {
+    const std::vector<double> patches = seen(per_degree);
+    for (std::size_t i = 0; i < patches.size(); ++i)
+      EXPECT_NEAR(patches[i], shifted.patches[i].delta_e_ab, 1e-3) << i;
+  }
+  // Noise of mean zero is seen from near and not from far.
+  picture = drawn_chart(400, 300, 75, 75, pitch, 0, 1);
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+    picture.pixels[i] = std::max(0.0, 1 + 0.1 * RandomStream(1, 1, i).normal()) * picture.pixels[i];
+  const std::vector<double> from_near = seen(near), from_far = seen(far);
+  for (std::size_t i = 0; i < from_near.size(); ++i) {
+    EXPECT_GT(from_near[i], 0.5) << i;
+    EXPECT_LT(from_far[i], 0.5 * from_near[i]) << i;
+  }
+  EXPECT_THROW(seen(2), InputError);
 }
 
 }  // namespace
