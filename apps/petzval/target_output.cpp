@@ -60,15 +60,14 @@ void write_picture_tiff(const std::string& path, const TargetImage& image, int b
 }
 
 void write_exr(const std::string& path, const TargetImage& image, const TargetOptics& optics) {
-  const Photosite site = optics.site();
-  const bool point = site.shape == Photosite::Shape::none;
-  const bool box = site.shape == Photosite::Shape::rectangle && site.width == 1 && site.height == 1;
-  if ((!point && !box) || optics.wavelengths_nm.size() != 1)
-    throw InputError(path,
-                     "an .exr holds the irradiance of one wavelength on full square photosites or at points; "
-                     "write .npy or .tif");
+  if (optics.wavelengths_nm.size() != 1)
+    throw InputError(path, "an .exr holds the irradiance of one wavelength; write .npy or .tif");
+  const std::string aperture = optics.site().text();
   SpectralImage spectral(image.columns, image.rows, {optics.wavelengths_nm.front()}, optics.pitch_um,
-                         point ? PixelAperture::point : PixelAperture::box);
+                         aperture == "box"     ? PixelAperture::box
+                         : aperture == "point" ? PixelAperture::point
+                                               : PixelAperture::photosite);
+  if (spectral.pixel_aperture() == PixelAperture::photosite) spectral.photosite = aperture;
   std::transform(image.values.begin(), image.values.end(), spectral.band(0).begin(),
                  [](double value) { return static_cast<float>(value); });
   spectral.provenance =

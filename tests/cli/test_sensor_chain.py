@@ -102,6 +102,29 @@ class SensorChain(ProgramTest):
                 self.write("mono.json", mono)
                 self.assert_refused("sense", "light.exr", "--sensor", "mono.json", "-o", "raw.dng", words=["pixel aperture", '"box"'])
 
+    def test_targets_are_sensed_through_their_photosite(self):
+        mono = {**SMALL_BAYER, "columns": 160, "rows": 160, "pitch_um": 4, "low_pass_um": 2,
+                "photosite": {"shape": "rectangle", "width_um": 2.8, "height_um": 2.8},
+                "channels": [{"name": "grey", "quantum_efficiency": [{"wavelengths_nm": [400, 700], "values": [0.5, 0.5]}]}]}
+        del mono["mosaic"]
+        self.write("mono.json", mono)
+        target = ("target", "--half-plane", "95", "--size", "96x96", "--pixel-pitch", "4", "--low-pass", "0.5x0.5", "--quiet")
+        self.assert_succeeds(*target, "--photosite", "rectangle:0.7x0.7", "-o", "fits.exr")
+        self.assert_succeeds("sense", "fits.exr", "--sensor", "mono.json", "-o", "raw.dng")
+        self.assert_succeeds(*target, "-o", "square.exr")
+        self.assert_refused("sense", "square.exr", "--sensor", "mono.json", "-o", "raw2.dng", words=["rectangle 1 x 1", "0.7 x 0.7"])
+
+    def test_image_fills_in_the_exit_pupil_for_microlenses(self):
+        """No --exit-pupil is needed, and what comes in at an angle is lost in part."""
+        flat = {**SMALL_BAYER, "microlens": {"angles_deg": [0, 60], "response": [1, 0.2]}}
+        self.write("tilted.json", flat)
+        self.assert_succeeds(*self.IMAGE, "--sensor", "tilted.json", "--exposure", "0.004", "-o", "light.exr", "-o", "with.dng")
+        with_it = self.json_of("sense", "light.exr", "--sensor", "tilted.json", "--exposure", "0.004", "-o", "a.dng")["rows"]
+        without = self.json_of("sense", "light.exr", "--sensor", "tilted.json", "--exposure", "0.004", "--without", "microlens", "-o",
+                               "b.dng")["rows"]
+        for lossy, whole in zip(with_it, without):
+            self.assertLess(lossy["mean_e"], whole["mean_e"])
+
     def test_image_shows_the_light_itself_where_that_is_asked_for(self):
         self.write("small.json", SMALL_BAYER)
         self.assert_succeeds(*self.IMAGE, "--sensor", "96x64@3.75", "-o", "frame.png", "--quiet")
