@@ -427,15 +427,14 @@ void add_method_options(CLI::App& command, ImageCommand& options) {
 
 void add_image_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<ImageCommand>();
-  CLI::App* command = add_command(
-      app, shared, "image", "Image a scene through a lens onto a sensor",
-      "petzval image studio --lens edmund-54852 --sensor 320x240@15 -o studio.png "
-      "-o studio.exr\n  petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 "
-      "-o shot.dng -o shot.png",
-      true, [options, &shared, &app] {
-        const ThreadLimit limit(shared.threads);
-        image(*options, *app.get_subcommand("image"), shared);
-      });
+  CLI::App* command =
+      add_command(app, shared, "image", "Image a scene through a lens onto a sensor",
+                  "petzval image studio --lens edmund-54852 --sensor 320x240@15 -o studio.png "
+                  "-o studio.exr",
+                  true, [options, &shared, &app] {
+                    const ThreadLimit limit(shared.threads);
+                    image(*options, *app.get_subcommand("image"), shared);
+                  });
   options->scene.add_to(*command);
   add_lens_options(*command, *options);
   command->add_option("--sensor", options->sensor,

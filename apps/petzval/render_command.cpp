@@ -10,6 +10,7 @@
 #include <petzval/image/picture.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/renderer.h>
+#include <petzval/sensor/lens_facts.h>
 
 #include <chrono>
 #include <filesystem>
@@ -212,6 +213,8 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   picture.irradiance.provenance =
       fmt::format("petzval {} render: {} through {}; {} samples a pixel, seed {}", version(),
                   command.choice.scene, camera_text(scene.camera), samples, shared.seed);
+  if (scene.camera.lens)
+    picture.irradiance.lens = lens_facts(scene.camera.lens->name, first_order(*scene.camera.lens));
   write_outputs(command, picture, shared);
   if (!command.checkpoint.empty()) std::filesystem::remove(command.checkpoint);
   if (shared.json) return print_json(summary_json(command, scene, picture, prepare_seconds, render_seconds));

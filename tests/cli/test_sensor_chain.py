@@ -125,6 +125,15 @@ class SensorChain(ProgramTest):
         for lossy, whole in zip(with_it, without):
             self.assertLess(lossy["mean_e"], whole["mean_e"])
 
+    def test_renderings_know_their_lens_too(self):
+        self.write("wall.pbrt", 'LookAt 0 0 -1  0 0 0  0 1 0\nCamera "perspective"\n'
+                   'Film "rgb" "integer xresolution" 32 "integer yresolution" 24 "float diagonal" 0.15\nWorldBegin\n'
+                   'LightSource "infinite" "rgb L" [ 1 1 1 ]\n')
+        self.assert_succeeds("render", "wall.pbrt", "--lens", "dgauss-50mm", "--film-distance", "38", "--spp", "4", "-o", "light.exr")
+        self.write("small.json", SMALL_BAYER)
+        self.assert_succeeds("sense", "light.exr", "--sensor", "small.json", "--exposure", "ev:8", "-o", "raw.dng")
+        self.assertIn(b"Double Gauss 50 mm", self.contents()["raw.dng"])
+
     def test_image_shows_the_light_itself_where_that_is_asked_for(self):
         self.write("small.json", SMALL_BAYER)
         self.assert_succeeds(*self.IMAGE, "--sensor", "96x64@3.75", "-o", "frame.png", "--quiet")

@@ -7,6 +7,7 @@
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/pixel_gather.h>
 #include <petzval/imaging/product_blur.h>
+#include <petzval/sensor/lens_facts.h>
 
 #include <algorithm>
 #include <chrono>
@@ -164,14 +165,6 @@ void finish(ImagingReport& report, const SpectralImage& image, const ImagingOpti
                     report.margin_cells));
 }
 
-/// What a camera would note of the lens; what is infinite or not known is 0.
-LensFacts lens_facts(const LensDataTable& table) {
-  const auto finite = [](double value) { return std::isfinite(value) ? value : 0.0; };
-  const FirstOrder& lens = table.first_order;
-  return {table.lens_name, finite(lens.efl_mm), finite(lens.working_f_number),
-          finite(lens.exit_pupil.position_mm)};
-}
-
 }  // namespace
 
 SectionOptions ImagingOptions::section_options() const {
@@ -261,7 +254,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     says.least_captured = std::min(says.least_captured, plan.least_captured);
     if (progress) progress((band + 1.0) / scene.bands(), "image");
   }
-  image.lens = lens_facts(table);
+  image.lens = lens_facts(table.lens_name, table.first_order);
   image.illuminant = scene.illuminant;
   finish(says, image, options);
   return image;
