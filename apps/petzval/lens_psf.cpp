@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
 #include "loss_option.h"
@@ -26,6 +27,7 @@ namespace {
 struct PsfCommand {
   LensChoice lens;
   FieldChoice fields;
+  CameraChoice camera;
   PsfOptions psf;
   LossChoice losses;
   std::string method = "rays";
@@ -135,7 +137,8 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
 
 void psf(const PsfCommand& options, const Shared& shared) {
   if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
-  const Lens lens = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens read = options.fields.prepare(options.lens.read(shared), shared);
+  const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   FieldTableRequest request = options.fields.request(lens);
   request.losses = options.losses.losses(lens, shared);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);
@@ -188,6 +191,7 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
                   [=, &shared] { psf(*options, shared); });
   options->lens.add_to(*command);
   options->fields.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("--size", options->psf.size, "Samples a side; default: as many as the spot needs")
       ->check(CLI::Range(8, 4096));
   command

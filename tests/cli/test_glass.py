@@ -10,7 +10,7 @@ from petzval_cli import ProgramTest
 class Glass(ProgramTest):
     def test_list(self):
         rows = self.json_of("glass", "list")["rows"]
-        self.assertEqual(len(rows), 1635)
+        self.assertEqual(len(rows), 1636)
         schott = self.json_of("glass", "list", "--catalogue", "schott")["rows"]
         self.assertEqual(len(schott), 156)
         self.assertEqual([row["name"] for row in schott], [row["name"] for row in rows if row["name"].startswith("SCHOTT:")])
@@ -35,9 +35,11 @@ class Glass(ProgramTest):
 
     def test_infrared_materials_have_the_indices_of_other_publications(self):
         """Ge and Si at 4 um: C. D. Salzberg and J. J. Villa, J. Opt. Soc. Am. 47, 244 (1957), two samples of which differ by 5e-4.
-        ZnSe at 10.6 um: 2.4028, as makers of laser windows state it; ZnS there: 2.192; As2S3 at 5 um: 2.4073 (Rodney's own table)."""
+        ZnSe at 10.6 um: 2.4028, as makers of laser windows state it; ZnS there: 2.192; As2S3 at 5 um: 2.4073 (Rodney's own table). IRG26 against
+        VITRON's glass IG6 of the same composition, As40Se60: 2.7945 at 4 um, 2.7775 at 10 um; melts differ by some 5e-4."""
         for name, nm, index, tolerance in (("GE", 4000, 4.0246, 5e-4), ("SI", 4000, 3.4257, 5e-4), ("ZNSE", 10600, 2.4028, 5e-5),
-                                           ("ZNS", 10600, 2.192, 1e-3), ("AS2S3", 5000, 2.4073, 5e-5)):
+                                           ("ZNS", 10600, 2.192, 1e-3), ("AS2S3", 5000, 2.4073, 5e-5), ("IRG26", 4000, 2.7945, 8e-4),
+                                           ("IRG26", 10000, 2.7775, 8e-4)):
             glass = self.json_of("glass", "show", "INFRARED:" + name, "--wavelengths", nm)
             self.assertAlmostEqual(glass["rows"][0]["index"], index, delta=tolerance, msg=name)
         table = self.json_of("glass", "show", "INFRARED:AMTIR-1", "--wavelengths", "10000")

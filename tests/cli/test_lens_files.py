@@ -117,6 +117,16 @@ class LensFiles(ProgramTest):
                 self.assertEqual(len(self.json_of("lens", command, *lens)["rows"]), 6, command)
             mtf = self.json_of("lens", "mtf", *lens, "--frequencies", "0,10")["rows"]
             self.assertTrue(all(0 <= row["tangential"] <= 1.000001 for row in mtf))
+        # And everything else, with the doublet's germanium exchanged for a chalcogenide too.
+        for bands, setting in (("8000,12000", "reference_wavelength_nm=10000"), ("3000,5000", "reference_wavelength_nm=4000")):
+            lens = ("infrared-50mm", "--set", setting, "--set", f"wavelengths_nm=[{bands}]", "--focus", "best-spot")
+            for command in ("psf", "encircled-energy", "fans", "zernike", "field-curvature", "colour", "vignetting", "chief-ray-angle"):
+                self.assertTrue(self.json_of("lens", command, *lens, "--fields", "0,3")["rows"], command)
+            self.json_of("lens", "seidel", *lens)
+            glass = "INFRARED:IRG26" if "12000" in bands else "INFRARED:AS2S3"  # which ends at 11.8 um
+            self.assertTrue(self.json_of("lens", "spots", *lens, "--set", f"surfaces[0].glass={glass}")["rows"])
+            self.assert_succeeds("lens", "report", *lens, "-o", "infrared.html")
+            self.assert_succeeds("optics", "build", *lens[:5], "--fields", "3", "-o", "infrared.h5")
         # Focal lengths by Gullstrand's equation for two thick lenses, with the publications' formulas written out here.
         def germanium(um):
             return (1 + 0.4886331 * um**2 / (um**2 - 1.393959) + 14.5142535 * um**2 / (um**2 - 0.1626427)

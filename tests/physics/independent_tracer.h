@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second ray tracer, written apart from the first: it finds a sphere by its centre and a quadratic in long
-// double, knows only spheres and planes, and shares no line with src/petzval/trace.
+// A second ray tracer, written apart from the first: in long double, a sphere by its centre and a quadratic,
+// an asphere by bisection on its sag and a normal from differences. It shares no line with src/petzval/trace.
 #pragma once
 
 #include <petzval/lens/lens.h>
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -39,7 +40,7 @@ class SphereTracer {
       Real clear = s.semi_diameter_mm ? Real(*s.semi_diameter_mm) : Real(1e30);
       if (s.stop) clear = std::min(clear, stop_radius);
       surfaces_.push_back({z, s.curvature_per_mm == 0 ? Real(0) : 1 / Real(s.curvature_per_mm),
-                           Real(s.material.index(wavelength_nm)), clear});
+                           Real(s.material.index(wavelength_nm)), clear, s.conic, s.asphere});
       z += s.thickness_mm;
     }
     image_z_ = z;
@@ -67,10 +68,55 @@ class SphereTracer {
 
  private:
   struct Sphere {
-    Real z, radius, index_after, clear;
+    Real z, radius, index_after, clear, conic;
+    std::map<int, double> powers;
+
+    bool aspheric() const { return conic != 0 || !powers.empty(); }
+    Real sag(Real r) const {
+      Real z_of_r = 0;
+      if (radius != 0)
+        z_of_r = r * r / (radius * (1 + std::sqrt(1 - (1 + conic) * r * r / (radius * radius))));
+      for (const auto& [power, coefficient] : powers) {
+        Real term = coefficient;
+        for (int i = 0; i < power; ++i) term *= r;
+        z_of_r += term;
+      }
+      return z_of_r;
+    }
+    /// Differences over h and h/2, extrapolated: the error is of order h⁴.
+    Real slope(Real r) const {
+      const Real h = 1e-4L;
+      const auto difference = [&](Real step) {
+        return (sag(std::abs(r + step)) - sag(std::abs(r - step))) / (2 * step);
+      };
+      return (4 * difference(h / 2) - difference(h)) / 3;
+    }
   };
 
+  /// How far the ray at t is behind an aspheric surface.
+  static Real behind(const Sphere& s, const IndependentRay& ray, Real t) {
+    const Vec p = along(ray.point, ray.direction, t);
+    return p[2] - s.z - s.sag(std::hypot(p[0], p[1]));
+  }
+  static bool meet_asphere(const Sphere& s, Real index, IndependentRay& ray) {
+    const Real plane = (s.z - ray.point[2]) / ray.direction[2];
+    for (Real reach = 1e-3L; reach < 20; reach *= 2) {
+      Real low = plane - reach, high = plane + reach;
+      const Real at_low = behind(s, ray, low), at_high = behind(s, ray, high);
+      if (!std::isfinite(at_low) || !std::isfinite(at_high) || (at_low < 0) == (at_high < 0)) continue;
+      for (int i = 0; i < 70; ++i) {
+        const Real middle = (low + high) / 2;
+        ((behind(s, ray, middle) < 0) == (at_low < 0) ? low : high) = middle;
+      }
+      ray.point = along(ray.point, ray.direction, low);
+      ray.path += index * low;
+      return true;
+    }
+    return false;
+  }
+
   static bool meet(const Sphere& s, Real index, IndependentRay& ray) {
+    if (s.aspheric()) return meet_asphere(s, index, ray);
     Real t;
     if (s.radius == 0) {
       t = (s.z - ray.point[2]) / ray.direction[2];
@@ -91,7 +137,10 @@ class SphereTracer {
 
   static bool bend(const Sphere& s, Real n1, Real n2, IndependentRay& ray) {
     Vec normal = {0, 0, 1};
-    if (s.radius != 0) normal = unit({ray.point[0], ray.point[1], ray.point[2] - (s.z + s.radius)});
+    if (const Real r = std::hypot(ray.point[0], ray.point[1]); s.aspheric() && r > 0)
+      normal = unit({-s.slope(r) * ray.point[0] / r, -s.slope(r) * ray.point[1] / r, 1});
+    else if (s.radius != 0 && !s.aspheric())
+      normal = unit({ray.point[0], ray.point[1], ray.point[2] - (s.z + s.radius)});
     // Cross-product form: the tangential part of n·d is kept.
     const Real cosine = dot(ray.direction, normal);
     Vec tangential;

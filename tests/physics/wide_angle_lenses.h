@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two lenses for testing that see 100 and 170 degrees. Nobody would build them; their pupils wander as those
-// of real ones do.
+// Lenses for testing: two that see 100 and 170 degrees, and one with odd aspheres. Nobody would build them;
+// their pupils wander as those of real ones do.
 #pragma once
 
 #include <petzval/lens/lens.h>
@@ -59,6 +59,30 @@ inline Lens fisheye_170_degrees() {
                   {14, 4, 1.6, 3},
                   {-14, 22, 1, 4}},
                  6, 0.8);
+}
+
+/// A phone's camera as such lenses are: plastic, the stop behind the first element, odd aspheres up to r^11.
+inline Lens phone_lens() {
+  Lens lens = lens_of("phone lens",
+                      {{1.9, 0.75, 1.535, 1.25},
+                       {-9, 0.15, 1, 1.2},
+                       {0, 0.2, 1, 0},
+                       {-3.2, 0.35, 1.642, 1.25},
+                       {9, 0.6, 1, 1.45},
+                       {2.6, 0.9, 1.535, 2.2},
+                       {3.1, 2.6, 1, 2.6}},
+                      2, 0.9);
+  const auto shape = [&](std::size_t i, double conic, std::map<int, double> asphere) {
+    lens.surfaces[i].conic = conic;
+    lens.surfaces[i].asphere = std::move(asphere);
+  };
+  shape(0, -0.5, {{3, 1e-3}, {4, -4e-3}, {5, 2e-3}, {6, -5e-3}, {7, -3e-3}});
+  shape(1, 0, {{3, -4e-3}, {4, 1e-2}, {5, -1e-2}});
+  shape(3, 0, {{3, 5e-3}, {4, -2e-2}, {6, 1e-2}, {9, -1e-3}});
+  shape(4, 0, {{4, -1e-2}, {5, 4e-3}});
+  shape(5, -3, {{3, -2e-2}, {4, -1e-2}, {5, 6e-3}, {7, -1e-4}});
+  shape(6, -2, {{3, -1.5e-2}, {4, -8e-3}, {6, 8e-4}, {11, -1e-7}});
+  return lens;
 }
 
 }  // namespace petzval::sample

@@ -47,8 +47,9 @@ std::string scaled_number_text(double value, int power_of_ten) {
   const std::string text = number_text(value * std::pow(10.0, power_of_ten));
   if (parse_scaled_number(text, -power_of_ten) == value) return text;
   const std::string digits = fmt::format("{}", value);
-  if (digits.find('e') == std::string::npos) return fmt::format("{}e{}", digits, power_of_ten);
-  return text;
+  const std::size_t mark = std::min(digits.find('e'), digits.size());
+  const int exponent = mark < digits.size() ? std::atoi(digits.c_str() + mark + 1) : 0;
+  return fmt::format("{}e{}", digits.substr(0, mark), exponent + power_of_ten);
 }
 
 std::optional<double> parse_number(std::string_view word) {
