@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact targets at f/8, 550 nm, 4.73 µm and a square photosite, on one thread.
+// Exact targets at f/8, 550 nm, 4.73 µm and a square photosite, and the measurement of their edges, on one
+// thread.
 #include <benchmark/benchmark.h>
 #include <petzval/base/parallel.h>
+#include <petzval/measure/sfr/find_edges.h>
+#include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/target/render_target.h>
+#include <petzval/target/test_charts.h>
+#include <petzval/wave/pupil_otf.h>
 
 #include <cmath>
 
@@ -59,5 +64,48 @@ void chart_4096(benchmark::State& state) {
   render(state, many_polygons(400, 4096), 4096);
 }
 BENCHMARK(chart_4096)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+void blades_240(benchmark::State& state) {
+  // The table of the pupil's OTF and a period 1000 λN wider on every side.
+  const ThreadLimit one(1);
+  TargetScene scene;
+  scene.polygons.push_back({{rectangle({120.2, 119.7}, 100, 100, 5)}, 0, 0});
+  GeneralPupil pupil;
+  pupil.shape.blades = 7;
+  pupil.zernike_waves = {0, 0, 0, 0.2, 0.1, 0, 0.1};
+  for (auto _ : state)
+    benchmark::DoNotOptimize(render_target(scene, *general_pupil_otf(pupil, 550, 8), frame(240)));
+}
+BENCHMARK(blades_240)->Unit(benchmark::kMillisecond)->Iterations(1);
+
+Plane picture_of(const TargetScene& scene, int size) {
+  const TargetImage image = render_target(scene, *radial_pupil_otf({}, 550, 8), frame(size));
+  return {image.columns, image.rows, image.values};
+}
+
+void measure_one_edge(benchmark::State& state) {
+  // A region of 100 × 100 pixels.
+  const ThreadLimit one(1);
+  TargetScene scene;
+  scene.polygons.push_back({{half_plane({50.3, 50.1}, 5)}, 0, 0});
+  const Plane plane = picture_of(scene, 100);
+  for (auto _ : state) benchmark::DoNotOptimize(measure_edge(samples_in(plane, {0, 0, 100, 100}), 1, {}));
+}
+BENCHMARK(measure_one_edge)->Unit(benchmark::kMillisecond);
+
+void find_and_measure_36_edges(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Plane plane = picture_of(test_chart("slanted-edges", 640, 640), 640);
+  for (auto _ : state) {
+    const FoundEdges found = find_edges(plane);
+    for (const FoundEdge& edge : found.edges) {
+      SfrOptions options;
+      options.missing_target = [&](double x, double y) { return missing_target_at(found, edge, x, y); };
+      benchmark::DoNotOptimize(measure_edge(samples_about(plane, edge), 1, options));
+    }
+    state.counters["edges"] = static_cast<double>(found.edges.size());
+  }
+}
+BENCHMARK(find_and_measure_36_edges)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -12,8 +12,12 @@
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
+#include <petzval/target/formats/polygon_file.h>
+#include <petzval/target/formats/svg_shapes.h>
+#include <petzval/target/visible_regions.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -150,6 +154,28 @@ bool packed(std::string_view bytes) {
   return try_packed(std::move(mended)) || accepted;
 }
 
+/// Polygons are refused, or make regions with finite corners.
+template <typename Read>
+bool try_target(std::string_view bytes, Read read) {
+  TargetScene scene;
+  try {
+    scene = read(std::string(bytes), "fuzz");
+    validate(scene);
+  } catch (const InputError& error) {
+    require_one_line(error);
+    return false;
+  }
+  require(!scene.polygons.empty(), "a scene without polygons");
+  for (const Region& region : visible_regions(scene)) {
+    require(std::isfinite(region.step), "a level that is not finite");
+    for (const Contour& contour : region.contours)
+      for (const Vertex& v : contour)
+        require(std::abs(v.x) <= 2 * target_reach_px && std::abs(v.y) <= 2 * target_reach_px,
+                "a corner out of reach");
+  }
+  return true;
+}
+
 }  // namespace
 
 const std::vector<Format>& formats() {
@@ -221,6 +247,15 @@ const std::vector<Format>& formats() {
        try_dng,
        {std::string(4, '\xFF'), std::string(4, '\0'), std::string("\1\0\1\0", 4), std::string("\x8D\x82", 2),
         std::string("\x2C\xC6", 2), std::string("\x08\0", 2)}},
+      {"polygons",
+       [](std::string_view b) { return try_target(b, parse_polygons); },
+       {"level 0.5\n", "ground 0\n", "hole 3 1 1 2 1 2 2\n", "#", "3 1 1 9 1 5 9\n", "99999999999", "\r",
+        "\t"}},
+      {"svg",
+       [](std::string_view b) { return try_target(b, parse_svg_shapes); },
+       {"<g>", "</g>", "<path d=\"M0 0h9v9z\"/>", "transform=\"scale(1e9)\"", "fill=\"none\"",
+        "fill=\"#123\"", "rotate(30 1 2)", "A 3 4 5 0 1 6 7", "Z", "m", "&lt;", "<!--",
+        "fill-rule=\"evenodd\"", "stroke=\"red\"", "<use href=\"#a\"/>", "%", "px"}},
       {"packed", packed, {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
   };
   return all;

@@ -9,8 +9,8 @@
 namespace petzval::fuzz {
 
 /// Reads the bytes as a file of one format. They are refused by an InputError of one line, or what comes out
-/// is whole: a lens is valid, and what is written from it reads back and is written the same. Anything else
-/// throws or aborts. \return whether the bytes were accepted.
+/// is whole: polygons make regions, a lens is valid, and what is written from it reads back and is written
+/// the same. Anything else throws or aborts. \return whether the bytes were accepted.
 using Entry = bool (*)(std::string_view bytes);
 
 struct Format {
@@ -19,7 +19,7 @@ struct Format {
   std::vector<std::string> words;  ///< that mean something in the format
 };
 
-/// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng.
+/// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng, polygons, svg.
 const std::vector<Format>& formats();
 /// Null if there is none of that name.
 const Format* find_format(std::string_view name);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/target/visible_regions.h>
 
 #include <algorithm>
@@ -137,6 +139,11 @@ std::vector<Region> visible_regions(const TargetScene& scene) {
 }
 
 std::vector<Contour> wound_outline(const std::vector<Contour>& contours) {
+  for (const Contour& contour : contours)
+    for (const Vertex& v : contour)
+      if (!(std::abs(v.x) <= target_reach_px && std::abs(v.y) <= target_reach_px))
+        throw InputError(
+            fmt::format("corner ({}, {}) is not a number within {:g} pixels", v.x, v.y, target_reach_px));
   ClipperLib::Clipper clipper;
   clipper.AddPaths(to_clipper(contours), ClipperLib::ptSubject, true);
   ClipperLib::Paths outline;

@@ -21,7 +21,8 @@ struct Region {
 std::vector<Region> visible_regions(const TargetScene& scene);
 
 /// The same area as contours that do not cross, for the even-odd rule, of contours under the non-zero rule: a
-/// place is inside if they wind about it at all. Corners are rounded as by visible_regions.
+/// place is inside if they wind about it at all. Corners are rounded as by visible_regions. \throws
+/// InputError for corners that are not finite or out of reach.
 std::vector<Contour> wound_outline(const std::vector<Contour>& contours);
 
 /// The part of a contour inside a box, as one contour; where the box is left it runs along its border
