@@ -98,10 +98,15 @@ void SenseChoice::add_to(CLI::App& command, bool after_image) {
                      "From the sensor, negative in front of it [mm]; for microlenses");
 }
 
-RawImage SenseChoice::expose(const SpectralImage& image, const Sensor& sensor, const Shared& shared) const {
-  const SensorElectronics& electronics = sensor.require_electronics();
+RawImage SenseChoice::expose(const SpectralImage& image, const Sensor& described,
+                             const Shared& shared) const {
+  described.require_electronics();
+  Sensor sensor = described;
+  SensorElectronics& electronics = *sensor.electronics;
   CaptureOptions options{conversion_gain, gain, temperature_c, shared.seed, serial, {}, frames};
   for (const std::string& name : without) options.without.insert(noise_source(name));
+  // White balance and colours are then those of a sensor without it.
+  if (!options.has(NoiseSource::crosstalk)) electronics.crosstalk = SensorElectronics().crosstalk;
   const GainMode& mode = electronics.gain_mode(conversion_gain);
   const PhotoCurrent current = photo_current(
       image, sensor,

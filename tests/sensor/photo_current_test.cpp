@@ -101,6 +101,22 @@ TEST(PhotoCurrent, CrosstalkHandsElectronsOn) {
   EXPECT_NEAR(sum, 1, 1e-6);
 }
 
+TEST(PhotoCurrent, ColoursAreReckonedWithCrosstalkInThem) {
+  Sensor sensor = test::bayer_sensor(20, 20, "GRBG");
+  sensor.electronics->crosstalk = {{{0.01, 0.02, 0.005}, {0.03, 0.85, 0.04}, {0.002, 0.015, 0.008}}};
+  // Away from the edges, where what is mirrored is not what the kernel would have met.
+  const PhotoCurrent current = photo_current(test::uniform_light(20, 20, 1), sensor);
+  const std::vector<double> expected = channel_currents(sensor, Spectrum({400, 500, 600, 700}, {1, 1, 1, 1}));
+  std::vector<double> sums(3), counts(3);
+  for (int row = 2; row < 18; ++row)
+    for (int column = 2; column < 18; ++column) {
+      const auto channel = static_cast<std::size_t>(sensor.electronics->mosaic.channel(row, column));
+      sums[channel] += static_cast<double>(current.e_per_s[static_cast<std::size_t>(row * 20 + column)]);
+      ++counts[channel];
+    }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(sums[i] / counts[i] / expected[i], 1, 1e-6) << i;
+}
+
 TEST(PhotoCurrent, MicrolensesLoseLightAtOtherAnglesThanTheirs) {
   Sensor sensor = test::mono_sensor(2000, 2);
   sensor.electronics->microlens = Microlens{{0, 10, 30}, {1, 0.9, 0.1}, {0, 10}, {0, 20}};

@@ -182,6 +182,26 @@ bool shares_light(const std::array<std::array<double, 3>, 3>& shares) {
   return shares != SensorElectronics{}.crosstalk;
 }
 
+/// Of evenly lit pixels, by channel: the mean over the cells of the mosaic.
+std::vector<double> after_crosstalk(const std::vector<double>& currents,
+                                    const SensorElectronics& electronics) {
+  const Mosaic& mosaic = electronics.mosaic;
+  std::vector<double> sums(currents.size()), counts(currents.size());
+  for (int row = 0; row < mosaic.rows; ++row)
+    for (int column = 0; column < mosaic.columns; ++column) {
+      const auto channel = static_cast<std::size_t>(mosaic.channel(row, column));
+      ++counts[channel];
+      for (int r = -1; r <= 1; ++r)
+        for (int c = -1; c <= 1; ++c)  // what a neighbour at (−r, −c) sends in the direction (r, c)
+          sums[channel] +=
+              electronics.crosstalk[static_cast<std::size_t>(r + 1)][static_cast<std::size_t>(c + 1)] *
+              currents[static_cast<std::size_t>(
+                  mosaic.channel(row - r + mosaic.rows, column - c + mosaic.columns))];
+    }
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= counts[i];
+  return sums;
+}
+
 /// The first pixel of a frame of `size` in the middle of `whole`, at a multiple of the mosaic's period.
 int first_in_middle(int whole, int size, int period) {
   return (whole - size) / 2 / period * period;
@@ -250,7 +270,8 @@ std::vector<double> channel_currents(const Sensor& sensor, const Spectrum& irrad
     for (std::size_t i = 0; i < weights.size(); ++i) sum += weights[i] * irradiance.values()[i];
     currents.push_back(sum);
   }
-  return currents;
+  return shares_light(sensor.electronics->crosstalk) ? after_crosstalk(currents, *sensor.electronics)
+                                                     : currents;
 }
 
 }  // namespace petzval

@@ -40,7 +40,8 @@ PhotoCurrent photo_current(const SpectralImage& image, const Sensor& sensor,
 /// Mean current [e/s] of the pixels of each channel.
 std::vector<double> channel_means(const PhotoCurrent& current, const SensorElectronics& electronics);
 
-/// Electrons per second in a pixel of each channel under this spectral irradiance [W·m⁻²·nm⁻¹].
+/// Electrons per second in a pixel of each channel under this spectral irradiance [W·m⁻²·nm⁻¹] all over the
+/// sensor, crosstalk between its channels included.
 std::vector<double> channel_currents(const Sensor& sensor, const Spectrum& irradiance);
 
 }  // namespace petzval
