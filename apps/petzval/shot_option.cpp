@@ -45,6 +45,42 @@ void add_group(CLI::App& command, const char* group, const Add& add) {
   command.option_defaults()->group(before);
 }
 
+/// A few pixels of light that every channel sees, as `image` would make it.
+SpectralImage probe_light(const Sensor& sensor) {
+  std::vector<double> nm;
+  for (const SensorChannel& channel : sensor.electronics->channels)
+    nm.insert(nm.end(), channel.quantum_efficiency.wavelengths_nm().begin(),
+              channel.quantum_efficiency.wavelengths_nm().end());
+  std::sort(nm.begin(), nm.end());
+  nm.erase(std::unique(nm.begin(), nm.end()), nm.end());
+  constexpr int side = 8;
+  SpectralImage light(std::min(side, sensor.geometry.columns), std::min(side, sensor.geometry.rows), nm,
+                      sensor.geometry.pitch_um,
+                      sensor.photosite.is_plain() ? PixelAperture::box : PixelAperture::photosite);
+  light.photosite = sensor.photosite.text();
+  light.lens = LensFacts{"", 1, 1, -1};
+  for (int band = 0; band < light.bands(); ++band) std::ranges::fill(light.band(band), 1e-3F);
+  return light;
+}
+
+/// What the options are refused for, on a few pixels: before minutes have gone into the light.
+void try_out(const ShotChoice& choice, const Sensor& sensor, bool raw_file, bool pictures) {
+  Shared silent;
+  silent.quiet = true;
+  const RawImage raw = choice.sense.expose(probe_light(sensor), sensor, silent);
+  if (raw_file && fits_dng(raw)) dng_bytes(raw, "a raw file");
+  if (raw_file && !fits_dng(raw))
+    throw InputError(
+        fmt::format("DNG has no numbers for the channels {}; an .exr for petzval sense would be right",
+                    fmt::join(raw.channels, ", ")));
+  if (!pictures) return;
+  DevelopChoice develop = choice.develop;
+  develop.flat.clear();  // is as large as the sensor
+  develop.steps.clear();
+  DevelopReport report;
+  develop.develop(raw, report, {});
+}
+
 }  // namespace
 
 void ShotChoice::add_to(CLI::App& command) {
@@ -82,6 +118,7 @@ void ShotChoice::check(const std::optional<Sensor>& sensor, const std::vector<st
           "a raw file and a developed picture need --sensor with a sensor that turns light into numbers "
           "(third-inch-1280x960, for example)");
     sensor->require_electronics();
+    try_out(*this, *sensor, raw, pictures && develop_pictures);
   } else if (const std::string option = given_option(command, exposing); !option.empty()) {
     throw InputError(fmt::format(
         "{} has no effect: no raw file (-o shot.dng) and no developed picture is asked for", option));

@@ -154,6 +154,15 @@ class SensorChain(ProgramTest):
         refuse("--sensor", "small.json", "--sharpen", "1", "-o", "a.dng", words=["--sharpen", "no effect"])
         refuse("--sensor", "small.json", "--picture", "developed", "-o", "a.dng", words=["--picture"])
         refuse("--sensor", "small.json", "-o", "a.dng", "-o", "no/a.png", words=["no"])
+        refuse("--sensor", "small.json", "--gain", "3", "-o", "a.dng", words=["gain", "1 would be right"])
+        refuse("--sensor", "small.json", "--conversion-gain", "huge", "-o", "a.dng", words=["huge", "base"])
+        odd = json.loads(json.dumps(SMALL_BAYER).replace('"blue"', '"far red"').replace('"spectrum": "far red"', '"spectrum": "blue"'))
+        self.write("odd.json", odd)
+        refuse("--sensor", "odd.json", "-o", "a.dng", words=["far red", "sense"])
+        # A picture needs no DNG. (And the wrong scene is not even looked at.)
+        self.assert_succeeds(*self.IMAGE, "--sensor", "odd.json", "-o", "odd.png", "--quiet")
+        self.assert_refused("image", "no-such-scene", "--lens", "edmund-54852", "--sensor", "small.json", "--gain", "3", "-o", "a.png",
+                            words=["gain"])
         refuse("--sensor", "small.json", "--exposure", "soon", "-o", "a.exr", "-o", "a.png", words=["soon"])
         refuse("--sensor", "small.json", "--white-balance", "1,2", "-o", "a.dng", "-o", "a.png", words=["3 channels"])
 
