@@ -20,7 +20,7 @@ namespace {
 struct SfrCommand {
   std::string image, chart, channel = "luminance", bayer, transfer = "stated", method = "exact";
   std::string csv, plot, profile, annotate;
-  std::vector<std::string> rois;
+  std::vector<std::string> rois, against;
   std::optional<double> pitch_um;
   int edge_order = 1;
 };
@@ -225,6 +225,10 @@ void run(const SfrCommand& command, const Shared& shared) {
         {command.profile, {".csv", ".svg"}, "a profile"},
         {command.annotate, {".svg"}, "an annotated picture"}})
     if (!path.empty()) require_extension(path, extensions, what);
+  if (!command.against.empty() && command.plot.empty())
+    throw InputError("--against draws into --plot FILE.svg; give both");
+  std::vector<NamedCurve> others;
+  for (const std::string& path : command.against) others.push_back(read_sfr_table(path));
   const PictureTransfer transfer = command.transfer == "srgb"     ? PictureTransfer::srgb
                                    : command.transfer == "linear" ? PictureTransfer::linear
                                                                   : PictureTransfer::stated;
@@ -234,7 +238,7 @@ void run(const SfrCommand& command, const Shared& shared) {
                    Measurement(command, picture, channels).run()};
   StagedFiles files;
   if (!command.csv.empty()) write_sfr_csv(files.stage(command.csv), report);
-  if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), report);
+  if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), report, others);
   if (command.profile.ends_with(".svg")) write_profile_plot(files.stage(command.profile), report);
   if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), report);
   if (!command.annotate.empty()) write_annotated(files.stage(command.annotate), report, picture.luminance());
@@ -282,6 +286,13 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->check(positive_number());
   command->add_option("--csv", options->csv, "Write the SFR table: .csv");
   command->add_option("--plot", options->plot, "Draw the SFRs: .svg");
+  command
+      ->add_option(
+          "--against", options->against,
+          "Draw another SFR into --plot: a .csv with columns frequency_cpp and sfr, of --csv or of target "
+          "--exact-sfr; its first edge (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
   command->add_option("--profile", options->profile,
                       "Write edge and line spread: .csv, or draw the edge spread: .svg");
   command->add_option("--annotate", options->annotate,

@@ -2,6 +2,8 @@
 #include "sfr_output.h"
 
 #include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/colour/display.h>
@@ -11,7 +13,9 @@
 #include <petzval/report/xml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "field_option.h"
@@ -119,14 +123,60 @@ void write_profile_csv(const std::string& path, const SfrReport& report) {
   write_whole_file(path, text);
 }
 
-void write_sfr_plot(const std::string& path, const SfrReport& report) {
+NamedCurve read_sfr_table(const std::string& path) {
+  require_extension(path, {".csv"}, "an SFR to draw beside");
+  constexpr std::size_t largest = std::size_t{64} << 20;
+  const std::vector<TextLine> lines = text_lines(decoded_text(read_whole_file(path, largest)));
+  const auto fields = [](const std::string& text) {
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+      if (c == ',')
+        parts.emplace_back();
+      else
+        parts.back() += c;
+    return parts;
+  };
+  const std::vector<std::string> names = lines.empty() ? std::vector<std::string>{} : fields(lines[0].text);
+  const auto frequency = std::find(names.begin(), names.end(), "frequency_cpp"),
+             sfr = std::find(names.begin(), names.end(), "sfr");
+  if (frequency == names.end() || sfr == names.end())
+    throw InputError(path, 1, "a heading with columns frequency_cpp and sfr is right");
+  NamedCurve curve{std::filesystem::path(path).stem().string(), {}, {}};
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i].words.empty()) continue;
+    const std::vector<std::string> parts = fields(lines[i].text);
+    const auto number = [&](std::ptrdiff_t column) {
+      double value = 0;
+      const std::string text =
+          static_cast<std::size_t>(column) < parts.size() ? parts[static_cast<std::size_t>(column)] : "";
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        throw InputError(path, lines[i].number, fmt::format("\"{}\" is no number", quotable(text)));
+      return value;
+    };
+    const double f = number(frequency - names.begin());
+    if (!curve.frequencies_cpp.empty() && f <= curve.frequencies_cpp.back()) break;
+    curve.frequencies_cpp.push_back(f);
+    curve.sfr.push_back(number(sfr - names.begin()));
+  }
+  if (curve.sfr.size() < 2) throw InputError(path, "two rows at least are needed to draw a curve");
+  return curve;
+}
+
+void write_sfr_plot(const std::string& path, const SfrReport& report, const std::vector<NamedCurve>& others) {
   Plot plot;
   plot.title = "Spatial frequency response";
   plot.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
   plot.y = {"SFR", "", PlotScale::linear, 0.0, std::nullopt};
+  const std::string picture =
+      others.empty() ? "" : std::filesystem::path(report.image).stem().string() + ", ";
   for (std::size_t i = 0; i < std::min(most_curves, report.edges.size()); ++i)
-    plot.line(fmt::format("{}: {:.2f} deg", name_of(report.edges[i], i), report.edges[i].angle_deg()),
-              report.edges[i].frequencies(), report.edges[i].sfr());
+    plot.line(
+        picture + fmt::format("{}: {:.2f} deg", name_of(report.edges[i], i), report.edges[i].angle_deg()),
+        report.edges[i].frequencies(), report.edges[i].sfr());
+  for (std::size_t i = 0; i < others.size(); ++i)
+    plot.line(others[i].name, others[i].frequencies_cpp, others[i].sfr).stroke =
+        i % 2 == 0 ? PlotStroke::dashed : PlotStroke::dotted;
   plot.guides.push_back({PlotGuide::At::x, 0.5, "Nyquist"});
   write_whole_file(path, plot.svg());
 }

@@ -41,7 +41,18 @@ void print_sfr(const SfrReport& report, const Shared& shared);
 void write_sfr_csv(const std::string& path, const SfrReport& report);
 /// edge, channel, distance_px, esf, lsf.
 void write_profile_csv(const std::string& path, const SfrReport& report);
-void write_sfr_plot(const std::string& path, const SfrReport& report);
+/// A curve from elsewhere.
+struct NamedCurve {
+  std::string name;
+  std::vector<double> frequencies_cpp, sfr;
+};
+
+/// Columns frequency_cpp and sfr of a .csv, whatever others it has, as long as the frequency rises: of
+/// several edges the first. Named as the file. \throws InputError with file and line.
+NamedCurve read_sfr_table(const std::string& path);
+
+/// The measured edges, and beside them, broken, what others say.
+void write_sfr_plot(const std::string& path, const SfrReport& report, const std::vector<NamedCurve>& others);
 void write_profile_plot(const std::string& path, const SfrReport& report);
 /// The picture with its edges and their MTF50.
 void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane);

@@ -211,6 +211,16 @@ class Sfr(ProgramTest):
         self.assertEqual({row["edge"] for row in rows}, {str(i) for i in range(1, 37)})
         self.assertIn(b"<svg", (self.folder / "a.svg").read_bytes())
 
+    def test_draws_other_tables_beside(self):
+        self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")
+        self.assert_succeeds("sfr", "t.npy", "--against", "exact.csv", "--plot", "s.svg")
+        self.assertIn(b">exact<", (self.folder / "s.svg").read_bytes())
+        self.write("bad.csv", "frequency_cpp,sfr\n0,1\n0.1,x\n")
+        self.write("none.csv", "a,b\n")
+        self.assert_refused("sfr", "t.npy", "--against", "bad.csv", "--plot", "s.svg", words=["bad.csv:3", "no number"])
+        self.assert_refused("sfr", "t.npy", "--against", "none.csv", "--plot", "s.svg", words=["none.csv:1", "frequency_cpp"])
+        self.assert_refused("sfr", "t.npy", "--against", "exact.csv", words=["--plot"])
+
     def test_refusals(self):
         self.assert_succeeds("target", "--rectangle", "40x40@5", "--size", "96x96", *OPTICS, "-o", "t.npy")
         self.assert_succeeds("target", "--rectangle", "4x4", "--size", "96x96", *OPTICS, "-o", "small.png")

@@ -23,9 +23,11 @@ if(TARGET petzval_program)
   add_test(NAME examples.build_table COMMAND petzval_program optics build edmund-54852 --wavelengths 587.56
     --sensor third-inch-768x576 -o edmund.h5)
   add_test(NAME examples.read_table COMMAND Python3::Interpreter ${examples}/read_table.py edmund.h5)
+  add_test(NAME examples.closed_loop COMMAND Python3::Interpreter ${examples}/closed_loop.py)
   set_tests_properties(examples.build_table PROPERTIES FIXTURES_SETUP table)
   set_tests_properties(examples.read_table PROPERTIES FIXTURES_REQUIRED table)
-  set_tests_properties(examples.open_a_gap examples.stop_down examples.build_table examples.read_table PROPERTIES
+  set_tests_properties(examples.open_a_gap examples.stop_down examples.build_table examples.read_table
+    examples.closed_loop PROPERTIES
     WORKING_DIRECTORY ${scratch}
     ENVIRONMENT "PATH=$<TARGET_FILE_DIR:petzval_program>:$ENV{PATH};PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
 endif()
