@@ -127,7 +127,9 @@ class AliasFolder {
     for (std::size_t i = 0; i < count; ++i) {
       const double fy = fy_[first + i];
       Complex value = values[i] * turn_x * turn_y_[first + i];
-      if (!separable) value *= options_.photosite.transform(fx, fy);
+      // A photosite gathers where it lies: a correlation, so that one that is not symmetric stands as it is
+      // drawn.
+      if (!separable) value *= std::conj(options_.photosite.transform(fx, fy));
       if (fx <= far_reach && std::abs(fy) <= far_reach)
         value -= around_.far.transform(std::hypot(fx, fy)) * std::polar(1.0, pi * (fx + fy));
       values[i] = value * scene[first + i];
@@ -217,7 +219,8 @@ TargetImage render_target(const TargetScene& scene, const Otf& otf, const Target
 
 std::complex<double> transfer(const Otf& otf, const TargetOptions& options, double fx_cpp, double fy_cpp) {
   const double cpmm_per_cpp = 1e3 / options.pitch_um;
-  return otf.at(fx_cpp * cpmm_per_cpp, fy_cpp * cpmm_per_cpp) * options.photosite.transform(fx_cpp, fy_cpp);
+  return otf.at(fx_cpp * cpmm_per_cpp, fy_cpp * cpmm_per_cpp) *
+         std::conj(options.photosite.transform(fx_cpp, fy_cpp));
 }
 
 }  // namespace petzval
