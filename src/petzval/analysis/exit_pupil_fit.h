@@ -3,10 +3,10 @@
 #pragma once
 
 #include <petzval/analysis/exit_pupil.h>
+#include <petzval/numeric/even_surface.h>
 
 #include <complex>
 #include <optional>
-#include <vector>
 
 namespace petzval {
 
@@ -30,11 +30,9 @@ class ExitPupilFit {
   double transverse_mm() const { return transverse_mm_; }
 
  private:
-  double sum(const std::vector<double>& coefficients, double alpha, double beta) const;
-
-  int degree_ = 0;
-  double alpha_scale_ = 1, beta_middle_ = 0, beta_scale_ = 1, transverse_mm_ = 0;
-  std::vector<double> phase_, amplitude_;  ///< amplitude empty: 1 everywhere
+  double transverse_mm_ = 0;
+  EvenSurface phase_;
+  std::optional<EvenSurface> amplitude_;  ///< absent: 1 everywhere
 };
 
 }  // namespace petzval

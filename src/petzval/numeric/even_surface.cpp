@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/numeric/even_surface.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace petzval {
@@ -12,6 +14,9 @@ namespace {
 
 /// Directions that the points tell apart less than this, against the best one, are rounding.
 constexpr double least_pivot = 1e-13;
+
+/// Room for T_0 … T_highest_degree.
+using Terms = std::array<double, EvenSurface::highest_degree + 1>;
 
 /// T_0 … T_{count−1} at t.
 void chebyshev(double t, std::size_t count, double* values) {
@@ -42,6 +47,8 @@ std::size_t EvenSurface::unknowns(int degree) {
 std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<const double> y,
                                           std::span<const std::span<const double>> values, int degree) {
   require_points(x, y, values);
+  if (degree > highest_degree)
+    throw InputError(fmt::format("a surface of degree {}; at most {} is fitted", degree, highest_degree));
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
   EvenSurface frame;
   frame.degree_ = std::max(degree, 0);
@@ -87,7 +94,7 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
 
 void EvenSurface::series(double y, std::span<double> series) const {
   const auto order = static_cast<std::size_t>(degree_) + 1;
-  std::vector<double> of_v(order);
+  Terms of_v;
   chebyshev((y - y_middle_) / y_scale_, order, of_v.data());
   const double* from = coefficients_.data();
   for (std::size_t m = 0; m < terms(); ++m) {
@@ -97,7 +104,8 @@ void EvenSurface::series(double y, std::span<double> series) const {
 }
 
 double EvenSurface::operator()(double x, double y) const {
-  std::vector<double> of_x(terms());
+  Terms room;
+  const std::span<double> of_x(room.data(), terms());
   series(y, of_x);
   const double ratio = x / x_scale_;
   return chebyshev_sum(of_x, 2 * ratio * ratio - 1);

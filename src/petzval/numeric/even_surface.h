@@ -11,11 +11,13 @@ namespace petzval {
 /// and v = (y − y_middle)/y_scale: what is mirror symmetric in x, fitted over the bounding box of its points.
 class EvenSurface {
  public:
+  static constexpr int highest_degree = 47;
+
   EvenSurface() = default;
 
   /// One surface for each list of values at the points (x, y), by least squares. The points share their
   /// normal equations. Empty when the points do not determine the polynomial. \throws InputError if sizes
-  /// differ or a number is not finite.
+  /// differ, a number is not finite or the degree is above highest_degree.
   static std::vector<EvenSurface> fit(std::span<const double> x, std::span<const double> y,
                                       std::span<const std::span<const double>> values, int degree);
   /// Coefficients of a polynomial of this degree.
