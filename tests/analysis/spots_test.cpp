@@ -113,5 +113,35 @@ TEST(Spots, OfAFieldThatNothingPassesAreAnError) {
   EXPECT_THROW(spot_table(lens, request), InputError);
 }
 
+TEST(RingRays, LieEvenlyAndMirrorSymmetricallyOverTheBeam) {
+  // The fisheye's beam at 70° is several times as wide as high.
+  for (const auto& [name, field] : {std::pair{"cooke-triplet", 14.0}, {"fisheye-10mm", 70.0}}) {
+    const Lens lens = read_lens(name).lens;
+    FieldTracer tracer(lens, lens.reference_wavelength_nm);
+    const ChiefRay chief = *tracer.chief_ray(field);
+    constexpr int rings = 8;
+    const std::vector<PupilRay> rays = ring_rays(tracer, chief, rings);
+    ASSERT_EQ(rays.size(), 6u * rings * (rings + 1) / 2) << name;
+    double sum_xx = 0, sum_x = 0;
+    for (const PupilRay& ray : rays) {
+      sum_x += ray.stop_x_mm;
+      sum_xx += ray.stop_x_mm * ray.stop_x_mm;
+      const bool mirrored = std::any_of(rays.begin(), rays.end(), [&](const PupilRay& other) {
+        return std::hypot(other.x_mm + ray.x_mm, other.y_mm - ray.y_mm) < 1e-9;
+      });
+      EXPECT_TRUE(mirrored) << name << " " << ray.x_mm << " " << ray.y_mm;
+    }
+    EXPECT_NEAR(sum_x, 0, 1e-9);
+    // Second moment along x against the quadrature over the same beam.
+    double weight = 0, moment = 0;
+    for (const PupilRay& ray : pupil_rays(tracer, chief)) {
+      weight += ray.entrance_measure;
+      moment += ray.entrance_measure * ray.stop_x_mm * ray.stop_x_mm;
+    }
+    // Rings end on the rim itself, so that they lie a little wider than the area does.
+    EXPECT_NEAR(sum_xx / static_cast<double>(rays.size()) / (moment / weight), 1 + 1.0 / rings, 0.06) << name;
+  }
+}
+
 }  // namespace
 }  // namespace petzval

@@ -340,6 +340,14 @@ TEST(ZmxWriter, ImageNaBecomesTheWorkingFNumberThatItIs) {
   EXPECT_EQ(again.aperture.value, 4);
 }
 
+TEST(ZmxWriter, KeepsEveryDigitOfAbsurdWavelengths) {
+  // In µm the nearest double to a thousandth is another number; found by the fuzzer.
+  Lens lens = read_lens("cooke-triplet").lens;
+  lens.wavelengths_nm.push_back(1.1111111113333333e76);
+  lens.wavelengths_nm.push_back(3.3e-300);
+  EXPECT_EQ(through_file(lens, "lens.zmx").wavelengths_nm, lens.wavelengths_nm);
+}
+
 TEST(ZmxWriter, RefusesWhatItCannotHold) {
   const Lens lens = read_lens("cooke-triplet").lens;
   const auto refusal = [&](const std::string& setting) {

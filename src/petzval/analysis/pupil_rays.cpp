@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace petzval {
 
@@ -87,21 +88,54 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
   return rays;
 }
 
+namespace {
+
+/// The rim of a pupil by how much of its area lies before an azimuth.
+class RimByArea {
+ public:
+  explicit RimByArea(const PupilBoundary& pupil) : pupil_(pupil), before_{0} {
+    for (std::size_t i = 0; i < pupil.radius.size(); ++i)
+      before_.push_back(before_.back() + 0.5 * pupil.radius[i] * pupil.radius[i] * pupil.azimuth_weight(i));
+  }
+
+  /// The rim where this share of the area, counted from +v towards +u, lies before it, as (u, v − centre).
+  std::pair<double, double> at(double share) const {
+    const double area = share * before_.back();
+    const auto next = std::upper_bound(before_.begin() + 1, before_.end() - 1, area);
+    const auto i = static_cast<std::size_t>(next - before_.begin()) - 1;
+    const double place = static_cast<double>(i) + (area - before_[i]) / (before_[i + 1] - before_[i]);
+    const double even = 2 * pi * place / static_cast<double>(pupil_.radius.size());
+    const double azimuth = std::atan2(pupil_.stretch * std::sin(even), std::cos(even));
+    // Radii stand in the middle of their samples.
+    const std::size_t count = pupil_.radius.size();
+    const double middle = place - 0.5 + static_cast<double>(count), below = std::floor(middle);
+    const auto low = static_cast<std::size_t>(below);
+    const double part = middle - below;
+    const double radius = (1 - part) * pupil_.radius[low % count] + part * pupil_.radius[(low + 1) % count];
+    return {radius * std::sin(azimuth), radius * std::cos(azimuth)};
+  }
+
+ private:
+  const PupilBoundary& pupil_;
+  std::vector<double> before_;
+};
+
+}  // namespace
+
 std::vector<PupilRay> ring_rays(const FieldTracer& tracer, const ChiefRay& chief, int rings) {
+  constexpr int azimuths = 512;
   std::vector<PupilRay> rays;
   const Launcher launcher(tracer, chief);
-  for (int ring = 1; ring <= rings; ++ring) {
-    const int count = 6 * ring;
-    // 12 k azimuths, every other one: the boundary is asked for 8 at least.
-    const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, 2 * count);
-    if (!pupil) return rays;
-    for (std::size_t i = 0; i < pupil->radius.size(); i += 2) {
-      const double radius = pupil->radius[i] * (ring - 0.5) / (rings - 0.5);
-      const Tracer::Clearance traced = launcher.trace(radius * std::sin(pupil->azimuth(i)),
-                                                      pupil->centre_v + radius * std::cos(pupil->azimuth(i)));
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, azimuths);
+  if (!pupil) return rays;
+  const RimByArea rim(*pupil);
+  for (int ring = 1; ring <= rings; ++ring)
+    for (int i = 0; i < 6 * ring; ++i) {
+      const auto [u, v] = rim.at((i + 0.5) / (6 * ring));
+      const double share = (ring - 0.5) / (rings - 0.5);
+      const Tracer::Clearance traced = launcher.trace(share * u, pupil->centre_v + share * v);
       if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
     }
-  }
   return rays;
 }
 

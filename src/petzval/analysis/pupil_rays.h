@@ -32,8 +32,9 @@ struct PupilSampling {
 std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chief,
                                  const PupilSampling& sampling = {});
 
-/// `rings` rings of rays, the k-th of 6k, evenly over the entrance beam: points of a spot diagram. Both
-/// halves, weights of zero, the chief ray not among them.
+/// `rings` rings of rays, the k-th of 6k, evenly over the entrance beam: points of a spot diagram. Rings are
+/// the rim made smaller, and from ray to ray equal areas lie between them, however the beam is stretched.
+/// Mirror symmetric, both halves, weights of zero, the chief ray not among them.
 std::vector<PupilRay> ring_rays(const FieldTracer& tracer, const ChiefRay& chief, int rings);
 
 /// n'² ∬ dα dβ over the exit cone [sr].
