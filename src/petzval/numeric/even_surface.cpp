@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace petzval {
 
@@ -74,14 +75,27 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
   normal.selfadjointView<Eigen::Lower>().rankUpdate(basis);
   const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(normal);
   const auto pivots = solver.vectorD();
-  if (solver.info() != Eigen::Success || !(pivots.minCoeff() > least_pivot * pivots.maxCoeff())) return {};
+  const bool well_determined =
+      solver.info() == Eigen::Success && pivots.minCoeff() > least_pivot * pivots.maxCoeff();
+  // Points that leave much of their box empty tell the terms apart by less than the normal equations resolve.
+  std::optional<Eigen::HouseholderQR<Eigen::MatrixXd>> orthogonal;
+  if (!well_determined) {
+    orthogonal.emplace(basis.transpose());
+    const Eigen::ArrayXd diagonal = orthogonal->matrixQR().diagonal().array().abs();
+    if (!(diagonal.minCoeff() > least_pivot * diagonal.maxCoeff())) return {};
+  }
 
   std::vector<EvenSurface> surfaces;
   for (const auto& list : values) {
     const Eigen::Map<const Eigen::VectorXd> wanted(list.data(), rows);
-    Eigen::VectorXd solution = solver.solve(basis * wanted);
-    Eigen::VectorXd residual = wanted - basis.transpose() * solution;
-    solution += solver.solve(basis * residual);  // gives back what the squared condition number took
+    Eigen::VectorXd solution, residual;
+    if (orthogonal) {
+      solution = orthogonal->solve(wanted);
+    } else {
+      solution = solver.solve(basis * wanted);
+      residual = wanted - basis.transpose() * solution;
+      solution += solver.solve(basis * residual);  // gives back what the squared condition number took
+    }
     residual = wanted - basis.transpose() * solution;
     EvenSurface surface = frame;
     surface.coefficients_.assign(solution.begin(), solution.end());
