@@ -90,6 +90,7 @@ struct SitePoint {
 
 std::vector<SitePoint> points_of(const Photosite& site) {
   // The light varies by up to 2 cycles over a pixel at f/4.
+  if (site.shape == Photosite::Shape::none) return {{0, 0, 1}};
   const QuadratureRule rule = gauss_legendre(10);
   std::vector<SitePoint> points;
   const auto add_triangle = [&](const std::pair<double, double>& a, const std::pair<double, double>& b,
@@ -145,7 +146,10 @@ std::vector<Case> cases() {
   const Contour star{{11.2, 9.1}, {33.7, 12.9}, {22.4, 19.3}, {30.1, 31.8}, {9.9, 27.2}, {16.3, 18.8}};
   const Contour slanted = rectangle({20.2, 19.4}, 24, 18, 31), slit = rectangle({19.8, 20.3}, 0.7, 20, 12);
   const Polygon ring{{slanted, rectangle({21, 20}, 9, 7, 50)}, 0, 0};
-  Photosite square, circle, corner, filtered, half = Photosite::square(0.5);
+  const Polygon disc{
+      {regular_polygon({20.1, 19.7}, 16, 2000, 3), regular_polygon({20.1, 19.7}, 9, 2000, 3)}, 0, 0};
+  Photosite point, square, circle, corner, filtered, half = Photosite::square(0.5);
+  point.shape = Photosite::Shape::none;
   circle.shape = Photosite::Shape::ellipse;
   circle.width = circle.height = 0.9;
   corner.shape = Photosite::Shape::polygon;  // concave about its first vertex, which sees all of it
@@ -157,10 +161,13 @@ std::vector<Case> cases() {
           {"W040 2, concave, half filled", {0, 2, 0, 5.6}, half, {{star}, 0, 0}},
           {"W020 -2, obstruction 0.4, ring, low-pass", {-2, 0, 0.4, 8}, filtered, ring},
           {"W040 -2, obstruction 0.3, slit, circle", {0, -2, 0.3, 8}, circle, {{slit}, 0, 0}},
+          {"disc of 2000 corners, whose edges the far field joins", {0, 0, 0, 8}, point, disc},
           {"W020 2, concave, square, f/16", {2, 0, 0, 16}, square, {{star}, 0, 0}}};
 }
 
-TEST(RenderQuadrature, PolygonsThroughAberratedOpticsAndPhotositesTo1e6) {
+// The renderer promises 1e-6. The largest difference seen is 9e-8, about what this quadrature itself is good
+// to.
+TEST(RenderQuadrature, PolygonsThroughAberratedOpticsAndPhotosites) {
   for (const Case& c : cases()) {
     TargetOptions options;
     options.columns = options.rows = 40;
@@ -181,7 +188,7 @@ TEST(RenderQuadrature, PolygonsThroughAberratedOpticsAndPhotositesTo1e6) {
       for (const SitePoint& point : site)
         light +=
             point.weight * light_at(c.polygon, {column + 0.5 + point.x, row + 0.5 + point.y}, energy, unit);
-      EXPECT_NEAR(image.at(column, row), 1 - light, 1e-6) << c.name << " at " << column << "," << row;
+      EXPECT_NEAR(image.at(column, row), 1 - light, 2e-7) << c.name << " at " << column << "," << row;
     }
   }
 }

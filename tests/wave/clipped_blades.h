@@ -34,10 +34,9 @@ inline double blade_otf(int blades, double rotation_deg, double s, double theta_
   std::vector<Point> left = corners(1);
   const std::vector<Point> by = corners(-1);
   for (std::size_t e = 0; e < by.size() && !left.empty(); ++e) {
-    const auto& [ax, ay] = by[e];
-    const auto& [bx, by_] = by[(e + 1) % by.size()];
+    const Point &a = by[e], &b = by[(e + 1) % by.size()];
     const auto inside = [&](const Point& p) {
-      return (bx - ax) * (p.second - ay) - (by_ - ay) * (p.first - ax);
+      return (b.first - a.first) * (p.second - a.second) - (b.second - a.second) * (p.first - a.first);
     };
     std::vector<Point> kept;
     for (std::size_t i = 0; i < left.size(); ++i) {

@@ -73,6 +73,31 @@ Moments moments_of(const Contour& contour) {
   return {{o.x + cx, o.y + cy}, area, xx - cx * x, xy - cx * y, yy - cy * y};
 }
 
+/// How far a run of edges may be seen as its chord and the sliver between the two, by the sliver's moments:
+/// at most half the lowest height long, and so flat that its third moments count for nothing: sagitta
+/// [pixels] · (chord/height)³ up to 1e-3. A picture full of such slivers is then wrong by less than 2e-7.
+/// \returns the corner at which it ends.
+std::size_t end_of_run(const Contour& contour, std::size_t begin, double height_px) {
+  constexpr double longest = 0.5, flattest = 1e-3;
+  constexpr std::size_t least_edges = 3;  // a sliver costs a tenth of an edge
+  const Vertex& a = contour[begin];
+  std::size_t end = begin + 1;
+  for (std::size_t next = begin + 2; next <= contour.size(); ++next) {
+    const Vertex& b = contour[next % contour.size()];
+    const double ex = b.x - a.x, ey = b.y - a.y, length = std::hypot(ex, ey), share = length / height_px;
+    if (!(share <= longest) || length == 0) break;
+    double sagitta = 0;
+    for (std::size_t i = begin + 1; i < next; ++i) {
+      const double along = ((contour[i].x - a.x) * ex + (contour[i].y - a.y) * ey) / length;
+      if (along < 0 || along > length) sagitta = HUGE_VAL;  // it turns back
+      sagitta = std::max(sagitta, std::abs((contour[i].x - a.x) * ey - (contour[i].y - a.y) * ex) / length);
+    }
+    if (!(sagitta * share * share * share <= flattest)) break;
+    end = next;
+  }
+  return end - begin >= least_edges ? end : begin + 1;
+}
+
 }  // namespace
 
 double extent_of(const Contour& contour) {
@@ -116,8 +141,20 @@ FarField::FarField(const std::vector<Region>& regions, const FarKernel& kernel) 
             {m.centre, region.step * m.area, region.step * m.xx, region.step * m.xy, region.step * m.yy});
         continue;
       }
-      for (std::size_t i = 0; i < contour.size(); ++i)
-        sides_.push_back({contour[i], contour[(i + 1) % contour.size()], region.step});
+      for (std::size_t i = 0; i < contour.size();) {
+        const std::size_t end = end_of_run(contour, i, kernel.height_px[0]);
+        sides_.push_back({contour[i], contour[end % contour.size()], region.step});
+        if (end > i + 1) {
+          // Between the run and its chord there is a sliver.
+          Contour sliver(contour.begin() + static_cast<std::ptrdiff_t>(i),
+                         contour.begin() + static_cast<std::ptrdiff_t>(std::min(end + 1, contour.size())));
+          if (end == contour.size()) sliver.push_back(contour[0]);
+          const Moments m = moments_of(sliver);
+          spots_.push_back(
+              {m.centre, region.step * m.area, region.step * m.xx, region.step * m.xy, region.step * m.yy});
+        }
+        i = end;
+      }
     }
 }
 

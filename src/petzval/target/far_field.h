@@ -34,7 +34,8 @@ inline constexpr double spot_extent = 0.125;
 /// The larger side of the box about a contour.
 double extent_of(const Contour& contour);
 
-/// Σ step · (kernel over the region), at places in the picture. Regions may reach to infinity.
+/// Σ step · (kernel over the region), at places in the picture. Regions may reach to infinity. Runs of short
+/// edges, as curves have them, are seen as their chords and the moments of what lies between.
 class FarField {
  public:
   FarField(const std::vector<Region>& regions, const FarKernel& kernel);

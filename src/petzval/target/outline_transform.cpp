@@ -24,7 +24,9 @@ struct OutlineNodes {
 class Rules {
  public:
   const QuadratureRule& for_phase(double half_range) {
-    const int n = 10 + static_cast<int>(std::ceil(0.5 * half_range + 2.5 * std::cbrt(half_range)));
+    // Short edges, of which curves have many, converge at once.
+    const int n = (half_range < 4 ? 6 : 10) +
+                  static_cast<int>(std::ceil(0.5 * half_range + 2.5 * std::cbrt(half_range)));
     const auto found = rules_.find(n);
     return found != rules_.end() ? found->second : rules_.emplace(n, gauss_legendre(n)).first->second;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/target/meetings.h>
 #include <petzval/target/visible_regions.h>
 
 #include <algorithm>
@@ -89,7 +90,8 @@ std::vector<Contour> uncovered(const Polygon& polygon, const std::vector<const P
   return from_clipper(rest);
 }
 
-/// For each polygon the later ones whose boxes overlap its own, found by a sweep along x.
+/// For each polygon the later ones that meet it: of those whose boxes overlap its own, found by a sweep along
+/// x.
 std::vector<std::vector<const Polygon*>> possible_covers(const std::vector<Polygon>& polygons) {
   std::vector<Box> boxes;
   std::vector<std::size_t> order, open;
@@ -107,7 +109,18 @@ std::vector<std::vector<const Polygon*>> possible_covers(const std::vector<Polyg
         covers[std::min(i, j)].push_back(&polygons[std::max(i, j)]);
     open.push_back(i);
   }
-  for (auto& list : covers) std::sort(list.begin(), list.end());
+  // Many boxes overlap where polygons do not.
+  std::vector<bool> involved(polygons.size());
+  for (std::size_t i = 0; i < covers.size(); ++i)
+    for (const Polygon* cover : covers[i])
+      involved[i] = involved[static_cast<std::size_t>(cover - polygons.data())] = true;
+  const Meetings meetings(polygons, involved);
+  for (std::size_t i = 0; i < covers.size(); ++i) {
+    std::erase_if(covers[i], [&](const Polygon* cover) {
+      return !meetings.have_met(i, static_cast<std::size_t>(cover - polygons.data()));
+    });
+    std::sort(covers[i].begin(), covers[i].end());
+  }
   return covers;
 }
 
