@@ -224,6 +224,7 @@ class Sfr(ProgramTest):
     def test_refusals(self):
         self.assert_succeeds("target", "--rectangle", "40x40@5", "--size", "96x96", *OPTICS, "-o", "t.npy")
         self.assert_succeeds("target", "--rectangle", "4x4", "--size", "96x96", *OPTICS, "-o", "small.png")
+        self.assert_succeeds("target", "--rectangle", "60x60@5", *OPTICS, "--white", 1.2, "--bits", 16, "-o", "clipped.png")
         self.write("no.png", b"\x89PNG\r\n")
         for arguments, words in (
                 (["t.npy", "--roi", "1,2,3"], ["--roi 1,2,3", "X,Y,WIDTH,HEIGHT"]),
@@ -233,6 +234,7 @@ class Sfr(ProgramTest):
                 (["t.npy", "--roi", "2,2,12,12"], ["--roi 2,2,12,12", "edge"]),
                 (["t.npy", "--channel", "red"], ["not RGB"]),
                 (["small.png"], ["no straight edge"]),
+                (["clipped.png"], ["clipped", "bright side"]),
                 (["no.png"], ["no.png"]),
                 (["missing.tif"], ["missing.tif"]),
                 (["t.jpg"], [".png"])):

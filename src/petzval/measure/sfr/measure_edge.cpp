@@ -138,17 +138,19 @@ void turn_by_bend(EdgeLine& line) {
   line.bend[0] = 0;
 }
 
-void refuse_clipped(const Profile& profile, const SfrOptions& options, double rise_px) {
+void refuse_clipped(const Profile& profile, const std::vector<EdgeSample>& samples, const SfrOptions& options,
+                    double rise_px) {
   // A level that is reached exactly within one rise of the edge, before a profile can have come to rest.
   for (const bool high : {false, true}) {
     const std::optional<double> clip = high ? options.clip_high : options.clip_low;
     if (!clip) continue;
     std::size_t near = 0, clipped = 0;
-    for (const EdgePoint& point : profile.points) {
-      const double outward = high ? point.distance : -point.distance;
+    for (std::size_t i = 0; i < profile.points.size(); ++i) {
+      const double distance = profile.points[i].distance, outward = high ? distance : -distance;
       if (outward < 0.5 * rise_px || outward > 1.0 * rise_px) continue;
       ++near;
-      if (high ? point.value >= *clip : point.value <= *clip) ++clipped;
+      const double value = samples[profile.sample[i]].value;  // as it was recorded
+      if (high ? value >= *clip : value <= *clip) ++clipped;
     }
     if (near > 0 && clipped * 2 > near)
       throw InputError(
@@ -313,7 +315,7 @@ EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_ste
   result.tail_px = model->tail_px();
   result.middle_px = middle_of(*model, profile.low, profile.high);
   result.rise_px = rise_of(*model, profile.low, profile.high);
-  refuse_clipped(profile, options, result.rise_px);
+  refuse_clipped(profile, samples, options, result.rise_px);
   const Noise spread = noise_about(profile, *model);
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);
