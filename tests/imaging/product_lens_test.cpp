@@ -27,11 +27,13 @@ TEST_P(ProductOfLens, KeepsTheToleranceAskedFor) {
   // The whole field on few cells: the exact method is slow.
   constexpr int columns = 72, rows = 53;
   const double pitch_um = 2000 * table.real_image_height_mm.back() / std::hypot(columns, rows);
-  const PsfField psfs(table, nm, pitch_um);
+  const PsfField psfs(table, nm, pitch_um, PsfInterpolation::psf, LightCentres(table));
   for (const CellPlane& source :
        {texture({columns, rows, pitch_um}), tilted_checkerboard({columns, rows, pitch_um})}) {
     const CellPlane exact = blur_exact(source, psfs, 0);
-    for (const double tolerance : {1e-2, 1e-3}) {
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+      // At the very rim of the fisheye, where the pupil closes, kernels differ from cell to cell.
+      if (GetParam() == std::string("fisheye-10mm") && tolerance < 1e-3) continue;
       const auto plan = plan_product(psfs, source.grid, {tolerance});
       ASSERT_TRUE(plan) << tolerance;
       const double error = relative_l2(ProductBlur(psfs, source.grid, *plan).blur(source, 0), exact);
@@ -42,7 +44,7 @@ TEST_P(ProductOfLens, KeepsTheToleranceAskedFor) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Bundled, ProductOfLens, ::testing::Values("edmund-54852", "dgauss-50mm"));
+INSTANTIATE_TEST_SUITE_P(Bundled, ProductOfLens, ::testing::Values("edmund-54852", "dgauss-50mm", "fisheye-10mm"));
 
 }  // namespace
 }  // namespace petzval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "imaging/synthetic_table.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/imaging/otf_interpolation.h>
@@ -13,18 +14,16 @@ using namespace testing;
 
 void add(const Psf& psf, double weight, const std::array<double, 2>& direction, double cell_um,
          Kernel& kernel) {
-  const RunningPsf running(psf);
-  const WeightedPsf weighted{&running, weight};
-  deposit({&weighted, 1}, direction, cell_um, kernel);
+  deposit(RunningPsf(psf), {weight, {1, 1}}, direction, cell_um, kernel);
 }
 
 /// First and third moments of a kernel along a direction of the picture, in cells.
-struct Moments {
+struct MomentsAlong {
   double mean = 0, third = 0;
 };
 
-Moments moments_along(const Kernel& kernel, double column_direction, double row_direction) {
-  Moments moments;
+MomentsAlong moments_along(const Kernel& kernel, double column_direction, double row_direction) {
+  MomentsAlong moments;
   for (int pass = 0; pass < 2; ++pass)
     for (int row = -kernel.radius; row <= kernel.radius; ++row)
       for (int column = -kernel.radius; column <= kernel.radius; ++column) {
@@ -56,7 +55,29 @@ double gaussian_over_cell(int row, int column, double cell_um, double azimuth, c
   return total * std::pow(cell_um / steps, 2) / (2 * pi * spot.sigma_s_um * spot.sigma_t_um);
 }
 
-// And its centroid is where the spot's is, however wide the cells are.
+/// Moments of such a spot in the picture, taken up by cells: rotation from the same meaning of the axes.
+Moments moments_of(const Spot& spot, double azimuth, double cell_um) {
+  const double t_column = std::cos(azimuth), t_row = std::sin(azimuth), s_column = -t_row, s_row = t_column;
+  const double u = (spot.t_um * t_column + spot.s_um * s_column) / cell_um;
+  const double v = (spot.t_um * t_row + spot.s_um * s_row) / cell_um;
+  const double s_square = std::pow(spot.sigma_s_um / cell_um, 2);
+  const double t_square = std::pow(spot.sigma_t_um / cell_um, 2), of_cell = 1.0 / 12;
+  return {{u, v},
+          u * u + t_square * t_column * t_column + s_square * s_column * s_column + of_cell,
+          u * v + t_square * t_column * t_row + s_square * s_column * s_row,
+          v * v + t_square * t_row * t_row + s_square * s_row * s_row + of_cell};
+}
+
+void expect_moments(const Moments& moments, const Moments& wanted, double tolerance,
+                    const std::string& what) {
+  EXPECT_NEAR(moments.mean[0], wanted.mean[0], tolerance) << what;
+  EXPECT_NEAR(moments.mean[1], wanted.mean[1], tolerance) << what;
+  EXPECT_NEAR(moments.uu, wanted.uu, tolerance) << what;
+  EXPECT_NEAR(moments.uv, wanted.uv, tolerance) << what;
+  EXPECT_NEAR(moments.vv, wanted.vv, tolerance) << what;
+}
+
+// And its centroid and spread are the spot's, however wide the cells are.
 TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
   TableRecipe recipe;
   const Spot spot{1.5, -2, 2, 4, 1};
@@ -72,21 +93,21 @@ TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
       const double azimuth = radians(degrees);
       const PsfField psfs(table, 550, cell_um);
       const Kernel kernel = psfs.kernel_at(-std::cos(azimuth), std::sin(azimuth));  // columns run along −x'
-      const double t_column = std::cos(azimuth), t_row = std::sin(azimuth);
-      const std::array<double, 2> centre{(t_column * spot.t_um - t_row * spot.s_um) / cell_um,
-                                         (t_row * spot.t_um + t_column * spot.s_um) / cell_um};
-      // The window cuts the Gaussian where it has 5e-6 of its peak.
-      EXPECT_NEAR(kernel.centroid()[0], centre[0], 1e-4) << cell_um << " µm, " << degrees << "°";
-      EXPECT_NEAR(kernel.centroid()[1], centre[1], 1e-4) << cell_um << " µm, " << degrees << "°";
-      Kernel expected(kernel.radius);
+      // The window cuts the Gaussian where it has 5e-6 of its peak, some 15 cells from the centre: 10⁻³
+      // cells².
+      const Moments wanted = moments_of(widened, azimuth, cell_um);
+      const Moments moments = kernel.moments();
+      EXPECT_NEAR(moments.mean[0], wanted.mean[0], 1e-4) << cell_um << " µm, " << degrees << "°";
+      EXPECT_NEAR(moments.mean[1], wanted.mean[1], 1e-4) << cell_um << " µm, " << degrees << "°";
+      if (cell_um < 2)  // on the coarse cells, the shift by parts of a cell alone spreads more than is wanted
+        expect_moments(moments, wanted, 2e-3, fmt::format("{} µm, {}°", cell_um, degrees));
+      Kernel deposited(kernel.radius);
+      add(table.psf[0], 1, {-std::cos(azimuth), std::sin(azimuth)}, cell_um, deposited);
+      double worst = 0;
       for (int row = -kernel.radius; row <= kernel.radius; ++row)
         for (int column = -kernel.radius; column <= kernel.radius; ++column)
-          expected.at(row, column) = gaussian_over_cell(row, column, cell_um, azimuth, widened);
-      const std::array<double, 2> integrated = expected.centroid();
-      expected.shift({centre[0] - integrated[0], centre[1] - integrated[1]});
-      double worst = 0;
-      for (std::size_t i = 0; i < kernel.weights.size(); ++i)
-        worst = std::max(worst, std::abs(kernel.weights[i] - expected.weights[i]));
+          worst = std::max(worst, std::abs(deposited.at(row, column) -
+                                           gaussian_over_cell(row, column, cell_um, azimuth, widened)));
       // A cell's edge cuts samples, whose slope the deposit does not see: at most spacing²/8 × the steepest
       // slope of the Gaussian's profile, 0.242/σ² = 0.0605 µm⁻².
       EXPECT_LT(worst, spacing_um * spacing_um / 8 * 0.0605) << cell_um << " µm, " << degrees << "°";
@@ -111,8 +132,8 @@ TEST(PsfKernel, PointsAwayFromTheMiddleOfThePictureAtEightAzimuths) {
       const double azimuth = eighth * pi / 4;
       const double right = std::cos(azimuth), down = std::sin(azimuth);
       const Kernel kernel = psfs.kernel_at(-right * height_mm, down * height_mm);
-      const Moments tangential = moments_along(kernel, right, down);
-      const Moments sagittal = moments_along(kernel, -down, right);
+      const MomentsAlong tangential = moments_along(kernel, right, down);
+      const MomentsAlong sagittal = moments_along(kernel, -down, right);
       // Integrated over cells, a smooth PSF keeps its centre of gravity: to the aliasing of a cell of 3 µm.
       EXPECT_NEAR(tangential.mean, mean_t, 2e-3) << eighth;
       EXPECT_NEAR(sagittal.mean, mean_s, 2e-3) << eighth;
@@ -137,46 +158,92 @@ TEST(PsfKernel, SumsToOneWhateverTheCells) {
   }
 }
 
-TEST(PsfKernel, ShiftsByPartsOfACellAndKeepsTheLight) {
-  Kernel kernel(3);
-  kernel.at(0, 0) = 0.5;
-  kernel.at(1, -1) = 0.3;
-  kernel.at(-2, 2) = 0.2;
-  const std::array<double, 2> before = kernel.centroid();
-  for (const std::array<double, 2> by : {std::array{0.25, -0.4}, {-0.25, 0.4}, {0.0, 0.5}}) {
+TEST(PsfKernel, TakesTheMomentsOfThePsfAndKeepsTheLight) {
+  Kernel kernel(6);
+  for (int row = -6; row <= 6; ++row)
+    for (int column = -6; column <= 6; ++column)
+      kernel.at(row, column) = std::exp(-(row * row + column * column + row * column) / 2.0);
+  kernel.at(1, -2) += 0.5;
+  const double sum = kernel.sum();
+  for (double& weight : kernel.weights) weight /= sum;
+  const Moments own = kernel.moments();
+  const auto changed = [&](double u, double v, double uu, double uv, double vv) {
+    return Moments{{own.mean[0] + u, own.mean[1] + v},
+                   own.uu + 2 * own.mean[0] * u + uu,
+                   own.uv + own.mean[0] * v + own.mean[1] * u + uv,
+                   own.vv + 2 * own.mean[1] * v + vv};
+  };
+  // Wider, with a shift; wider along a diagonal, and more along the rows.
+  for (const Moments& wanted :
+       {changed(0.25, -0.1, 0.4, 0.05, 0.3), changed(0, 0, 0.2, -0.2, 0.2), changed(0, 0, 0.02, 0.01, 0.1)}) {
     Kernel moved = kernel;
-    moved.shift(by);
+    moved.match(wanted);
     EXPECT_NEAR(moved.sum(), 1, 1e-15);
-    EXPECT_NEAR(moved.centroid()[0], before[0] + by[0], 1e-15);
-    EXPECT_NEAR(moved.centroid()[1], before[1] + by[1], 1e-15);
+    // Weights at the rim, 10⁻⁶ of the light, have no neighbour to hand shares to.
+    expect_moments(moved.moments(), wanted, 1e-4, fmt::format("{}", wanted.uu));
     EXPECT_GE(*std::min_element(moved.weights.begin(), moved.weights.end()), 0);
   }
-  kernel.shift({0.25, -0.4});
-  EXPECT_NEAR(kernel.at(0, 0), 0.5 * 0.75 * 0.6 + 0.3 * 0.25 * 0.4, 1e-15);
-  EXPECT_NEAR(kernel.at(0, 1), 0.5 * 0.25 * 0.6, 1e-15);
-  EXPECT_NEAR(kernel.at(-1, 0), 0.5 * 0.75 * 0.4, 1e-15);
+  // Two cells cannot be less spread than their centroid asks for: that is met, by two neighbours.
+  Kernel point(2);
+  point.at(0, 0) = 1;
+  Kernel shifted = point;
+  shifted.match({{0.25, 0}, 0.1, 0, 0});
+  EXPECT_NEAR(shifted.at(0, 0), 0.75, 1e-15);
+  EXPECT_NEAR(shifted.at(0, 1), 0.25, 1e-15);
+  // Whatever is asked for: the light is kept, and none becomes negative.
+  std::mt19937 random(1841);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    Kernel any = trial % 2 == 0 ? kernel : point;
+    any.match({{uniform(random) / 2, uniform(random) / 2},
+               4 * uniform(random),
+               4 * uniform(random),
+               4 * uniform(random)});
+    EXPECT_NEAR(any.sum(), 1, 1e-14);
+    EXPECT_GE(*std::min_element(any.weights.begin(), any.weights.end()), -1e-15);
+  }
+}
+
+// A Gaussian that grows with height: halfway between two fields lies the Gaussian of a width in between, not
+// a mixture of a narrow and a wide one, whose peak would be 3 % higher here.
+TEST(PsfKernel, GrowsBetweenFields) {
+  TableRecipe recipe;
+  const auto sigma_um = [](double height_mm) { return 2 * std::sqrt(1 + std::pow(height_mm / 0.8, 2)); };
+  recipe.psf = [&](double field, double) {
+    const double sigma = sigma_um(recipe.height_mm(field, 550));
+    return psf_of_spots({{0, 0, sigma, sigma, 1}}, 257, 0.25);
+  };
+  const LensDataTable table = make_table(recipe);
+  const double height_mm = 0.5 * (table.real_image_height_mm[2] + table.real_image_height_mm[3]);
+  const Kernel kernel = PsfField(table, 550, 1.0).kernel_at(0, height_mm);
+  const double sigma = sigma_um(height_mm);
+  for (const auto& [row, column] : {std::pair{0, 0}, {2, 1}, {-3, 3}, {5, 0}})
+    EXPECT_NEAR(kernel.at(row, column) / gaussian_over_cell(row, column, 1.0, 0, {0, 0, sigma, sigma, 1}), 1,
+                5e-3)
+        << row << ", " << column;
 }
 
 TEST(PsfKernel, SamplesCoarserThanCellsAreSquares) {
   // One sample of 4 µm on cells of 1 µm: a square of 4 × 4 cells about the middle of a cell, so that the two
   // outer rows hold half.
-  TableRecipe recipe;
-  recipe.psf = [](double, double) { return Psf{1, 4.0, {1.0F}, 1.0}; };
-  const LensDataTable table = make_table(recipe);
-  const Kernel kernel = PsfField(table, 550, 1.0).kernel_at(0, 1);
-  ASSERT_EQ(kernel.radius, 2);
+  Kernel kernel(2);
+  add(Psf{1, 4.0, {1.0F}, 1.0}, 1, {0, 1}, 1.0, kernel);
   EXPECT_NEAR(kernel.at(0, 0), 1.0 / 16, 1e-15);
   EXPECT_NEAR(kernel.at(2, 0), 0.5 / 16, 1e-15);
   EXPECT_NEAR(kernel.at(-2, 2), 0.25 / 16, 1e-15);
 }
 
+// PSFs of one spread and different shape: between them lies their mixture.
 TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
-  TableRecipe recipe = comatic_recipe();
+  TableRecipe recipe;
   recipe.wavelengths_nm = {500, 600};
   recipe.height_mm = [](double field, double nm) { return field / 10 * (1 + (nm - 500) / 1000); };
-  recipe.psf = [](double field, double nm) {
-    return psf_of_spots({{0, field / 4, 2, 2, 1}}, nm < 550 ? 65 : 91, nm < 550 ? 0.5 : 0.6);
+  recipe.psf = [](double field, double nm) {  // two spots, ever farther apart and ever narrower
+    const double apart_um = field / 10, sigma_s_um = std::sqrt(4 - apart_um * apart_um);
+    return psf_of_spots({{-apart_um, 0, sigma_s_um, 2, 1}, {apart_um, 0, sigma_s_um, 2, 1}},
+                        nm < 550 ? 65 : 91, nm < 550 ? 0.5 : 0.6);
   };
+  recipe.fields = {0, 5, 10, 15};
   const LensDataTable table = make_table(recipe);
   const double height_mm = 1.1;  // 500 nm: between 1.0 and 1.5, 0.2 of the way; 600 nm: at 1.1, field 10
   const PsfField between(table, 525, 2.0);
@@ -185,14 +252,10 @@ TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
   add(table.psf[table.index(2, 0)], 0.75 * 0.8, {0, 1}, 2.0, expected);
   add(table.psf[table.index(3, 0)], 0.75 * 0.2, {0, 1}, 2.0, expected);
   add(table.psf[table.index(2, 1)], 0.25, {0, 1}, 2.0, expected);
-  // The mixture is at (0, centroid of the spots), and the tail of a window in float adds 1e-5.
-  const double centroid_um = 0.75 * (0.8 * 10 + 0.2 * 15) / 4 + 0.25 * 10.0 / 4;
-  EXPECT_NEAR(kernel.centroid()[1], centroid_um / 2.0, 1e-4);
-  expected.shift(
-      {kernel.centroid()[0] - expected.centroid()[0], kernel.centroid()[1] - expected.centroid()[1]});
-  // PSFs are stored in float.
+  // Samples that meet the edges of cells spread the deposit by 1/200 of a cell squared too much.
+  expected.match(kernel.moments());
   for (std::size_t i = 0; i < kernel.weights.size(); ++i)
-    EXPECT_NEAR(kernel.weights[i], expected.weights[i], 1e-8);
+    EXPECT_NEAR(kernel.weights[i], expected.weights[i], 1e-5);
 }
 
 TEST(PsfKernel, RefusesDamagedTablesAndForeignWavelengths) {

@@ -13,19 +13,20 @@ double half_diagonal_mm(const SensorGeometry& grid) {
 std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
                                  const ImagingOptions& options) {
   const RadialProfiles profiles(table, options.fit);
+  const LightCentres centres(table);
   std::vector<BandPlan> plans;
   for (const double wavelength_nm : scene.wavelengths_nm()) {
     int margin = 0;
     double least_captured = 1;
     if (options.method != BlurMethod::none) {
       // Made again when its band's turn comes: those of all bands together would fill the memory.
-      const PsfField psfs(table, wavelength_nm, frame.pitch_um, options.interpolation);
+      const PsfField psfs(table, wavelength_nm, frame.pitch_um, options.interpolation, centres);
       margin = psfs.radius();
       least_captured = psfs.least_captured();
     }
     if (options.by_sections()) transform_size(options.section_options(), margin);
-    SceneMap map(profiles.at_wavelength(wavelength_nm), object_to_sensor_mm(table), scene,
-                 half_diagonal_mm(grown(frame, margin)));
+    const LightProfile lens(profiles.at_wavelength(wavelength_nm), table, centres, wavelength_nm);
+    SceneMap map(lens, object_to_sensor_mm(table), scene, half_diagonal_mm(grown(frame, margin)));
     plans.push_back({std::move(map), margin, least_captured});
   }
   return plans;

@@ -48,7 +48,7 @@ double radiance_inside(const float* band, std::ptrdiff_t width, double column, d
 
 }  // namespace
 
-SceneMap::SceneMap(const RadialProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
+SceneMap::SceneMap(const LightProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
                    double largest_height_mm)
     : middle_column_(scene.columns() / 2.0),
       middle_row_(scene.rows() / 2.0),

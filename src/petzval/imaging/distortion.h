@@ -3,7 +3,7 @@
 #pragma once
 
 #include <petzval/imaging/cell_plane.h>
-#include <petzval/optics/table_interpolation.h>
+#include <petzval/imaging/light_centre.h>
 #include <petzval/scene/scene.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class SceneMap {
   /// \param lens  at the wavelength; beyond its last field there is darkness.
   /// \param object_to_sensor_mm  where a finite object stands; absent: at infinity, fields are degrees.
   /// \param largest_height_mm  the farthest that place() will be asked for.
-  SceneMap(const RadialProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
+  SceneMap(const LightProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
            double largest_height_mm);
 
   /// A place in the scene, in samples (centres at half-integers, rows down), and how much of its light

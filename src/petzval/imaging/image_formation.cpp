@@ -105,11 +105,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 class BandBlur {
  public:
   BandBlur(const LensDataTable& table, const ImagingOptions& options, ImagingReport& report)
-      : table_(table), options_(options), report_(report) {}
+      : table_(table), options_(options), centres_(table), report_(report) {}
 
   CellPlane operator()(CellPlane source, double wavelength_nm, int margin, const ProgressCallback& progress) {
     if (options_.method == BlurMethod::none) return source;
-    const PsfField psfs(table_, wavelength_nm, source.grid.pitch_um, options_.interpolation);
+    const PsfField psfs(table_, wavelength_nm, source.grid.pitch_um, options_.interpolation, centres_);
     if (options_.method == BlurMethod::exact) return blur_exact(source, psfs, margin, progress);
     if (options_.by_sections()) return sections(source, psfs, margin, options_.section_options(), progress);
     return product(source, psfs, margin, progress);
@@ -138,6 +138,7 @@ class BandBlur {
 
   const LensDataTable& table_;
   const ImagingOptions& options_;
+  const LightCentres centres_;
   ImagingReport& report_;
   std::optional<ProductPlan> plan_;  ///< of the last band
 };

@@ -70,9 +70,8 @@ struct ImagingReport {
 /// blur):
 ///
 /// 1. A grid of source cells, S × S to a pixel, covers the frame and as much around it as a PSF reaches.
-/// 2. Each cell takes the scene's radiance at the object point whose chief ray lands on its centre, times
-/// g_source:
-///    ideal_irradiance().
+/// 2. Each cell takes the scene's radiance at the object point whose light is centred on it, times g_source:
+///    LightCentres, ideal_irradiance().
 /// 3. Its light is spread by the PSF of its place, integrated over the cells: ProductBlur, blur_sections() or
 /// blur_exact().
 ///    The light of a cell starts from its centre, so that scenes much finer than a cell want S > 1.

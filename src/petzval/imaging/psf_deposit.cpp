@@ -40,14 +40,12 @@ struct Walker {
 
 /// Adds all samples as squares of side `box`; the lower corner of sample [i][j]'s lies at first + i·per_row +
 /// j·per_column. Runs of samples that lie within one cell are added at once.
-void add_squares(std::span<const WeightedPsf> psfs, double share, double box, const Vector& first,
-                 const Vector& per_row, const Vector& per_column, Canvas& canvas) {
+void add_squares(const RunningPsf& psf, double share, double box, const Vector& first, const Vector& per_row,
+                 const Vector& per_column, Canvas& canvas) {
   const Walker across(per_column[0], box), down(per_column[1], box);
-  const auto size = static_cast<std::size_t>(psfs.front().psf->size());
+  const auto size = static_cast<std::size_t>(psf.size());
   const auto light = [&](std::size_t row, std::size_t from, std::size_t to) {
-    double sum = 0;
-    for (const auto& [psf, weight] : psfs) sum += weight * psf->run(row, from, to);
-    return share * sum;
+    return share * psf.run(row, from, to);
   };
   const double end = canvas.width - 1;  // a square that begins before it may reach one cell on
   for (std::size_t i = 0; i < size; ++i) {
@@ -78,6 +76,40 @@ void add_squares(std::span<const WeightedPsf> psfs, double share, double box, co
   }
 }
 
+/// What every weight of a kernel keeps and hands to the cells about it.
+struct Shares {
+  double mean_u, mean_v, uu, uv, vv;
+
+  double at(int row, int column) const {
+    const double diagonal = std::abs(uv);
+    if (row != 0 && column != 0) return (row == column) == (uv > 0) ? diagonal / 2 : 0;
+    if (column != 0) return (uu - diagonal + column * mean_u) / 2;
+    if (row != 0) return (vv - diagonal + row * mean_v) / 2;
+    return 1 - uu - vv + diagonal;
+  }
+};
+
+/// Handing on shares of mean d and second moments q adds d to the mean m, and 2md + q to the second moments.
+Shares shares_towards(const Moments& own, const Moments& wanted) {
+  Shares shares{};
+  shares.mean_u = wanted.mean[0] - own.mean[0];
+  shares.mean_v = wanted.mean[1] - own.mean[1];
+  shares.uv = wanted.uv - own.uv - own.mean[0] * shares.mean_v - own.mean[1] * shares.mean_u;
+  const double uu = wanted.uu - own.uu - 2 * own.mean[0] * shares.mean_u;
+  const double vv = wanted.vv - own.vv - 2 * own.mean[1] * shares.mean_v;
+  const double shift = std::abs(shares.mean_u) + std::abs(shares.mean_v);
+  const double most_uv = std::max(0.0, 1 - shift);  // more than all cannot be handed on
+  shares.uv = std::clamp(shares.uv, -most_uv, most_uv);
+  const double least_uu = std::abs(shares.uv) + std::abs(shares.mean_u);
+  const double least_vv = std::abs(shares.uv) + std::abs(shares.mean_v);
+  const double more_u = std::max(0.0, uu - least_uu), more_v = std::max(0.0, vv - least_vv);
+  const double room = most_uv - std::abs(shares.uv);
+  const double part = more_u + more_v > room ? room / (more_u + more_v) : 1;
+  shares.uu = least_uu + part * more_u;
+  shares.vv = least_vv + part * more_v;
+  return shares;
+}
+
 }  // namespace
 
 Kernel::Kernel(int kernel_radius)
@@ -87,71 +119,91 @@ double Kernel::sum() const {
   return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
-std::array<double, 2> Kernel::centroid() const {
-  double column_moment = 0, row_moment = 0, total = 0;
+Moments Kernel::moments() const {
+  Moments sums;
+  double total = 0;
   for (int row = -radius; row <= radius; ++row)
     for (int column = -radius; column <= radius; ++column) {
       const double weight = at(row, column);
-      column_moment += column * weight;
-      row_moment += row * weight;
       total += weight;
+      sums.mean[0] += column * weight;
+      sums.mean[1] += row * weight;
+      sums.uu += column * column * weight;
+      sums.uv += column * row * weight;
+      sums.vv += row * row * weight;
     }
-  return {column_moment / total, row_moment / total};
+  return {{sums.mean[0] / total, sums.mean[1] / total}, sums.uu / total, sums.uv / total, sums.vv / total};
 }
 
-void Kernel::shift(const std::array<double, 2>& by) {
-  // Against the direction of the shift, so that what was handed on is not handed on again.
-  const auto move = [&](double share, const auto& cell) {
-    const int towards = share < 0 ? -1 : 1;
-    const double part = std::abs(share);
-    for (int across = -radius; across <= radius; ++across)
-      for (int along = radius - 1; along >= -radius; --along) {
-        double& from = cell(across, towards * along);
-        cell(across, towards * (along + 1)) += part * from;
-        from *= 1 - part;
-      }
-  };
-  move(by[0], [&](int row, int column) -> double& { return at(row, column); });
-  move(by[1], [&](int column, int row) -> double& { return at(row, column); });
+void Kernel::match(const Moments& wanted) {
+  const Shares shares = shares_towards(moments(), wanted);
+  const std::vector<double> before = weights;
+  std::fill(weights.begin(), weights.end(), 0.0);
+  for (int row = -radius; row <= radius; ++row)
+    for (int column = -radius; column <= radius; ++column) {
+      const double weight = before[index(row, column)];
+      if (weight == 0) continue;
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+          at(std::clamp(row + i, -radius, radius), std::clamp(column + j, -radius, radius)) +=
+              weight * shares.at(i, j);
+    }
 }
 
-RunningPsf::RunningPsf(const Psf& psf) : size_(psf.size), spacing_um_(psf.spacing_um) {
-  const auto size = static_cast<std::size_t>(size_);
-  sums_.reserve(size * (size + 1));
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = 0;
-    sums_.push_back(0);
-    const double t_um = (double(i) - double(size / 2)) * spacing_um_;
-    for (std::size_t j = 0; j < size; ++j) {
-      const double value = double(psf.values[i * size + j]);
-      first_moment_um_[0] += value * (double(j) - double(size / 2)) * spacing_um_;
-      first_moment_um_[1] += value * t_um;
-      sums_.push_back(sum += value);
+RunningPsf::RunningPsf(const Psf& psf, double origin_um, int merged)
+    : spacing_um_(merged * psf.spacing_um), origin_um_(origin_um) {
+  // The middle sample is in the middle of its block, so that a mirrored PSF has mirrored blocks.
+  const int middle = psf.size / 2, before = (middle + merged / 2) / merged,
+            shift = before * merged + merged / 2 - middle;
+  size_ = (psf.size - 1 + shift) / merged + 1;
+  first_um_ = -before * spacing_um_;
+  const auto size = static_cast<std::size_t>(size_), step = static_cast<std::size_t>(merged);
+  const auto samples = static_cast<std::size_t>(psf.size), skipped = static_cast<std::size_t>(shift);
+  const double of_square = psf.spacing_um * psf.spacing_um / 12;
+  sums_.assign(size * (size + 1), 0.0);
+  for (std::size_t i = 0; i < samples; ++i) {
+    double* sums = sums_.data() + (i + skipped) / step * (size + 1) + 1;
+    const double t_um = (double(i) - double(samples / 2)) * psf.spacing_um - origin_um_;
+    for (std::size_t j = 0; j < samples; ++j) {
+      const double value = double(psf.values[i * samples + j]);
+      const double s_um = (double(j) - double(samples / 2)) * psf.spacing_um;
+      moments_.mean[0] += value * s_um;
+      moments_.mean[1] += value * t_um;
+      moments_.uu += value * (s_um * s_um + of_square);
+      moments_.uv += value * s_um * t_um;
+      moments_.vv += value * (t_um * t_um + of_square);
+      sum_ += value;
+      sums[(j + skipped) / step] += value;
     }
-    sum_ += sum;
   }
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column < size; ++column)
+      sums_[row * (size + 1) + column + 1] += sums_[row * (size + 1) + column];
 }
 
-void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
-             Kernel& kernel) {
+void deposit(const RunningPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
+             double cell_um, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
-  const RunningPsf& grid = *psfs.front().psf;
-  const double spacing = grid.spacing_um() / cell_um;
-  const Vector per_row{-spacing * direction[0], spacing * direction[1]};      // one step in t
-  const Vector per_column{-spacing * direction[1], -spacing * direction[0]};  // one step in s
-  const double middle = kernel.radius + 1.5, half = grid.size() / 2;
-  const auto corner = [&](std::size_t axis) {
-    return middle - half * (per_row[axis] + per_column[axis]) - spacing / 2;
-  };
+  const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
+  const auto [stretch_s, stretch_t] = placement.stretch;
+  const double spacing = psf.spacing_um() / cell_um;
+  const double s_mean = psf.moments().mean[0] / psf.sum(), t_mean = psf.moments().mean[1] / psf.sum();
+  const double s_first = psf.first_um(), t_first = s_first - psf.origin_um();
+  const double s = (s_mean + stretch_s * (s_first - s_mean)) / cell_um;
+  const double t = (t_mean + stretch_t * (t_first - t_mean)) / cell_um;
+  const Vector per_row{spacing * stretch_t * e_t[0], spacing * stretch_t * e_t[1]};
+  const Vector per_column{spacing * stretch_s * e_s[0], spacing * stretch_s * e_s[1]};
 
   // Samples coarser than a cell are cut into squares that are not.
-  const int parts = std::max(1, static_cast<int>(std::ceil(spacing)));
-  const double box = spacing / parts;
+  const double side = spacing * std::sqrt(stretch_s * stretch_t);
+  const int parts = std::max(1, static_cast<int>(std::ceil(side)));
+  const double box = side / parts, middle = kernel.radius + 1.5 - side / 2;
+  const double share = placement.weight / (double(parts) * parts);
+  const Vector first{middle + s * e_s[0] + t * e_t[0], middle + s * e_s[1] + t * e_t[1]};
   Canvas canvas(kernel.radius);
   for (int a = 0; a < parts; ++a)
     for (int b = 0; b < parts; ++b)
-      add_squares(psfs, 1 / (double(parts) * parts), box, {corner(0) + b * box, corner(1) + a * box}, per_row,
-                  per_column, canvas);
+      add_squares(psf, share, box, {first[0] + b * box, first[1] + a * box}, per_row, per_column, canvas);
 
   const int radius = kernel.radius;
   for (int row = -radius; row <= radius; ++row)

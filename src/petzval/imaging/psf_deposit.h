@@ -11,8 +11,14 @@
 
 namespace petzval {
 
+/// Moments of a distribution of unit sum over a plane: of u (columns) and v (rows).
+struct Moments {
+  std::array<double, 2> mean{};   ///< of u, of v
+  double uu = 0, uv = 0, vv = 0;  ///< means of u², uv, v²; not about the mean
+};
+
 /// How the light of a cell falls on the cells about it: (2·radius + 1)² weights, row-major in picture
-/// orientation (rows down, columns right). The chief ray meets the centre of the middle cell.
+/// orientation (rows down, columns right). The origin of the PSF meets the centre of the middle cell.
 struct Kernel {
   int radius = 0;
   std::vector<double> weights;
@@ -24,11 +30,12 @@ struct Kernel {
   double& at(int row, int column) { return weights[index(row, column)]; }
   double at(int row, int column) const { return weights[index(row, column)]; }
   double sum() const;
-  /// Mean position of the weights from the middle cell: {column, row}. Needs a positive sum.
-  std::array<double, 2> centroid() const;
-  /// Moves the centroid by less than a cell along each axis, by handing that share of every weight to the
-  /// next cell; at the rim it stays. The sum is kept and nothing becomes negative.
-  void shift(const std::array<double, 2>& by);
+  /// Of the weights' positions from the middle cell [cells]. Needs a positive sum.
+  Moments moments() const;
+  /// Moves the moments to the wanted ones by letting every weight hand shares to the eight cells about it; at
+  /// the rim it keeps them. The sum is kept and nothing becomes negative, which leaves one thing undone: a
+  /// kernel that is wider than wanted stays so. The centroid is met all the same.
+  void match(const Moments& wanted);
 
  private:
   std::size_t index(int row, int column) const {
@@ -39,17 +46,20 @@ struct Kernel {
 /// A PSF with running sums along its rows, so that the light of any run of samples is one subtraction.
 class RunningPsf {
  public:
-  explicit RunningPsf(const Psf& psf);
+  /// \param origin_um  how far beyond the chief ray (along t) lies the point that meets a kernel's centre.
+  /// \param merged  this many samples along either axis, an odd number, become one: for cells that are much
+  /// coarser.
+  explicit RunningPsf(const Psf& psf, double origin_um = 0, int merged = 1);
 
   int size() const { return size_; }
   double spacing_um() const { return spacing_um_; }
   double sum() const { return sum_; }
-  /// Σ of sample × position from the chief ray [µm]: {s, t}.
-  const std::array<double, 2>& first_moment_um() const { return first_moment_um_; }
-  /// Whether two PSFs have their samples in the same places.
-  bool same_grid(const RunningPsf& other) const {
-    return size_ == other.size_ && spacing_um_ == other.spacing_um_;
-  }
+  double origin_um() const { return origin_um_; }
+  /// Where the first sample of a row, and of a column, lies from the chief ray.
+  double first_um() const { return first_um_; }
+  /// Σ of sample × position from the origin, and × its products: [µm], [µm²]; u is s, v is t. Each sample
+  /// of the PSF is a square of its spacing.
+  const Moments& moments() const { return moments_; }
   /// Σ of samples [row][from … to − 1].
   double run(std::size_t row, std::size_t from, std::size_t to) const {
     const double* sums = sums_.data() + row * (static_cast<std::size_t>(size_) + 1);
@@ -58,22 +68,22 @@ class RunningPsf {
 
  private:
   int size_;
-  double spacing_um_;
+  double spacing_um_, origin_um_, first_um_;
   double sum_ = 0;
-  std::array<double, 2> first_moment_um_{};
+  Moments moments_;
   std::vector<double> sums_;  ///< size rows of size + 1
 };
 
-struct WeightedPsf {
-  const RunningPsf* psf;
-  double weight;
+/// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.
+struct Placement {
+  double weight = 1;
+  std::array<double, 2> stretch{1, 1};
 };
 
-/// Adds PSFs to a kernel, with their tangential direction along `direction` (x', y') of image space,
+/// Adds a PSF to a kernel, with its tangential direction along `direction` (x', y') of image space,
 /// integrated over cells: each sample is light spread evenly over a square of the spacing (with its sides
 /// along the cells), which the cells under it share by area. What falls outside the kernel is left out.
-/// \param psfs  at least one, all on the same grid.
-void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
-             Kernel& kernel);
+void deposit(const RunningPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
+             double cell_um, Kernel& kernel);
 
 }  // namespace petzval

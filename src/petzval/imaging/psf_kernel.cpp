@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/imaging/otf_interpolation.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/numeric/interpolation.h>
@@ -13,15 +14,17 @@ namespace petzval {
 
 namespace {
 
-/// Distance from the chief ray to the farthest sample that holds light [µm].
-double reach_um(const Psf& psf) {
-  int farthest_squared = 0;
+/// Distance from the centre of a kernel, `origin_um` beyond the chief ray, to the farthest sample that holds
+/// light [µm].
+double reach_um(const Psf& psf, double origin_um) {
+  const double origin = origin_um / psf.spacing_um;
+  double farthest_squared = 0;
   for (int i = 0; i < psf.size; ++i)
     for (int j = 0; j < psf.size; ++j) {
-      const int t = i - psf.size / 2, s = j - psf.size / 2;
+      const double t = i - psf.size / 2 - origin, s = j - psf.size / 2;
       if (psf.at(i, j) != 0.0F) farthest_squared = std::max(farthest_squared, t * t + s * s);
     }
-  return std::sqrt(double(farthest_squared)) * psf.spacing_um;
+  return std::sqrt(farthest_squared) * psf.spacing_um;
 }
 
 bool is_mirror_symmetric(const Psf& psf) {
@@ -49,50 +52,36 @@ void check(const Psf& psf, double wavelength_nm) {
                     wavelength_nm));
 }
 
-/// The two table wavelengths about λ and their weights; one of them where λ meets it. A table of one
-/// wavelength serves the same surroundings as RadialProfiles::at_wavelength() says.
-std::vector<std::pair<std::size_t, double>> bracketing(const std::vector<double>& table_nm,
-                                                       double wavelength_nm) {
-  constexpr double around_single_nm = 0.5;
-  const double around = table_nm.size() == 1 ? around_single_nm : 0;
-  if (table_nm.empty() ||
-      !(wavelength_nm >= table_nm.front() - around && wavelength_nm <= table_nm.back() + around))
-    throw InputError(fmt::format("{} nm lies outside the lens data table, which covers {} to {} nm",
-                                 wavelength_nm, table_nm.empty() ? 0.0 : table_nm.front(),
-                                 table_nm.empty() ? 0.0 : table_nm.back()));
-  if (table_nm.size() == 1) return {{0, 1.0}};
-  const std::size_t i = bracket(table_nm, wavelength_nm);
-  const double t = (wavelength_nm - table_nm[i]) / (table_nm[i + 1] - table_nm[i]);
-  if (t == 0) return {{i, 1.0}};
-  if (t == 1) return {{i + 1, 1.0}};
-  return {{i, 1 - t}, {i + 1, t}};
-}
-
 }  // namespace
 
 PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
-                   PsfInterpolation interpolation)
+                   PsfInterpolation interpolation, const LightCentres& centres)
     : cell_um_(cell_um), interpolation_(interpolation) {
-  constexpr double max_radius = 2000;  // beyond it a single kernel would take minutes and 128 MB
-  for (const auto& [wavelength, weight] : bracketing(table.wavelengths_nm, wavelength_nm)) {
+  constexpr double samples_in_cell = 6;  // along an axis, are enough
+  constexpr double max_radius = 2000;    // beyond it a single kernel would take minutes and 128 MB
+  for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm)) {
     Layer layer;
     layer.weight = weight;
     for (std::size_t field = 0; field < table.fields.size(); ++field) {
-      const Psf& psf = table.psf.at(table.index(field, wavelength));
+      const std::size_t entry = table.index(field, wavelength);
+      const Psf& psf = table.psf.at(entry);
       check(psf, table.wavelengths_nm[wavelength]);
-      const double radius = std::ceil((reach_um(psf) + psf.spacing_um / 2) / cell_um);
+      const double origin_mm = centres.offset_mm(entry), reach = reach_um(psf, origin_mm * um_per_mm);
+      const double radius = std::ceil((reach + psf.spacing_um / 2) / cell_um);
       if (!(radius <= max_radius))
         throw InputError(
             fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
                         "pitch or less supersampling helps",
-                        reach_um(psf), radius, cell_um, max_radius));
+                        reach, radius, cell_um, max_radius));
       radius_ = std::max(radius_, static_cast<int>(radius));
       mirror_symmetric_ = mirror_symmetric_ && is_mirror_symmetric(psf);
       least_captured_ = std::min(least_captured_, psf.captured);
-      layer.height_mm.push_back(table.real_image_height_mm.at(table.index(field, wavelength)));
-      layer.psfs.emplace_back(psf);
+      layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
+      const int fine = static_cast<int>(cell_um / (samples_in_cell * psf.spacing_um));
+      layer.psfs.emplace_back(psf, origin_mm * um_per_mm, std::max(1, fine - (fine + 1) % 2));
     }
     if (layer.psfs.empty()) throw InputError("the lens data table has no fields");
+    layer.moments = MomentCurves(layer.height_mm, layer.psfs);
     layers_.push_back(std::move(layer));
   }
 }
@@ -114,25 +103,42 @@ Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
                                                           : interpolated_otf(direction, height_mm);
   const double sum = kernel.sum();
   for (double& weight : kernel.weights) weight /= sum;
-  const std::array<double, 2> wanted = centroid_at(direction, height_mm), deposited = kernel.centroid();
-  kernel.shift({wanted[0] - deposited[0], wanted[1] - deposited[1]});
+  kernel.match(moments_at(direction, height_mm));
   return kernel;
 }
 
-std::array<double, 2> PsfField::centroid_at(const std::array<double, 2>& direction, double height_mm) const {
-  double light = 0, moment_s_um = 0, moment_t_um = 0;
+PsfField::MomentCurves::MomentCurves(const std::vector<double>& height_mm,
+                                     const std::vector<RunningPsf>& psfs) {
+  using Start = MonotoneCubic::Start;
+  const auto curve = [&](Start start, const auto& of) {
+    std::vector<double> values;
+    for (const RunningPsf& psf : psfs) values.push_back(of(psf.moments()) / psf.sum());
+    return MonotoneCubic(height_mm, std::move(values), start);
+  };
+  s_ = curve(Start::free, [](const Moments& m) { return m.mean[0]; });
+  t_ = curve(Start::free, [](const Moments& m) { return m.mean[1]; });
+  ss_ = curve(Start::even, [](const Moments& m) { return m.uu; });
+  st_ = curve(Start::free, [](const Moments& m) { return m.uv; });
+  tt_ = curve(Start::even, [](const Moments& m) { return m.vv; });
+}
+
+Moments PsfField::moments_at(const std::array<double, 2>& direction, double height_mm) const {
+  double s = 0, t = 0, ss = 0, st = 0, tt = 0;
   for (const Layer& layer : layers_) {
-    const Pair pair = pair_at(layer, height_mm);
-    const double high = layer.weight * pair.weight_high;
-    for (const auto& [psf, weight] : {std::pair{pair.low, layer.weight - high}, {pair.high, high}}) {
-      light += weight * psf->sum();
-      moment_s_um += weight * psf->first_moment_um()[0];
-      moment_t_um += weight * psf->first_moment_um()[1];
-    }
+    const Moments moments = layer.moments.at(height_mm);
+    s += layer.weight / cell_um_ * moments.mean[0];
+    t += layer.weight / cell_um_ * moments.mean[1];
+    ss += layer.weight / (cell_um_ * cell_um_) * moments.uu;
+    st += layer.weight / (cell_um_ * cell_um_) * moments.uv;
+    tt += layer.weight / (cell_um_ * cell_um_) * moments.vv;
   }
-  // Picture columns run along −x', rows along +y'.
-  const double s = moment_s_um / (light * cell_um_), t = moment_t_um / (light * cell_um_);
-  return {-direction[0] * t - direction[1] * s, direction[1] * t - direction[0] * s};
+  // Picture columns run along −x', rows along +y'; e_t = (a, b), e_s = (b, −a).
+  const auto [a, b] = direction;
+  constexpr double of_cell = 1.0 / 12;
+  return {{-a * t - b * s, b * t - a * s},
+          a * a * tt + 2 * a * b * st + b * b * ss + of_cell,
+          a * b * (ss - tt) + (a * a - b * b) * st,
+          b * b * tt - 2 * a * b * st + a * a * ss + of_cell};
 }
 
 PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {
@@ -142,33 +148,44 @@ PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {
   return {&layer.psfs[i], &layer.psfs[i + 1], std::clamp((height_mm - layer.height_mm[i]) / span, 0.0, 1.0)};
 }
 
+void PsfField::add(const Layer& layer, const RunningPsf& psf, double weight,
+                   const std::array<double, 2>& direction, double height_mm, Kernel& kernel) const {
+  if (weight == 0) return;
+  constexpr double least = 0.5, most = 2;
+  const Moments own = psf.moments(), wanted = layer.moments.at(height_mm);
+  const double light = psf.sum();
+  const auto stretch = [&](double wanted_square, double wanted_mean, double square, double mean) {
+    const double variance = square / light - (mean / light) * (mean / light);
+    const double wanted_variance = wanted_square - wanted_mean * wanted_mean;
+    if (!(variance > 0 && wanted_variance > 0)) return 1.0;
+    return std::clamp(std::sqrt(wanted_variance / variance), least, most);
+  };
+  const double s = stretch(wanted.uu, wanted.mean[0], own.uu, own.mean[0]);
+  const double t = stretch(wanted.vv, wanted.mean[1], own.vv, own.mean[1]);
+  deposit(psf, {weight, {s, t}}, direction, cell_um_, kernel);
+}
+
 Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double height_mm) const {
   Kernel kernel(radius_);
   for (const Layer& layer : layers_) {
     const Pair pair = pair_at(layer, height_mm);
     const double high = layer.weight * pair.weight_high;
-    const std::array<WeightedPsf, 2> both{{{pair.low, layer.weight - high}, {pair.high, high}}};
-    if (pair.low->same_grid(*pair.high)) {
-      deposit(both, direction, cell_um_, kernel);
-    } else {
-      deposit({&both[0], 1}, direction, cell_um_, kernel);
-      deposit({&both[1], 1}, direction, cell_um_, kernel);
-    }
+    add(layer, *pair.low, layer.weight - high, direction, height_mm, kernel);
+    add(layer, *pair.high, high, direction, height_mm, kernel);
   }
   return kernel;
 }
 
 Kernel PsfField::interpolated_otf(const std::array<double, 2>& direction, double height_mm) const {
-  const auto kernel_of = [&](const RunningPsf* psf) {
+  const auto kernel_of = [&](const Layer& layer, const RunningPsf& psf) {
     Kernel kernel(radius_);
-    const WeightedPsf whole{psf, 1};
-    deposit({&whole, 1}, direction, cell_um_, kernel);
+    add(layer, psf, 1, direction, height_mm, kernel);
     return kernel;
   };
   std::vector<Kernel> of_layers;
   for (const Layer& layer : layers_) {
     const Pair pair = pair_at(layer, height_mm);
-    const Kernel low = kernel_of(pair.low), high = kernel_of(pair.high);
+    const Kernel low = kernel_of(layer, *pair.low), high = kernel_of(layer, *pair.high);
     of_layers.push_back(between_otfs(low, high, pair.weight_high));
   }
   return of_layers.size() == 1 ? of_layers[0] : between_otfs(of_layers[0], of_layers[1], layers_[1].weight);

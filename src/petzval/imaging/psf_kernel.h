@@ -2,6 +2,7 @@
 // From the PSFs of a lens data table to the weights with which one cell's light reaches the cells about it.
 #pragma once
 
+#include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/psf_deposit.h>
 #include <petzval/optics/lens_data_table.h>
 
@@ -32,8 +33,9 @@ class PsfField {
  public:
   /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
   /// more than 4000 cells.
+  /// \param centres  what kernels are centred on, and heights counted to: the chief rays unless given.
   PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
-           PsfInterpolation interpolation = PsfInterpolation::psf);
+           PsfInterpolation interpolation = PsfInterpolation::psf, const LightCentres& centres = {});
 
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
   int radius() const { return radius_; }
@@ -46,15 +48,30 @@ class PsfField {
   /// The least share of light that a PSF's window caught when the table was made.
   double least_captured() const { return least_captured_; }
 
-  /// \param x_mm, y_mm  where the chief ray lands in image space (x' > 0 is left of the picture's middle).
+  /// \param x_mm, y_mm  where the chief ray, or the centre of the light, lands in image space (x' > 0 is left
+  /// of the picture's middle).
   Kernel kernel_at(double x_mm, double y_mm) const;
 
  private:
+  /// The moments of PSFs of unit sum over height: smooth curves, for where the spread of light grows ever
+  /// faster with height, bends in it at each field of the table would show on a wall.
+  class MomentCurves {
+   public:
+    MomentCurves() = default;
+    MomentCurves(const std::vector<double>& height_mm, const std::vector<RunningPsf>& psfs);
+    Moments at(double height_mm) const {
+      return {{s_(height_mm), t_(height_mm)}, ss_(height_mm), st_(height_mm), tt_(height_mm)};
+    }
+
+   private:
+    MonotoneCubic s_, t_, ss_, st_, tt_;
+  };
   /// One wavelength of the table.
   struct Layer {
     double weight = 1;
     std::vector<double> height_mm;
     std::vector<RunningPsf> psfs;
+    MomentCurves moments;
   };
   /// The two PSFs of a layer between which a height lies.
   struct Pair {
@@ -62,8 +79,11 @@ class PsfField {
     double weight_high;
   };
   static Pair pair_at(const Layer& layer, double height_mm);
-  /// Of the PSF at this height, in cells: {column, row}.
-  std::array<double, 2> centroid_at(const std::array<double, 2>& direction, double height_mm) const;
+  /// Of the PSF at this height, taken up by cells [cells].
+  Moments moments_at(const std::array<double, 2>& direction, double height_mm) const;
+  /// Lays a PSF down, stretched to the spread that PSFs have at this height.
+  void add(const Layer& layer, const RunningPsf& psf, double weight, const std::array<double, 2>& direction,
+           double height_mm, Kernel& kernel) const;
   Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
   Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
 

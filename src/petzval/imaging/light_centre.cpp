@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/light_centre.h>
+#include <petzval/numeric/interpolation.h>
+
+#include <algorithm>
+
+namespace petzval {
+
+namespace {
+
+/// Centre of gravity along t, from the chief ray [mm]; 0 for a dark PSF.
+double tangential_centre_mm(const Psf& psf) {
+  double light = 0, moment = 0;
+  for (int i = 0; i < psf.size; ++i) {
+    double row = 0;
+    for (int j = 0; j < psf.size; ++j) row += double(psf.at(i, j));
+    light += row;
+    moment += row * (i - psf.size / 2);
+  }
+  return light > 0 ? moment / light * psf.spacing_um * mm_per_um : 0;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::size_t, double>> bracketing_wavelengths(const LensDataTable& table,
+                                                                   double wavelength_nm) {
+  const std::vector<double>& table_nm = table.wavelengths_nm;
+  constexpr double around_single_nm = 0.5;
+  const double around = table_nm.size() == 1 ? around_single_nm : 0;
+  if (table_nm.empty() ||
+      !(wavelength_nm >= table_nm.front() - around && wavelength_nm <= table_nm.back() + around))
+    throw InputError(fmt::format("{} nm lies outside the lens data table, which covers {} to {} nm",
+                                 wavelength_nm, table_nm.empty() ? 0.0 : table_nm.front(),
+                                 table_nm.empty() ? 0.0 : table_nm.back()));
+  if (table_nm.size() == 1) return {{0, 1.0}};
+  const std::size_t i = bracket(table_nm, wavelength_nm);
+  const double t = (wavelength_nm - table_nm[i]) / (table_nm[i + 1] - table_nm[i]);
+  if (t == 0) return {{i, 1.0}};
+  if (t == 1) return {{i + 1, 1.0}};
+  return {{i, 1 - t}, {i + 1, t}};
+}
+
+LightCentres::LightCentres(const LensDataTable& table) : offsets_mm_(table.psf.size()) {
+  constexpr double least_stretch = 0.5, most_stretch = 2;
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+    for (std::size_t f = 1; f < table.fields.size(); ++f) {
+      const std::size_t here = table.index(f, w), before = table.index(f - 1, w);
+      const double step = table.real_image_height_mm[here] - table.real_image_height_mm[before];
+      offsets_mm_[here] =
+          offsets_mm_[before] + std::clamp(tangential_centre_mm(table.psf[here]) - offsets_mm_[before],
+                                           (least_stretch - 1) * step, (most_stretch - 1) * step);
+    }
+}
+
+LightProfile::LightProfile(RadialProfile chief)
+    : chief_(std::move(chief)), max_height_mm_(chief_.max_height_mm()) {}
+
+LightProfile::LightProfile(RadialProfile chief, const LensDataTable& table, const LightCentres& centres,
+                           double wavelength_nm)
+    : LightProfile(std::move(chief)) {
+  if (centres.none()) return;
+  const auto wavelengths = bracketing_wavelengths(table, wavelength_nm);
+  std::vector<double> chief_mm, centre_mm;
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    chief_mm.push_back(f == 0 ? 0 : chief_.image_height_mm(table.fields[f]));
+    double offset_mm = 0;
+    for (const auto& [w, weight] : wavelengths) offset_mm += weight * centres.offset_mm(table.index(f, w));
+    centre_mm.push_back(chief_mm.back() + offset_mm);
+  }
+  centre_ = MonotoneCubic(std::move(chief_mm), std::move(centre_mm), MonotoneCubic::Start::odd,
+                          MonotoneCubic::Beyond::linear);
+  max_height_mm_ = centre_(max_height_mm_);
+  moved_ = true;
+}
+
+double LightProfile::g_source_sr(double height_mm) const {
+  if (!moved_) return chief_.g_source_sr(height_mm);
+  const double chief_mm = chief_height_mm(height_mm), radial = centre_.derivative(chief_mm);
+  const double tangential = chief_mm > 0 ? centre_(chief_mm) / chief_mm : radial;
+  return chief_.g_source_sr(chief_mm) / (radial * tangential);
+}
+
+}  // namespace petzval
