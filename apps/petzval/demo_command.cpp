@@ -72,6 +72,7 @@ void run_demo(const DemoCommand& options, const Shared& shared) {
   section(0.05, [&] {
     TableOptions table_options;
     table_options.wavelengths_nm = {paper_wavelength_nm};
+    table_options.field_count = 21;
     table_options.max_image_height_mm = third_inch_sensor.half_diagonal_mm();
     table = build_lens_data_table(demo.edmund, table_options, demo.progress);
   });

@@ -93,6 +93,7 @@ LensDataTable table_of(const Demo& demo, const Lens& lens, const std::vector<dou
   options.wavelengths_nm = wavelengths;
   options.max_image_height_mm = half_diagonal_mm;
   options.largest_psf_size = 192;
+  options.field_count = 21;
   return build_lens_data_table(lens, options, demo.progress);
 }
 

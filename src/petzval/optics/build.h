@@ -17,7 +17,7 @@ struct TableOptions {
   /// PSF radius beyond it, or until no ray passes (less than a thousandth of the pupil's area on axis). 0:
   /// the lens's largest field.
   double max_image_height_mm = 0;
-  int field_count = 21;  ///< evenly spaced object fields, 0 included
+  int field_count = 31;  ///< evenly spaced object fields, 0 included
   int psf_size = 0;      ///< cells a side of every PSF, as wide as each one needs; 0: as many as needed, too
   int largest_psf_size = 256;
   Tracer::Clip clip = Tracer::Clip::apertures;
