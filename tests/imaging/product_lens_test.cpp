@@ -44,7 +44,8 @@ TEST_P(ProductOfLens, KeepsTheToleranceAskedFor) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Bundled, ProductOfLens, ::testing::Values("edmund-54852", "dgauss-50mm", "fisheye-10mm"));
+INSTANTIATE_TEST_SUITE_P(Bundled, ProductOfLens,
+                         ::testing::Values("edmund-54852", "dgauss-50mm", "fisheye-10mm"));
 
 }  // namespace
 }  // namespace petzval
