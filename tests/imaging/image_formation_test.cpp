@@ -54,8 +54,8 @@ TEST(FormImage, UniformWallBecomesGTimesRadiance) {
   const LensDataTable table = make_table({});
   for (const BlurMethod method : {BlurMethod::none, BlurMethod::sections, BlurMethod::exact}) {
     const SpectralImage image = form_image(wall(3), table, sensor, with_method(method));
-    // A constant PSF that is rotated differs by how cells cut its samples, six to a cell: (1/6)²/8 of its
-    // slope.
+    // A constant PSF that is rotated differs by how cells cut its samples, a quarter of a cell wide: (1/4)²/8
+    // of its slope.
     for (const float value : image.values()) EXPECT_NEAR(value, 0.75, 0.75 * 2e-3);
   }
 }

@@ -94,13 +94,14 @@ TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
       const PsfField psfs(table, 550, cell_um);
       const Kernel kernel = psfs.kernel_at(-std::cos(azimuth), std::sin(azimuth));  // columns run along −x'
       // The window cuts the Gaussian where it has 5e-6 of its peak, some 15 cells from the centre: 10⁻³
-      // cells².
+      // cells². Samples are merged to a quarter of a cell, whose squares have a variance of (1/4)²/12, and
+      // spreading is not undone: together below 7·10⁻³ + 10⁻³.
       const Moments wanted = moments_of(widened, azimuth, cell_um);
       const Moments moments = kernel.moments();
       EXPECT_NEAR(moments.mean[0], wanted.mean[0], 1e-4) << cell_um << " µm, " << degrees << "°";
       EXPECT_NEAR(moments.mean[1], wanted.mean[1], 1e-4) << cell_um << " µm, " << degrees << "°";
       if (cell_um < 2)  // on the coarse cells, the shift by parts of a cell alone spreads more than is wanted
-        expect_moments(moments, wanted, 2e-3, fmt::format("{} µm, {}°", cell_um, degrees));
+        expect_moments(moments, wanted, 8e-3, fmt::format("{} µm, {}°", cell_um, degrees));
       Kernel deposited(kernel.radius);
       add(table.psf[0], 1, {-std::cos(azimuth), std::sin(azimuth)}, cell_um, deposited);
       double worst = 0;

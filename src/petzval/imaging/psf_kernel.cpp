@@ -52,13 +52,24 @@ void check(const Psf& psf, double wavelength_nm) {
                     wavelength_nm));
 }
 
+/// With samples merged to a quarter of a cell at most, and to the PSF's own half width.
+RunningPsf running_psf(const Psf& psf, double origin_um, double cell_um) {
+  RunningPsf fine(psf, origin_um);
+  const Moments& moments = fine.moments();
+  const double s = moments.mean[0] / fine.sum(), t = moments.mean[1] / fine.sum();
+  const double variance = std::min(moments.uu / fine.sum() - s * s, moments.vv / fine.sum() - t * t);
+  const double wanted_um = std::min(cell_um / 4, std::sqrt(std::max(0.0, variance)));
+  const int merged = static_cast<int>(wanted_um / psf.spacing_um);
+  if (merged < 3) return fine;
+  return RunningPsf(psf, origin_um, merged - (merged + 1) % 2);
+}
+
 }  // namespace
 
 PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
                    PsfInterpolation interpolation, const LightCentres& centres)
     : cell_um_(cell_um), interpolation_(interpolation) {
-  constexpr double samples_in_cell = 6;  // along an axis, are enough
-  constexpr double max_radius = 2000;    // beyond it a single kernel would take minutes and 128 MB
+  constexpr double max_radius = 2000;  // beyond it a single kernel would take minutes and 128 MB
   for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm)) {
     Layer layer;
     layer.weight = weight;
@@ -77,8 +88,7 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       mirror_symmetric_ = mirror_symmetric_ && is_mirror_symmetric(psf);
       least_captured_ = std::min(least_captured_, psf.captured);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
-      const int fine = static_cast<int>(cell_um / (samples_in_cell * psf.spacing_um));
-      layer.psfs.emplace_back(psf, origin_mm * um_per_mm, std::max(1, fine - (fine + 1) % 2));
+      layer.psfs.push_back(running_psf(psf, origin_mm * um_per_mm, cell_um));
     }
     if (layer.psfs.empty()) throw InputError("the lens data table has no fields");
     layer.moments = MomentCurves(layer.height_mm, layer.psfs);
