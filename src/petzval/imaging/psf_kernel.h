@@ -20,15 +20,14 @@ enum class PsfInterpolation {
 
 /// The kernels of one wavelength at every place of the image.
 ///
-/// For a chief ray that lands at (x', y') the PSFs of the bracketing field heights, at the bracketing
-/// wavelengths, are interpolated, rotated about the chief ray to the azimuth of (x', y'), integrated over the
-/// cells and normalised to sum 1 (Maeda, Catrysse & Wandell 2005, section 2.2.3; the sum is the OTF at zero
-/// frequency). Integrated: each fine sample is spread evenly over a square of its own spacing, which the
-/// cells under it share by area, so that the energy is exact and nothing is missed between sampling points.
-/// What a cell receives is blind to where within the cell it arrives, so that a PSF narrower than a cell
-/// would lose the offset of its centroid, and with it the divergence by which g_sensor differs from g_source;
-/// the kernel is shifted by the rest (Kernel::shift), and has the PSF's own centroid whatever the cells are.
-/// Beyond the heights of the table its last PSF holds.
+/// For light that lands about (x', y') the PSFs of the bracketing field heights, at the bracketing
+/// wavelengths, are stretched to the widths of that height, mixed, rotated to the azimuth of (x', y'),
+/// integrated over the cells and normalised to sum 1 (after Maeda, Catrysse & Wandell 2005, section 2.2.3;
+/// the sum is the OTF at zero frequency). Integrated: each fine sample is spread evenly over a square of its
+/// own spacing, which the cells under it share by area, so that the energy is exact and nothing is missed
+/// between sampling points. What a cell receives is blind to where within the cell it arrives;
+/// Kernel::match() gives the kernel the centroid of the PSF whatever the cells are, and its spread where that
+/// is not exceeded already. Beyond the heights of the table its last PSF holds.
 class PsfField {
  public:
   /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
