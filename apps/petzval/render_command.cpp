@@ -71,8 +71,8 @@ std::string fingerprint(const RenderCommand& command, const PreparedScene& scene
       !command.depth.empty() || !command.normals.empty() || !command.albedo.empty(), camera.film.columns,
       camera.film.rows, camera.film.pitch_um);
   for (const double nm : scene.world->groups.wavelengths_nm()) text += fmt::format("{} ", nm);
-  text += fmt::format("{} {} {} ", command.choice.sampling, command.choice.camera_origin,
-                      command.choice.scene_unit_mm);
+  text += fmt::format("{} {} {} {} ", scene.camera.photosite.text(), command.choice.sampling,
+                      command.choice.camera_origin, command.choice.scene_unit_mm);
   text += fmt::format("{} ", command.choice.absolute_spectra);
   text += camera.lens ? lens_to_json(*camera.lens) : "perspective";
   return text;
@@ -101,6 +101,7 @@ nlohmann::ordered_json summary_json(const RenderCommand& command, const Prepared
           {"columns", image.columns()},
           {"rows", image.rows()},
           {"pitch_um", image.pitch_um()},
+          {"pixel_aperture", scene.camera.photosite.text()},
           {"wavelengths_nm", image.wavelengths_nm()},
           {"samples_per_pixel", render::effective_samples(scene.world->groups, command.samples)},
           {"camera_rays", picture.rays},
@@ -196,6 +197,7 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   options.samples_per_pixel = command.samples;
   options.seed = shared.seed;
   options.path = scene.path;
+  options.photosite = scene.camera.photosite;
   if (command.choice.far_distance > 0) options.far_distance = command.choice.far_distance;
   options.first_surfaces = !command.depth.empty() || !command.normals.empty() || !command.albedo.empty();
   options.checkpoint = command.checkpoint;

@@ -28,6 +28,7 @@ render::CameraChoice camera_choice(const RenderChoice& choice, const Shared& sha
     camera.lens = choice.lens.read(shared);
   }
   camera.pinhole = choice.pinhole;
+  if (!choice.sensor.empty()) camera.sensor = read_sensor(choice.sensor);
   if (!choice.size.empty()) parse_size(choice.size, camera);
   camera.film_diagonal_mm = choice.film_diagonal_mm;
   camera.aperture_diameter_mm = choice.aperture_diameter_mm;
@@ -82,7 +83,11 @@ void RenderChoice::add_to(CLI::App& command) {
   command.add_option("--film-distance", film_distance_mm, "From the last surface to the film [mm]");
   command.add_option("--focus-distance", focus_distance_m, "From the film to what is to be sharp [m]");
   command.add_flag("--pinhole", pinhole, "The scene's perspective through a pinhole, for comparison");
-  command.add_option("--size", size, "Of the picture in pixels, as 400x300");
+  command.add_option(
+      "--sensor", sensor,
+      "Sensor, by name or file, or 768x576@6.25 (pixels @ pitch in um): its size, pitch, photosite "
+      "and optical low-pass filter in place of the scene's film");
+  command.add_option("--size", size, "Of the picture in pixels, as 400x300; of the middle of a --sensor");
   command.add_option("--wavelengths", wavelengths, "FROM:STEP:TO or a list [nm]");
   command
       .add_option(

@@ -18,7 +18,7 @@ struct RenderChoice {
   std::string scene;
   LensChoice lens;
   bool pinhole = false, absolute_spectra = false;
-  std::string size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
+  std::string sensor, size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
   std::optional<double> film_diagonal_mm, aperture_diameter_mm, f_number, film_distance_mm, focus_distance_m;
   double scene_unit_mm = 1000;
   int max_depth = 0;  ///< 0: as the scene has it

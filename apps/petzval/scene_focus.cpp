@@ -60,6 +60,7 @@ PicturesAt zone_pictures(const PreparedScene& scene, const std::vector<FocusZone
       render::RenderOptions options;
       options.samples_per_pixel = std::max(1, choice.samples / 2);
       options.path = scene.path;
+      options.photosite = moved.photosite;
       options.window = window_of(zone, moved.film);
       ZonePicture picture;
       options.seed = 2 * shared.seed;

@@ -134,6 +134,25 @@ class SensorChain(ProgramTest):
         self.assert_succeeds("sense", "light.exr", "--sensor", "small.json", "--exposure", "ev:8", "-o", "raw.dng")
         self.assertIn(b"Double Gauss 50 mm", self.contents()["raw.dng"])
 
+    def test_renderings_are_made_for_a_sensor(self):
+        """render --sensor | sense | develop: size, pitch, photosite and filter are the sensor's, and light without them is refused."""
+        self.write("wall.pbrt", 'Camera "perspective"\nFilm "rgb" "float diagonal" 0.432667\nWorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\n')
+        self.write("small.json", {**SMALL_BAYER, "photosite": {"fill_factor": 0.49}, "low_pass_um": 2})
+        render = ("render", "wall.pbrt", "--lens", "dgauss-50mm", "--film-distance", "38", "--spp", "16", "--wavelengths", "400:50:700")
+        said = self.json_of(*render, "--sensor", "small.json", "-o", "light.exr")
+        self.assertEqual((said["columns"], said["rows"], said["pitch_um"]), (96, 64, 3.75))
+        self.assertIn("0.7 x 0.7 pitches, low-pass 0.53", said["pixel_aperture"])
+        self.assert_succeeds("sense", "light.exr", "--sensor", "small.json", "--exposure", "ev:8", "-o", "raw.dng")
+        self.assert_succeeds("develop", "raw.dng", "-o", "shot.png", "--quiet")
+        plain = self.json_of(*render, "--size", "96x64", "-o", "plain.exr")
+        self.assertAlmostEqual(plain["pitch_um"], 3.75, delta=1e-3)
+        self.assertAlmostEqual(said["mean_irradiance"] / plain["mean_irradiance"], 1, delta=1e-3)
+        self.assert_refused("sense", "plain.exr", "--sensor", "small.json", "-o", "no.dng", words=["pixel aperture", '"box"'])
+        middle = self.json_of(*render, "--sensor", "small.json", "--size", "32x16", "-o", "middle.exr")
+        self.assertEqual((middle["columns"], middle["rows"], middle["pitch_um"]), (32, 16, 3.75))
+        self.assert_refused(*render, "--sensor", "small.json", "--size", "100x16", "-o", "no.exr", words=["96 x 64"])
+        self.assert_refused(*render, "--sensor", "small.json", "--film-diagonal", "3", "-o", "no.exr", words=["diagonal"])
+
     def test_image_shows_the_light_itself_where_that_is_asked_for(self):
         self.write("small.json", SMALL_BAYER)
         self.assert_succeeds(*self.IMAGE, "--sensor", "96x64@3.75", "-o", "frame.png", "--quiet")

@@ -30,12 +30,13 @@ struct TileResult {
 class TileRenderer {
  public:
   TileRenderer(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
-               const SensorGeometry& sensor, const RenderOptions& options, const PixelWindow& tile,
-               Film& film)
+               const SensorGeometry& sensor, const FilmSampling& sampling, const RenderOptions& options,
+               const PixelWindow& tile, Film& film)
       : world_(world),
         camera_(camera),
         world_from_camera_(world_from_camera),
         sensor_(sensor),
+        sampling_(sampling),
         options_(options),
         tracer_(world, options.path),
         tile_(tile),
@@ -53,20 +54,24 @@ class TileRenderer {
   }
 
  private:
+  Pixel pixel_of(std::size_t i) const {
+    return {tile_.left + static_cast<int>(i) % tile_.columns(),
+            tile_.top + static_cast<int>(i) / tile_.columns()};
+  }
+
   void take_samples(int group, int index, double share) {
     const int lanes = world_.groups.lanes(group);
     const std::size_t pixels = tile_.size();
     samples_.clear(), places_.clear(), heroes_.clear();
     for (std::size_t i = 0; i < pixels; ++i) {
-      const int column = tile_.left + static_cast<int>(i) % tile_.columns();
-      const int row = tile_.top + static_cast<int>(i) / tile_.columns();
-      const auto pixel = static_cast<std::uint32_t>(row * sensor_.columns + column);
-      const std::uint32_t seed = hashed(pixel, hashed(static_cast<std::uint32_t>(options_.seed),
-                                                      static_cast<std::uint32_t>(options_.seed >> 32) ^
-                                                          static_cast<std::uint32_t>(group) * 0x9e3779b9u));
+      const Pixel pixel = pixel_of(i);
+      const auto number = static_cast<std::uint32_t>(pixel.row * sensor_.columns + pixel.column);
+      const std::uint32_t seed = hashed(number, hashed(static_cast<std::uint32_t>(options_.seed),
+                                                       static_cast<std::uint32_t>(options_.seed >> 32) ^
+                                                           static_cast<std::uint32_t>(group) * 0x9e3779b9u));
       samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
       const auto [x, y, u, v] = samples_.back().next4();
-      places_.push_back({column + x, row + y, u, v});
+      places_.push_back(sampling_.place(pixel, x, y, u, v));
       // In turn from a random start: every wavelength leads equally often.
       heroes_.push_back(static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
                                          static_cast<std::uint32_t>(lanes)));
@@ -77,10 +82,7 @@ class TileRenderer {
   }
 
   void trace_camera(int group) {
-    const PixelWindow& window = film_.window;
-    const FilmArea sampled{static_cast<double>(window.left), static_cast<double>(window.top),
-                           static_cast<double>(window.right), static_cast<double>(window.bottom)};
-    if (!camera_.disperses()) return camera_.trace(group, 0, sampled, places_, rays_);
+    if (!camera_.disperses()) return camera_.trace(group, 0, sampling_, places_, rays_);
     std::vector<FilmSample> places;
     std::vector<CameraRay> rays;
     std::vector<std::size_t> from;
@@ -89,7 +91,7 @@ class TileRenderer {
       for (std::size_t i = 0; i < heroes_.size(); ++i)
         if (heroes_[i] == hero) places.push_back(places_[i]), from.push_back(i);
       rays.assign(places.size(), {});
-      if (!places.empty()) camera_.trace(group, hero, sampled, places, rays);
+      if (!places.empty()) camera_.trace(group, hero, sampling_, places, rays);
       for (std::size_t k = 0; k < from.size(); ++k) rays_[from[k]] = rays[k];
     }
   }
@@ -116,29 +118,27 @@ class TileRenderer {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
-      double column = places_[i].column, row = places_[i].row;
-      if (ray.spread && lane != hero) {
-        column = static_cast<double>(ray.column[static_cast<std::size_t>(lane)]);
-        row = static_cast<double>(ray.row[static_cast<std::size_t>(lane)]);
-      }
-      add(static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row)),
-          world_.groups.band(group, lane), share * value);
+      std::optional<Pixel> pixel = pixel_of(i);
+      if (ray.spread && lane != hero)
+        pixel =
+            sampling_.pixel_at(places_[i], static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
+                               static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
+      if (pixel) add(*pixel, world_.groups.band(group, lane), share * value);
     }
   }
 
-  void add(int column, int row, int band, double value) {
-    if (!film_.window.contains(column, row)) return;
+  void add(Pixel pixel, int band, double value) {
     const std::size_t at =
-        static_cast<std::size_t>(band) * film_.window.size() + film_.window.index(column, row);
-    if (tile_.contains(column, row))
+        static_cast<std::size_t>(band) * film_.window.size() + film_.window.index(pixel.column, pixel.row);
+    if (tile_.contains(pixel.column, pixel.row))
       film_.light[at] += value;
     else
       result_.strays.push_back({at, value});
   }
 
   void add_first(std::size_t i, int group, const FirstSurface& first) {
-    const std::size_t at =
-        film_.window.index(static_cast<int>(places_[i].column), static_cast<int>(places_[i].row));
+    const Pixel pixel = pixel_of(i);
+    const std::size_t at = film_.window.index(pixel.column, pixel.row);
     film_.met[at] += 1;
     film_.depth[at] += world_from_camera_.inverse_point(first.position).z;
     film_.normal[3 * at] += first.normal.x;
@@ -153,6 +153,7 @@ class TileRenderer {
   const FilmCamera& camera_;
   const Transform& world_from_camera_;
   const SensorGeometry& sensor_;
+  const FilmSampling& sampling_;
   const RenderOptions& options_;
   PathTracer tracer_;
   PixelWindow tile_;
@@ -183,10 +184,12 @@ PixelWindow checked_window(const SensorGeometry& sensor, const RenderOptions& op
 
 /// The mean over the samples that met a surface, and the light.
 Rendering developed(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
-                    double samples_of_pixel) {
+                    const Photosite& photosite, double samples_of_pixel) {
   Rendering result;
   result.irradiance =
-      SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um);
+      SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um,
+                    photosite.is_plain() ? PixelAperture::box : PixelAperture::photosite);
+  if (!photosite.is_plain()) result.irradiance.photosite = photosite.text();
   const std::size_t pixels = film.window.size();
   for (int band = 0; band < result.irradiance.bands(); ++band) {
     const std::span<float> plane = result.irradiance.band(band);
@@ -225,6 +228,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
                          const ProgressCallback& progress) {
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
   const PixelWindow window = checked_window(sensor, options);
+  const FilmSampling sampling(window, options.photosite);
   Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), options.first_surfaces);
   if (!options.checkpoint.empty()) read_checkpoint(options.checkpoint, film, options.fingerprint);
 
@@ -238,7 +242,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   while (film.passes < passes && go_on) {
     std::atomic<std::size_t> done{0};
     parallel_for(tiles.size(), [&](std::size_t i) {
-      results[i] = TileRenderer(world, camera, world_from_camera, sensor, options, tiles[i], film)
+      results[i] = TileRenderer(world, camera, world_from_camera, sensor, sampling, options, tiles[i], film)
                        .run(film.passes * indices_a_pass, samples);
       if (progress)
         progress((film.passes + static_cast<double>(++done) / static_cast<double>(tiles.size())) / passes,
@@ -259,7 +263,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       saved = now;
     }
   }
-  Rendering result = developed(film, world.groups, sensor, samples);
+  Rendering result = developed(film, world.groups, sensor, options.photosite, samples);
   result.complete = film.passes == passes;
   return result;
 }

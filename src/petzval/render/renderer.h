@@ -6,6 +6,7 @@
 #include <petzval/image/spectral_image.h>
 #include <petzval/render/camera/film_camera.h>
 #include <petzval/render/film/film.h>
+#include <petzval/render/film/film_sampling.h>
 #include <petzval/sensor/sensor.h>
 
 #include <optional>
@@ -20,6 +21,7 @@ struct RenderOptions {
   PathOptions path;
   double far_distance = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
   std::optional<PixelWindow> window;                              ///< only these pixels are rendered
+  Photosite photosite;  ///< over which each pixel's value is a mean, and the low-pass filter before it
   bool first_surfaces = false;
   std::string checkpoint;   ///< a file to resume from and to save to; empty: none
   std::string fingerprint;  ///< of scene, lens and options, kept in the checkpoint
@@ -39,7 +41,7 @@ struct FirstSurfaces {
 };
 
 struct Rendering {
-  SpectralImage irradiance;  ///< [W·m⁻²·nm⁻¹], of the window; box pixels
+  SpectralImage irradiance;  ///< [W·m⁻²·nm⁻¹], of the window; of its pixel aperture
   std::optional<FirstSurfaces> first_surfaces;
   std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
   bool complete = true;

@@ -2,6 +2,7 @@
 // From places on the film to rays in the scene.
 #pragma once
 
+#include <petzval/render/film/film_sampling.h>
 #include <petzval/render/spectra/lanes.h>
 #include <petzval/render/vector3.h>
 
@@ -9,18 +10,6 @@
 #include <span>
 
 namespace petzval::render {
-
-/// A place on the film, in pixels of the upright picture, and two numbers in [0, 1) that choose a direction
-/// there.
-struct FilmSample {
-  double column = 0, row = 0;
-  double u = 0, v = 0;
-};
-
-/// The part of the film [pixels] from which samples are taken.
-struct FilmArea {
-  double left = 0, top = 0, right = 0, bottom = 0;
-};
 
 /// A ray of light that reaches the film, followed backwards out into the scene.
 struct CameraRay {
@@ -40,9 +29,8 @@ class FilmCamera {
  public:
   virtual ~FilmCamera() = default;
   /// Rays for samples whose hero wavelength is lane `hero` of `group`. `rays` is as long as `samples`.
-  /// \param sampled  all samples of the picture are spread evenly over this area: what else could have found
-  /// a ray.
-  virtual void trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+  /// \param film  how the samples of the picture are drawn: what else could have found a ray.
+  virtual void trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
                      std::span<CameraRay> rays) const = 0;
   /// Whether wavelengths part on their way, so that it matters which one leads.
   virtual bool disperses() const { return false; }

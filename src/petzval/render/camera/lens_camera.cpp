@@ -57,7 +57,8 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
 void LensCamera::find_regions(const Lens& lens) {
   std::vector<Tracer> ends{tracers_.front()};
   if (disperses_) ends = {tracers_.front(), tracers_[tracers_.size() / 2], tracers_.back()};
-  const double corner_mm = film_.half_diagonal_mm();
+  const double corner_mm =
+      film_.half_diagonal_mm() + std::sqrt(2) * options_.margin_pixels * film_.pitch_um * mm_per_um;
   regions_.emplace(ends, corner_mm * corner_margin);
   constexpr int probes = 64;
   for (int i = 0; i <= probes; ++i)
@@ -95,7 +96,7 @@ double LensCamera::density(double x_mm, double y_mm, double alpha, double beta) 
          (pi * rear_radius_mm_ * rear_radius_mm_ * cos * cos * cos * cos);
 }
 
-void LensCamera::trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+void LensCamera::trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
                        std::span<CameraRay> rays) const {
   const Tracer& leading = tracer(group, hero);
   RayBatch batch(samples.size());
@@ -128,11 +129,12 @@ void LensCamera::trace(int group, int hero, const FilmArea& sampled, std::span<c
     ray.weight = Lanes::all(1 / densities[i]);
     ray.weight_alone = static_cast<float>(lanes / densities[i]);
   }
-  if (disperses_) share_among_wavelengths(group, hero, sampled, rays, batch, densities);
+  if (disperses_) share_among_wavelengths(group, hero, film, samples, rays, batch, densities);
 }
 
-void LensCamera::share_among_wavelengths(int group, int hero, const FilmArea& sampled,
-                                         std::span<CameraRay> rays, const RayBatch& scene_side,
+void LensCamera::share_among_wavelengths(int group, int hero, const FilmSampling& film,
+                                         std::span<const FilmSample> samples, std::span<CameraRay> rays,
+                                         const RayBatch& scene_side,
                                          std::span<const double> hero_density) const {
   const int lanes = groups_.lanes(group);
   std::vector<std::size_t> passing;
@@ -160,7 +162,7 @@ void LensCamera::share_among_wavelengths(int group, int hero, const FilmArea& sa
       if (batch.status[k] != RayStatus::ok) continue;
       const double column = film_.columns / 2.0 - batch.x_mm[k] / pitch_mm;
       const double row = film_.rows / 2.0 + batch.y_mm[k] / pitch_mm;
-      if (column >= sampled.left && column < sampled.right && row >= sampled.top && row < sampled.bottom)
+      if (film.pixel_at(samples[passing[k]], column, row))
         sum[k] += density(batch.x_mm[k], batch.y_mm[k], batch.l[k], batch.m[k]);
       ray.weight[lane] = 1;
       ray.column[static_cast<std::size_t>(lane)] = static_cast<float>(column);

@@ -20,6 +20,9 @@ struct LensCameraOptions {
   enum class Sampling { exit_pupil, rear_disk };
   Sampling sampling = Sampling::exit_pupil;
   double scene_units_per_mm = 1e-3;
+  /// How far outside of the film's frame light may be asked for: half of what a low-pass filter parts
+  /// [pixels].
+  double margin_pixels = 0;
   bool origin_at_front =
       false;  ///< the camera's place is the first vertex, as in 2006; else the film's centre
 };
@@ -36,7 +39,7 @@ class LensCamera final : public FilmCamera {
   LensCamera(const Lens& lens, const SensorGeometry& film, const WavelengthGroups& groups,
              const LensCameraOptions& options = {});
 
-  void trace(int group, int hero, const FilmArea& sampled, std::span<const FilmSample> samples,
+  void trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
   bool disperses() const override { return disperses_; }
 
@@ -47,7 +50,8 @@ class LensCamera final : public FilmCamera {
   void find_regions(const Lens& lens);
   Start start(double x_mm, double y_mm, double u, double v) const;
   double density(double x_mm, double y_mm, double alpha, double beta) const;
-  void share_among_wavelengths(int group, int hero, const FilmArea& sampled, std::span<CameraRay> rays,
+  void share_among_wavelengths(int group, int hero, const FilmSampling& film,
+                               std::span<const FilmSample> samples, std::span<CameraRay> rays,
                                const RayBatch& scene_side, std::span<const double> hero_density) const;
   const Tracer& tracer(int group, int lane) const;
 

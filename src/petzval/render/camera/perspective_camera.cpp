@@ -2,25 +2,9 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/render/camera/perspective_camera.h>
+#include <petzval/render/disk_point.h>
 
 namespace petzval::render {
-
-namespace {
-
-struct DiskPoint {
-  double x, y;
-};
-
-/// Even over the unit disk (Shirley & Chiu 1997).
-DiskPoint disk_point(double u, double v) {
-  const double a = 2 * u - 1, b = 2 * v - 1;
-  if (a == 0 && b == 0) return {0, 0};
-  const bool wide = std::abs(a) > std::abs(b);
-  const double r = wide ? a : b, phi = wide ? pi / 4 * (b / a) : pi / 2 - pi / 4 * (a / b);
-  return {r * std::cos(phi), r * std::sin(phi)};
-}
-
-}  // namespace
 
 PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : options_(options) {
   if (!(options.field_of_view_deg > 0 && options.field_of_view_deg < 180))
@@ -38,7 +22,7 @@ PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : option
     left_ = window[0], right_ = window[1], bottom_ = window[2], top_ = window[3];
 }
 
-void PerspectiveCamera::trace(int, int, const FilmArea&, std::span<const FilmSample> samples,
+void PerspectiveCamera::trace(int, int, const FilmSampling&, std::span<const FilmSample> samples,
                               std::span<CameraRay> rays) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FilmSample& sample = samples[i];

@@ -23,11 +23,8 @@ int checked_size(const Parameters& parameters, const char* name, int otherwise, 
   return size;
 }
 
-SensorGeometry read_film(const Entity& film, const CameraChoice& choice, Unsupported& unsupported) {
-  const Parameters& parameters = film.parameters;
-  if (film.type != "rgb" && film.type != "spectral" && film.type != "gbuffer" && film.type != "image" &&
-      !film.type.empty())
-    unsupported.report(film.location(), fmt::format("Film \"{}\"", film.type));
+/// Pixels and diagonal as the scene or the user has them.
+SensorGeometry scene_film(const Parameters& parameters, const CameraChoice& choice) {
   SensorGeometry geometry;
   geometry.columns = checked_size(parameters, "xresolution", 1280, choice.columns);
   geometry.rows = checked_size(parameters, "yresolution", 720, choice.rows);
@@ -36,6 +33,36 @@ SensorGeometry read_film(const Entity& film, const CameraChoice& choice, Unsuppo
     throw scene_error(parameters.location_of("diagonal"),
                       fmt::format("a film diagonal of {} mm; above 0 would be right", diagonal_mm));
   geometry.pitch_um = diagonal_mm / std::hypot(geometry.columns, geometry.rows) * um_per_mm;
+  return geometry;
+}
+
+/// A sensor, or as many pixels of its middle as are wanted.
+SensorGeometry sensor_film(const Sensor& sensor, const CameraChoice& choice) {
+  if (choice.film_diagonal_mm) throw InputError("a sensor has its own diagonal; give one or the other");
+  SensorGeometry geometry = sensor.geometry;
+  geometry.columns = choice.columns.value_or(geometry.columns);
+  geometry.rows = choice.rows.value_or(geometry.rows);
+  if (geometry.columns > sensor.geometry.columns || geometry.rows > sensor.geometry.rows)
+    throw InputError(fmt::format("a picture of {} x {} pixels on {}, which has {} x {}; fewer would be right",
+                                 geometry.columns, geometry.rows, sensor.name, sensor.geometry.columns,
+                                 sensor.geometry.rows));
+  return geometry;
+}
+
+SensorGeometry read_film(const Entity& film, const CameraChoice& choice, Unsupported& unsupported) {
+  const Parameters& parameters = film.parameters;
+  if (film.type != "rgb" && film.type != "spectral" && film.type != "gbuffer" && film.type != "image" &&
+      !film.type.empty())
+    unsupported.report(film.location(), fmt::format("Film \"{}\"", film.type));
+  SensorGeometry geometry;
+  if (choice.sensor) {
+    // The scene's numbers are still read, so that wrong ones are noticed.
+    checked_size(parameters, "xresolution", 1280, {}), checked_size(parameters, "yresolution", 720, {});
+    parameters.number("diagonal", 35);
+    geometry = sensor_film(*choice.sensor, choice);
+  } else {
+    geometry = scene_film(parameters, choice);
+  }
   // What pbrt makes of the light afterwards is the business of `sense` and `develop`.
   for (const char* ignored :
        {"filename", "iso", "sensor", "savefp16", "maxcomponentvalue", "whitebalance", "nbuckets", "lambdamin",
@@ -150,7 +177,9 @@ SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& cho
                           Unsupported& unsupported) {
   SceneCamera camera;
   camera.film = read_film(scene.film, choice, unsupported);
+  if (choice.sensor) camera.photosite = choice.sensor->photosite;
   camera.options = choice.options;
+  camera.options.margin_pixels = std::max(camera.photosite.separation_x, camera.photosite.separation_y) / 2;
   camera.world_from_camera = scene.camera_from_world.inverse();
   read_camera(scene, choice, unsupported, camera);
   camera.perspective.columns = camera.film.columns;

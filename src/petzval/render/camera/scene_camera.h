@@ -16,8 +16,10 @@ namespace petzval::render {
 /// What the user asks for; what is absent is as the scene has it.
 struct CameraChoice {
   std::optional<Lens> lens;
-  bool pinhole = false;  ///< the scene's perspective, whatever camera it has
-  std::optional<int> columns, rows;
+  bool pinhole = false;          ///< the scene's perspective, whatever camera it has
+  std::optional<Sensor> sensor;  ///< its size, pitch, photosite and low-pass filter in place of the scene's
+                                 ///< film
+  std::optional<int> columns, rows;  ///< with a sensor, of its middle
   std::optional<double> film_diagonal_mm;
   std::optional<double> aperture_diameter_mm;  ///< of the stop
   std::optional<double> f_number;
@@ -29,6 +31,7 @@ struct CameraChoice {
 /// A camera as it is used: how many pixels, how large, and either a lens or an ideal perspective.
 struct SceneCamera {
   SensorGeometry film;
+  Photosite photosite;
   std::optional<Lens> lens;  ///< focused and stopped down
   PerspectiveOptions perspective;
   LensCameraOptions options;

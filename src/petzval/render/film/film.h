@@ -2,6 +2,7 @@
 // Where light is gathered.
 #pragma once
 
+#include <petzval/render/film/pixel_window.h>
 #include <petzval/render/path_tracer.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 
@@ -9,22 +10,6 @@
 #include <vector>
 
 namespace petzval::render {
-
-/// Pixels [left, right) × [top, bottom) of a picture.
-struct PixelWindow {
-  int left = 0, top = 0, right = 0, bottom = 0;
-
-  int columns() const { return right - left; }
-  int rows() const { return bottom - top; }
-  std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
-  bool contains(int column, int row) const {
-    return column >= left && column < right && row >= top && row < bottom;
-  }
-  std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row - top) * static_cast<std::size_t>(columns()) +
-           static_cast<std::size_t>(column - left);
-  }
-};
 
 /// Sums over samples; doubles, so that a million of them lose nothing.
 struct Film {

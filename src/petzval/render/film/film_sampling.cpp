@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/render/disk_point.h>
+#include <petzval/render/film/film_sampling.h>
+
+#include <cmath>
+
+namespace petzval::render {
+
+namespace {
+
+/// Which of two dots, at ±separation/2, and what is left of the number that chose it.
+double dot_of(double separation, double& number) {
+  if (separation == 0) return 0;
+  const bool second = number >= 0.5;
+  number = 2 * number - (second ? 1 : 0);
+  return second ? separation / 2 : -separation / 2;
+}
+
+}  // namespace
+
+FilmSampling::FilmSampling(const PixelWindow& window, const Photosite& site) : window_(window), site_(site) {
+  site.validate();
+  if ((site.shape != Photosite::Shape::rectangle && site.shape != Photosite::Shape::ellipse) ||
+      !(site.width <= 1 && site.height <= 1))
+    throw InputError(
+        fmt::format("a photosite {}: a rectangle or ellipse within the pixel is right", site.text()));
+}
+
+FilmSample FilmSampling::place(Pixel pixel, double x, double y, double u, double v) const {
+  FilmSample sample{0, 0, u, v, dot_of(site_.separation_x, x), dot_of(site_.separation_y, y)};
+  if (site_.shape == Photosite::Shape::ellipse) {
+    const DiskPoint on = disk_point(x, y);
+    x = (1 + site_.width * on.x) / 2, y = (1 + site_.height * on.y) / 2;
+  } else {
+    // Exact where the photosite is the whole pixel.
+    x = (1 - site_.width) / 2 + site_.width * x, y = (1 - site_.height) / 2 + site_.height * y;
+  }
+  sample.column = pixel.column + x - sample.dot_column;
+  sample.row = pixel.row + y - sample.dot_row;
+  return sample;
+}
+
+std::optional<Pixel> FilmSampling::pixel_at(const FilmSample& found_by, double column, double row) const {
+  column += found_by.dot_column, row += found_by.dot_row;
+  // Before they are made whole numbers, which may not hold them.
+  if (!(column >= window_.left && column < window_.right && row >= window_.top && row < window_.bottom))
+    return std::nullopt;
+  const Pixel pixel{static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row))};
+  const double x = 2 * (column - pixel.column - 0.5) / site_.width,
+               y = 2 * (row - pixel.row - 0.5) / site_.height;
+  const bool on =
+      site_.shape == Photosite::Shape::ellipse ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
+  return on ? std::optional(pixel) : std::nullopt;
+}
+
+}  // namespace petzval::render
