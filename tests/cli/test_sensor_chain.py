@@ -136,7 +136,7 @@ class SensorChain(ProgramTest):
 
     def test_renderings_are_made_for_a_sensor(self):
         """render --sensor | sense | develop: size, pitch, photosite and filter are the sensor's, and light without them is refused."""
-        self.write("wall.pbrt", 'Camera "perspective"\nFilm "rgb" "float diagonal" 0.432667\nWorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\n')
+        self.write("wall.pbrt", 'Camera "perspective"\nWorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\n')
         self.write("small.json", {**SMALL_BAYER, "photosite": {"fill_factor": 0.49}, "low_pass_um": 2})
         render = ("render", "wall.pbrt", "--lens", "dgauss-50mm", "--film-distance", "38", "--spp", "16", "--wavelengths", "400:50:700")
         said = self.json_of(*render, "--sensor", "small.json", "-o", "light.exr")
@@ -144,8 +144,8 @@ class SensorChain(ProgramTest):
         self.assertIn("0.7 x 0.7 pitches, low-pass 0.53", said["pixel_aperture"])
         self.assert_succeeds("sense", "light.exr", "--sensor", "small.json", "--exposure", "ev:8", "-o", "raw.dng")
         self.assert_succeeds("develop", "raw.dng", "-o", "shot.png", "--quiet")
-        plain = self.json_of(*render, "--size", "96x64", "-o", "plain.exr")
-        self.assertAlmostEqual(plain["pitch_um"], 3.75, delta=1e-3)
+        plain = self.json_of(*render, "--sensor", "96x64@3.75", "-o", "plain.exr")
+        self.assertEqual(plain["pixel_aperture"], "box")
         self.assertAlmostEqual(said["mean_irradiance"] / plain["mean_irradiance"], 1, delta=1e-3)
         self.assert_refused("sense", "plain.exr", "--sensor", "small.json", "-o", "no.dng", words=["pixel aperture", '"box"'])
         middle = self.json_of(*render, "--sensor", "small.json", "--size", "32x16", "-o", "middle.exr")
