@@ -134,10 +134,10 @@ std::optional<double> focus_distance_mm(const std::string& focus) {
   return distance_mm;
 }
 
-/// Where a chart stands if nobody says: where the lens or its table expects the object.
+/// Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
 Scene read_scene(const ImageCommand& command, std::optional<double> expected_m, bool expected) {
   SceneOptions defaults;
-  if (expected && command.scene.is_chart()) defaults.distance_m = expected_m.value_or(INFINITY);
+  if (expected && command.scene.is_open()) defaults.distance_m = expected_m.value_or(INFINITY);
   Scene scene = command.scene.read(defaults);
   scene.validate();
   return scene;
@@ -190,7 +190,8 @@ SceneAndTable from_lens(const ImageCommand& command, const std::optional<SensorG
   return {std::move(scene), build_lens_data_table(lens, options, progress)};
 }
 
-/// A chart without an angle of its own fills the frame; without a sensor the frame follows the scene.
+/// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
+/// the scene.
 SensorGeometry fit_to_each_other(const ImageCommand& command, const ImagingOptions& options, Scene& scene,
                                  const LensDataTable& table, const std::optional<SensorGeometry>& sensor,
                                  const Shared& shared) {
@@ -202,12 +203,12 @@ SensorGeometry fit_to_each_other(const ImageCommand& command, const ImagingOptio
                      frame.columns, frame.rows, frame.pitch_um));
     return frame;
   }
-  if (command.scene.is_chart() && command.scene.angle.empty() && options.surround == Surround::error) {
+  if (command.scene.is_open() && command.scene.angle.empty() && options.surround == Surround::error) {
     scene.set_horizontal_angle_deg(covering_angle_deg(scene, table, *sensor, options));
     note(shared,
-         fmt::format("the chart is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
+         fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
                      "(--scene-angle sets another)",
-                     scene.horizontal_angle_deg()));
+                     command.scene.is_chart() ? "chart" : "photograph", scene.horizontal_angle_deg()));
   }
   return *sensor;
 }

@@ -100,7 +100,7 @@ void convert_scene(const SceneChoice& choice, const std::string& out) {
 }  // namespace
 
 void add_scene_commands(CLI::App& app, Shared& shared) {
-  CLI::App* scene = app.add_subcommand("scene", "Scenes: charts, ISET files, spectral OpenEXR");
+  CLI::App* scene = app.add_subcommand("scene", "Scenes: charts, photographs, ISET files, spectral OpenEXR");
   scene->require_subcommand(1);
 
   add_command(*scene, shared, "list", "List the scenes known by name", "petzval scene list", true,

@@ -45,7 +45,8 @@ void take_size(const std::string& text, SceneOptions& options) {
 void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
   CLI::Option* option =
       command.add_option(positional ? "scene" : "--scene", path_or_name,
-                         "ISET .mat, spectral .exr, or a chart's name (petzval scene list)");
+                         "ISET .mat, spectral .exr, a photograph (.png, .jpg, .tif), or a chart's name "
+                         "(petzval scene list)");
   if (required) option->required();
   command.add_option("--scene-angle", angle, "Full horizontal angle of the scene [degrees]");
   command.add_option("--scene-distance", distance, "Distance from the sensor plane [m], or inf");
@@ -54,7 +55,11 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
   command.add_option("--scene-size", size, "Samples of a chart: 768x576");
   command.add_option("--wavelengths", wavelengths, "Bands [nm]: 400:10:700, or a list 450,550,650");
   command.add_option("--illuminant", illuminant,
-                     "Light on a chart or on reflectances: D65, A, E, 3200K or a file");
+                     "Light on a chart, a photograph or reflectances: D65, A, E, 3200K or a file");
+  command
+      .add_option("--scene-encoding", encoding,
+                  "Numbers of a photograph: auto (its colour profile, else sRGB), srgb or linear")
+      ->check(CLI::IsMember({"auto", "srgb", "linear"}));
 }
 
 SceneOptions SceneChoice::options(SceneOptions defaults) const {
@@ -70,6 +75,10 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!size.empty()) take_size(size, options);
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
   if (!illuminant.empty()) options.illuminant = illuminant;
+  if (!encoding.empty())
+    options.encoding = encoding == "srgb"     ? PhotographEncoding::srgb
+                       : encoding == "linear" ? PhotographEncoding::linear
+                                              : PhotographEncoding::by_file;
   return options;
 }
 

@@ -10,11 +10,12 @@
 
 namespace petzval::app {
 
-/// SCENE with --scene-angle, --scene-distance, --scene-luminance, --scene-size, --wavelengths and
-/// --illuminant.
+/// SCENE with --scene-angle, --scene-distance, --scene-luminance, --scene-size, --wavelengths,
+/// --illuminant and --scene-encoding.
 struct SceneChoice {
   std::string path_or_name;
-  std::string angle, distance, luminance, size, wavelengths, illuminant;  ///< as typed; empty: not given
+  /// As typed; empty: not given.
+  std::string angle, distance, luminance, size, wavelengths, illuminant, encoding;
 
   /// Adds the positional SCENE (or `--scene` when `positional` is false) and the options.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
@@ -24,8 +25,10 @@ struct SceneChoice {
   SceneOptions options(SceneOptions defaults = {}) const;
   /// Reads the scene with these options.
   Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
-  /// Whether the scene is a chart, which can be made in any size and angle.
+  /// Whether the scene is a chart, which can be made in any size.
   bool is_chart() const { return is_builtin_scene(path_or_name); }
+  /// Whether it takes any angle and distance: a chart or a photograph.
+  bool is_open() const { return is_open_scene(path_or_name); }
 };
 
 }  // namespace petzval::app

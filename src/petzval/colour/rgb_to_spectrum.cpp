@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/parallel.h>
-#include <petzval/colour/illuminants.h>
-#include <petzval/colour/observer.h>
 #include <petzval/colour/rgb_to_spectrum.h>
 
 #include <Eigen/Dense>
@@ -12,53 +10,17 @@ namespace petzval {
 
 namespace {
 
-constexpr double first_nm = 380, range_nm = 350;
-constexpr double step_nm = 5;
 /// Enough for every colour of the gamut's inside; Gauss-Newton doubles the digits once it is near.
-constexpr int iterations = 30;
+constexpr int most_steps = 30;
 /// Difference in CIELAB that no eye and no 16-bit picture tells from none.
 constexpr double good_enough_lab = 1e-5;
+/// A step of an 8-bit grey is 0.3 to 0.4 of L*, about 0.5 in the darkest and in a* and b*.
+constexpr double tenth_of_8_bit_step_lab = 0.03;
+constexpr int most_steps_of_refinement = 4;
 /// The colour is approached from grey in this many steps, so that every fit starts close.
 constexpr int approach_steps = 4;
 /// |x| of the sigmoid at which a reflectance is within 1e-5 of 0 or 1; beyond that coefficients run away.
 constexpr double largest_coefficient = 2e3;
-
-double sigmoid(double x) {
-  if (std::isinf(x)) return x > 0 ? 1 : 0;
-  return 0.5 + x / (2 * std::sqrt(1 + x * x));
-}
-
-double sigmoid_slope(double x) {
-  const double q = 1 + x * x;
-  return 0.5 / (q * std::sqrt(q));
-}
-
-/// t and the tristimulus weights of a reflectance under D65, white = display white exactly.
-struct ReflectanceWeights {
-  std::vector<double> t;
-  std::vector<Eigen::Vector3d> xyz;
-
-  ReflectanceWeights() {
-    std::vector<double> nm;
-    for (double at = first_nm; at <= first_nm + range_nm; at += step_nm) nm.push_back(at);
-    const std::vector<Xyz> weights = Observer::cie_1931().weights(nm);
-    const Spectrum light = illuminant("D65");
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < nm.size(); ++i) {
-      t.push_back((nm[i] - first_nm) / range_nm);
-      xyz.push_back(light.at(nm[i]) * Eigen::Vector3d(weights[i].x, weights[i].y, weights[i].z));
-      sum += xyz.back();
-    }
-    const Xyz white = display_white();
-    const Eigen::Vector3d scale(white.x / sum.x(), white.y / sum.y(), white.z / sum.z());
-    for (Eigen::Vector3d& weight : xyz) weight = weight.cwiseProduct(scale);
-  }
-};
-
-const ReflectanceWeights& reflectance_weights() {
-  static const ReflectanceWeights weights;
-  return weights;
-}
 
 /// The cube root of CIELAB with its linear part (CIE 15), and its slope.
 double lab_root(double value) {
@@ -88,27 +50,29 @@ struct Lab {
   }
 };
 
-/// The colour of a reflectance and its derivative with respect to (c0, c1, c2).
-struct ColourOfReflectance {
-  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();
-
-  explicit ColourOfReflectance(const Eigen::Vector3d& c) {
-    const ReflectanceWeights& weights = reflectance_weights();
-    for (std::size_t i = 0; i < weights.t.size(); ++i) {
-      const double t = weights.t[i], x = c[2] + t * (c[1] + t * c[0]);
-      xyz += sigmoid(x) * weights.xyz[i];
-      slope += sigmoid_slope(x) * weights.xyz[i] * Eigen::RowVector3d(t * t, t, 1);
-    }
-  }
+struct ColourAndSlope {
+  Eigen::Vector3d xyz;
+  Eigen::Matrix3d slope;
 };
 
+ColourAndSlope colour_of(const Eigen::Vector3d& c, const ReflectanceColour& under) {
+  const ReflectanceColour::WithSlope colour = under.with_slope(c[0], c[1], c[2]);
+  ColourAndSlope result;
+  for (int i = 0; i < 3; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    result.xyz[i] = colour.xyz[row];
+    for (int j = 0; j < 3; ++j) result.slope(i, j) = colour.slope[row][static_cast<std::size_t>(j)];
+  }
+  return result;
+}
+
 /// Gauss-Newton with halved steps while they make it worse (Jakob & Hanika 2019, section 3).
-Eigen::Vector3d fit(Eigen::Vector3d c, const Eigen::Vector3d& wanted_lab) {
-  ColourOfReflectance colour(c);
+Eigen::Vector3d fit(Eigen::Vector3d c, const Eigen::Vector3d& wanted_lab, const ReflectanceColour& under,
+                    int steps = most_steps, double good_enough = good_enough_lab) {
+  ColourAndSlope colour = colour_of(c, under);
   Lab lab(colour.xyz);
   Eigen::Vector3d residual = lab.value - wanted_lab;
-  for (int i = 0; i < iterations && residual.norm() > good_enough_lab; ++i) {
+  for (int i = 0; i < steps && residual.norm() > good_enough; ++i) {
     const Eigen::Matrix3d jacobian = lab.slope * colour.slope;
     // A trace of damping keeps the step finite where the sigmoid saturates.
     const Eigen::Matrix3d normal = jacobian.transpose() * jacobian;
@@ -119,7 +83,7 @@ Eigen::Vector3d fit(Eigen::Vector3d c, const Eigen::Vector3d& wanted_lab) {
     for (double share = 1; share > 1e-3 && !better; share /= 2) {
       const Eigen::Vector3d trial = c - share * step;
       if (!(trial.cwiseAbs().maxCoeff() < largest_coefficient)) continue;
-      const ColourOfReflectance trial_colour(trial);
+      const ColourAndSlope trial_colour = colour_of(trial, under);
       const Lab trial_lab(trial_colour.xyz);
       const Eigen::Vector3d trial_residual = trial_lab.value - wanted_lab;
       if (!(trial_residual.norm() < residual.norm())) continue;
@@ -156,13 +120,7 @@ double smooth_step(double x) {
 
 }  // namespace
 
-double SigmoidReflectance::at(double wavelength_nm) const {
-  const double t = (wavelength_nm - first_nm) / range_nm;
-  if (c0 == 0 && c1 == 0) return sigmoid(c2);
-  return sigmoid(c2 + t * (c1 + t * c0));
-}
-
-SigmoidReflectance reflectance_of(LinearRgb colour) {
+SigmoidReflectance reflectance_of(LinearRgb colour, const ReflectanceColour& under) {
   colour = clamped(colour);
   if (is_grey(colour)) return {0, 0, grey_level(colour.r)};
   const double grey = std::clamp((colour.r + colour.g + colour.b) / 3, 0.01, 0.99);
@@ -170,7 +128,7 @@ SigmoidReflectance reflectance_of(LinearRgb colour) {
   for (int step = 1; step <= approach_steps; ++step) {
     const double share = static_cast<double>(step) / approach_steps;
     const auto between = [&](double value) { return grey + share * (value - grey); };
-    c = fit(c, lab_of({between(colour.r), between(colour.g), between(colour.b)}));
+    c = fit(c, lab_of({between(colour.r), between(colour.g), between(colour.b)}), under);
   }
   return {c[0], c[1], c[2]};
 }
@@ -182,12 +140,11 @@ const SigmoidReflectance& ReflectanceTable::node(int largest, int level, int fir
 // The table is split by the largest component, whose value is one axis (finer towards black and white, where
 // coefficients change fast); the other two, relative to it, are the others (Jakob & Hanika 2019,
 // section 3.2).
-ReflectanceTable::ReflectanceTable() {
+ReflectanceTable::ReflectanceTable(const ReflectanceColour& under) : under_(under) {
   for (int i = 0; i < nodes; ++i)
     levels_[static_cast<std::size_t>(i)] =
         std::clamp(smooth_step(smooth_step(static_cast<double>(i) / (nodes - 1))), 1e-4, 1 - 1e-4);
   nodes_.resize(std::size_t{3} * nodes * nodes * nodes);
-  reflectance_weights();
   parallel_for(std::size_t{3} * nodes * nodes, [&](std::size_t line) {
     const int largest = static_cast<int>(line) / (nodes * nodes);
     const double first = static_cast<double>(static_cast<int>(line) / nodes % nodes) / (nodes - 1);
@@ -199,7 +156,7 @@ ReflectanceTable::ReflectanceTable() {
       rgb[static_cast<std::size_t>(largest)] = value;
       rgb[static_cast<std::size_t>((largest + 1) % 3)] = first * value;
       rgb[static_cast<std::size_t>((largest + 2) % 3)] = second * value;
-      c = fit(c, lab_of({rgb[0], rgb[1], rgb[2]}));
+      c = fit(c, lab_of({rgb[0], rgb[1], rgb[2]}), under_);
       const std::size_t at = static_cast<std::size_t>(largest * nodes + level) * nodes * nodes +
                              line % (std::size_t{nodes} * nodes);
       nodes_[at] = {c[0], c[1], c[2]};
@@ -210,7 +167,7 @@ ReflectanceTable::ReflectanceTable() {
     middle[static_cast<std::size_t>(largest)] = value;
     middle[static_cast<std::size_t>((largest + 1) % 3)] = first * value;
     middle[static_cast<std::size_t>((largest + 2) % 3)] = second * value;
-    SigmoidReflectance start = reflectance_of({middle[0], middle[1], middle[2]});
+    SigmoidReflectance start = reflectance_of({middle[0], middle[1], middle[2]}, under_);
     if (!std::isfinite(start.c2)) start = {};
     Eigen::Vector3d c(start.c0, start.c1, start.c2);
     for (int level = nodes / 2; level < nodes; ++level) c = fit_level(level, c);
@@ -246,6 +203,15 @@ SigmoidReflectance ReflectanceTable::operator()(LinearRgb colour) const {
     sum.c0 += weight * at.c0, sum.c1 += weight * at.c1, sum.c2 += weight * at.c2;
   }
   return sum;
+}
+
+SigmoidReflectance ReflectanceTable::refined(LinearRgb colour) const {
+  colour = clamped(colour);
+  const SigmoidReflectance near = (*this)(colour);
+  if (is_grey(colour)) return near;
+  const Eigen::Vector3d c = fit({near.c0, near.c1, near.c2}, lab_of(colour), under_, most_steps_of_refinement,
+                                tenth_of_8_bit_step_lab);
+  return {c[0], c[1], c[2]};
 }
 
 }  // namespace petzval

@@ -3,25 +3,19 @@
 #pragma once
 
 #include <petzval/colour/display.h>
+#include <petzval/colour/reflectance_colour.h>
+#include <petzval/colour/sigmoid_reflectance.h>
 
 #include <array>
 #include <vector>
 
 namespace petzval {
 
-/// Reflectance s(c2 + c1 t + c0 t²) with s(x) = ½ + x / (2 √(1 + x²)) and t = (λ − 380 nm) / 350 nm: smooth,
-/// and between 0 and 1 at every wavelength, so that no surface gives back more light than it gets. (Jakob &
-/// Hanika, "A low-dimensional function space for efficient spectral upsampling", Eurographics 2019.)
-struct SigmoidReflectance {
-  double c0 = 0, c1 = 0, c2 = 0;
-
-  double at(double wavelength_nm) const;
-};
-
-/// The reflectance that has this linear sRGB colour under D65, by Gauss-Newton on the difference in CIELAB; a
-/// grey is constant over wavelength, exactly. Components are clamped to [0, 1]. Colours within 1e-3 of the
-/// gamut's corners are met as nearly as the sigmoid can (about one unit of ΔE).
-SigmoidReflectance reflectance_of(LinearRgb colour);
+/// The reflectance that has this linear sRGB colour under a light, by Gauss-Newton on the difference in
+/// CIELAB; a grey is constant over wavelength, exactly. Components are clamped to [0, 1]. Colours within 1e-3
+/// of the gamut's corners are met as nearly as the sigmoid can (about one unit of ΔE under D65).
+SigmoidReflectance reflectance_of(LinearRgb colour,
+                                  const ReflectanceColour& under = ReflectanceColour::d65());
 
 /// reflectance_of() by interpolation in a table, for pictures: about 30 ns a pixel instead of some ten µs.
 ///
@@ -31,13 +25,18 @@ SigmoidReflectance reflectance_of(LinearRgb colour);
 /// Immutable; may be shared between threads.
 class ReflectanceTable {
  public:
-  ReflectanceTable();
+  /// \param under  must outlive the table.
+  explicit ReflectanceTable(const ReflectanceColour& under = ReflectanceColour::d65());
   SigmoidReflectance operator()(LinearRgb colour) const;
+  /// The same followed by as many steps of the fit as bring it to a tenth of a step of an 8-bit picture,
+  /// four at most: some µs a pixel.
+  SigmoidReflectance refined(LinearRgb colour) const;
 
  private:
   static constexpr int nodes = 32;
   const SigmoidReflectance& node(int largest, int level, int first, int second) const;
 
+  const ReflectanceColour& under_;
   std::array<double, nodes> levels_{};
   std::vector<SigmoidReflectance> nodes_;
 };

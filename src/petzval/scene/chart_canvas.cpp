@@ -16,12 +16,6 @@ namespace {
 
 constexpr int shortest_seen_nm = 370, longest_seen_nm = 780;
 
-std::vector<double> default_wavelengths_nm() {
-  std::vector<double> wavelengths;
-  for (int nm = 400; nm <= 700; nm += 10) wavelengths.push_back(nm);
-  return wavelengths;
-}
-
 /// What each nanometre of an illuminant adds to luminance.
 Spectrum seen_light(const Spectrum& illuminant) {
   std::vector<double> wavelengths;
@@ -46,7 +40,7 @@ ChartCanvas::ChartCanvas(const ChartOptions& options)
       illuminant_(petzval::illuminant(options.illuminant)),
       seen_(seen_light(illuminant_)),
       scene_(options.columns, options.rows,
-             options.wavelengths_nm.empty() ? default_wavelengths_nm() : options.wavelengths_nm,
+             options.wavelengths_nm.empty() ? default_bands_nm() : options.wavelengths_nm,
              options.horizontal_angle_deg, options.distance_m) {
   if (!(options.mean_luminance_cd_m2 > 0 && std::isfinite(options.mean_luminance_cd_m2)))
     throw InputError(fmt::format("a mean luminance of {} cd/m²; a positive one would be right",

@@ -57,6 +57,12 @@ BandPosition band_position(const std::vector<double>& bands_nm, double wavelengt
 
 }  // namespace
 
+std::vector<double> default_bands_nm() {
+  std::vector<double> wavelengths;
+  for (int nm = 400; nm <= 700; nm += 10) wavelengths.push_back(nm);
+  return wavelengths;
+}
+
 Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
              std::optional<double> distance_m)
     : columns_(columns), rows_(rows), wavelengths_nm_(std::move(wavelengths_nm)) {
@@ -127,7 +133,12 @@ void Scene::set_mean_luminance_cd_m2(double luminance) {
     throw InputError(
         fmt::format("the scene's mean luminance is {} cd/m² (bands from {} to {} nm): no factor makes it {}",
                     now, wavelengths_nm_.front(), wavelengths_nm_.back(), luminance));
-  const double factor = luminance / now;
+  scale(luminance / now);
+}
+
+void Scene::scale(double factor) {
+  if (!(factor > 0 && std::isfinite(factor)))
+    throw InputError(fmt::format("radiance times {}: a positive factor would be right", factor));
   for (float& value : radiance_) value = static_cast<float>(value * factor);
   if (illuminant) illuminant = illuminant->scaled(factor);
 }

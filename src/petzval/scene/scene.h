@@ -12,6 +12,9 @@
 
 namespace petzval {
 
+/// The bands of charts and photographs unless others are asked for: 400 to 700 nm every 10 nm.
+std::vector<double> default_bands_nm();
+
 /// Spectral radiance [W·m⁻²·sr⁻¹·nm⁻¹] on a plane perpendicular to the optical axis, Lambertian. Samples are
 /// squares, rows from the top, upright as a person at the camera sees it. The angular width w belongs to the
 /// scene: at distance d its width is 2 d tan(w/2), so that the tangent of the object angle is linear in the
@@ -57,6 +60,8 @@ class Scene {
   /// Scales all radiance (and the illuminant) so that the mean luminance is this. \throws InputError for a
   /// scene that is black to the eye.
   void set_mean_luminance_cd_m2(double luminance);
+  /// Multiplies all radiance and the illuminant. \throws InputError unless the factor is positive and finite.
+  void scale(double factor);
   /// The scene at other wavelengths: linear between its bands. \throws InputError for one outside the bands.
   Scene resampled(std::span<const double> wavelengths_nm) const;
   /// \throws InputError at the first NaN, infinity or negative radiance, naming band, row and column.

@@ -7,6 +7,7 @@
 #include <petzval/scene/charts.h>
 #include <petzval/scene/formats/iset_mat.h>
 #include <petzval/scene/formats/scene_exr.h>
+#include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
 
 #include <algorithm>
@@ -101,6 +102,9 @@ Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions
     if (!*chart.parameter || !parameter)
       throw InputError(fmt::format("scene {}: {} would be right", text, shown_name(chart)));
   }
+  if (options.encoding)
+    throw InputError(
+        fmt::format("scene {}: a chart has no encoding; --scene-encoding is for photographs", text));
   Scene scene = chart.make(chart_options(options), parameter);
   scene.name = text;
   return scene;
@@ -118,11 +122,23 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
-Scene read_any_file(const std::string& path, const SceneOptions& options) {
+Scene read_photograph_file(const std::string& path, const SceneOptions& options) {
+  PhotographOptions photograph;
+  photograph.encoding = options.encoding.value_or(photograph.encoding);
+  photograph.wavelengths_nm = options.wavelengths_nm;
+  photograph.horizontal_angle_deg = options.horizontal_angle_deg.value_or(photograph.horizontal_angle_deg);
+  if (!options.illuminant.empty()) photograph.illuminant = options.illuminant;
+  photograph.mean_luminance_cd_m2 = options.mean_luminance_cd_m2.value_or(photograph.mean_luminance_cd_m2);
+  return read_photograph_scene(path, photograph);
+}
+
+Scene read_spectral_file(const std::string& path, const SceneOptions& options) {
   const std::string extension = lower_extension(path);
   if (extension != ".mat" && extension != ".exr")
     throw InputError(path,
-                     "a scene is an ISET .mat, a spectral .exr, or a chart's name (petzval scene list)");
+                     "a scene is an ISET .mat, a spectral .exr, a photograph (.png, .jpg, .tif) or a chart's "
+                     "name (petzval scene list)");
+  if (options.encoding) throw InputError(path, "holds spectra; --scene-encoding is for photographs");
   if (extension == ".exr") {
     SceneExrOptions exr{options.horizontal_angle_deg, std::nullopt};
     if (!options.illuminant.empty()) exr.illuminant = illuminant(options.illuminant);
@@ -136,10 +152,12 @@ Scene read_any_file(const std::string& path, const SceneOptions& options) {
 Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   if (options.columns || options.rows)
     throw InputError(path, "has a size of its own; --scene-size is for charts");
-  Scene scene = read_any_file(path, options);
+  const bool is_photograph = has_photograph_name(path);
+  Scene scene = is_photograph ? read_photograph_file(path, options) : read_spectral_file(path, options);
   if (scene.name.empty()) scene.name = fs::path(path).stem().string();
-  if (options.horizontal_angle_deg) scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
   if (options.distance_m) scene.set_distance_m(finite_distance(*options.distance_m));
+  if (is_photograph) return scene;
+  if (options.horizontal_angle_deg) scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
   if (options.mean_luminance_cd_m2) scene.set_mean_luminance_cd_m2(*options.mean_luminance_cd_m2);
   if (!options.wavelengths_nm.empty()) scene = scene.resampled(options.wavelengths_nm);
   return scene;
@@ -193,6 +211,10 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
 
 bool is_builtin_scene(const std::string& path_or_name) {
   return !is_file(path_or_name) && find_chart(path_or_name) != nullptr;
+}
+
+bool is_open_scene(const std::string& path_or_name) {
+  return is_builtin_scene(path_or_name) || has_photograph_name(path_or_name);
 }
 
 std::vector<BuiltinScene> builtin_scenes() {

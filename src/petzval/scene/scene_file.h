@@ -2,6 +2,7 @@
 // Scenes by name: files and built-in charts.
 #pragma once
 
+#include <petzval/image/photograph.h>
 #include <petzval/scene/scene.h>
 
 #include <optional>
@@ -13,16 +14,18 @@ namespace petzval {
 /// What the user may say about a scene; what is left open comes from the file or is the chart's own default.
 struct SceneOptions {
   std::optional<int> columns, rows;    ///< charts only (768 × 576); a file has its size
-  std::vector<double> wavelengths_nm;  ///< empty: the file's bands; 400 to 700 nm every 10 nm for a chart
-  std::optional<double> horizontal_angle_deg;  ///< replaces the file's; 40 for a chart
-  std::optional<double> distance_m;  ///< replaces the file's; a chart stands at infinity. inf: at infinity
-  std::string illuminant;            ///< charts (D65) and reflectance pictures only
+  std::vector<double> wavelengths_nm;  ///< empty: the file's bands; default_bands_nm() where it has none
+  std::optional<double> horizontal_angle_deg;  ///< replaces the file's; 40 for charts and photographs
+  std::optional<double> distance_m;  ///< replaces the file's; they stand at infinity. inf: at infinity
+  std::string illuminant;            ///< charts, photographs (D65) and reflectance pictures only
   std::optional<double> mean_luminance_cd_m2;  ///< of the whole spectrum, whatever wavelengths are then taken
-                                               ///< from it; replaces the file's; 100 for a chart
+                                               ///< from it; replaces the file's; 100 for charts, photographs
+  std::optional<PhotographEncoding> encoding;  ///< photographs only; absent: as the file says
 };
 
 /// Reads a scene:
 ///   a file     .mat (ISET) or .exr (spectral OpenEXR), or the name of a bundled one (data/scenes)
+///   a photograph  .png, .jpg or .tif: photograph_scene()
 ///   a chart    "checkerboard", "checkerboard:16", "slanted-edge:5" … as builtin_scenes() lists them
 /// \throws InputError for an unknown name, a bad parameter, a damaged file, an option that does not apply.
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options = {});
@@ -33,6 +36,9 @@ struct BuiltinScene {
   std::string description;  ///< one line
 };
 std::vector<BuiltinScene> builtin_scenes();
+/// Whether a scene can be taken to be as wide and as far away as is wanted: a chart, or the name of a
+/// photograph.
+bool is_open_scene(const std::string& path_or_name);
 /// Whether read_scene makes a chart of this name: it is one's name, and no file is called so.
 bool is_builtin_scene(const std::string& path_or_name);
 

@@ -175,6 +175,7 @@ class Reader {
     const bool transparent = (type & PNG_COLOR_MASK_ALPHA) || png_get_valid(png_, info_, PNG_INFO_tRNS);
     layout.channels = ((type & PNG_COLOR_MASK_COLOR) ? 3 : 1) + (transparent ? 1 : 0);
     layout.transfer = transfer();
+    layout.icc_profile = icc_profile();
     return layout;
   }
 
@@ -224,6 +225,15 @@ class Reader {
         throw InputError(path_, "is not a sound PNG: the file ends within a chunk");
       left -= framing + length;
     }
+  }
+
+  std::string icc_profile() const {
+    png_charp name = nullptr;
+    int compression = 0;
+    png_bytep profile = nullptr;
+    png_uint_32 size = 0;
+    if (!png_get_iCCP(png_, info_, &name, &compression, &profile, &size)) return {};
+    return {reinterpret_cast<const char*>(profile), size};
   }
 
   PngTransfer transfer() const {

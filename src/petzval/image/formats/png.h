@@ -21,7 +21,7 @@ struct PngLayout {
   int channels = 3;  ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
   int bits = 8;      ///< 8 or 16
   PngTransfer transfer = PngTransfer::srgb;
-  std::string icc_profile{};                ///< written in place of `transfer` if it is there; not read
+  std::string icc_profile{};                ///< written in place of `transfer` if it is there
   std::map<std::string, std::string> text;  ///< Latin-1 keyword of 1 to 79 characters → UTF-8 text
 
   std::size_t row_samples() const {

@@ -241,6 +241,10 @@ TiffImage read_tiff(const std::string& path) {
   const char* description = nullptr;
   if (TIFFGetField(stream.handle(), TIFFTAG_IMAGEDESCRIPTION, &description) && description)
     image.description = description;
+  std::uint16_t orientation = ORIENTATION_TOPLEFT;
+  if (TIFFGetField(stream.handle(), TIFFTAG_ORIENTATION, &orientation) &&
+      orientation >= ORIENTATION_TOPLEFT && orientation <= ORIENTATION_LEFTBOT)
+    image.orientation = orientation;
   return image;
 }
 

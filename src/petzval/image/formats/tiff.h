@@ -22,6 +22,7 @@ struct TiffImage {
   Samples samples;
   std::string icc_profile;  ///< its bytes; empty: none
   std::string description;  ///< how the picture came about, in ASCII; empty: none
+  int orientation = 1;      ///< 1 to 8, as exif_orientation.h says; read only: 1 is written
 
   std::size_t sample_count() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *

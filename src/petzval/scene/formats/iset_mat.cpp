@@ -4,6 +4,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/scene/formats/iset_mat.h>
 #include <petzval/scene/formats/mat_file.h>
+#include <petzval/scene/formats/name_file.h>
 
 #include <cmath>
 
@@ -146,14 +147,7 @@ double photon_energy_j(double wavelength_nm) {
 
 Scene read_iset_mat(const std::string& path, std::optional<double> horizontal_angle_deg) {
   const MatFile file(path, "scene");
-  try {
-    return scene_of(file.variable(), horizontal_angle_deg);
-  } catch (const InputError& error) {
-    // Complaints of the scene and of spectra do not know the file.
-    const std::string message = error.what();
-    if (message.starts_with(path)) throw;
-    throw InputError(path, message);
-  }
+  return naming_file(path, [&] { return scene_of(file.variable(), horizontal_angle_deg); });
 }
 
 }  // namespace petzval

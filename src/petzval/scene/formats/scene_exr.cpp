@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/spectral_exr.h>
+#include <petzval/scene/formats/name_file.h>
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
@@ -88,14 +89,7 @@ Scene scene_of(const SpectralExr& exr, const SceneExrOptions& options, const std
 
 Scene read_scene_exr(const std::string& path, const SceneExrOptions& options) {
   const SpectralExr exr = read_spectral_exr(path);
-  try {
-    return scene_of(exr, options, path);
-  } catch (const InputError& error) {
-    // Complaints of the scene and of spectra do not know the file.
-    const std::string message = error.what();
-    if (message.starts_with(path)) throw;
-    throw InputError(path, message);
-  }
+  return naming_file(path, [&] { return scene_of(exr, options, path); });
 }
 
 void write_scene_exr(const std::string& path, const Scene& scene) {

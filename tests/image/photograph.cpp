@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Picture files of other programs' making, as linear light.
+#include <gtest/gtest.h>
+#include <lcms2.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/image/formats/jpeg.h>
+#include <petzval/image/formats/png.h>
+#include <petzval/image/formats/tiff.h>
+#include <petzval/image/photograph.h>
+#include <tiffio.h>
+// libjpeg's header wants this one before it.
+#include <cstdio>
+
+#include <jpeglib.h>
+
+#include <cmath>
+#include <functional>
+
+#include "hostile.h"
+
+namespace petzval {
+namespace {
+
+using test::Scratch;
+
+/// Samples to JPEG by libjpeg itself. \param more  sets what is to be different.
+std::string jpeg_bytes(int columns, int rows, int channels, std::vector<std::uint8_t> samples,
+                       const std::function<void(jpeg_compress_struct&)>& more = {},
+                       const std::string& app1 = {}) {
+  jpeg_error_mgr error;
+  jpeg_compress_struct jpeg{};
+  jpeg.err = jpeg_std_error(&error);
+  jpeg_create_compress(&jpeg);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&jpeg, &bytes, &size);
+  jpeg.image_width = static_cast<JDIMENSION>(columns), jpeg.image_height = static_cast<JDIMENSION>(rows);
+  jpeg.input_components = channels;
+  jpeg.in_color_space = channels == 1 ? JCS_GRAYSCALE : channels == 3 ? JCS_RGB : JCS_CMYK;
+  jpeg_set_defaults(&jpeg);
+  jpeg_set_quality(&jpeg, 100, TRUE);
+  if (more) more(jpeg);
+  jpeg_start_compress(&jpeg, TRUE);
+  if (!app1.empty())
+    jpeg_write_marker(&jpeg, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(app1.data()),
+                      static_cast<unsigned>(app1.size()));
+  for (int row = 0; row < rows; ++row) {
+    JSAMPROW line = samples.data() + row * columns * channels;
+    jpeg_write_scanlines(&jpeg, &line, 1);
+  }
+  jpeg_finish_compress(&jpeg);
+  std::string result(reinterpret_cast<const char*>(bytes), size);
+  jpeg_destroy_compress(&jpeg);
+  std::free(bytes);
+  return result;
+}
+
+/// An Exif segment with one tag, little- or big-endian.
+std::string exif(int orientation, bool big_endian) {
+  std::string bytes("Exif\0\0", 6);
+  const auto put = [&](unsigned value, int size) {
+    for (int i = 0; i < size; ++i)
+      bytes += static_cast<char>(value >> (8 * (big_endian ? size - 1 - i : i)) & 0xFF);
+  };
+  bytes += big_endian ? "MM" : "II";
+  put(42, 2), put(8, 4), put(1, 2);      // the first directory, of one entry
+  put(0x0112, 2), put(3, 2), put(1, 4);  // Orientation, SHORT, one value
+  put(static_cast<unsigned>(orientation), 2), put(0, 2), put(0, 4);
+  return bytes;
+}
+
+/// Six flat blocks of 8 x 8, ABC above DEF, as Exif's eight orientations turn them.
+constexpr const char* turned[8] = {"ABC/DEF",  "CBA/FED",  "FED/CBA",  "DEF/ABC",
+                                   "AD/BE/CF", "DA/EB/FC", "FC/EB/DA", "CF/BE/AD"};
+
+std::vector<std::uint8_t> blocks() {
+  std::vector<std::uint8_t> samples;
+  for (int row = 0; row < 16; ++row)
+    for (int column = 0; column < 24; ++column)
+      samples.push_back(static_cast<std::uint8_t>(40 * (1 + column / 8 + 3 * (row / 8))));
+  return samples;
+}
+
+/// The letters of a picture of such blocks.
+std::string letters(const Photograph& picture) {
+  std::string text;
+  for (int row = 4; row < picture.rows; row += 8) {
+    if (row > 4) text += '/';
+    for (int column = 4; column < picture.columns; column += 8) {
+      const double code = 255 * picture.row(row)[static_cast<std::size_t>(3 * column)];
+      text += static_cast<char>('A' + std::lround(code / 40) - 1);
+    }
+  }
+  return text;
+}
+
+TEST(PhotographFile, JpegIsTurnedUprightByItsExif) {
+  const Scratch scratch;
+  for (int orientation = 1; orientation <= 8; ++orientation)
+    for (const bool big_endian : {false, true}) {
+      scratch.with("a.jpg", jpeg_bytes(24, 16, 1, blocks(), {}, exif(orientation, big_endian)));
+      EXPECT_EQ(letters(read_photograph(scratch.path("a.jpg"), PhotographEncoding::linear)),
+                turned[orientation - 1]);
+    }
+  for (const int nonsense : {0, 9, 65535}) {
+    scratch.with("a.jpg", jpeg_bytes(24, 16, 1, blocks(), {}, exif(nonsense, true)));
+    EXPECT_EQ(letters(read_photograph(scratch.path("a.jpg"), PhotographEncoding::linear)), turned[0]);
+  }
+}
+
+TEST(PhotographFile, DamagedExifIsPassedOver) {
+  const std::string whole = exif(6, false);
+  EXPECT_EQ(exif_orientation(whole), 6);
+  for (std::size_t size = 0; size + 6 < whole.size(); ++size)
+    EXPECT_EQ(exif_orientation(whole.substr(0, size)), 1) << size;
+  std::string far = whole;
+  far[10] = far[11] = far[12] = far[13] = '\xFF';
+  EXPECT_EQ(exif_orientation(far), 1);
+}
+
+TEST(PhotographFile, TiffIsTurnedUprightByItsTag) {
+  const Scratch scratch;
+  std::vector<std::uint8_t> samples = blocks();
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    TIFF* tiff = TIFFOpen(scratch.path("a.tif").c_str(), "w");
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 24);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 16);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 16);
+    TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
+    TIFFWriteEncodedStrip(tiff, 0, samples.data(), static_cast<tmsize_t>(samples.size()));
+    TIFFClose(tiff);
+    EXPECT_EQ(letters(read_photograph(scratch.path("a.tif"), PhotographEncoding::linear)),
+              turned[orientation - 1]);
+  }
+}
+
+TEST(PhotographFile, JpegColoursBaselineAndProgressive) {
+  const Scratch scratch;
+  std::vector<std::uint8_t> samples;
+  for (int i = 0; i < 64 * 48; ++i)
+    for (const int code : {200, 100, 50}) samples.push_back(static_cast<std::uint8_t>(code));
+  const auto progressive = [](jpeg_compress_struct& jpeg) { jpeg_simple_progression(&jpeg); };
+  for (const std::string& bytes :
+       {jpeg_bytes(64, 48, 3, samples), jpeg_bytes(64, 48, 3, samples, progressive)}) {
+    const Photograph picture = read_photograph(scratch.with("a.jpeg", bytes));
+    ASSERT_EQ(picture.columns, 64);
+    ASSERT_EQ(picture.rows, 48);
+    const double expected[3] = {0.577580, 0.127438, 0.031896};  // IEC 61966-2-1 of 200, 100, 50
+    // Steps of YCbCr are a code wide.
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(picture.rgb[c], expected[c], 0.02 * expected[c] + 1e-3);
+  }
+}
+
+TEST(PhotographFile, CmykAndLiesAreRefused) {
+  const Scratch scratch;
+  const auto refusal = [&](const std::string& bytes) -> std::string {
+    try {
+      read_photograph(scratch.with("a.jpg", bytes));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(refusal(jpeg_bytes(8, 8, 4, std::vector<std::uint8_t>(256))).find("CMYK"), std::string::npos);
+  std::string lie = jpeg_bytes(24, 16, 1, blocks());
+  const std::size_t frame = lie.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  for (const std::size_t at : {5u, 6u, 7u, 8u}) lie[frame + at] = '\xF0';  // 61680 x 61680
+  EXPECT_NE(refusal(lie).find("too short"), std::string::npos);
+  EXPECT_NE(refusal(""), "no error");
+}
+
+TEST(PhotographFile, DamagedJpegsDoNoHarm) {
+  const Scratch scratch;
+  const std::string bytes = jpeg_bytes(24, 16, 1, blocks(), {}, exif(3, true));
+  const auto read = [](const std::string& path) { read_jpeg(path); };
+  // The last two bytes are the end marker; data may end before it without a loss.
+  const std::size_t step = 3;
+  for (std::size_t length = 0; length + 8 < bytes.size(); length += step)
+    EXPECT_FALSE(test::taken(read, scratch.with("short", bytes.substr(0, length)), std::to_string(length)))
+        << length;
+  test::survives_flips(scratch, bytes, 0, read);
+}
+
+/// Adobe RGB (1998) by its definition, with a gamma of 2.2 (563/256 there).
+std::string adobe_profile() {
+  const cmsCIExyY white{0.3127, 0.3290, 1};
+  const cmsCIExyYTRIPLE primaries{{0.64, 0.33, 1}, {0.21, 0.71, 1}, {0.15, 0.06, 1}};
+  cmsToneCurve* curve = cmsBuildGamma(nullptr, 2.2);
+  cmsToneCurve* curves[] = {curve, curve, curve};
+  cmsHPROFILE profile = cmsCreateRGBProfile(&white, &primaries, curves);
+  cmsUInt32Number size = 0;
+  cmsSaveProfileToMem(profile, nullptr, &size);
+  std::string bytes(size, '\0');
+  cmsSaveProfileToMem(profile, bytes.data(), &size);
+  cmsCloseProfile(profile);
+  cmsFreeToneCurve(curve);
+  return bytes;
+}
+
+TEST(PhotographFile, ColourProfilesAreObeyed) {
+  const Scratch scratch;
+  const std::uint16_t codes[3] = {20000, 45000, 30000};
+  TiffImage tiff{1, 1, 3, std::vector<std::uint16_t>(codes, codes + 3), adobe_profile(), {}};
+  write_tiff(scratch.path("a.tif"), tiff);
+  PngImage png;
+  png.columns = png.rows = 1, png.channels = 3, png.bits = 16;
+  png.icc_profile = adobe_profile();
+  png.samples.assign(codes, codes + 3);
+  write_png(scratch.path("a.png"), png);
+
+  // Both spaces have the same white, red and blue up to scale: linear Adobe RGB to linear sRGB is this
+  // matrix.
+  double v[3];
+  for (int i = 0; i < 3; ++i) v[i] = std::pow(codes[i] / 65535.0, 2.2);
+  const double expected[3] = {1.39836 * v[0] - 0.39836 * v[1], v[1], -0.04293 * v[1] + 1.04293 * v[2]};
+  for (const char* name : {"a.tif", "a.png"}) {
+    const Photograph picture = read_photograph(scratch.path(name));
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(picture.rgb[c], expected[c], 1e-3) << name << ' ' << c;  // profiles hold 16 bits a number
+    const Photograph as_srgb = read_photograph(scratch.path(name), PhotographEncoding::srgb);
+    EXPECT_NEAR(as_srgb.rgb[0], std::pow((20000 / 65535.0 + 0.055) / 1.055, 2.4), 1e-6);
+  }
+  tiff.icc_profile = "no profile";
+  write_tiff(scratch.path("bad.tif"), tiff);
+  EXPECT_THROW(read_photograph(scratch.path("bad.tif")), InputError);
+  EXPECT_NO_THROW(read_photograph(scratch.path("bad.tif"), PhotographEncoding::srgb));
+}
+
+TEST(PhotographFile, FloatingPointIsLinearAndAlphaIsLeftAside) {
+  const Scratch scratch;
+  write_tiff(scratch.path("a.tif"), {1, 1, 4, std::vector<float>{0.25f, 3, 0.5f, 0}, {}, {}});
+  EXPECT_EQ(read_photograph(scratch.path("a.tif")).rgb, (std::vector<float>{0.25f, 3, 0.5f}));
+  PngImage png;
+  png.columns = 2, png.rows = 1, png.channels = 2, png.transfer = PngTransfer::linear;
+  png.samples = {51, 0, 255, 128};
+  write_png(scratch.path("a.png"), png);
+  EXPECT_EQ(read_photograph(scratch.path("a.png")).rgb, (std::vector<float>{0.2f, 0.2f, 0.2f, 1, 1, 1}));
+}
+
+}  // namespace
+}  // namespace petzval
