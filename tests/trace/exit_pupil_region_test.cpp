@@ -78,6 +78,41 @@ TEST_P(ExitPupil, RegionHoldsAllTheLightAndLittleElse) {
   EXPECT_GT(smallest_share, 0.6) << "a box would hold a disc to π/4, a vignetted pupil worse";
 }
 
+/// The lanes round to floats: only directions within a few roundings of the rim may fall on its other side.
+TEST_P(ExitPupil, LanesGiveTheScalarDensity) {
+  const Lens lens = read_lens(GetParam().lens).lens;
+  const Tracer tracer(lens, 550);
+  const ExitPupilRegions regions(std::span(&tracer, 1), GetParam().film_radius_mm);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<float> x, y, alpha, beta;
+  constexpr int count = 20011;  // fills no number of vectors
+  for (int i = 0; i < count; ++i) {
+    // A little beyond the last film radius, and every 50th point on the axis.
+    const double radius = i % 50 ? 1.05 * GetParam().film_radius_mm * unit(random) : 0;
+    const double angle = 2 * M_PI * unit(random);
+    x.push_back(static_cast<float>(radius * std::cos(angle)));
+    y.push_back(static_cast<float>(radius * std::sin(angle)));
+    const double half = 1.5 * std::sqrt(regions.area_sr(x.back(), y.back()) / M_PI);
+    const auto centre = regions.sample(x.back(), y.back(), 0.5, 0.0);
+    alpha.push_back(static_cast<float>((centre ? centre->alpha : 0) + half * (2 * unit(random) - 1)));
+    beta.push_back(static_cast<float>((centre ? centre->beta : 0) + half * (2 * unit(random) - 1)));
+  }
+  std::vector<float> lanes(count);
+  regions.densities_per_sr({x.data(), y.data(), alpha.data(), beta.data(), count}, lanes.data());
+  int inside = 0, at_an_edge = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double scalar = regions.density_per_sr(x[i], y[i], alpha[i], beta[i]);
+    inside += scalar > 0;
+    // 1e-6: some 16 roundings of a float.
+    if (std::abs(static_cast<double>(lanes[i]) - scalar) > 1e-6 * scalar) ++at_an_edge;
+  }
+  EXPECT_GT(inside, count / 5);
+  // Rims and borders between zones and sectors are as wide as a rounding, 1e-6 of the region or less: one
+  // direction in a thousand would be a hundred times what chance gives.
+  EXPECT_LT(at_an_edge, count / 1000);
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, ExitPupil,
                          testing::Values(Case{"dgauss-50mm", 15}, Case{"edmund-54852", 3},
                                          Case{"wide-22mm", 12}, Case{"telephoto-250mm", 15},

@@ -47,53 +47,39 @@ class TileRenderer {
     for (int group = 0; group < groups; ++group) {
       // The samples are dealt out to the groups in turn.
       const int of_group = (samples_per_pixel - group + groups - 1) / groups;
-      for (int index = first_index; index < std::min(first_index + indices_a_pass, of_group); ++index)
-        take_samples(group, index, 1.0 / of_group);
+      take_samples(group, first_index, std::min(first_index + indices_a_pass, of_group), 1.0 / of_group);
     }
     return std::move(result_);
   }
 
  private:
+  /// Of the i-th sample of a batch.
   Pixel pixel_of(std::size_t i) const {
-    return {tile_.left + static_cast<int>(i) % tile_.columns(),
-            tile_.top + static_cast<int>(i) / tile_.columns()};
+    const int within = static_cast<int>(i % tile_.size());
+    return {tile_.left + within % tile_.columns(), tile_.top + within / tile_.columns()};
   }
 
-  void take_samples(int group, int index, double share) {
-    const int lanes = world_.groups.lanes(group);
-    const std::size_t pixels = tile_.size();
-    samples_.clear(), places_.clear(), heroes_.clear();
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const Pixel pixel = pixel_of(i);
-      const auto number = static_cast<std::uint32_t>(pixel.row * sensor_.columns + pixel.column);
-      const std::uint32_t seed = hashed(number, hashed(static_cast<std::uint32_t>(options_.seed),
-                                                       static_cast<std::uint32_t>(options_.seed >> 32) ^
-                                                           static_cast<std::uint32_t>(group) * 0x9e3779b9u));
-      samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
-      const auto [x, y, u, v] = samples_.back().next4();
-      places_.push_back(sampling_.place(pixel, x, y, u, v));
-      // In turn from a random start: every wavelength leads equally often.
-      heroes_.push_back(static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
-                                         static_cast<std::uint32_t>(lanes)));
-    }
-    rays_.assign(pixels, {});
-    trace_camera(group);
-    for (std::size_t i = 0; i < pixels; ++i) follow(i, group, share);
+  /// The samples [first, last) of each pixel.
+  void take_samples(int group, int first, int last, double share) {
+    samples_.clear(), places_.clear();
+    for (int index = first; index < last; ++index)
+      for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
+    rays_.assign(places_.size(), {});
+    camera_.trace(group, sampling_, places_, rays_);
+    for (std::size_t i = 0; i < places_.size(); ++i) follow(i, group, share);
   }
 
-  void trace_camera(int group) {
-    if (!camera_.disperses()) return camera_.trace(group, 0, sampling_, places_, rays_);
-    std::vector<FilmSample> places;
-    std::vector<CameraRay> rays;
-    std::vector<std::size_t> from;
-    for (int hero = 0; hero < world_.groups.lanes(group); ++hero) {
-      places.clear(), from.clear();
-      for (std::size_t i = 0; i < heroes_.size(); ++i)
-        if (heroes_[i] == hero) places.push_back(places_[i]), from.push_back(i);
-      rays.assign(places.size(), {});
-      if (!places.empty()) camera_.trace(group, hero, sampling_, places, rays);
-      for (std::size_t k = 0; k < from.size(); ++k) rays_[from[k]] = rays[k];
-    }
+  void start_sample(int group, int index, Pixel pixel) {
+    const auto number = static_cast<std::uint32_t>(pixel.row * sensor_.columns + pixel.column);
+    const std::uint32_t seed = hashed(number, hashed(static_cast<std::uint32_t>(options_.seed),
+                                                     static_cast<std::uint32_t>(options_.seed >> 32) ^
+                                                         static_cast<std::uint32_t>(group) * 0x9e3779b9u));
+    samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
+    const auto [x, y, u, v] = samples_.back().next4();
+    places_.push_back(sampling_.place(pixel, x, y, u, v));
+    // In turn from a random start: every wavelength leads equally often.
+    places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
+                                           static_cast<std::uint32_t>(world_.groups.lanes(group)));
   }
 
   void follow(std::size_t i, int group, double share) {
@@ -105,7 +91,7 @@ class TileRenderer {
     const Vector3 direction = normalised(world_from_camera_.direction(ray.direction));
     FirstSurface first;
     const PathLight light =
-        tracer_.trace(origin, direction, group, heroes_[i], samples_[i], options_.far_distance,
+        tracer_.trace(origin, direction, group, places_[i].hero, samples_[i], options_.far_distance,
                       film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, share, light);
     if (first.met) add_first(i, group, first);
@@ -113,7 +99,7 @@ class TileRenderer {
 
   void add_light(std::size_t i, int group, double share, const PathLight& light) {
     const CameraRay& ray = rays_[i];
-    const int hero = heroes_[i];
+    const int hero = places_[i].hero;
     for (int lane = 0; lane < world_.groups.lanes(group); ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
@@ -161,7 +147,6 @@ class TileRenderer {
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;
-  std::vector<int> heroes_;
   std::vector<CameraRay> rays_;
 };
 

@@ -57,6 +57,21 @@ ExitPupilRegions::ExitPupilRegions(std::span<const Tracer> tracers, double film_
   });
   find_bends(probes);
   for (std::size_t i = 0; i + 1 < radii; ++i) zones_.push_back(zone_between(probes[i], probes[i + 1], step));
+  for (const Zone& zone : zones_) densities_.rows.push_back(density_row(zone));
+  densities_.zone_mm = static_cast<float>(step);
+}
+
+PupilDensityTable::Row ExitPupilRegions::density_row(const Zone& zone) {
+  PupilDensityTable::Row row;
+  if (!(zone.area_sr > 0)) return row;
+  row.centre_v = static_cast<float>(zone.centre_v);
+  row.centre_v_per_mm = static_cast<float>(zone.centre_v_per_mm);
+  row.per_scale_u = static_cast<float>(1 / zone.scale_u);
+  row.per_scale_v = static_cast<float>(1 / zone.scale_v);
+  row.density_per_sr = static_cast<float>(1 / zone.area_sr);
+  for (std::size_t i = 0; i < sectors; ++i)
+    row.radius_sq[i] = static_cast<float>(zone.radius[i] * zone.radius[i]);
+  return row;
 }
 
 void ExitPupilRegions::find_bends(std::vector<Probe>& probes) {

@@ -2,6 +2,7 @@
 // From which directions light reaches a point of the film: what a camera that sends rays backwards samples.
 #pragma once
 
+#include <petzval/trace/pupil_density_lanes.h>
 #include <petzval/trace/tracer.h>
 
 #include <array>
@@ -50,11 +51,16 @@ class ExitPupilRegions {
   double area_sr(double x_mm, double y_mm) const;
   /// Probability density of sample(), 1/area inside the region and 0 outside [1/sr].
   double density_per_sr(double x_mm, double y_mm, double alpha, double beta) const;
+  /// The same for many, in SIMD lanes and single precision, for light that lies inside by more than a float's
+  /// rounding, as all does that passes the lens. \param per_sr  as many as directions.
+  void densities_per_sr(const PupilDirections& directions, float* per_sr) const {
+    pupil_densities(densities_, directions, per_sr);
+  }
 
   double film_radius_mm() const { return film_radius_mm_; }
 
  private:
-  static constexpr std::size_t sectors = 64;
+  static constexpr std::size_t sectors = PupilDensityTable::sectors;
   /// What lies between two neighbouring film radii; film point on +y, so that v is along it and u across.
   struct Zone {
     double centre_v = 0, centre_v_per_mm = 0;  ///< at the zone's middle, and how it moves
@@ -67,12 +73,14 @@ class ExitPupilRegions {
   struct Probe;
 
   static Zone zone_between(const Probe& inner, const Probe& outer, double step_mm);
+  static PupilDensityTable::Row density_row(const Zone& zone);
   static void find_bends(std::vector<Probe>& probes);
   const Zone& zone_at(double radius_mm) const;
   Place place(double x_mm, double y_mm) const;
 
   double film_radius_mm_;
   std::vector<Zone> zones_;
+  PupilDensityTable densities_;
 };
 
 }  // namespace petzval

@@ -28,9 +28,10 @@ struct CameraRay {
 class FilmCamera {
  public:
   virtual ~FilmCamera() = default;
-  /// Rays for samples whose hero wavelength is lane `hero` of `group`. `rays` is as long as `samples`.
+  /// Rays for samples of one group of wavelengths; many at a time are cheaper. `rays` is as long as
+  /// `samples`.
   /// \param film  how the samples of the picture are drawn: what else could have found a ray.
-  virtual void trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
+  virtual void trace(int group, const FilmSampling& film, std::span<const FilmSample> samples,
                      std::span<CameraRay> rays) const = 0;
   /// Whether wavelengths part on their way, so that it matters which one leads.
   virtual bool disperses() const { return false; }

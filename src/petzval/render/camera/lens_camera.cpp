@@ -41,6 +41,10 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   for (std::size_t i = 0; i < (disperses_ ? nm.size() : 1); ++i)
     tracers_.emplace_back(lens, nm[i], stop_radius);
 
+  for (const Tracer& tracer : tracers_) {
+    to_scene_.push_back(kernel_path<double>(tracer, true, Tracer::Clip::apertures));
+    if (disperses_) to_film_.emplace_back(tracer, RadianceTracer::Direction::forward);
+  }
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil) find_regions(lens);
 
   const Surface& last = lens.surfaces.back();
@@ -69,9 +73,8 @@ void LensCamera::find_regions(const Lens& lens) {
                   lens.name, lens.surfaces.back().thickness_mm, 2 * corner_mm));
 }
 
-const Tracer& LensCamera::tracer(int group, int lane) const {
-  return disperses_ ? tracers_[static_cast<std::size_t>(std::max(0, groups_.band(group, lane)))]
-                    : tracers_.front();
+std::size_t LensCamera::band(int group, int lane) const {
+  return disperses_ ? static_cast<std::size_t>(std::max(0, groups_.band(group, lane))) : 0;
 }
 
 LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v) const {
@@ -86,94 +89,148 @@ LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v
   return {dx / length, dy / length, disk * cos * cos * cos * cos / (rear_distance_mm_ * rear_distance_mm_)};
 }
 
-double LensCamera::density(double x_mm, double y_mm, double alpha, double beta) const {
-  if (regions_) return regions_->density_per_sr(x_mm, y_mm, alpha, beta);
-  const double cos = std::sqrt(std::max(0.0, 1 - alpha * alpha - beta * beta));
-  if (!(cos > 0)) return 0;
-  const double x = x_mm - alpha / cos * rear_distance_mm_, y = y_mm - beta / cos * rear_distance_mm_;
-  if (x * x + y * y > rear_radius_mm_ * rear_radius_mm_) return 0;
-  return rear_distance_mm_ * rear_distance_mm_ /
-         (pi * rear_radius_mm_ * rear_radius_mm_ * cos * cos * cos * cos);
+void LensCamera::densities(const PupilDirections& rays, float* per_sr) const {
+  if (regions_) return regions_->densities_per_sr(rays, per_sr);
+  const auto radius = static_cast<float>(rear_radius_mm_), distance = static_cast<float>(rear_distance_mm_);
+  const float disk_sr = static_cast<float>(pi) * radius * radius / (distance * distance);
+  for (std::size_t i = 0; i < rays.count; ++i) {
+    const float cos_sq = 1 - rays.alpha[i] * rays.alpha[i] - rays.beta[i] * rays.beta[i];
+    const float along = distance / std::sqrt(cos_sq);
+    const float x = rays.x_mm[i] - rays.alpha[i] * along, y = rays.y_mm[i] - rays.beta[i] * along;
+    const bool inside = cos_sq > 0 && x * x + y * y <= radius * radius;
+    per_sr[i] = inside ? 1 / (disk_sr * cos_sq * cos_sq) : 0;
+  }
 }
 
-void LensCamera::trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
+/// The samples of a batch that one wavelength leads.
+struct LensCamera::Led {
+  int group, hero, lanes;
+  const FilmSampling& sampling;
+  std::span<const FilmSample> samples;
+  std::span<CameraRay> rays;
+  std::vector<std::size_t> which;  ///< of samples and rays
+  RayBatch batch;                  ///< from the film, later in front of the lens
+  std::vector<double> density;     ///< [1/sr]
+  std::vector<std::uint8_t> passes;
+};
+
+void LensCamera::trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
                        std::span<CameraRay> rays) const {
-  const Tracer& leading = tracer(group, hero);
-  RayBatch batch(samples.size());
-  std::vector<double> densities(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double x = film_.x_mm(samples[i].column), y = film_.y_mm(samples[i].row);
-    const Start direction = start(x, y, samples[i].u, samples[i].v);
-    const double n2 = 1 - direction.alpha * direction.alpha - direction.beta * direction.beta;
-    batch.x_mm[i] = x, batch.y_mm[i] = y, batch.z_mm[i] = leading.image_z_mm();
-    batch.l[i] = -direction.alpha, batch.m[i] = -direction.beta;
-    batch.n[i] = -std::sqrt(std::max(n2, 0.0));
-    batch.opl_mm[i] = 0;
-    densities[i] = direction.area > 0 ? 1 / direction.area : 0;
-    if (!(n2 > 0) || !(direction.area > 0)) {
-      // Any ray that surely fails: no light arrives that way.
-      batch.l[i] = 1, batch.m[i] = 0, batch.n[i] = 0;
-    }
-  }
-  leading.trace_backward(batch);
   const int lanes = groups_.lanes(group);
+  Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}};
+  for (led.hero = 0; led.hero < (disperses_ ? lanes : 1); ++led.hero) {
+    led.which.clear();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (!disperses_ || samples[i].hero == led.hero) led.which.push_back(i);
+    if (!led.which.empty()) trace_led(led);
+  }
+}
+
+/// Rays from the film into the region of directions that its place has.
+void LensCamera::launch(Led& led) const {
+  RayBatch& batch = led.batch;
+  batch.resize(led.which.size());
+  led.density.resize(led.which.size());
+  const double film_z = tracers_.front().image_z_mm();
+  for (std::size_t k = 0; k < led.which.size(); ++k) {
+    const FilmSample& sample = led.samples[led.which[k]];
+    const double x = film_.x_mm(sample.column), y = film_.y_mm(sample.row);
+    const Start direction = start(x, y, sample.u, sample.v);
+    const double n2 = 1 - direction.alpha * direction.alpha - direction.beta * direction.beta;
+    const bool any = n2 > 0 && direction.area > 0;
+    batch.x_mm[k] = x, batch.y_mm[k] = y, batch.z_mm[k] = film_z;
+    batch.l[k] = -direction.alpha, batch.m[k] = -direction.beta;
+    batch.n[k] = any ? -std::sqrt(n2) : -1;
+    led.density[k] = any ? 1 / direction.area : 0;
+  }
+}
+
+void LensCamera::trace_led(Led& led) const {
+  launch(led);
+  RayBatch& batch = led.batch;
+  led.passes.resize(batch.size());
+  trace_columns(to_scene_[band(led.group, led.hero)],
+                {batch.x_mm.data(), batch.y_mm.data(), batch.z_mm.data(), batch.l.data(), batch.m.data(),
+                 batch.n.data(), batch.opl_mm.data(), led.passes.data(), batch.size()});
   const double unit = options_.scene_units_per_mm;
-  const double origin_z = options_.origin_at_front ? 0 : leading.image_z_mm();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    CameraRay& ray = rays[i];
-    ray.passes = batch.status[i] == RayStatus::ok && densities[i] > 0;
+  const double origin_z = options_.origin_at_front ? 0 : tracers_.front().image_z_mm();
+  for (std::size_t k = 0; k < led.which.size(); ++k) {
+    CameraRay& ray = led.rays[led.which[k]];
+    ray.passes = led.passes[k] && led.density[k] > 0;
     ray.spread = false;
     if (!ray.passes) continue;
-    ray.origin = unit * Vector3{batch.x_mm[i], batch.y_mm[i], origin_z - batch.z_mm[i]};
-    ray.direction = {batch.l[i], batch.m[i], -batch.n[i]};
-    ray.weight = Lanes::all(1 / densities[i]);
-    ray.weight_alone = static_cast<float>(lanes / densities[i]);
+    ray.origin = unit * Vector3{batch.x_mm[k], batch.y_mm[k], origin_z - batch.z_mm[k]};
+    ray.direction = {batch.l[k], batch.m[k], -batch.n[k]};
+    ray.weight = Lanes::all(1 / led.density[k]);
+    ray.weight_alone = static_cast<float>(led.lanes / led.density[k]);
   }
-  if (disperses_) share_among_wavelengths(group, hero, film, samples, rays, batch, densities);
+  if (disperses_) share_among_wavelengths(led);
 }
 
-void LensCamera::share_among_wavelengths(int group, int hero, const FilmSampling& film,
-                                         std::span<const FilmSample> samples, std::span<CameraRay> rays,
-                                         const RayBatch& scene_side,
-                                         std::span<const double> hero_density) const {
-  const int lanes = groups_.lanes(group);
-  std::vector<std::size_t> passing;
-  for (std::size_t i = 0; i < rays.size(); ++i)
-    if (rays[i].passes) passing.push_back(i);
-  std::vector<double> sum(passing.size());
-  for (std::size_t k = 0; k < passing.size(); ++k) sum[k] = hero_density[passing[k]];
-  for (const std::size_t i : passing) rays[i].spread = true;
-  const double pitch_mm = film_.pitch_um * mm_per_um;
-  RayBatch batch;
+namespace {
+
+/// Rays of single precision that run the other way.
+RadianceRays turned_round(const RayBatch& rays, std::span<const std::size_t> which) {
+  RadianceRays turned(which.size());
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    const std::size_t i = which[k];
+    turned.x_mm[k] = static_cast<float>(rays.x_mm[i]);
+    turned.y_mm[k] = static_cast<float>(rays.y_mm[i]);
+    turned.z_mm[k] = static_cast<float>(rays.z_mm[i]);
+    turned.l[k] = static_cast<float>(-rays.l[i]);
+    turned.m[k] = static_cast<float>(-rays.m[i]);
+    turned.n[k] = static_cast<float>(-rays.n[i]);
+  }
+  return turned;
+}
+
+}  // namespace
+
+void LensCamera::share_among_wavelengths(const Led& led) const {
+  std::vector<std::size_t> passing;  // in the order of led.which
+  for (std::size_t k = 0; k < led.which.size(); ++k)
+    if (led.rays[led.which[k]].passes) passing.push_back(k);
+  if (passing.empty()) return;
+  const std::size_t count = passing.size();
+  std::vector<float> sum(count), density(count);
+  std::vector<CameraRay*> rays(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    rays[k] = &led.rays[led.which[passing[k]]];
+    rays[k]->spread = true;
+    sum[k] = static_cast<float>(led.density[passing[k]]);
+  }
+  const RadianceRays from_scene = turned_round(led.batch, passing);
+  RadianceRays landed;
+  const auto per_mm = static_cast<float>(1 / (film_.pitch_um * mm_per_um));
+  const float middle_column = static_cast<float>(film_.columns) / 2,
+              middle_row = static_cast<float>(film_.rows) / 2;
   for (int lane = 0; lane < lane_count; ++lane) {
-    if (lane == hero) continue;
-    if (lane >= lanes) {
-      for (const std::size_t i : passing) rays[i].weight[lane] = 0;
+    if (lane == led.hero) continue;
+    if (lane >= led.lanes) {
+      for (CameraRay* ray : rays) ray->weight[lane] = 0;
       continue;
     }
-    batch = RayBatch();
-    for (const std::size_t i : passing)
-      batch.push_back(scene_side.x_mm[i], scene_side.y_mm[i], scene_side.z_mm[i], -scene_side.l[i],
-                      -scene_side.m[i], -scene_side.n[i]);
-    tracer(group, lane).trace(batch);
-    for (std::size_t k = 0; k < passing.size(); ++k) {
-      CameraRay& ray = rays[passing[k]];
-      ray.weight[lane] = 0;
-      if (batch.status[k] != RayStatus::ok) continue;
-      const double column = film_.columns / 2.0 - batch.x_mm[k] / pitch_mm;
-      const double row = film_.rows / 2.0 + batch.y_mm[k] / pitch_mm;
-      if (film.pixel_at(samples[passing[k]], column, row))
-        sum[k] += density(batch.x_mm[k], batch.y_mm[k], batch.l[k], batch.m[k]);
-      ray.weight[lane] = 1;
-      ray.column[static_cast<std::size_t>(lane)] = static_cast<float>(column);
-      ray.row[static_cast<std::size_t>(lane)] = static_cast<float>(row);
+    landed = from_scene;
+    to_film_[band(led.group, lane)].trace(landed);
+    densities({landed.x_mm.data(), landed.y_mm.data(), landed.l.data(), landed.m.data(), count},
+              density.data());
+    const auto at = static_cast<std::size_t>(lane);
+    for (std::size_t k = 0; k < count; ++k) {
+      const float column = middle_column - landed.x_mm[k] * per_mm;
+      const float row = middle_row + landed.y_mm[k] * per_mm;
+      const bool passes = landed.passes[k] != 0;
+      if (passes && led.sampling.pixel_at(led.samples[led.which[passing[k]]], static_cast<double>(column),
+                                          static_cast<double>(row)))
+        sum[k] += density[k];
+      rays[k]->weight[lane] = passes ? 1.0f : 0.0f;
+      rays[k]->column[at] = column;
+      rays[k]->row[at] = row;
     }
   }
   // Balance heuristic: each wavelength divides by the mean of what all of them might have led here with.
-  for (std::size_t k = 0; k < passing.size(); ++k) {
-    CameraRay& ray = rays[passing[k]];
-    ray.weight[hero] = 1;
-    ray.weight *= lanes / sum[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    rays[k]->weight[led.hero] = 1;
+    rays[k]->weight *= static_cast<double>(static_cast<float>(led.lanes) / sum[k]);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/sensor/sensor.h>
 #include <petzval/trace/exit_pupil_region.h>
+#include <petzval/trace/kernel_path.h>
+#include <petzval/trace/radiance_tracer.h>
 
 #include <memory>
 #include <optional>
@@ -39,7 +41,7 @@ class LensCamera final : public FilmCamera {
   LensCamera(const Lens& lens, const SensorGeometry& film, const WavelengthGroups& groups,
              const LensCameraOptions& options = {});
 
-  void trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
+  void trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
   bool disperses() const override { return disperses_; }
 
@@ -47,18 +49,21 @@ class LensCamera final : public FilmCamera {
   struct Start {
     double alpha = 0, beta = 0, area = 0;  ///< direction cosines of travelling light; 1/density
   };
+  struct Led;
   void find_regions(const Lens& lens);
   Start start(double x_mm, double y_mm, double u, double v) const;
-  double density(double x_mm, double y_mm, double alpha, double beta) const;
-  void share_among_wavelengths(int group, int hero, const FilmSampling& film,
-                               std::span<const FilmSample> samples, std::span<CameraRay> rays,
-                               const RayBatch& scene_side, std::span<const double> hero_density) const;
-  const Tracer& tracer(int group, int lane) const;
+  void densities(const PupilDirections& directions, float* per_sr) const;
+  void launch(Led& led) const;
+  void trace_led(Led& led) const;
+  void share_among_wavelengths(const Led& led) const;
+  std::size_t band(int group, int lane) const;
 
   SensorGeometry film_;
   WavelengthGroups groups_;
   LensCameraOptions options_;
-  std::vector<Tracer> tracers_;  ///< by band; one when nothing disperses
+  std::vector<Tracer> tracers_;               ///< by band; one when nothing disperses
+  std::vector<KernelPath<double>> to_scene_;  ///< of each tracer
+  std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
   bool disperses_ = false;
   std::optional<ExitPupilRegions> regions_;
   double rear_radius_mm_ = 0, rear_distance_mm_ = 0;

@@ -22,7 +22,7 @@ PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : option
     left_ = window[0], right_ = window[1], bottom_ = window[2], top_ = window[3];
 }
 
-void PerspectiveCamera::trace(int, int, const FilmSampling&, std::span<const FilmSample> samples,
+void PerspectiveCamera::trace(int, const FilmSampling&, std::span<const FilmSample> samples,
                               std::span<CameraRay> rays) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FilmSample& sample = samples[i];

@@ -21,7 +21,7 @@ class PerspectiveCamera final : public FilmCamera {
  public:
   /// \throws InputError for a field of view outside (0°, 180°) or sizes that are not positive.
   explicit PerspectiveCamera(const PerspectiveOptions& options);
-  void trace(int group, int hero, const FilmSampling& film, std::span<const FilmSample> samples,
+  void trace(int group, const FilmSampling& film, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
 
  private:

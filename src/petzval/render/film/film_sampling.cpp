@@ -20,7 +20,10 @@ double dot_of(double separation, double& number) {
 
 }  // namespace
 
-FilmSampling::FilmSampling(const PixelWindow& window, const Photosite& site) : window_(window), site_(site) {
+FilmSampling::FilmSampling(const PixelWindow& window, const Photosite& site)
+    : window_(window),
+      site_(site),
+      whole_pixel_(site.shape == Photosite::Shape::rectangle && site.width == 1 && site.height == 1) {
   site.validate();
   if ((site.shape != Photosite::Shape::rectangle && site.shape != Photosite::Shape::ellipse) ||
       !(site.width <= 1 && site.height <= 1))
@@ -29,7 +32,7 @@ FilmSampling::FilmSampling(const PixelWindow& window, const Photosite& site) : w
 }
 
 FilmSample FilmSampling::place(Pixel pixel, double x, double y, double u, double v) const {
-  FilmSample sample{0, 0, u, v, dot_of(site_.separation_x, x), dot_of(site_.separation_y, y)};
+  FilmSample sample{0, 0, u, v, dot_of(site_.separation_x, x), dot_of(site_.separation_y, y), 0};
   if (site_.shape == Photosite::Shape::ellipse) {
     const DiskPoint on = disk_point(x, y);
     x = (1 + site_.width * on.x) / 2, y = (1 + site_.height * on.y) / 2;
@@ -42,17 +45,9 @@ FilmSample FilmSampling::place(Pixel pixel, double x, double y, double u, double
   return sample;
 }
 
-std::optional<Pixel> FilmSampling::pixel_at(const FilmSample& found_by, double column, double row) const {
-  column += found_by.dot_column, row += found_by.dot_row;
-  // Before they are made whole numbers, which may not hold them.
-  if (!(column >= window_.left && column < window_.right && row >= window_.top && row < window_.bottom))
-    return std::nullopt;
-  const Pixel pixel{static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row))};
-  const double x = 2 * (column - pixel.column - 0.5) / site_.width,
-               y = 2 * (row - pixel.row - 0.5) / site_.height;
-  const bool on =
-      site_.shape == Photosite::Shape::ellipse ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
-  return on ? std::optional(pixel) : std::nullopt;
+bool FilmSampling::is_on_site(double x, double y) const {
+  x = (2 * x - 1) / site_.width, y = (2 * y - 1) / site_.height;
+  return site_.shape == Photosite::Shape::ellipse ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
 }
 
 }  // namespace petzval::render

@@ -10,13 +10,14 @@
 
 namespace petzval::render {
 
-/// A place on the film, in pixels of the upright picture, and two numbers in [0, 1) that choose a direction
-/// there. Light of that place is moved by one of the four dots of the low-pass filter before it meets the
-/// photosites.
+/// A place on the film, in pixels of the upright picture, two numbers in [0, 1) that choose a direction
+/// there, and the lane of the wavelength that leads. Light of that place is moved by one of the four dots of
+/// the low-pass filter before it meets the photosites.
 struct FilmSample {
   double column = 0, row = 0;
   double u = 0, v = 0;
   double dot_column = 0, dot_row = 0;
+  int hero = 0;
 };
 
 /// A pixel of the picture.
@@ -41,11 +42,24 @@ class FilmSampling {
   FilmSample place(Pixel pixel, double x, double y, double u, double v) const;
   /// The pixel of the window that gathers light which lands on the film at a place, through the dot of the
   /// sample that found it.
-  std::optional<Pixel> pixel_at(const FilmSample& found_by, double column, double row) const;
+  std::optional<Pixel> pixel_at(const FilmSample& found_by, double column, double row) const {
+    column += found_by.dot_column, row += found_by.dot_row;
+    // Before they are made whole numbers, which may not hold them.
+    if (!(column >= window_.left && column < window_.right && row >= window_.top && row < window_.bottom))
+      return std::nullopt;
+    // Not negative: the fraction is cut off downwards.
+    const Pixel pixel{static_cast<int>(column), static_cast<int>(row)};
+    if (whole_pixel_ || is_on_site(column - pixel.column, row - pixel.row)) return pixel;
+    return std::nullopt;
+  }
 
  private:
+  /// Whether a place of a pixel, 0 … 1, is on its photosite.
+  bool is_on_site(double x, double y) const;
+
   PixelWindow window_;
   Photosite site_;
+  bool whole_pixel_;
 };
 
 }  // namespace petzval::render
