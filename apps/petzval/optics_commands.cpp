@@ -21,6 +21,7 @@
 
 #include "field_option.h"
 #include "loss_option.h"
+#include "optics_commands.h"
 
 namespace petzval::app {
 
@@ -195,7 +196,8 @@ void print_header(const LensDataTable& table) {
   fmt::print("{}\n{}\n\nobject {}, sensor {:.6g} mm behind vertex 1; at {:g} nm\n", table.lens_name,
              table.provenance, object, table.vertex_to_sensor_mm, table.first_order.wavelength_nm);
   table_layout::for_each_first_order(table.first_order, [](const std::string& name, double number) {
-    if (name != "wavelength_nm") fmt::print("  {:<28} {:>14.6f}\n", name, number);
+    if (name == "wavelength_nm") return;
+    fmt::print("  {:<28} {:>14}\n", name, std::isnan(number) ? "not known" : fmt::format("{:.6f}", number));
   });
 }
 
@@ -282,27 +284,6 @@ void add_build(CLI::App& optics, Shared& shared) {
   options->losses.add_to(*command);
 }
 
-struct ImportCommand {
-  std::string path, from = "hdf5", output;
-};
-
-void add_import(CLI::App& optics, Shared& shared) {
-  auto options = std::make_shared<ImportCommand>();
-  CLI::App* command = add_command(
-      optics, shared, "import", "Take a lens data table that another program made",
-      "petzval optics import edmund.h5 --from hdf5 -o imported.h5", false,
-      [options] { write_table(read_table(options->path, TableOrigin::elsewhere), options->output); });
-  command->add_option("table", options->path, "The table to take")->required();
-  command
-      ->add_option(
-          "--from", options->from,
-          "hdf5: the layout of docs/FILE_FORMATS.md, without Petzval's checksum. HDF5 may not survive a "
-          "damaged file")
-      ->check(CLI::IsMember({"hdf5"}))
-      ->capture_default_str();
-  command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")->required();
-}
-
 void add_info(CLI::App& optics, Shared& shared) {
   auto options = std::make_shared<InfoCommand>();
   CLI::App* command = add_command(optics, shared, "info", "Show a lens data table and how well curves fit it",
@@ -319,7 +300,8 @@ void add_optics_commands(CLI::App& app, Shared& shared) {
   CLI::App* optics = app.add_subcommand("optics", "Lens data tables: what a lens does to light, stored");
   optics->require_subcommand(1);
   add_build(*optics, shared);
-  add_import(*optics, shared);
+  add_optics_import(*optics, shared);
+  add_optics_export(*optics, shared);
   add_info(*optics, shared);
 }
 

@@ -31,6 +31,9 @@ class HelpExamples(ProgramTest):
             self.assert_succeeds("lens", "convert", "us-2532751" if word.endswith(".zmx") else "wide-22mm", word)
         elif word.endswith((".h5", ".hdf5")):
             self.assert_succeeds("optics", "build", "edmund-54852", "--sensor", "64x48@6.25", "-o", word)
+        elif word.endswith(".mat"):
+            self.provide("of_mat.h5")
+            self.assert_succeeds("optics", "export", "of_mat.h5", "--to", "iset", "--resample", "-o", word)
         elif word == "edges.png":
             self.assert_succeeds("target", "--rectangle", "100x100@5", "-o", word)
         elif word == "light.exr":

@@ -75,7 +75,8 @@ std::string psf_fault(const Psf& psf) {
   const double sum = std::accumulate(psf.values.begin(), psf.values.end(), 0.0);
   if (!(std::abs(sum - 1) <= psf_sum_tolerance)) return fmt::format("sums to {}; it must sum to 1", sum);
   for (const float value : psf.values)
-    if (!std::isfinite(value)) return "has a value that is not finite";
+    if (!(std::isfinite(value) && value >= 0))
+      return fmt::format("has a value of {}; light is finite and not negative", value);
   return {};
 }
 

@@ -23,7 +23,7 @@ struct LensDataTable {
   /// Real height at the stop of the rays that its rim lets through; absent where it is not known, as in
   /// tables of other programs.
   std::optional<double> stop_semi_diameter_mm;
-  FirstOrder first_order;
+  FirstOrder first_order;  ///< NaN: not known, as in tables of other programs
 
   /// Object field, from 0, increasing: degrees when the object is at infinity, mm when it is finite.
   std::vector<double> fields;

@@ -15,7 +15,8 @@
 //     psf_size               [F × W] samples a side that belong to the PSF
 //     psf_spacing            [F × W] µm
 //     psf_captured           [F × W] share of the light inside the window
-//     first_order            group with the paraxial data as attributes, the unit in each name
+//     first_order            group with the paraxial data as attributes, the unit in each name; those that
+//                            are not known (NaN in memory) are left out
 //
 // with units and long_name on every dataset and dimension labels on every axis. A user block of 512 bytes in
 // front, which HDF5 readers skip, holds size and checksum of the rest, so that a damaged file is told before

@@ -8,6 +8,7 @@
 #include <petzval/optics/table_seal.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace petzval {
@@ -23,6 +24,8 @@ constexpr double most_bytes = 8.0 * (1 << 30);
 /// Deflate packs at most 1032 bytes into one (zlib's technical notes); a dataset that claims more is damaged.
 constexpr double best_compression = 1100;
 constexpr double bytes_per_gib = 1 << 30;
+/// Of a first-order number that the file leaves out.
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// What a table file says, with its name in every complaint.
 class TableFile {
@@ -160,8 +163,9 @@ void read_header(const TableFile& file, LensDataTable& table) {
   if (H5Aexists(file.root(), "stop_semi_diameter_mm") > 0)
     table.stop_semi_diameter_mm = file.number(file.root(), "stop_semi_diameter_mm");
   const Hdf5Handle group = file.group(table_layout::first_order);
-  table_layout::for_each_first_order(
-      table.first_order, [&](const char* name, double& number) { number = file.number(group.id(), name); });
+  table_layout::for_each_first_order(table.first_order, [&](const char* name, double& number) {
+    number = H5Aexists(group.id(), name) > 0 ? file.number(group.id(), name) : not_known;
+  });
 }
 
 /// The side of the squares that hold the PSFs.

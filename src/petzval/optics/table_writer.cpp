@@ -194,8 +194,9 @@ void write_header(hid_t file, const LensDataTable& table) {
   if (table.stop_semi_diameter_mm) write_number(file, "stop_semi_diameter_mm", *table.stop_semi_diameter_mm);
   const Hdf5Handle group =
       checked(H5Gcreate2(file, table_layout::first_order, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  table_layout::for_each_first_order(
-      table.first_order, [&](const char* name, double number) { write_number(group.id(), name, number); });
+  table_layout::for_each_first_order(table.first_order, [&](const char* name, double number) {
+    if (!std::isnan(number)) write_number(group.id(), name, number);  // NaN: not known
+  });
 }
 
 void write_datasets(hid_t file, const LensDataTable& table) {

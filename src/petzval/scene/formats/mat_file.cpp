@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <matio.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
@@ -140,7 +141,7 @@ void MatFile::Free::operator()(matvar_t* variable) const {
   Mat_VarFree(variable);
 }
 
-MatFile::MatFile(const std::string& path, const std::string& variable) : path_(path), name_(variable) {
+MatFile::MatFile(const std::string& path, const std::vector<std::string>& variables) : path_(path) {
   {
     const std::string bytes = read_whole_file(path);
     check_mat_structure(std::as_bytes(std::span(bytes)), path);
@@ -149,10 +150,14 @@ MatFile::MatFile(const std::string& path, const std::string& variable) : path_(p
   matio_message.clear();
   Mat_LogInitFunc("petzval", keep_matio_message);
   const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-  if (file) variable_.reset(Mat_VarRead(file.get(), variable.c_str()));
+  for (std::size_t i = 0; file && !variable_ && i < variables.size(); ++i) {
+    name_ = variables[i];
+    variable_.reset(Mat_VarRead(file.get(), name_.c_str()));
+    if (!variable_) Mat_Rewind(file.get());
+  }
   if (!matio_message.empty())
     throw InputError(path, fmt::format("is damaged: matio says \"{}\"", matio_message));
-  if (!variable_) throw InputError(path, fmt::format("has no variable '{}'", variable));
+  if (!variable_) throw InputError(path, fmt::format("has no variable '{}'", fmt::join(variables, "' or '")));
 }
 
 }  // namespace petzval

@@ -63,7 +63,10 @@ class MatValue {
 class MatFile {
  public:
   /// \throws InputError for a damaged file, or one without the variable.
-  MatFile(const std::string& path, const std::string& variable);
+  MatFile(const std::string& path, const std::string& variable)
+      : MatFile(path, std::vector<std::string>{variable}) {}
+  /// The first of these variables that the file has.
+  MatFile(const std::string& path, const std::vector<std::string>& variables);
 
   MatValue variable() const { return {variable_.get(), name_, path_}; }
   const std::string& path() const { return path_; }

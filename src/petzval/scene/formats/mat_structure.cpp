@@ -162,8 +162,8 @@ void check_array(Walker walker, int depth) {
   const bool is_number = array_class >= first_number && array_class <= last_number;
   if (!is_number && array_class != cell && array_class != structure && array_class != character)
     throw InputError(walker.file(),
-                     fmt::format("holds an object, function or sparse array (class {}), which no scene "
-                                 "needs; save the variable 'scene' alone",
+                     fmt::format("holds an object, function or sparse array (class {}), which is not read; "
+                                 "save the scene, or the optics without it, alone",
                                  array_class));
   const std::size_t count = checked_count(walker, walker.next(true));
   if (walker.next(true).type != int8) walker.fail("an array has no name");

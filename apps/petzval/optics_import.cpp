@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval optics import: lens data tables that other programs and laboratories made.
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/optics/formats/iset_mat_table.h>
+#include <petzval/optics/formats/zemax_table.h>
+#include <petzval/optics/table_file.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "optics_commands.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct ImportCommand {
+  std::string path, from = "auto", output, away, centre;
+  std::string relative_illumination = "sensor";
+  RayTraceReading reading;
+};
+
+/// The kind of a file that --from auto finds.
+std::string kind_of(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return "zemax";
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".mat") return "iset";
+  if (extension == ".txt") return "zemax";
+  return "hdf5";
+}
+
+std::pair<int, int> parse_centre(const std::string& text) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const int row = parse_integer(text.substr(0, comma)).value_or(0);
+  const int column = parse_integer(text.substr(std::min(comma + 1, text.size()))).value_or(0);
+  if (row < 1 || column < 1)
+    throw InputError(fmt::format("--psf-centre {}: ROW,COLUMN, counted from 1, would be right", text));
+  return {row, column};
+}
+
+PsfLie lie_of(const ImportCommand& command) {
+  PsfLie lie;
+  if (!command.away.empty()) try {
+      lie.away = parse_away(command.away);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("--psf-away: {}", error.what()));
+    }
+  if (!command.centre.empty()) lie.centre = parse_centre(command.centre);
+  return lie;
+}
+
+/// Complaints of the conversion do not know the file.
+ImportedTable converted(const RayTraceFile& file, const ImportCommand& command) {
+  RayTraceReading reading = command.reading;
+  if (command.relative_illumination == "source") reading.illumination = RayTraceReading::Illumination::source;
+  try {
+    ImportedTable imported = table_of(file.data, reading);
+    imported.notes.insert(imported.notes.begin(), file.notes.begin(), file.notes.end());
+    return imported;
+  } catch (const InputError& error) {
+    throw InputError(command.path, error.what());
+  }
+}
+
+ImportedTable read(const ImportCommand& command) {
+  const std::string kind = command.from == "auto" ? kind_of(command.path) : command.from;
+  if (kind == "hdf5") return {read_table(command.path, TableOrigin::elsewhere), {}};
+  if (kind == "iset") return converted(read_iset_mat_table(command.path, lie_of(command)), command);
+  const ListingProgram program = kind == "codev" ? ListingProgram::codev : ListingProgram::zemax;
+  return converted(read_zemax_table(command.path, program, lie_of(command)), command);
+}
+
+void import(const ImportCommand& command, const Shared& shared) {
+  const ImportedTable imported = read(command);
+  for (const std::string& text : imported.notes) note(shared, fmt::format("{}: {}", command.path, text));
+  write_table(imported.table, command.output);
+}
+
+void add_ray_trace_options(CLI::App& command, ImportCommand& options) {
+  command.add_option(
+      "--psf-away", options.away,
+      "Direction in the PSFs that is away from the axis: up, down, left or right; default: what "
+      "the file says or its program does");
+  command.add_option("--psf-centre", options.centre,
+                     "Sample of the chief ray, ROW,COLUMN counted from 1; default likewise");
+  command
+      .add_option("--g-axis", options.reading.g_axis_sr,
+                  "Irradiance of a uniform wall per radiance on the axis [sr]; default: by the f-number")
+      ->check(positive_number());
+  command
+      .add_option("--relative-illumination", options.relative_illumination,
+                  "What it is of: a uniform wall (sensor), or an object point before the blur (source)")
+      ->check(CLI::IsMember({"sensor", "source"}))
+      ->capture_default_str();
+  command.add_option("--vertex-to-sensor", options.reading.vertex_to_sensor_mm,
+                     "Length of the lens, from its first vertex to the sensor [mm]");
+}
+
+}  // namespace
+
+void add_optics_import(CLI::App& optics, Shared& shared) {
+  auto options = std::make_shared<ImportCommand>();
+  CLI::App* command = add_command(
+      optics, shared, "import", "Take a lens data table that another program made",
+      "petzval optics import rtLens.mat -o lens.h5", false, [options, &shared] { import(*options, shared); });
+  command->add_option("table", options->path, "The file, or the folder of ISETPARMS.TXT")->required();
+  command
+      ->add_option(
+          "--from", options->from,
+          "iset: a MAT file with ISET's rayTrace structure; zemax, codev: ISETPARMS.TXT and the files "
+          "beside it; hdf5: Petzval's own layout without its checksum (HDF5 may not survive a "
+          "damaged file). auto goes by the name")
+      ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "hdf5"}))
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")->required();
+  add_ray_trace_options(*command, *options);
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/numeric/interpolation.h>
+#include <petzval/optics/formats/kept_beside.h>
+#include <petzval/optics/formats/ray_trace_data.h>
+#include <petzval/optics/table_layout.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// Zemax writes 10^10 mm for infinity.
+constexpr double infinity_mm = 1e9;
+/// Two numbers of which one went through a file and a division or two.
+constexpr double rounding = 1e-12;
+
+bool agree(double a, double b) {
+  return (std::isnan(a) && std::isnan(b)) || a == b ||
+         std::abs(a - b) <= rounding * std::max(std::abs(a), std::abs(b));
+}
+
+bool agree(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return agree(x, y); });
+}
+
+bool is_finite_object(const RayTraceData& data) {
+  return data.object_distance_mm < infinity_mm && data.magnification != 0;
+}
+
+/// Paraxial image height of an object field and back; `scale_mm` is |efl| for fields in degrees, |m| for mm.
+double height_of_field(bool finite_object, double scale, double field) {
+  return finite_object ? scale * field : scale * std::tan(radians(field));
+}
+double field_of_height(bool finite_object, double scale, double height_mm) {
+  return finite_object ? height_mm / scale : degrees(std::atan(height_mm / scale));
+}
+
+double scale_of(bool finite_object, double efl_mm, double magnification) {
+  const double scale = std::abs(finite_object ? magnification : efl_mm);
+  if (!(std::isfinite(scale) && scale > 0))
+    throw InputError(fmt::format(
+        "the {} is {}: without it paraxial image heights and object fields cannot be "
+        "turned into each other",
+        finite_object ? "magnification" : "focal length", finite_object ? magnification : efl_mm));
+  return scale;
+}
+
+void require_size(std::size_t size, std::size_t expected, const RayTraceData& data, const char* what) {
+  if (size != expected)
+    throw InputError(fmt::format("{} has {} values; {} field heights × {} wavelengths need {}", what, size,
+                                 data.field_height_mm.size(), data.wavelengths_nm.size(), expected));
+}
+
+void require_whole(const RayTraceData& data) {
+  const std::size_t expected = data.field_height_mm.size() * data.wavelengths_nm.size();
+  if (expected == 0) throw InputError("there are no field heights or no wavelengths");
+  require_size(data.distorted_height_mm.size(), expected, data, "the geometry");
+  require_size(data.relative_illumination.size(), expected, data, "the relative illumination");
+  require_size(data.psf.size(), expected, data, "the list of PSFs");
+  for (const double height : data.field_height_mm)
+    if (!(std::isfinite(height) && height >= 0))
+      throw InputError(fmt::format("a field height is {} mm; heights are finite and start at 0", height));
+}
+
+FirstOrder first_order_of(const RayTraceData& data, bool finite_object) {
+  FirstOrder first;
+  table_layout::for_each_first_order(first,
+                                     [](const char*, double& number) { number = RayTraceData::unknown; });
+  first.wavelength_nm = data.reference_wavelength_nm;
+  first.efl_mm = data.effective_focal_length_mm;
+  first.f_number = data.f_number;
+  first.working_f_number = data.effective_f_number;
+  first.image_space_na = 0.5 / data.effective_f_number;
+  first.field_of_view_deg = data.field_of_view_deg;
+  first.magnification = finite_object ? data.magnification : 0;
+  first.entrance_pupil.diameter_mm = std::abs(data.effective_focal_length_mm) / data.f_number;
+  return first;
+}
+
+double g_axis_sr(const RayTraceData& data, const RayTraceReading& reading, bool finite_object,
+                 std::vector<std::string>& notes) {
+  if (reading.g_axis_sr) return *reading.g_axis_sr;
+  const double n = data.f_number, m = finite_object ? std::abs(data.magnification) : 0;
+  if (!(std::isfinite(n) && n > 0))
+    throw InputError(
+        fmt::format("the f-number is {}: without it the level of the light must be given (--g-axis)", n));
+  const double g = pi / (1 + 4 * n * n * (1 + m) * (1 + m));
+  notes.push_back(
+      fmt::format("the file says nothing of the level of the light: g_sensor on the axis is taken as "
+                  "π/(1 + 4 N²(1 + |m|)²) = {:.5f} sr at f/{:.4g} (--g-axis sets another)",
+                  g, n));
+  return g;
+}
+
+/// A PSF cut down to the size that it had before it was laid into a grid; as it is if there is light outside.
+Psf cropped(const Psf& psf, int size) {
+  Psf inner{size, psf.spacing_um, {}, psf.captured};
+  std::size_t kept = 0;
+  for (int i = 0; i < size; ++i)
+    for (int j = 0; j < size; ++j) {
+      const int row = i - size / 2 + psf.size / 2, column = j - size / 2 + psf.size / 2;
+      const bool inside = row >= 0 && row < psf.size && column >= 0 && column < psf.size;
+      inner.values.push_back(inside ? psf.at(row, column) : 0);
+      kept += inner.values.back() != 0 ? 1U : 0U;
+    }
+  const auto all = static_cast<std::size_t>(
+      std::count_if(psf.values.begin(), psf.values.end(), [](float value) { return value != 0; }));
+  return kept == all ? inner : psf;
+}
+
+bool same(const RayTraceData& a, const RayTraceData& b) {
+  return agree(a.reference_wavelength_nm, b.reference_wavelength_nm) &&
+         agree(a.magnification, b.magnification) && agree(a.f_number, b.f_number) &&
+         agree(a.effective_f_number, b.effective_f_number) &&
+         agree(a.effective_focal_length_mm, b.effective_focal_length_mm) &&
+         agree(a.field_height_mm, b.field_height_mm) && a.wavelengths_nm == b.wavelengths_nm &&
+         agree(a.relative_illumination, b.relative_illumination);
+}
+
+/// The table that the structure was made from; nothing if somebody has changed the structure since.
+std::optional<LensDataTable> table_as_kept(const RayTraceData& data) {
+  LensDataTable table = table_of_kept(data.kept);
+  if (table.psf.size() != data.psf.size()) return {};
+  table.real_image_height_mm = data.distorted_height_mm;
+  for (std::size_t i = 0; i < table.psf.size(); ++i) {
+    Psf& psf = table.psf[i];
+    if (psf.size < 1 || psf.size > data.psf[i].size || !agree(psf.spacing_um, data.psf[i].spacing_um))
+      return {};
+    const double spacing_um = psf.spacing_um, captured = psf.captured;
+    psf = cropped(data.psf[i], psf.size);
+    psf.spacing_um = spacing_um;
+    psf.captured = captured;
+  }
+  table.validate();
+  if (!same(ray_trace_data(table), data)) return {};
+  return table;
+}
+
+double tangential_centre_mm(const Psf& psf) {
+  double moment = 0;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j) moment += double(psf.at(i, j)) * (i - psf.size / 2);
+  return moment * psf.spacing_um * mm_per_um;
+}
+
+/// Height of the centre of light over that of the chief ray. From field to field it moves at least half and
+/// at most twice as far as the chief ray does; PSFs that say otherwise are no lens's.
+MonotoneCubic centres_of_light(const LensDataTable& table, std::size_t wavelength) {
+  constexpr double least_stretch = 0.5, most_stretch = 2;
+  std::vector<double> chief, centre;
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    const std::size_t i = table.index(f, wavelength);
+    if (f == 0) {
+      chief.push_back(0);
+      centre.push_back(0);
+      continue;
+    }
+    const double height = table.real_image_height_mm[i], step = height - chief.back();
+    const double wanted = height + tangential_centre_mm(table.psf[i]) - centre.back();
+    centre.push_back(centre.back() + std::clamp(wanted, least_stretch * step, most_stretch * step));
+    chief.push_back(height);
+  }
+  return {std::move(chief), std::move(centre), MonotoneCubic::Start::odd, MonotoneCubic::Beyond::linear};
+}
+
+}  // namespace
+
+std::vector<double> source_from_sensor(const LensDataTable& table) {
+  std::vector<double> source(table.g_sensor_sr.size());
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    std::vector<double> heights, g;
+    for (std::size_t f = 0; f < table.fields.size(); ++f) {
+      heights.push_back(f == 0 ? 0 : table.real_image_height_mm[table.index(f, w)]);
+      g.push_back(table.g_sensor_sr[table.index(f, w)]);
+    }
+    const MonotoneCubic sensor(heights, g, MonotoneCubic::Start::even);
+    const MonotoneCubic centre = centres_of_light(table, w);
+    for (std::size_t f = 0; f < table.fields.size(); ++f) {
+      const double radial = centre.derivative(heights[f]);
+      const double around = heights[f] > 0 ? centre(heights[f]) / heights[f] : radial;
+      source[table.index(f, w)] = sensor(centre(heights[f])) * radial * around;
+    }
+  }
+  return source;
+}
+
+ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading) {
+  require_whole(data);
+  ImportedTable imported;
+  if (!data.kept.empty()) {
+    if (std::optional<LensDataTable> table = table_as_kept(data)) return {*std::move(table), {}};
+    imported.notes.push_back(
+        "the file was altered since Petzval wrote it: what Petzval had kept beside it is left aside");
+  }
+  LensDataTable& table = imported.table;
+  const bool finite = is_finite_object(data);
+  const double scale = scale_of(finite, data.effective_focal_length_mm, data.magnification);
+  table.lens_name = data.lens_file;
+  table.provenance = fmt::format("imported from ISET's ray trace data of {}",
+                                 data.program.empty() ? "an unknown program" : data.program);
+  if (finite) table.object_distance_mm = data.object_distance_mm;
+  table.vertex_to_sensor_mm = reading.vertex_to_sensor_mm;
+  table.first_order = first_order_of(data, finite);
+  for (const double height : data.field_height_mm)
+    table.fields.push_back(field_of_height(finite, scale, height));
+  table.wavelengths_nm = data.wavelengths_nm;
+  table.real_image_height_mm = data.distorted_height_mm;
+  table.psf = data.psf;
+  const double axis = g_axis_sr(data, reading, finite, imported.notes);
+  for (const double relative : data.relative_illumination) table.g_sensor_sr.push_back(axis * relative);
+  table.g_source_sr = table.g_sensor_sr;
+  table.validate();
+  if (reading.illumination == RayTraceReading::Illumination::sensor)
+    table.g_source_sr = source_from_sensor(table);
+  if (finite && reading.vertex_to_sensor_mm == 0)
+    imported.notes.push_back(
+        fmt::format("the length of the lens is not known: the scene stands {:g} mm from the sensor, as the "
+                    "object from the first vertex (--vertex-to-sensor sets what lies between)",
+                    data.object_distance_mm));
+  table.validate();
+  return imported;
+}
+
+RayTraceData ray_trace_data(const LensDataTable& table) {
+  table.validate();
+  const FirstOrder& first = table.first_order;
+  const bool finite = table.finite_object();
+  const double scale = scale_of(finite, first.efl_mm, first.magnification);
+  for (const Psf& psf : table.psf)
+    if (psf.spacing_um != table.psf.front().spacing_um)
+      throw InputError(
+          fmt::format("the PSFs are sampled at {:g} µm and at {:g} µm, and ISET has one spacing for all; "
+                      "--resample brings them to one",
+                      table.psf.front().spacing_um, psf.spacing_um));
+  if (!finite && table.fields.back() >= 90)
+    throw InputError(fmt::format(
+        "the fields go to {:g} degrees; ISET counts them by the paraxial image height, which ends "
+        "before 90",
+        table.fields.back()));
+  RayTraceData data;
+  data.program = "Petzval";
+  data.lens_file = table.lens_name;
+  data.reference_wavelength_nm = first.wavelength_nm;
+  data.object_distance_mm = table.object_distance_mm.value_or(std::numeric_limits<double>::infinity());
+  data.magnification = finite ? first.magnification : 0;
+  data.f_number = first.f_number;
+  data.effective_f_number = first.working_f_number;
+  data.effective_focal_length_mm = first.efl_mm;
+  data.field_of_view_deg =
+      finite ? degrees(2 * std::atan(table.field_tangent(table.fields.back()))) : 2 * table.fields.back();
+  for (const double field : table.fields)
+    data.field_height_mm.push_back(height_of_field(finite, scale, field));
+  data.wavelengths_nm = table.wavelengths_nm;
+  data.distorted_height_mm = table.real_image_height_mm;
+  for (std::size_t f = 0; f < table.fields.size(); ++f)
+    for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+      data.relative_illumination.push_back(table.g_sensor_sr[table.index(f, w)] / table.g_sensor_sr[w]);
+  data.psf = table.psf;
+  data.kept = kept_beside(table);
+  return data;
+}
+
+}  // namespace petzval
