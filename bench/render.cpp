@@ -3,9 +3,11 @@
 // picture, one thread; what a second thread saves; and what is prepared once. Compare within a run. The scene
 // is data/scenes/spheres.pbrt, which pbrt-v4 renders too: 400 x 300 pixels, 64 samples a pixel, 31 bands.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/scaled_lens.h>
@@ -13,6 +15,7 @@
 #include <petzval/render/renderer.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace {
 
@@ -115,6 +118,39 @@ void construct_lens_camera(benchmark::State& state, const char* lens) {
 }
 BENCHMARK_CAPTURE(construct_lens_camera, double_gauss, "dgauss-50mm")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(construct_lens_camera, dispersing, "double-gauss")->Unit(benchmark::kMillisecond);
+
+/// A wavy sheet of two million triangles in a binary PLY file: read, and ready to be met by rays.
+void load_two_million_triangles(benchmark::State& state) {
+  constexpr int side = 1000;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-bench-render";
+  std::filesystem::create_directories(folder);
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+      (side + 1) * (side + 1), 2 * side * side);
+  const auto append = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (int i = 0; i <= side; ++i)
+    for (int j = 0; j <= side; ++j)
+      for (const double each : {j * 1e-3, 0.05 * std::sin(0.03 * i) * std::cos(0.02 * j), i * 1e-3})
+        append(static_cast<float>(each));
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      for (const int half : {0, 1}) {
+        const int corner = i * (side + 1) + j;
+        bytes.push_back(3);
+        append(corner + 1), append(corner + (half ? side + 2 : 0)), append(corner + side + 1);
+      }
+  write_whole_file((folder / "sheet.ply").string(), bytes);
+  for (auto _ : state) {
+    Unsupported unsupported;
+    const SceneDescription description =
+        parse_scene_description("WorldBegin\nShape \"plymesh\" \"string filename\" \"sheet.ply\"\n",
+                                (folder / "scene.pbrt").string(), unsupported);
+    benchmark::DoNotOptimize(build_world(description, WavelengthGroups({550}), {}, unsupported));
+  }
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(load_two_million_triangles)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 void prepare_scene(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(Prepared());

@@ -8,7 +8,6 @@
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/picture.h>
-#include <petzval/lens/lens_file.h>
 #include <petzval/render/renderer.h>
 #include <petzval/sensor/lens_facts.h>
 
@@ -16,6 +15,7 @@
 #include <filesystem>
 
 #include "field_option.h"
+#include "render_fingerprint.h"
 #include "render_option.h"
 #include "scene_focus.h"
 
@@ -60,22 +60,6 @@ void list_unsupported(const RenderCommand& command, const Shared& shared) {
   }
   for (const render::Complaint& each : list) fmt::print("{}: {}\n", each.at.text(), each.what);
   if (list.empty()) fmt::print("{}: everything is supported\n", command.choice.scene);
-}
-
-/// All that decides about the light of a picture; a checkpoint of anything else is refused.
-std::string fingerprint(const RenderCommand& command, const PreparedScene& scene, const Shared& shared) {
-  const render::SceneCamera& camera = scene.camera;
-  std::string text = fmt::format(
-      "petzval {} scene {} seed {} samples {} depth {} far {} first {} film {}x{}@{} ", version(),
-      command.choice.scene, shared.seed, command.samples, scene.path.max_depth, command.choice.far_distance,
-      !command.depth.empty() || !command.normals.empty() || !command.albedo.empty(), camera.film.columns,
-      camera.film.rows, camera.film.pitch_um);
-  for (const double nm : scene.world->groups.wavelengths_nm()) text += fmt::format("{} ", nm);
-  text += fmt::format("{} {} {} {} ", scene.camera.photosite.text(), command.choice.sampling,
-                      command.choice.camera_origin, command.choice.scene_unit_mm);
-  text += fmt::format("{} ", command.choice.absolute_spectra);
-  text += camera.lens ? lens_to_json(*camera.lens) : "perspective";
-  return text;
 }
 
 std::string camera_text(const render::SceneCamera& camera) {
@@ -202,7 +186,7 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   options.first_surfaces = !command.depth.empty() || !command.normals.empty() || !command.albedo.empty();
   options.checkpoint = command.checkpoint;
   options.checkpoint_seconds = command.checkpoint_seconds;
-  options.fingerprint = fingerprint(command, scene, shared);
+  if (!command.checkpoint.empty()) options.fingerprint = render_fingerprint(command.choice, scene, options);
   const int samples = render::effective_samples(scene.world->groups, command.samples);
   if (samples != command.samples)
     note(shared, fmt::format("{} bands need at least {} samples a pixel",

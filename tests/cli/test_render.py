@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval render and petzval focus: pictures of three-dimensional scenes, and what they refuse."""
 
+import signal
+import subprocess
+import time
 import unittest
 
-from petzval_cli import ProgramTest
+from petzval_cli import PROGRAM, ProgramTest
 
 SCENE = """LookAt 0 0 -1  0 0 0  0 1 0
 Camera "perspective"
@@ -13,6 +16,20 @@ LightSource "infinite" "rgb L" [ 1 1 1 ]
 Texture "t" "spectrum" "checkerboard" "float uscale" 40 "float vscale" 40 "rgb tex1" [ .9 .9 .9 ] "rgb tex2" [ .1 .1 .1 ]
 Material "diffuse" "texture reflectance" "t"
 Shape "bilinearmesh" "point3 P" [ -2 -2 .4  2 -2 .4  -2 2 .4  2 2 .4 ]
+"""
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 9
+1 0 9
+0 1 9
+3 0 1 2
 """
 LENS = ["--lens", "dgauss-50mm", "--film-distance", "38"]
 
@@ -67,6 +84,57 @@ class Render(ProgramTest):
         picture = self.json_of("render", "s.pbrt", "--lens", "dgauss-50mm", "--autofocus", "z.txt", "--size", "128x96", "--spp",
                                "4", "-o", "y.npy")
         self.assertAlmostEqual(picture["film_distance_mm"], said["film_distance_mm"], delta=1e-9)
+
+    def rendering(self, output, **changed):
+        """The words of a rendering that saves itself after every pass, with some options changed or (None) left out."""
+        options = {"lens": "dgauss-50mm", "film-distance": 38, "spp": 256, "size": "64x48", "seed": 3, "threads": 2,
+                   "checkpoint": "c.petzval", "checkpoint-seconds": 0,
+                   **{name.replace("_", "-"): value for name, value in changed.items()}}
+        words = [word for name, value in options.items() if value is not None for word in ("--" + name, str(value))]
+        return ["render", "s.pbrt", *words, "-o", output]
+
+    def killed(self):
+        """Starts a rendering and kills it as soon as it has saved anything."""
+        with subprocess.Popen([PROGRAM, *self.rendering("killed.npy")], cwd=self.folder, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as running:
+            until = time.monotonic() + 60
+            while not (self.folder / "c.petzval").exists() and running.poll() is None and time.monotonic() < until:
+                time.sleep(0.005)
+            running.kill()
+        self.assertEqual(running.returncode, -signal.SIGKILL, "killed before its end, or it ended too soon to tell")
+        self.assertTrue((self.folder / "c.petzval").exists())
+        self.assertFalse((self.folder / "killed.npy").exists())
+
+    def test_goes_on_after_a_kill_to_the_same_bytes(self):
+        self.killed()
+        self.assert_succeeds(*self.rendering("resumed.npy"))
+        self.assertFalse((self.folder / "c.petzval").exists())
+        self.assert_succeeds(*self.rendering("whole.npy", threads=1, checkpoint=None, checkpoint_seconds=None))
+        self.assertEqual((self.folder / "resumed.npy").read_bytes(), (self.folder / "whole.npy").read_bytes())
+
+    def test_refuses_the_checkpoint_of_anything_else(self):
+        (self.folder / "t.pbrt").write_text('Material "diffuse" "texture reflectance" "t"\n')
+        (self.folder / "m.ply").write_text(PLY)
+        (self.folder / "s.pbrt").write_text(SCENE.replace('Material "diffuse" "texture reflectance" "t"\n', 'Include "t.pbrt"\n')
+                                            + 'Shape "plymesh" "string filename" "m.ply"\n')
+        self.killed()
+
+        def refused(word, **changed):
+            self.assert_refused(*self.rendering("x.npy", **changed), words=["c.petzval", word])
+        refused("seed 3", seed=4)
+        refused("samples 256", spp=128)
+        refused("lens ", f_number=4)
+        refused("lens ", film_distance=38.001)
+        refused("sampling exit-pupil", sampling="rear-disk")
+        refused("wavelengths 400,410", wavelengths="500,600")
+        for name, old, new in [("s.pbrt", "[ -2 -2 .4", "[ -2.1 -2 .4"), ("t.pbrt", "diffuse", "coateddiffuse"),
+                               ("m.ply", "0 0 9", "0 0 8")]:
+            kept = (self.folder / name).read_text()
+            self.assertIn(old, kept)
+            (self.folder / name).write_text(kept.replace(old, new))
+            refused("file " + name)
+            (self.folder / name).write_text(kept)
+        self.assert_succeeds(*self.rendering("x.npy"))
 
 
 if __name__ == "__main__":

@@ -32,6 +32,24 @@ void take(std::string_view& bytes, void* to, std::size_t count, const std::strin
   bytes.remove_prefix(count);
 }
 
+std::string_view take_line(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(line.size() + 1, text.size()));
+  return line;
+}
+
+/// \throws InputError with the first line in which two fingerprints differ.
+void require_same(std::string_view there, std::string_view here, const std::string& path) {
+  while (!there.empty() || !here.empty()) {
+    const std::string_view old_line = take_line(there), new_line = take_line(here);
+    if (old_line != new_line)
+      throw InputError(path,
+                       fmt::format("is the checkpoint of another picture: it has \"{}\", this one \"{}\"; "
+                                   "delete it to start afresh, or name another file",
+                                   old_line.substr(0, 300), new_line.substr(0, 300)));
+  }
+}
+
 std::vector<std::vector<double>*> sums_of(Film& film) {
   return {&film.light, &film.met, &film.depth, &film.normal, &film.albedo};
 }
@@ -74,9 +92,9 @@ bool read_checkpoint(const std::string& path, Film& film, const std::string& fin
   bytes.remove_prefix(magic.size());
   CheckpointHead head{};
   take(bytes, &head, sizeof head, path);
-  if (head.fingerprint_size != fingerprint.size() || bytes.substr(0, fingerprint.size()) != fingerprint)
-    throw InputError(
-        path, "is the checkpoint of another picture, or of other options; delete it or name another file");
+  if (bytes.size() < head.fingerprint_size)
+    throw InputError(path, "is a damaged checkpoint: it ends early; delete it to start afresh");
+  require_same(bytes.substr(0, head.fingerprint_size), fingerprint, path);
   bytes.remove_prefix(fingerprint.size());
   Film read = film;
   for (std::vector<double>* sums : sums_of(read))

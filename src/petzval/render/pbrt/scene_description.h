@@ -66,6 +66,7 @@ struct InstanceDescription {
 
 struct SceneDescription {
   std::string file;
+  std::vector<std::string> files;  ///< this and all that it includes, as they were opened
   Entity film, camera, sampler, integrator, pixel_filter;
   Transform camera_from_world;
   std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one

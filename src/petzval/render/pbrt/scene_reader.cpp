@@ -93,6 +93,7 @@ void SceneReader::read_file(const std::string& path, const Location* included_fr
     throw;
   }
   open_files_.push_back(canonical);
+  scene_.files.push_back(path);
   read_text(text, path);
   open_files_.pop_back();
 }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render_fingerprint.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/render/pbrt/scene_files.h>
+
+namespace petzval::app {
+
+namespace {
+
+/// Catalogues may change under a lens that names its glasses.
+std::string lens_line(const render::SceneCamera& camera, const std::vector<double>& wavelengths_nm) {
+  if (!camera.lens) return "";
+  std::string indices;
+  for (const Surface& surface : camera.lens->surfaces)
+    for (const double nm : wavelengths_nm) indices += fmt::format("{} ", surface.material.index(nm));
+  return fmt::format("lens {} {} {}\n", camera.lens->name, render::hash_text(lens_to_json(*camera.lens)),
+                     render::hash_text(indices));
+}
+
+}  // namespace
+
+std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& scene,
+                               const render::RenderOptions& options) {
+  const render::SceneCamera& camera = scene.camera;
+  const std::vector<double>& nm = scene.world->groups.wavelengths_nm();
+  std::string text = fmt::format("petzval {}\n", version());
+  text += fmt::format("seed {}\nsamples {}\n", options.seed, options.samples_per_pixel);
+  text += fmt::format("max-depth {}\nfar {}\n", options.path.max_depth, options.far_distance);
+  text += fmt::format("first-surfaces {}\n", options.first_surfaces);
+  text += fmt::format("film {}x{} pixels of {} um\n", camera.film.columns, camera.film.rows,
+                      camera.film.pitch_um);
+  text += fmt::format("photosite {}\n", camera.photosite.text());
+  text += fmt::format("wavelengths {}\n", fmt::join(nm, ","));
+  text +=
+      fmt::format("camera {}\nsampling {}\n",
+                  camera.lens ? "lens, its origin at the " + choice.camera_origin
+                              : fmt::format("perspective, lens radius {}", camera.perspective.lens_radius),
+                  choice.sampling);
+  text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
+  text += lens_line(camera, nm);
+  return text + render::scene_files_fingerprint(scene.description);
+}
+
+}  // namespace petzval::app
