@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/optics/formats/iset_mat_table.h>
+#include <petzval/optics/formats/measured.h>
 #include <petzval/optics/formats/zemax_table.h>
 #include <petzval/optics/table_file.h>
 
@@ -18,9 +20,10 @@ namespace petzval::app {
 namespace {
 
 struct ImportCommand {
-  std::string path, from = "auto", output, away, centre;
+  std::string path, from = "auto", output, away, centre, curves;
   std::string relative_illumination = "sensor";
   RayTraceReading reading;
+  MeasuredOptions measured;
 };
 
 /// The kind of a file that --from auto finds.
@@ -32,6 +35,7 @@ std::string kind_of(const std::string& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".mat") return "iset";
   if (extension == ".txt") return "zemax";
+  if (extension == ".csv") return "measured";
   return "hdf5";
 }
 
@@ -56,7 +60,8 @@ PsfLie lie_of(const ImportCommand& command) {
 }
 
 /// Complaints of the conversion do not know the file.
-ImportedTable converted(const RayTraceFile& file, const ImportCommand& command) {
+template <typename File>
+ImportedTable converted(const File& file, const ImportCommand& command) {
   RayTraceReading reading = command.reading;
   if (command.relative_illumination == "source") reading.illumination = RayTraceReading::Illumination::source;
   try {
@@ -68,10 +73,18 @@ ImportedTable converted(const RayTraceFile& file, const ImportCommand& command) 
   }
 }
 
+MeasuredFile read_measurement(const ImportCommand& command) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 30;
+  const std::string text = read_whole_file(command.path, most_bytes);
+  const std::string curves = command.curves.empty() ? "" : read_whole_file(command.curves, most_bytes);
+  return read_measured(text, command.path, curves, command.curves, command.measured);
+}
+
 ImportedTable read(const ImportCommand& command) {
   const std::string kind = command.from == "auto" ? kind_of(command.path) : command.from;
   if (kind == "hdf5") return {read_table(command.path, TableOrigin::elsewhere), {}};
   if (kind == "iset") return converted(read_iset_mat_table(command.path, lie_of(command)), command);
+  if (kind == "measured") return converted(read_measurement(command), command);
   const ListingProgram program = kind == "codev" ? ListingProgram::codev : ListingProgram::zemax;
   return converted(read_zemax_table(command.path, program, lie_of(command)), command);
 }
@@ -102,6 +115,13 @@ void add_ray_trace_options(CLI::App& command, ImportCommand& options) {
                      "Length of the lens, from its first vertex to the sensor [mm]");
 }
 
+void add_measured_options(CLI::App& command, ImportCommand& options) {
+  command.add_option("--curves", options.curves,
+                     "Of measurements: CSV of field_mm, paraxial_height_mm, relative_illumination");
+  command.add_flag("--clip-negative", options.measured.clip_negative,
+                   "Of measured PSFs: take values below zero for noise about none");
+}
+
 }  // namespace
 
 void add_optics_import(CLI::App& optics, Shared& shared) {
@@ -114,12 +134,14 @@ void add_optics_import(CLI::App& optics, Shared& shared) {
       ->add_option(
           "--from", options->from,
           "iset: a MAT file with ISET's rayTrace structure; zemax, codev: ISETPARMS.TXT and the files "
-          "beside it; hdf5: Petzval's own layout without its checksum (HDF5 may not survive a "
+          "beside it; measured: a CSV file of PSFs or MTFs; hdf5: Petzval's own layout without its checksum "
+          "(HDF5 may not survive a "
           "damaged file). auto goes by the name")
-      ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "hdf5"}))
+      ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "measured", "hdf5"}))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")->required();
   add_ray_trace_options(*command, *options);
+  add_measured_options(*command, *options);
 }
 
 }  // namespace petzval::app

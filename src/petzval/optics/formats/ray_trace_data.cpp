@@ -201,8 +201,8 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
   const bool finite = is_finite_object(data);
   const double scale = scale_of(finite, data.effective_focal_length_mm, data.magnification);
   table.lens_name = data.lens_file;
-  table.provenance = fmt::format("imported from ISET's ray trace data of {}",
-                                 data.program.empty() ? "an unknown program" : data.program);
+  table.provenance =
+      fmt::format("imported from data of {}", data.program.empty() ? "an unknown program" : data.program);
   if (finite) table.object_distance_mm = data.object_distance_mm;
   table.vertex_to_sensor_mm = reading.vertex_to_sensor_mm;
   table.first_order = first_order_of(data, finite);
