@@ -26,7 +26,9 @@ namespace {
 struct RenderCommand {
   RenderChoice choice;
   FocusChoice focus;
-  int samples = 64, bits = 8;
+  std::optional<int> samples;
+  int bits = 8;
+  double noise = 0;
   double checkpoint_seconds = 60;
   std::string checkpoint, depth, normals, albedo;
   std::optional<double> white;
@@ -87,7 +89,8 @@ nlohmann::ordered_json summary_json(const RenderCommand& command, const Prepared
           {"pitch_um", image.pitch_um()},
           {"pixel_aperture", scene.camera.photosite.text()},
           {"wavelengths_nm", image.wavelengths_nm()},
-          {"samples_per_pixel", render::effective_samples(scene.world->groups, command.samples)},
+          {"samples_per_pixel", picture.samples_per_pixel},
+          {"noise", picture.noise ? nlohmann::ordered_json(*picture.noise) : nlohmann::ordered_json()},
           {"camera_rays", picture.rays},
           {"camera_rays_passed", picture.passed},
           {"mean_irradiance", sum / static_cast<double>(values.size())},
@@ -97,8 +100,8 @@ nlohmann::ordered_json summary_json(const RenderCommand& command, const Prepared
           {"outputs", command.outputs}};
 }
 
-void print_summary(const RenderCommand& command, const PreparedScene& scene, const render::Rendering& picture,
-                   double prepare_seconds, double render_seconds) {
+void print_summary(const PreparedScene& scene, const render::Rendering& picture, double prepare_seconds,
+                   double render_seconds) {
   const SpectralImage& image = picture.irradiance;
   const auto& bands = image.wavelengths_nm();
   fmt::print("{} x {} pixels of {:.5g} um, ", image.columns(), image.rows(), image.pitch_um());
@@ -107,11 +110,11 @@ void print_summary(const RenderCommand& command, const PreparedScene& scene, con
   else
     fmt::print("{} bands from {:g} to {:g} nm\n", bands.size(), bands.front(), bands.back());
   fmt::print("  camera   {}\n", camera_text(scene.camera));
-  fmt::print("  samples  {} a pixel; {:.1f} % of {} camera rays pass\n",
-             render::effective_samples(scene.world->groups, command.samples),
+  fmt::print("  samples  {} a pixel; {:.1f} % of {} camera rays pass\n", picture.samples_per_pixel,
              100.0 * static_cast<double>(picture.passed) /
                  static_cast<double>(std::max<std::uint64_t>(picture.rays, 1)),
              picture.rays);
+  if (picture.noise) fmt::print("  noise    {:.3g} (RMS error over mean light)\n", *picture.noise);
   fmt::print("  time     {:.2f} s to prepare, {:.1f} s for light, {:.3g} million camera rays a second\n",
              prepare_seconds, render_seconds,
              static_cast<double>(picture.rays) * 1e-6 / std::max(render_seconds, 1e-9));
@@ -178,7 +181,8 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   const double prepare_seconds = seconds_since(start);
 
   render::RenderOptions options;
-  options.samples_per_pixel = command.samples;
+  options.samples_per_pixel = command.samples.value_or(command.noise > 0 ? 4096 : 64);
+  options.noise = command.noise;
   options.seed = shared.seed;
   options.path = scene.path;
   options.photosite = scene.camera.photosite;
@@ -187,8 +191,8 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   options.checkpoint = command.checkpoint;
   options.checkpoint_seconds = command.checkpoint_seconds;
   if (!command.checkpoint.empty()) options.fingerprint = render_fingerprint(command.choice, scene, options);
-  const int samples = render::effective_samples(scene.world->groups, command.samples);
-  if (samples != command.samples)
+  const int samples = render::effective_samples(scene.world->groups, options.samples_per_pixel);
+  if (samples != options.samples_per_pixel)
     note(shared, fmt::format("{} bands need at least {} samples a pixel",
                              scene.world->groups.wavelengths_nm().size(), samples));
   ProgressBar bar(!shared.quiet);
@@ -196,15 +200,19 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   render::Rendering picture = render_picture(*scene.world, *camera, scene.camera.world_from_camera,
                                              scene.camera.film, options, bar.callback());
   const double render_seconds = seconds_since(begin);
+  if (picture.noise && *picture.noise > command.noise)
+    note(shared,
+         fmt::format("the noise is {:.3g} after {} samples a pixel; a larger --spp would let it fall to {:g}",
+                     *picture.noise, picture.samples_per_pixel, command.noise));
   picture.irradiance.provenance =
       fmt::format("petzval {} render: {} through {}; {} samples a pixel, seed {}", version(),
-                  command.choice.scene, camera_text(scene.camera), samples, shared.seed);
+                  command.choice.scene, camera_text(scene.camera), picture.samples_per_pixel, shared.seed);
   if (scene.camera.lens)
     picture.irradiance.lens = lens_facts(scene.camera.lens->name, first_order(*scene.camera.lens));
   write_outputs(command, picture, shared);
   if (!command.checkpoint.empty()) std::filesystem::remove(command.checkpoint);
   if (shared.json) return print_json(summary_json(command, scene, picture, prepare_seconds, render_seconds));
-  if (!shared.quiet) print_summary(command, scene, picture, prepare_seconds, render_seconds);
+  if (!shared.quiet) print_summary(scene, picture, prepare_seconds, render_seconds);
 }
 
 }  // namespace
@@ -220,9 +228,16 @@ void add_render_command(CLI::App& app, Shared& shared) {
   command->add_option("--autofocus", options->focus.zones_file,
                       "Focus by itself on the zones of this file (see petzval focus)");
   options->focus.add_to(*command);
-  command->add_option("--spp", options->samples, "Camera paths a pixel; each serves up to eight wavelengths")
-      ->check(CLI::Range(1, 1 << 24))
-      ->capture_default_str();
+  command
+      ->add_option("--spp", options->samples,
+                   "Camera paths a pixel; each serves up to eight wavelengths; default: 64, with --noise "
+                   "at most 4096")
+      ->check(CLI::Range(1, 1 << 24));
+  command
+      ->add_option("--noise", options->noise,
+                   "End as soon as nine of ten tiles are estimated to be this close to the picture without "
+                   "noise: RMS error over mean light, 0.02 for instance")
+      ->check(positive_number());
   command->add_option("--checkpoint", options->checkpoint,
                       "A file to save to on the way and to go on from; removed when the picture is done");
   command->add_option("--checkpoint-seconds", options->checkpoint_seconds, "How often")

@@ -28,7 +28,10 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
   const render::SceneCamera& camera = scene.camera;
   const std::vector<double>& nm = scene.world->groups.wavelengths_nm();
   std::string text = fmt::format("petzval {}\n", version());
-  text += fmt::format("seed {}\nsamples {}\n", options.seed, options.samples_per_pixel);
+  text += fmt::format("seed {}\n", options.seed);
+  // A picture that ends at a noise is the beginning of one that ends at less.
+  text += options.noise > 0 ? std::string("samples as the noise demands\n")
+                            : fmt::format("samples {}\n", options.samples_per_pixel);
   text += fmt::format("max-depth {}\nfar {}\n", options.path.max_depth, options.far_distance);
   text += fmt::format("first-surfaces {}\n", options.first_surfaces);
   text += fmt::format("film {}x{} pixels of {} um\n", camera.film.columns, camera.film.rows,

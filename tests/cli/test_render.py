@@ -85,6 +85,19 @@ class Render(ProgramTest):
                                "4", "-o", "y.npy")
         self.assertAlmostEqual(picture["film_distance_mm"], said["film_distance_mm"], delta=1e-9)
 
+    def test_ends_at_a_noise(self):
+        noisy = self.json_of("render", "s.pbrt", *LENS, "--noise", "0.1", "-o", "a.npy")
+        quiet = self.json_of("render", "s.pbrt", *LENS, "--noise", "0.03", "--threads", "1", "-o", "b.npy")
+        self.assertTrue(0.03 < noisy["noise"] <= 0.1, noisy["noise"])
+        self.assertTrue(0.01 < quiet["noise"] <= 0.03, quiet["noise"])
+        self.assertLess(noisy["samples_per_pixel"], quiet["samples_per_pixel"])
+        self.assert_succeeds("render", "s.pbrt", *LENS, "--noise", "0.03", "--threads", "2", "-o", "c.npy")
+        self.assertEqual((self.folder / "b.npy").read_bytes(), (self.folder / "c.npy").read_bytes())
+        done = self.petzval("render", "s.pbrt", *LENS, "--noise", "0.001", "--spp", "64", "-o", "d.npy")
+        self.assertIn("a larger --spp", done.stderr)
+        self.assertIsNone(self.json_of("render", "s.pbrt", *LENS, "--spp", "4", "-o", "e.npy")["noise"])
+        self.assert_refused("render", "s.pbrt", *LENS, "--noise", "0", "-o", "x.npy", words=["--noise"])
+
     def rendering(self, output, **changed):
         """The words of a rendering that saves itself after every pass, with some options changed or (None) left out."""
         options = {"lens": "dgauss-50mm", "film-distance": 38, "spp": 256, "size": "64x48", "seed": 3, "threads": 2,

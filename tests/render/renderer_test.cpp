@@ -6,6 +6,7 @@
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/camera/perspective_camera.h>
+#include <petzval/render/film/noise.h>
 
 #include <filesystem>
 #include <fstream>
@@ -26,13 +27,19 @@ constexpr const char* scene =
     "radius\" 0.08\n";
 
 struct SmallPicture {
-  std::unique_ptr<const World> world = world_of(scene, {420, 480, 520, 560, 600, 640, 660, 680, 700});
+  explicit SmallPicture(const char* text = scene)
+      : world(world_of(text, {420, 480, 520, 560, 600, 640, 660, 680, 700})) {}
+
+  std::unique_ptr<const World> world;
   SensorGeometry film{40, 30, 150};
   LensCamera camera{read_lens("edmund-54852").lens, film, world->groups};
 
   Rendering render(RenderOptions options = {}) const {
-    options.samples_per_pixel = 24;
     options.first_surfaces = true;
+    return render_with(options, 24);
+  }
+  Rendering render_with(RenderOptions options, int samples) const {
+    options.samples_per_pixel = samples;
     return render_picture(*world, camera, Transform(), film, options);
   }
 };
@@ -89,6 +96,75 @@ TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   std::ofstream(path) << "something else";
   EXPECT_THROW(small.render(options), InputError);
   std::filesystem::remove(path);
+}
+
+std::vector<double> summed_over_bands(const Rendering& rendering) {
+  const SpectralImage& image = rendering.irradiance;
+  std::vector<double> sums(image.band_size(), 0.0);
+  for (int band = 0; band < image.bands(); ++band)
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += static_cast<double>(image.band(band)[i]);
+  return sums;
+}
+
+/// The same without glass, whose caustics are so rare that a few hundred samples know nothing of most.
+constexpr const char* scene_without_caustics =
+    "LightSource \"infinite\" \"rgb L\" [ .2 .3 .4 ]\n"
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 5\nTranslate 0 1 1\nRotate 90 1 0 0\nShape "
+    "\"disk\" \"float radius\" 0.3\nAttributeEnd\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -2 -.1 0  2 -.1 0  -2 -.1 4  2 -.1 4 ]\n"
+    "Material \"diffuse\"\nTranslate 0 0 1\nShape \"sphere\" \"float radius\" 0.08\n";
+
+TEST(Renderer, EndsAtTheNoiseThatIsAskedAndIsRightAboutIt) {
+  const SmallPicture small(scene_without_caustics);
+  RenderOptions options;
+  options.seed = 77;
+  const std::vector<double> truth = summed_over_bands(small.render_with(options, 4096));
+  options.seed = 1;
+  int before = 0;
+  for (const double wanted : {0.1, 0.05, 0.025}) {
+    options.noise = wanted;
+    const Rendering picture = small.render_with(options, 4096);
+    ASSERT_TRUE(picture.noise);
+    EXPECT_LE(*picture.noise, wanted);
+    EXPECT_GT(*picture.noise, wanted / 2) << "or it went on for too long";
+    EXPECT_GT(picture.samples_per_pixel, before);
+    before = picture.samples_per_pixel;
+    std::vector<double> squared;
+    const std::vector<double> light = summed_over_bands(picture);
+    for (std::size_t i = 0; i < light.size(); ++i)
+      squared.push_back((light[i] - truth[i]) * (light[i] - truth[i]));
+    // Estimate and error are each the noise of one tile of 256 pixels, known to 1/√512 = 4 % of themselves.
+    EXPECT_NEAR(noise_of({0, 0, 40, 30}, squared, truth) / *picture.noise, 1, 3 * 0.06);
+  }
+}
+
+TEST(Renderer, EndsAtTheSameNoiseOnAnyThreadsAndAfterAnInterruption) {
+  const SmallPicture small;
+  RenderOptions options;
+  options.noise = 0.15;
+  const Rendering whole = small.render_with(options, 2000);
+  ASSERT_GT(whole.samples_per_pixel, 32);
+  {
+    const ThreadLimit limit(1);
+    const Rendering again = small.render_with(options, 2000);
+    EXPECT_EQ(values(again), values(whole));
+    EXPECT_EQ(again.noise, whole.noise);
+  }
+  const std::string path = (std::filesystem::temp_directory_path() / "petzval-noise-test").string();
+  std::filesystem::remove(path);
+  options.checkpoint = path;
+  options.after_pass = [](int done, int) { return done < 3; };
+  EXPECT_FALSE(small.render_with(options, 2000).complete);
+  options.after_pass = nullptr;
+  EXPECT_EQ(values(small.render_with(options, 2000)), values(whole));
+  std::filesystem::remove(path);
+  // No more than is allowed, in whole pairs of passes: 2 groups × 4 samples × 2.
+  options.checkpoint.clear();
+  options.noise = 1e-6;
+  const Rendering allowed = small.render_with(options, 40);
+  EXPECT_TRUE(allowed.complete);
+  EXPECT_EQ(allowed.samples_per_pixel, 48);
+  EXPECT_GT(allowed.noise.value(), 1e-6);
 }
 
 /// A white wall lit by a distant light at right angles: E/π through a pinhole of 1 sr; and how far it is.

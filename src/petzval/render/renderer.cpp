@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/render/film/noise.h>
 #include <petzval/render/renderer.h>
+#include <petzval/render/tile_renderer.h>
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <functional>
 
 namespace petzval::render {
 
@@ -13,141 +17,47 @@ namespace {
 constexpr int tile_side = 16;
 /// Samples of each group of wavelengths in one pass over the picture.
 constexpr int indices_a_pass = 4;
+/// Before so many passes an estimate of the noise is too uncertain to end at.
+constexpr int fewest_passes = 4;
 
-/// Light that landed outside of the tile that found it.
-struct Stray {
-  std::size_t at;  ///< into Film::light
-  double light;
-};
-
-/// All that one tile adds in one pass.
-struct TileResult {
-  std::vector<Stray> strays;
-  std::uint64_t rays = 0, passed = 0;
-};
-
-/// Follows the samples of one tile. Everything that it changes in the film are its own pixels.
-class TileRenderer {
+/// How the samples of a pixel are dealt out: to the groups of wavelengths in turn, four of each in a pass.
+class Passes {
  public:
-  TileRenderer(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
-               const SensorGeometry& sensor, const FilmSampling& sampling, const RenderOptions& options,
-               const PixelWindow& tile, Film& film)
-      : world_(world),
-        camera_(camera),
-        world_from_camera_(world_from_camera),
-        sensor_(sensor),
-        sampling_(sampling),
-        options_(options),
-        tracer_(world, options.path),
-        tile_(tile),
-        film_(film) {}
+  Passes(const WavelengthGroups& groups, const RenderOptions& options)
+      : groups_(groups.count()),
+        samples_(effective_samples(groups, options.samples_per_pixel)),
+        halves_(options.noise > 0) {
+    count_ = (most_of_group() + indices_a_pass - 1) / indices_a_pass;
+    if (!halves_) return;
+    count_ += count_ % 2;
+    samples_ = count_ * indices_a_pass * groups_;
+  }
 
-  TileResult run(int first_index, int samples_per_pixel) {
-    const int groups = world_.groups.count();
-    for (int group = 0; group < groups; ++group) {
-      // The samples are dealt out to the groups in turn.
-      const int of_group = (samples_per_pixel - group + groups - 1) / groups;
-      take_samples(group, first_index, std::min(first_index + indices_a_pass, of_group), 1.0 / of_group);
-    }
-    return std::move(result_);
+  int count() const { return count_; }
+  std::vector<SampleRange> ranges(int pass) const {
+    // Of two halves each has samples of its own.
+    const int index = (halves_ ? pass / 2 : pass) * indices_a_pass;
+    std::vector<SampleRange> result;
+    for (int group = 0; group < groups_; ++group)
+      result.push_back({index, index + taken(group, pass + 1) - taken(group, pass)});
+    return result;
+  }
+  /// Samples of a group after some passes.
+  int taken(int group, int passes) const {
+    const int of_group = (samples_ - group + groups_ - 1) / groups_;
+    return std::min(passes * indices_a_pass, of_group);
+  }
+  int taken(int passes) const {
+    int sum = 0;
+    for (int group = 0; group < groups_; ++group) sum += taken(group, passes);
+    return sum;
   }
 
  private:
-  /// Of the i-th sample of a batch.
-  Pixel pixel_of(std::size_t i) const {
-    const int within = static_cast<int>(i % tile_.size());
-    return {tile_.left + within % tile_.columns(), tile_.top + within / tile_.columns()};
-  }
+  int most_of_group() const { return (samples_ + groups_ - 1) / groups_; }
 
-  /// The samples [first, last) of each pixel.
-  void take_samples(int group, int first, int last, double share) {
-    samples_.clear(), places_.clear();
-    for (int index = first; index < last; ++index)
-      for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
-    rays_.assign(places_.size(), {});
-    camera_.trace(group, sampling_, places_, rays_);
-    for (std::size_t i = 0; i < places_.size(); ++i) follow(i, group, share);
-  }
-
-  void start_sample(int group, int index, Pixel pixel) {
-    const auto number = static_cast<std::uint32_t>(pixel.row * sensor_.columns + pixel.column);
-    const std::uint32_t seed = hashed(number, hashed(static_cast<std::uint32_t>(options_.seed),
-                                                     static_cast<std::uint32_t>(options_.seed >> 32) ^
-                                                         static_cast<std::uint32_t>(group) * 0x9e3779b9u));
-    samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
-    const auto [x, y, u, v] = samples_.back().next4();
-    places_.push_back(sampling_.place(pixel, x, y, u, v));
-    // In turn from a random start: every wavelength leads equally often.
-    places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
-                                           static_cast<std::uint32_t>(world_.groups.lanes(group)));
-  }
-
-  void follow(std::size_t i, int group, double share) {
-    const CameraRay& ray = rays_[i];
-    ++result_.rays;
-    if (!ray.passes) return;
-    ++result_.passed;
-    const Vector3 origin = world_from_camera_.point(ray.origin);
-    const Vector3 direction = normalised(world_from_camera_.direction(ray.direction));
-    FirstSurface first;
-    const PathLight light =
-        tracer_.trace(origin, direction, group, places_[i].hero, samples_[i], options_.far_distance,
-                      film_.has_first_surfaces() ? &first : nullptr);
-    add_light(i, group, share, light);
-    if (first.met) add_first(i, group, first);
-  }
-
-  void add_light(std::size_t i, int group, double share, const PathLight& light) {
-    const CameraRay& ray = rays_[i];
-    const int hero = places_[i].hero;
-    for (int lane = 0; lane < world_.groups.lanes(group); ++lane) {
-      double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
-      if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
-      if (value == 0) continue;
-      std::optional<Pixel> pixel = pixel_of(i);
-      if (ray.spread && lane != hero)
-        pixel =
-            sampling_.pixel_at(places_[i], static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
-                               static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
-      if (pixel) add(*pixel, world_.groups.band(group, lane), share * value);
-    }
-  }
-
-  void add(Pixel pixel, int band, double value) {
-    const std::size_t at =
-        static_cast<std::size_t>(band) * film_.window.size() + film_.window.index(pixel.column, pixel.row);
-    if (tile_.contains(pixel.column, pixel.row))
-      film_.light[at] += value;
-    else
-      result_.strays.push_back({at, value});
-  }
-
-  void add_first(std::size_t i, int group, const FirstSurface& first) {
-    const Pixel pixel = pixel_of(i);
-    const std::size_t at = film_.window.index(pixel.column, pixel.row);
-    film_.met[at] += 1;
-    film_.depth[at] += world_from_camera_.inverse_point(first.position).z;
-    film_.normal[3 * at] += first.normal.x;
-    film_.normal[3 * at + 1] += first.normal.y;
-    film_.normal[3 * at + 2] += first.normal.z;
-    for (int lane = 0; lane < world_.groups.lanes(group); ++lane)
-      film_.albedo[static_cast<std::size_t>(world_.groups.band(group, lane)) * film_.window.size() + at] +=
-          static_cast<double>(first.albedo[lane]);
-  }
-
-  const World& world_;
-  const FilmCamera& camera_;
-  const Transform& world_from_camera_;
-  const SensorGeometry& sensor_;
-  const FilmSampling& sampling_;
-  const RenderOptions& options_;
-  PathTracer tracer_;
-  PixelWindow tile_;
-  Film& film_;
-  TileResult result_;
-  std::vector<SobolSample> samples_;
-  std::vector<FilmSample> places_;
-  std::vector<CameraRay> rays_;
+  int groups_, samples_, count_ = 0;
+  bool halves_;
 };
 
 std::vector<PixelWindow> tiles_of(const PixelWindow& window) {
@@ -167,9 +77,9 @@ PixelWindow checked_window(const SensorGeometry& sensor, const RenderOptions& op
   return window;
 }
 
-/// The mean over the samples that met a surface, and the light.
+/// The means over the samples that were taken, and over those that met a surface.
 Rendering developed(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
-                    const Photosite& photosite, double samples_of_pixel) {
+                    const Photosite& photosite, const Passes& passes) {
   Rendering result;
   result.irradiance =
       SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um,
@@ -178,9 +88,11 @@ Rendering developed(const Film& film, const WavelengthGroups& groups, const Sens
   const std::size_t pixels = film.window.size();
   for (int band = 0; band < result.irradiance.bands(); ++band) {
     const std::span<float> plane = result.irradiance.band(band);
+    const double samples = std::max(1, passes.taken(band % groups.count(), film.passes));
     for (std::size_t i = 0; i < pixels; ++i)
-      plane[i] = static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i]);
+      plane[i] = static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i] / samples);
   }
+  result.samples_per_pixel = passes.taken(film.passes);
   result.rays = film.rays, result.passed = film.passed;
   if (!film.has_first_surfaces()) return result;
   FirstSurfaces& first = result.first_surfaces.emplace();
@@ -188,7 +100,7 @@ Rendering developed(const Film& film, const WavelengthGroups& groups, const Sens
   first.albedo.resize(film.albedo.size());
   for (std::size_t i = 0; i < pixels; ++i) {
     const double met = film.met[i] > 0 ? film.met[i] : 1;
-    first.share[i] = static_cast<float>(film.met[i] / samples_of_pixel);
+    first.share[i] = static_cast<float>(film.met[i] / result.samples_per_pixel);
     first.depth[i] = static_cast<float>(film.depth[i] / met);
     const Vector3 normal = normalised({film.normal[3 * i], film.normal[3 * i + 1], film.normal[3 * i + 2]});
     first.normal[3 * i] = static_cast<float>(normal.x);
@@ -199,6 +111,57 @@ Rendering developed(const Film& film, const WavelengthGroups& groups, const Sens
       first.albedo[band * pixels + i] =
           static_cast<float>(film.albedo[band * pixels + i] * groups.count() / met);
   }
+  return result;
+}
+
+/// Of the light of all bands.
+double noise_now(const Film& film) {
+  std::vector<double> whole(film.half.size(), 0.0);
+  for (std::size_t i = 0; i < film.light.size(); ++i) whole[i % whole.size()] += film.light[i];
+  return estimated_noise(film.window, whole, film.half, film.passes);
+}
+
+/// Renders one pass into the film.
+void add_pass(const TileTask& task, const std::vector<PixelWindow>& tiles, const Passes& passes, Film& film,
+              const std::function<void(double)>& told) {
+  const std::vector<SampleRange> ranges = passes.ranges(film.passes);
+  const bool half = !film.half.empty() && film.passes % 2 == 1;
+  std::vector<TileResult> results(tiles.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for(tiles.size(), [&](std::size_t i) {
+    results[i] = render_tile(task, tiles[i], ranges, half, film);
+    told(static_cast<double>(++done) / static_cast<double>(tiles.size()));
+  });
+  // In the order of the tiles, whoever finished first.
+  for (const TileResult& tile : results) {
+    for (const Stray& stray : tile.strays) {
+      film.light[stray.at] += stray.light;
+      if (half) film.half[stray.at % film.half.size()] += stray.light;
+    }
+    film.rays += tile.rays, film.passed += tile.passed;
+  }
+  ++film.passes;
+}
+
+/// Whether rendering ends here; and how many passes it is likely to take.
+struct Outlook {
+  bool done = false;
+  double likely_passes = 0;
+  std::optional<double> noise;
+};
+
+Outlook outlook(const Film& film, const Passes& passes, double wanted_noise) {
+  Outlook result{film.passes >= passes.count(), static_cast<double>(passes.count()), {}};
+  // Equal halves, and enough of them.
+  const int fewest = result.done ? 2 : fewest_passes;
+  if (film.half.empty() || film.passes % 2 == 1 || film.passes < fewest) return result;
+  const double noise = noise_now(film);
+  result.noise = noise;
+  result.done = result.done || noise <= wanted_noise;
+  // Error falls with the root of the number of samples, or faster.
+  if (!result.done)
+    result.likely_passes =
+        std::clamp(film.passes * std::pow(noise / wanted_noise, 2), film.passes + 2.0, result.likely_passes);
   return result;
 }
 
@@ -214,42 +177,35 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
   const PixelWindow window = checked_window(sensor, options);
   const FilmSampling sampling(window, options.photosite);
-  Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), options.first_surfaces);
+  Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), options.first_surfaces,
+            options.noise > 0);
   if (!options.checkpoint.empty()) read_checkpoint(options.checkpoint, film, options.fingerprint);
 
-  const int samples = effective_samples(world.groups, options.samples_per_pixel);
-  const int most_of_group = (samples + world.groups.count() - 1) / world.groups.count();
-  const int passes = (most_of_group + indices_a_pass - 1) / indices_a_pass;
+  const Passes passes(world.groups, options);
+  const TileTask task{world, camera, world_from_camera, sensor, sampling, options};
   const std::vector<PixelWindow> tiles = tiles_of(window);
-  std::vector<TileResult> results(tiles.size());
+  const int resumed_at = film.passes;
+  Outlook ahead = outlook(film, passes, options.noise);
   auto saved = std::chrono::steady_clock::now();
   bool go_on = true;
-  while (film.passes < passes && go_on) {
-    std::atomic<std::size_t> done{0};
-    parallel_for(tiles.size(), [&](std::size_t i) {
-      results[i] = TileRenderer(world, camera, world_from_camera, sensor, sampling, options, tiles[i], film)
-                       .run(film.passes * indices_a_pass, samples);
+  while (!ahead.done && go_on) {
+    add_pass(task, tiles, passes, film, [&](double share) {
+      // Of what this run has to do, so that the time left can be told.
       if (progress)
-        progress((film.passes + static_cast<double>(++done) / static_cast<double>(tiles.size())) / passes,
-                 "light");
+        progress((film.passes + share - resumed_at) / (ahead.likely_passes - resumed_at), "light");
     });
-    // In the order of the tiles, whoever finished first.
-    for (TileResult& tile : results) {
-      for (const Stray& stray : tile.strays) film.light[stray.at] += stray.light;
-      film.rays += tile.rays, film.passed += tile.passed;
-    }
-    ++film.passes;
-    if (options.after_pass) go_on = options.after_pass(film.passes, passes);
+    ahead = outlook(film, passes, options.noise);
+    if (options.after_pass) go_on = options.after_pass(film.passes, passes.count());
     const auto now = std::chrono::steady_clock::now();
-    const bool save = film.passes < passes && (!go_on || std::chrono::duration<double>(now - saved).count() >=
-                                                             options.checkpoint_seconds);
-    if (!options.checkpoint.empty() && save) {
+    const bool due = std::chrono::duration<double>(now - saved).count() >= options.checkpoint_seconds;
+    if (!options.checkpoint.empty() && !ahead.done && (!go_on || due)) {
       write_checkpoint(options.checkpoint, film, options.fingerprint);
       saved = now;
     }
   }
-  Rendering result = developed(film, world.groups, sensor, options.photosite, samples);
-  result.complete = film.passes == passes;
+  Rendering result = developed(film, world.groups, sensor, options.photosite, passes);
+  result.complete = ahead.done;
+  result.noise = ahead.noise;
   return result;
 }
 

@@ -17,6 +17,10 @@ struct RenderOptions {
   /// Camera paths a pixel. Each serves the up to eight wavelengths of one group; at least one for every group
   /// is taken.
   int samples_per_pixel = 16;
+  /// If positive: rendering ends as soon as the noise (film/noise.h) is estimated to be below, and after
+  /// `samples_per_pixel`, taken in whole passes, at the latest. Decided after passes over the whole picture,
+  /// so that threads and interruptions change nothing.
+  double noise = 0;
   std::uint64_t seed = 1;
   PathOptions path;
   double far_distance = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
@@ -45,6 +49,8 @@ struct Rendering {
   std::optional<FirstSurfaces> first_surfaces;
   std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
   bool complete = true;
+  int samples_per_pixel = 0;    ///< that were taken
+  std::optional<double> noise;  ///< estimate, if RenderOptions::noise asks for one
 };
 
 /// Renders a picture. The same arguments give the same bytes for any number of threads, and whether or not it

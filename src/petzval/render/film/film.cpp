@@ -12,7 +12,7 @@ namespace {
 
 /// 16 GiB of sums.
 constexpr double most_values = 2147483648.0;
-constexpr std::string_view magic = "petzval-render-checkpoint/1\n";
+constexpr std::string_view magic = "petzval-render-checkpoint/2\n";
 
 template <class T>
 void append(std::string& bytes, const std::vector<T>& values) {
@@ -51,19 +51,20 @@ void require_same(std::string_view there, std::string_view here, const std::stri
 }
 
 std::vector<std::vector<double>*> sums_of(Film& film) {
-  return {&film.light, &film.met, &film.depth, &film.normal, &film.albedo};
+  return {&film.light, &film.half, &film.met, &film.depth, &film.normal, &film.albedo};
 }
 
 }  // namespace
 
-Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces) : window(pixels) {
-  const double values = static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + 5);
+Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces, bool noise) : window(pixels) {
+  const double values = static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + 6);
   if (values > most_values)
     throw InputError(
         fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
                     "pixels or bands would fit",
                     pixels.columns(), pixels.rows(), bands, values * 8 / 1073741824));
   light.assign(pixels.size() * static_cast<std::size_t>(bands), 0.0);
+  if (noise) half.assign(pixels.size(), 0.0);
   if (!first_surfaces) return;
   met.assign(pixels.size(), 0.0);
   depth.assign(pixels.size(), 0.0);
@@ -77,6 +78,7 @@ void write_checkpoint(const std::string& path, const Film& film, const std::stri
   bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   bytes += fingerprint;
   append(bytes, film.light);
+  append(bytes, film.half);
   append(bytes, film.met);
   append(bytes, film.depth);
   append(bytes, film.normal);
