@@ -24,6 +24,7 @@
 
 #include "raw_formats.h"
 #include "require.h"
+#include "table_formats.h"
 
 namespace petzval::fuzz {
 
@@ -256,6 +257,24 @@ const std::vector<Format>& formats() {
        {"<g>", "</g>", "<path d=\"M0 0h9v9z\"/>", "transform=\"scale(1e9)\"", "fill=\"none\"",
         "fill=\"#123\"", "rotate(30 1 2)", "A 3 4 5 0 1 6 7", "Z", "m", "&lt;", "<!--",
         "fill-rule=\"evenodd\"", "stroke=\"red\"", "<use href=\"#a\"/>", "%", "px"}},
+      {"isetmat",
+       try_iset_mat_table,
+       {std::string(4, '\xFF'), std::string(4, '\0'), std::string("\x0E\0\0\0", 4),
+        std::string("\x06\0\0\0", 4), "psf", "function", std::string("\0\0\0\0\0\0\xF8\x7F", 8)}},
+      {"isetparms",
+       try_isetparms,
+       {"wave=400:50:700;", "imgHeight=[0 1 2];", "imgHeightNum=1e9;", "'", "%", "[", "]", ":", "Inf", "NaN",
+        "\n", "psfSize=", "\xFF\xFE"}},
+      {"listing",
+       try_psf_listing,
+       {"Values are normalized.\n", "Data spacing is 1 mm.\n", "Data area is ", "Image grid size: 9 by 9\n",
+        "Center point is: row 2, column 3\n", "Center coordinates: 0, -1\n", "\t", "E+000", "\xFF\xFE",
+        "nan"}},
+      {"measured",
+       try_measured,
+       {"# focal_length_mm: 8\n", "# magnification: -0.1\n", "# object_distance_mm: 100\n", "field_mm",
+        "frequency_cpmm", ",", ";", "\n", "0,550,", "1e-300", "-"}},
+      {"kept", try_kept, {"null", "\"inf\"", "[]", "{}", "\"psf\":", "\"size\":", "1e400", "-1", ","}},
       {"packed", packed, {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
   };
   return all;

@@ -19,7 +19,8 @@ struct Format {
   std::vector<std::string> words;  ///< that mean something in the format
 };
 
-/// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng, polygons, svg.
+/// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng, polygons, svg, isetmat, isetparms, listing,
+/// measured, kept.
 const std::vector<Format>& formats();
 /// Null if there is none of that name.
 const Format* find_format(std::string_view name);

@@ -16,6 +16,8 @@ namespace {
 
 /// More heights or wavelengths than any lens is traced at.
 constexpr double longest_list = 100'000;
+/// Beyond all lengths, f-numbers and angles of lenses.
+constexpr double largest_number = 1e12;
 
 /// The right-hand side of an assignment.
 struct Assigned {
@@ -48,7 +50,10 @@ class Assignments {
     const Assigned* value = find(name);
     if (!value) return if_absent;
     if (value->quoted) fail(value->line, name + " is a text; a number would be right");
-    return number_in(*value, name, value->text);
+    const double number = number_in(*value, name, value->text);
+    if (std::abs(number) > largest_number && name != "objDist")
+      fail(value->line, fmt::format("{} is {}, which no lens has", name, number));
+    return number;
   }
 
   /// [a b c], a:step:b or a single number.
@@ -62,8 +67,13 @@ class Assignments {
     for (const std::string& word : split_words(without_blanks_about_colons(text))) {
       const std::vector<double> some = range_in(*value, name, word);
       all.insert(all.end(), some.begin(), some.end());
+      if (double(all.size()) > longest_list)
+        fail(value->line, fmt::format("{} has more than {:g} values", name, longest_list));
     }
     if (all.empty()) fail(value->line, name + " is an empty list");
+    for (const double number : all)
+      if (!(std::abs(number) <= largest_number))
+        fail(value->line, fmt::format("{} has {} in it", name, number));
     return all;
   }
 

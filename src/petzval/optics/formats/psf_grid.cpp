@@ -100,16 +100,18 @@ Psf psf_of_grid(const PsfGrid& grid, const PsfFrame& frame, double spacing_um) {
   psf.size = size_for(before, behind);
   psf.spacing_um = spacing_um;
   psf.values.assign(static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size), 0.0F);
+  // By the brightest sample first: units may be so large or small that the sum could not be divided by.
+  const double brightest = *std::max_element(grid.values.begin(), grid.values.end());
+  if (!(brightest > 0)) throw InputError("a PSF is dark throughout");
   double sum = 0;
-  for (const double value : grid.values) sum += value;
-  if (!(sum > 0)) throw InputError("a PSF is dark throughout");
-  const double scale = std::abs(sum - 1) <= sum_rounding ? 1 : 1 / sum;
+  for (const double value : grid.values) sum += value / brightest;
+  const bool normalised = std::abs(sum * brightest - 1) <= sum_rounding;
   for (int i = 0; i < grid.rows; ++i)
     for (int j = 0; j < grid.columns; ++j) {
       const int down = i - frame.centre_row, right = j - frame.centre_column;
       const int t = down * t_step.row + right * t_step.column, s = down * s_step.row + right * s_step.column;
       psf.values[static_cast<std::size_t>((t + psf.size / 2) * psf.size + s + psf.size / 2)] =
-          static_cast<float>(scale * grid.at(i, j));
+          static_cast<float>(normalised ? grid.at(i, j) : grid.at(i, j) / brightest / sum);
     }
   return psf;
 }

@@ -94,8 +94,10 @@ struct Header {
 
   /// Data area, spacing and samples say the same thing twice.
   void require_agreement() const {
-    if (!(std::isfinite(spacing_um) && spacing_um >= 0))
-      throw InputError(file, fmt::format("has a data spacing of {} µm", spacing_um));
+    constexpr double widest_um = 1e6;
+    if (!(spacing_um >= 0 && spacing_um <= widest_um))
+      throw InputError(
+          file, fmt::format("has a data spacing of {} µm; 0 to {} would be right", spacing_um, widest_um));
     constexpr double printed_digits = 0.01;
     if (area_um > 0 && spacing_um > 0 && columns > 0 &&
         std::abs(area_um / spacing_um / columns - 1) > printed_digits)

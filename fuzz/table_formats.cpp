@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "table_formats.h"
+
+#include <fmt/format.h>
+#include <petzval/base/text_lines.h>
+#include <petzval/optics/formats/iset_mat_table.h>
+#include <petzval/optics/formats/isetparms.h>
+#include <petzval/optics/formats/kept_beside.h>
+#include <petzval/optics/formats/measured.h>
+#include <petzval/optics/formats/psf_listing.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <optional>
+
+#include "require.h"
+
+namespace petzval::fuzz {
+
+namespace {
+
+/// Bytes as a file that has a path but no place on a disk.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view bytes) : descriptor_(memfd_create("fuzz", 0)) {
+    require(descriptor_ >= 0, "no file in memory");
+    require(write(descriptor_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
+            "a file in memory that cannot be written");
+  }
+  ~MemoryFile() { close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+template <typename Work>
+bool accepted(Work work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    require_one_line(error);
+    return false;
+  }
+  return true;
+}
+
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+bool same(const LensDataTable& a, const LensDataTable& b) {
+  return a.fields == b.fields && a.wavelengths_nm == b.wavelengths_nm && a.g_source_sr == b.g_source_sr &&
+         a.g_sensor_sr == b.g_sensor_sr && a.real_image_height_mm == b.real_image_height_mm &&
+         a.object_distance_mm == b.object_distance_mm && a.lens_name == b.lens_name;
+}
+
+/// What a table is in ISET's terms brings it back; if it has none, that is said in one line.
+void there_and_back(const LensDataTable& table) {
+  table.validate();
+  RayTraceData data;
+  if (accepted([&] { data = ray_trace_data(table); }))
+    require(same(table_of(data).table, table), "a table that comes back from ISET's terms as another");
+}
+
+}  // namespace
+
+bool try_iset_mat_table(std::string_view bytes) {
+  const MemoryFile file(bytes);
+  std::optional<LensDataTable> table;
+  const bool good = accepted([&] {
+    RayTraceReading reading;
+    reading.g_axis_sr = 0.1;
+    table = table_of(read_iset_mat_table(file.path()).data, reading).table;
+  });
+  if (good) there_and_back(*table);
+  return good;
+}
+
+bool try_isetparms(std::string_view bytes) {
+  std::optional<IsetParameters> read;
+  if (!accepted([&] { read = read_isetparms(decoded_text(bytes), "fuzz"); })) return false;
+  RayTraceData& data = read->data;
+  if (data.field_height_mm.size() * data.wavelengths_nm.size() > 1000) return true;
+  data.psf.assign(1, Psf{1, read->psf_spacing_um, {1.0F}, 1});
+  const IsetParameters again =
+      read_isetparms(isetparms_text(data, read->base_name, read->psf_size), "written by ourselves");
+  require(again.data.field_height_mm == data.field_height_mm &&
+              again.data.wavelengths_nm == data.wavelengths_nm && same(again.data.f_number, data.f_number) &&
+              same(again.data.magnification, data.magnification) &&
+              same(again.data.effective_focal_length_mm, data.effective_focal_length_mm) &&
+              same(again.data.object_distance_mm, data.object_distance_mm),
+          "written parameters that read back as others");
+  return true;
+}
+
+bool try_psf_listing(std::string_view bytes) {
+  Psf psf;
+  const bool good = accepted([&] {
+    const PsfListing listing = read_psf_listing(bytes, "fuzz");
+    psf = psf_of_grid(listing.grid, {PsfAway::down, listing.centre_row, listing.centre_column},
+                      listing.spacing_um > 0 ? listing.spacing_um : 1);
+  });
+  constexpr int largest = 256;
+  if (!good || psf.size > largest) return good;
+  const int size = psf.size + 2 - psf.size % 2;
+  const PsfListing again =
+      read_psf_listing(psf_listing_text(psf, size, 550, 1, "fuzz"), "written by ourselves");
+  const Psf back =
+      psf_of_grid(again.grid, {PsfAway::down, again.centre_row, again.centre_column}, again.spacing_um);
+  require(back.spacing_um == psf.spacing_um, "a listing of another spacing");
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j)
+      require(std::abs(back.at(i - psf.size / 2 + back.size / 2, j - psf.size / 2 + back.size / 2) -
+                       psf.at(i, j)) <= 1e-5F * psf.at(i, j),
+              "a listed PSF that reads back as another");
+  return true;
+}
+
+bool try_measured(std::string_view bytes) {
+  std::optional<MeasuredFile> read;
+  if (!accepted([&] { read = read_measured(bytes, "fuzz", "", ""); })) return false;
+  RayTraceReading reading;
+  reading.g_axis_sr = 0.1;
+  accepted([&] { table_of(read->data, reading).table.validate(); });
+  return true;
+}
+
+bool try_kept(std::string_view bytes) {
+  std::optional<LensDataTable> table;
+  if (!accepted([&] { table = table_of_kept(std::string(bytes)); })) return false;
+  const std::string text = kept_beside(*table);
+  require(kept_beside(table_of_kept(text)) == text, "what is kept is kept differently again");
+  return true;
+}
+
+}  // namespace petzval::fuzz
