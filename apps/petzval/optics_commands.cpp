@@ -8,6 +8,7 @@
 #include <petzval/base/units.h>
 #include <petzval/camera/camera.h>
 #include <petzval/optics/build.h>
+#include <petzval/optics/irradiance_formula.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_interpolation.h>
 #include <petzval/optics/table_layout.h>
@@ -174,6 +175,41 @@ nlohmann::ordered_json fit_json(const LensDataTable& table, const RadialProfiles
   return {{"kind", fit}, {"residuals", rows}};
 }
 
+/// What rays bring to the axis, and what formulas make of the f-number: at the reference wavelength's entry.
+struct AxialLight {
+  double traced_sr = 0, by_f_number_sr = 0, iset_sr = 0;
+};
+
+AxialLight axial_light(const LensDataTable& table) {
+  const FirstOrder& first = table.first_order;
+  std::size_t nearest = 0;
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+    if (std::abs(table.wavelengths_nm[w] - first.wavelength_nm) <
+        std::abs(table.wavelengths_nm[nearest] - first.wavelength_nm))
+      nearest = w;
+  return {table.g_sensor_sr[nearest], iset_irradiance_sr(first.f_number, first.magnification),
+          iset_irradiance_sr(first.working_f_number, first.magnification)};
+}
+
+nlohmann::ordered_json axial_light_json(const LensDataTable& table) {
+  const AxialLight light = axial_light(table);
+  return {{"g_sensor_sr", light.traced_sr},
+          {"by_f_number_sr", number_or_null(light.by_f_number_sr)},
+          {"by_isetcam_sr", number_or_null(light.iset_sr)}};
+}
+
+void print_axial_light(const LensDataTable& table) {
+  const AxialLight light = axial_light(table);
+  const auto line = [&](const char* what, double sr) {
+    if (std::isfinite(sr))
+      fmt::print("  {:<52} {:>9.5f} sr {:>+8.2f} %\n", what, sr, 100 * (sr / light.traced_sr - 1));
+  };
+  fmt::print("\nirradiance of a wall on the axis, per radiance\n  {:<52} {:>9.5f} sr\n", "g_sensor",
+             light.traced_sr);
+  line("π/(1 + 4N²(1 + |m|)²), N = f_number", light.by_f_number_sr);
+  line("the same as ISETCam takes it, N = working_f_number", light.iset_sr);
+}
+
 nlohmann::ordered_json info_json(const LensDataTable& table, const RadialProfiles& profiles,
                                  const std::string& fit) {
   const Fields::Kind kind = table.finite_object() ? Fields::Kind::object_height_mm : Fields::Kind::angle_deg;
@@ -182,6 +218,7 @@ nlohmann::ordered_json info_json(const LensDataTable& table, const RadialProfile
           {"object_distance_mm", number_or_null(table.object_distance_mm.value_or(INFINITY))},
           {"vertex_to_sensor_mm", table.vertex_to_sensor_mm},
           {"first_order", first_order_json(table.first_order)},
+          {"axial_light", axial_light_json(table)},
           {"field_definition", field_definition(kind)},
           {"distortion_reference", "paraxial image at first_order.wavelength_nm"},
           {"wavelengths_nm", table.wavelengths_nm},
@@ -244,6 +281,7 @@ void info(const InfoCommand& command, const Shared& shared) {
   const RadialProfiles profiles(table, fit);
   if (shared.json) return print_json(info_json(table, profiles, command.fit));
   print_header(table);
+  print_axial_light(table);
   print_rows(table);
   print_fit(table, profiles, command.fit);
 }

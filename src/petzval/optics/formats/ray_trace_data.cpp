@@ -5,6 +5,7 @@
 #include <petzval/numeric/interpolation.h>
 #include <petzval/optics/formats/kept_beside.h>
 #include <petzval/optics/formats/ray_trace_data.h>
+#include <petzval/optics/irradiance_formula.h>
 #include <petzval/optics/table_layout.h>
 
 #include <algorithm>
@@ -89,7 +90,7 @@ double g_axis_sr(const RayTraceData& data, const RayTraceReading& reading, bool 
   if (!(std::isfinite(n) && n > 0))
     throw InputError(
         fmt::format("the f-number is {}: without it the level of the light must be given (--g-axis)", n));
-  const double g = pi / (1 + 4 * n * n * (1 + m) * (1 + m));
+  const double g = iset_irradiance_sr(n, m);
   notes.push_back(
       fmt::format("the file says nothing of the level of the light: g_sensor on the axis is taken as "
                   "π/(1 + 4 N²(1 + |m|)²) = {:.5f} sr at f/{:.4g} (--g-axis sets another)",
