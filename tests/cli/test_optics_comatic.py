@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A strongly comatic lens, examples/comatic_table.py: the error that `image --tolerance` allows, against the exact method."""
+
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+from petzval_cli import ProgramTest
+from sample_files import spectral_exr
+
+EXAMPLE = pathlib.Path(__file__).parents[2] / "examples" / "comatic_table.py"
+ROWS, COLUMNS = 120, 160
+# The flare is 45 um long in the corners, nine pixels.
+OPTIONS = ["--optics", "comatic.h5", "--sensor", "128x96@5", "--wavelengths", "550", "--scene-angle", "5",
+           "--scene-distance", "inf", "--quiet"]
+
+
+class Comatic(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        subprocess.run([sys.executable, EXAMPLE, "made.h5"], cwd=self.folder, check=True)
+        self.assert_succeeds("optics", "import", "made.h5", "-o", "comatic.h5")
+
+    def check(self, values):
+        self.write("scene.exr", spectral_exr(COLUMNS, ROWS, [550], lambda row, column, band: values[row, column]))
+        self.assert_succeeds("image", "scene.exr", *OPTIONS, "--method", "exact", "-o", "exact.npy")
+        for tolerance in (1e-2, 1e-3, 1e-4):
+            self.assert_succeeds("image", "scene.exr", *OPTIONS, "--tolerance", tolerance, "-o", "product.npy")
+            error = self.json_of("compare", "product.npy", "exact.npy")["relative_l2"]
+            self.assertLessEqual(error, tolerance)
+
+    def test_texture(self):
+        self.check(np.random.default_rng(1857).random((ROWS, COLUMNS)))
+
+    def test_tilted_checkerboard(self):
+        row, column = np.indices((ROWS, COLUMNS))
+        across, down = 0.97 * column - 0.25 * row, 0.25 * column + 0.97 * row
+        self.check(np.where((np.rint(across / 9) + np.rint(down / 9)) % 2 == 0, 1.0, 0.02))
+
+    def test_the_flare_points_away_and_opens(self):
+        """A star to the right: its light is densest at the chief ray, and flares 3 A to the right, 2 A wide at its end."""
+        values = np.zeros((121, 161))
+        values[60, 120] = 1
+        self.write("star.exr", spectral_exr(161, 121, [550], lambda row, column, band: values[row, column]))
+        self.assert_succeeds("image", "star.exr", *OPTIONS, "--surround", "zero", "-o", "s.npy")
+        picture = np.load(self.folder / "s.npy")[:, :, 0]
+        rows, columns = np.indices(picture.shape)
+        middle = (columns * picture).sum() / picture.sum()
+        row, column = np.unravel_index(picture.argmax(), picture.shape)
+        self.assertGreater(middle, column + 1)
+        self.assertAlmostEqual((rows * picture).sum() / picture.sum(), 47.5, delta=0.6)
+        spread = [np.sqrt((picture[:, part] * (rows[:, part] - 47.5) ** 2).sum() / picture[:, part].sum())
+                  for part in (slice(0, int(middle)), slice(int(middle), None))]
+        self.assertGreater(spread[1], 1.3 * spread[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
