@@ -21,6 +21,20 @@ std::string lens_line(const render::SceneCamera& camera, const std::vector<doubl
                      render::hash_text(indices));
 }
 
+std::string table_text(const CoatingReflectance& coating) {
+  std::string text;
+  for (const auto& [nm, reflectance] : coating.table) text += fmt::format(" {}:{}", nm, reflectance);
+  return text;
+}
+
+std::string losses_line(const Losses& losses) {
+  std::string text = fmt::format("losses fresnel {} absorption {}", losses.fresnel, losses.absorption);
+  if (losses.air_glass) text += " air_glass" + table_text(*losses.air_glass);
+  for (const auto& [surface, coating] : losses.surfaces)
+    text += fmt::format(" surfaces[{}]", surface) + table_text(coating);
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& scene,
@@ -44,7 +58,7 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
                               : fmt::format("perspective, lens radius {}", camera.perspective.lens_radius),
                   choice.sampling);
   text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
-  text += lens_line(camera, nm);
+  text += lens_line(camera, nm) + losses_line(camera.options.losses);
   return text + render::scene_files_fingerprint(scene.description);
 }
 

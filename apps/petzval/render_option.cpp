@@ -64,6 +64,11 @@ PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wav
   prepared.description = render::read_scene_description(
       find_data_file("scenes", ".pbrt", choice.scene, "three-dimensional scene"), unsupported);
   prepared.camera = render::set_up_camera(prepared.description, camera_choice(choice, shared), unsupported);
+  if (choice.losses.any()) {
+    if (!prepared.camera.lens)
+      throw InputError("reflection and absorption belong to a lens; --lens names one");
+    prepared.camera.options.losses = choice.losses.losses(*prepared.camera.lens, shared);
+  }
   prepared.path = path_options(choice, prepared.description, unsupported);
   const render::WavelengthGroups groups(
       choice.wavelengths.empty() ? wavelengths_nm : parse_wavelengths_nm(choice.wavelengths));
@@ -77,6 +82,7 @@ void RenderChoice::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene in the text format of pbrt-v4, or the name of a bundled one")
       ->required();
   lens.add_to(command, false, false);
+  losses.add_to(command);
   command.add_option("--film-diagonal", film_diagonal_mm, "Of the film, corner to corner [mm]");
   command.add_option("--aperture-diameter", aperture_diameter_mm, "Of the stop [mm]");
   command.add_option("--f-number", f_number, "Stop down to this paraxial f-number at infinity");

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "command.h"
+#include "loss_option.h"
 
 namespace petzval::app {
 
@@ -17,6 +18,7 @@ namespace petzval::app {
 struct RenderChoice {
   std::string scene;
   LensChoice lens;
+  LossChoice losses;
   bool pinhole = false, absolute_spectra = false;
   std::string sensor, size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
   std::optional<double> film_diagonal_mm, aperture_diameter_mm, f_number, film_distance_mm, focus_distance_m;

@@ -85,6 +85,19 @@ class Render(ProgramTest):
                                "4", "-o", "y.npy")
         self.assertAlmostEqual(picture["film_distance_mm"], said["film_distance_mm"], delta=1e-9)
 
+    def test_counts_what_the_lens_takes(self):
+        def mean(*options):
+            return self.json_of("render", "s.pbrt", *LENS, "--spp", "16", *options, "-o", "a.npy")["mean_irradiance"]
+        clear = mean()
+        # Eight of the ten refracting surfaces lie between air and glass.
+        self.assertAlmostEqual(mean("--coating", "0.01") / clear, 0.99 ** 8, delta=1e-4)
+        # Each takes 6 to 7 % at right angles, for indices of 1.6 to 1.72, and more at the rim.
+        bare = mean("--fresnel") / clear
+        self.assertTrue(0.5 < bare < 0.94 ** 8, bare)
+        (self.folder / "c.csv").write_text("wavelength_nm,air_glass\n400,0\n700,0\n")
+        self.assertAlmostEqual(mean("--coating", "c.csv", "--fresnel") / clear, 1, delta=1e-3)  # cement: 4e-4
+        self.assert_refused("render", "s.pbrt", "--fresnel", "-o", "a.npy", words=["--lens"])
+
     def test_ends_at_a_noise(self):
         noisy = self.json_of("render", "s.pbrt", *LENS, "--noise", "0.1", "-o", "a.npy")
         quiet = self.json_of("render", "s.pbrt", *LENS, "--noise", "0.03", "--threads", "1", "-o", "b.npy")

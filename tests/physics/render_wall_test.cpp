@@ -58,27 +58,67 @@ Measured patch(const World& world, const LensCamera& camera, const SensorGeometr
   return result;
 }
 
-/// Light through a lens onto a film point at a height [mm] above the axis, for each wavelength, by both ways.
+/// The film point at a height [mm] above the axis and a patch about it, of pixels so small that g_sensor does
+/// not change over one.
+struct FilmPoint {
+  static constexpr double pitch_mm = 0.005;
+  static constexpr int reach = 8;
+  SensorGeometry film;
+  int row;
+  double height_mm;
+
+  explicit FilmPoint(double wanted_mm)
+      : film{2 * reach + 1, 2 * static_cast<int>(std::ceil(wanted_mm / pitch_mm)) + 2 * reach + 3, 5},
+        row(static_cast<int>(std::lround(film.rows / 2.0 + wanted_mm / pitch_mm - 0.5))),
+        height_mm(film.y_mm(row + 0.5)) {}
+
+  Measured wall(const World& world, const LensCamera& camera, int samples) const {
+    return patch(world, camera, film, reach, row, reach, samples);
+  }
+};
+
+void expect_agreement(const Measured& wall, std::size_t band, double g, const std::string& where) {
+  const double error = wall.standard_error[band];
+  EXPECT_LT(error, 1e-3 * g) << where;
+  EXPECT_NEAR(wall.mean[band], g, 3 * error + 2e-4 * g) << where;
+}
+
+/// Light through a lens onto a film point, for each wavelength, by both ways.
 void expect_wall_is_g_sensor(const Lens& lens, double height_mm, const std::vector<double>& wavelengths_nm,
                              int samples = 32) {
   const auto world = world_of(surround, wavelengths_nm);
-  // Pixels so small that g_sensor does not change over one.
-  constexpr double pitch_mm = 0.005;
-  constexpr int reach = 8;
-  const SensorGeometry film{2 * reach + 1,
-                            2 * static_cast<int>(std::ceil(height_mm / pitch_mm)) + 2 * reach + 3, 5};
-  const LensCamera camera(lens, film, world->groups);
-  const int row = static_cast<int>(std::lround(film.rows / 2.0 + height_mm / pitch_mm - 0.5));
-  const double h = film.y_mm(row + 0.5);
-  const Measured wall = patch(*world, camera, film, reach, row, reach, samples);
+  const FilmPoint point(height_mm);
+  const Measured wall = point.wall(*world, LensCamera(lens, point.film, world->groups), samples);
   for (std::size_t b = 0; b < wavelengths_nm.size(); ++b) {
     const Tracer tracer(lens, wavelengths_nm[b]);
     // Counting on a grid of directions knows nothing of pupils; its error is about 2 · 1500^−1.5 relative.
-    const double g = counted_g_sensor_sr(tracer, std::abs(h), 1500);
-    const double error = wall.standard_error[b];
-    EXPECT_LT(error, 1e-3 * g) << lens.name << " at " << h << " mm";
-    EXPECT_NEAR(wall.mean[b], g, 3 * error + 2e-4 * g)
-        << lens.name << " at " << h << " mm, " << wavelengths_nm[b] << " nm";
+    const double g = counted_g_sensor_sr(tracer, std::abs(point.height_mm), 1500);
+    expect_agreement(wall, b, g, lens.name + " at " + std::to_string(point.height_mm) + " mm");
+  }
+}
+
+/// The same with losses, against `lens illumination`, which follows every ray of its quadrature through every
+/// surface.
+void expect_lossy_wall_is_g_sensor(const Lens& lens, double height_mm, const Losses& losses, int samples) {
+  const std::vector<double> wavelengths{430, 550, 660};
+  const auto world = world_of(surround, wavelengths);
+  const FilmPoint point(height_mm);
+  LensCameraOptions options;
+  options.losses = losses;
+  const Measured wall = point.wall(*world, LensCamera(lens, point.film, world->groups, options), samples);
+  for (std::size_t b = 0; b < wavelengths.size(); ++b) {
+    FieldTracer fields(lens, wavelengths[b]);
+    fields.set_losses(losses);
+    // Object angles and image heights go with, object heights against each other.
+    const double height = lens.object_distance_mm ? -std::abs(point.height_mm) : std::abs(point.height_mm);
+    const auto field = fields.object_field_at_image_height(height);
+    ASSERT_TRUE(field) << lens.name << " at " << height;
+    const auto chief = fields.chief_ray(*field);
+    ASSERT_TRUE(chief);
+    const double g = fields.g_sensor_sr(*chief);
+    // Or the losses were not there: 0.2 % and more in every case.
+    EXPECT_LT(g, 0.998 * counted_g_sensor_sr(fields.tracer(), std::abs(point.height_mm), 500));
+    expect_agreement(wall, b, g, lens.name + " with losses at " + std::to_string(point.height_mm) + " mm");
   }
 }
 
@@ -101,6 +141,18 @@ TEST(WallThroughLens, IsGSensorWithDispersion) {
   Camera camera(read_lens("edmund-54852").lens);
   for (const double height : {0.0, 1.4, 2.7})
     expect_wall_is_g_sensor(camera.lens(), height, {430, 550, 660}, 256);
+}
+
+TEST(WallThroughLens, IsGSensorWithLosses) {
+  Losses bare, coated;
+  bare.fresnel = bare.absorption = true;
+  coated.air_glass = CoatingReflectance{{{400, 0.02}, {700, 0.005}}};
+  coated.surfaces[0] = CoatingReflectance::constant(0.1);
+  const Lens course = read_lens("dgauss-50mm").lens, dispersing = read_lens("edmund-54852").lens;
+  for (const Losses& losses : {bare, coated}) {
+    for (const double height : {0.0, 15.0}) expect_lossy_wall_is_g_sensor(course, height, losses, 32);
+    for (const double height : {0.0, 2.7}) expect_lossy_wall_is_g_sensor(dispersing, height, losses, 256);
+  }
 }
 
 TEST(WallThroughLens, IsTheSameByTheSamplerOf2006) {

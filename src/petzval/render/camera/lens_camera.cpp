@@ -45,7 +45,11 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     to_scene_.push_back(kernel_path<double>(tracer, true, Tracer::Clip::apertures));
     if (disperses_) to_film_.emplace_back(tracer, RadianceTracer::Direction::forward);
   }
-  if (options.sampling == LensCameraOptions::Sampling::exit_pupil) find_regions(lens);
+  if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
+    ExitPupilRegions regions = find_regions(lens);
+    if (options.losses.any()) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
+    if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_ = std::move(regions);
+  }
 
   const Surface& last = lens.surfaces.back();
   rear_distance_mm_ = last.thickness_mm;
@@ -58,15 +62,15 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
 }
 
 /// The pupils of the ends and the middle of the spectrum hold those between.
-void LensCamera::find_regions(const Lens& lens) {
+ExitPupilRegions LensCamera::find_regions(const Lens& lens) const {
   std::vector<Tracer> ends{tracers_.front()};
   if (disperses_) ends = {tracers_.front(), tracers_[tracers_.size() / 2], tracers_.back()};
   const double corner_mm =
       film_.half_diagonal_mm() + std::sqrt(2) * options_.margin_pixels * film_.pitch_um * mm_per_um;
-  regions_.emplace(ends, corner_mm * corner_margin);
+  ExitPupilRegions regions(ends, corner_mm * corner_margin);
   constexpr int probes = 64;
   for (int i = 0; i <= probes; ++i)
-    if (regions_->area_sr(0, corner_mm * i / probes) > 0) return;
+    if (regions.area_sr(0, corner_mm * i / probes) > 0) return regions;
   throw InputError(
       fmt::format("{}: no light reaches the film, {:.4g} mm behind the lens and {:.4g} mm from corner to "
                   "corner; another film distance or a wider stop would be right",
@@ -112,12 +116,14 @@ struct LensCamera::Led {
   RayBatch batch;                  ///< from the film, later in front of the lens
   std::vector<double> density;     ///< [1/sr]
   std::vector<std::uint8_t> passes;
+  /// Where on the film each began, and in which direction its light comes in, if that is still wanted.
+  std::vector<double> x_mm, y_mm, alpha, beta;
 };
 
 void LensCamera::trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
                        std::span<CameraRay> rays) const {
   const int lanes = groups_.lanes(group);
-  Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}};
+  Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}, {}, {}, {}, {}};
   for (led.hero = 0; led.hero < (disperses_ ? lanes : 1); ++led.hero) {
     led.which.clear();
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -143,6 +149,11 @@ void LensCamera::launch(Led& led) const {
     batch.n[k] = any ? -std::sqrt(n2) : -1;
     led.density[k] = any ? 1 / direction.area : 0;
   }
+  if (!transmittance_) return;
+  led.x_mm = batch.x_mm, led.y_mm = batch.y_mm;
+  led.alpha = batch.l, led.beta = batch.m;
+  for (std::vector<double>* cosines : {&led.alpha, &led.beta})
+    for (double& cosine : *cosines) cosine = -cosine;
 }
 
 void LensCamera::trace_led(Led& led) const {
@@ -165,6 +176,22 @@ void LensCamera::trace_led(Led& led) const {
     ray.weight_alone = static_cast<float>(led.lanes / led.density[k]);
   }
   if (disperses_) share_among_wavelengths(led);
+  if (transmittance_) dim(led);
+}
+
+/// What the lens itself takes: from the hero, or from all where they go the same way.
+void LensCamera::dim(const Led& led) const {
+  for (std::size_t k = 0; k < led.which.size(); ++k) {
+    CameraRay& ray = led.rays[led.which[k]];
+    if (!ray.passes) continue;
+    for (int lane = 0; lane < led.lanes; ++lane) {
+      if (disperses_ && lane != led.hero) continue;
+      const double through = transmittance_->at(static_cast<std::size_t>(groups_.band(led.group, lane)),
+                                                led.x_mm[k], led.y_mm[k], led.alpha[k], led.beta[k]);
+      ray.weight[lane] *= static_cast<float>(through);
+      if (lane == led.samples[led.which[k]].hero) ray.weight_alone *= static_cast<float>(through);
+    }
+  }
 }
 
 namespace {
@@ -185,6 +212,15 @@ RadianceRays turned_round(const RayBatch& rays, std::span<const std::size_t> whi
 }
 
 }  // namespace
+
+/// Of the k-th ray's light at a wavelength, where that lands.
+float LensCamera::through(const Led& led, int lane, const RadianceRays& landed, std::size_t k) const {
+  if (!transmittance_) return 1;
+  return static_cast<float>(
+      transmittance_->at(static_cast<std::size_t>(groups_.band(led.group, lane)),
+                         static_cast<double>(landed.x_mm[k]), static_cast<double>(landed.y_mm[k]),
+                         static_cast<double>(landed.l[k]), static_cast<double>(landed.m[k])));
+}
 
 void LensCamera::share_among_wavelengths(const Led& led) const {
   std::vector<std::size_t> passing;  // in the order of led.which
@@ -222,7 +258,7 @@ void LensCamera::share_among_wavelengths(const Led& led) const {
       if (passes && led.sampling.pixel_at(led.samples[led.which[passing[k]]], static_cast<double>(column),
                                           static_cast<double>(row)))
         sum[k] += density[k];
-      rays[k]->weight[lane] = passes ? 1.0f : 0.0f;
+      rays[k]->weight[lane] = passes ? through(led, lane, landed, k) : 0;
       rays[k]->column[at] = column;
       rays[k]->row[at] = row;
     }

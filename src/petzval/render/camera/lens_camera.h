@@ -7,6 +7,7 @@
 #include <petzval/sensor/sensor.h>
 #include <petzval/trace/exit_pupil_region.h>
 #include <petzval/trace/kernel_path.h>
+#include <petzval/trace/pupil_transmittance.h>
 #include <petzval/trace/radiance_tracer.h>
 
 #include <memory>
@@ -22,6 +23,7 @@ struct LensCameraOptions {
   enum class Sampling { exit_pupil, rear_disk };
   Sampling sampling = Sampling::exit_pupil;
   double scene_units_per_mm = 1e-3;
+  Losses losses;  ///< reflection and absorption in the lens; none unless set
   /// How far outside of the film's frame light may be asked for: half of what a low-pass filter parts
   /// [pixels].
   double margin_pixels = 0;
@@ -50,12 +52,14 @@ class LensCamera final : public FilmCamera {
     double alpha = 0, beta = 0, area = 0;  ///< direction cosines of travelling light; 1/density
   };
   struct Led;
-  void find_regions(const Lens& lens);
+  ExitPupilRegions find_regions(const Lens& lens) const;
   Start start(double x_mm, double y_mm, double u, double v) const;
   void densities(const PupilDirections& directions, float* per_sr) const;
   void launch(Led& led) const;
   void trace_led(Led& led) const;
   void share_among_wavelengths(const Led& led) const;
+  float through(const Led& led, int lane, const RadianceRays& landed, std::size_t k) const;
+  void dim(const Led& led) const;
   std::size_t band(int group, int lane) const;
 
   SensorGeometry film_;
@@ -65,7 +69,8 @@ class LensCamera final : public FilmCamera {
   std::vector<KernelPath<double>> to_scene_;  ///< of each tracer
   std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
   bool disperses_ = false;
-  std::optional<ExitPupilRegions> regions_;
+  std::optional<ExitPupilRegions> regions_;  ///< that directions are drawn from
+  std::optional<PupilTransmittance> transmittance_;
   double rear_radius_mm_ = 0, rear_distance_mm_ = 0;
 };
 

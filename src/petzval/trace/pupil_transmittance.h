@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much of the light a lens lets through, by film point and direction: for a camera that asks millions of
+// times.
+#pragma once
+
+#include <petzval/numeric/even_surface.h>
+#include <petzval/trace/exit_pupil_region.h>
+#include <petzval/trace/losses.h>
+
+#include <span>
+#include <vector>
+
+namespace petzval {
+
+/// LensTransmittance, which changes little and smoothly over a pupil and a film, fitted for several
+/// wavelengths. Method: at evenly spaced film radii a polynomial of eighth degree in the direction cosines,
+/// by least squares over rays in and a little around the exit pupil; between radii linear.
+class PupilTransmittance {
+ public:
+  static constexpr std::size_t default_radii = 33;
+
+  /// \param tracers  one for each wavelength of `wavelengths_nm`, or one for all. \param regions  where light
+  /// arrives from; as far as its film radius. \throws InputError as LensTransmittance.
+  PupilTransmittance(const Lens& lens, std::span<const Tracer> tracers,
+                     std::span<const double> wavelengths_nm, const Losses& losses,
+                     const ExitPupilRegions& regions, std::size_t radii = default_radii);
+
+  /// 0…1, for light of one of the wavelengths that passes the lens and reaches a film point with direction
+  /// cosines (α, β). Film radii beyond the last have its transmittance.
+  double at(std::size_t wavelength, double x_mm, double y_mm, double alpha, double beta) const;
+
+ private:
+  double step_mm_;
+  /// [radius][wavelength]; of α across and β along the film point's meridian. Where no light arrives: those
+  /// of the next radius inside.
+  std::vector<std::vector<EvenSurface>> fits_;
+};
+
+}  // namespace petzval
