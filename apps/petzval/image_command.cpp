@@ -322,6 +322,7 @@ std::optional<Shot> write_outputs(const ImageCommand& command, const SpectralIma
     } else if (extension == ".png" && !command.shot.develops(sensor)) {
       PictureOptions options;
       options.scene_white = usable_white(image, scene, shared);
+      options.false_colour = true;
       note(shared,
            fmt::format("{}: {}", path, write_picture(files.stage(path), image, options, command.shot.bits)));
     }

@@ -81,6 +81,7 @@ void write_scene_picture(const std::string& path, const Scene& scene) {
   PictureOptions options;
   options.scene_white = scene.illuminant;
   options.monochrome_in_colour = true;
+  options.false_colour = true;
   write_picture(path, image, options);
 }
 

@@ -43,10 +43,10 @@ void take_size(const std::string& text, SceneOptions& options) {
 }  // namespace
 
 void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
-  CLI::Option* option =
-      command.add_option(positional ? "scene" : "--scene", path_or_name,
-                         "ISET .mat, spectral .exr, a photograph (.png, .jpg, .tif), or a chart's name "
-                         "(petzval scene list)");
+  CLI::Option* option = command.add_option(
+      positional ? "scene" : "--scene", path_or_name,
+      "ISET .mat, spectral .exr, ENVI .hdr, NumPy .npy, a photograph (.png, .jpg, .tif), or a chart's name "
+      "(petzval scene list)");
   if (required) option->required();
   command.add_option("--scene-angle", angle, "Full horizontal angle of the scene [degrees]");
   command.add_option("--scene-distance", distance, "Distance from the sensor plane [m], or inf");
@@ -54,12 +54,28 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
                      "Mean luminance [cd/m2], of the whole spectrum whatever --wavelengths takes from it");
   command.add_option("--scene-size", size, "Samples of a chart: 768x576");
   command.add_option("--wavelengths", wavelengths, "Bands [nm]: 400:10:700, or a list 450,550,650");
-  command.add_option("--illuminant", illuminant,
-                     "Light on a chart, a photograph or reflectances: D65, A, E, 3200K or a file");
+  command.add_option(
+      "--illuminant", illuminant,
+      "Light on a chart, a photograph or reflectances, or in place of a scene's own: D65, A, E, "
+      "3200K or a file");
   command
       .add_option("--scene-encoding", encoding,
                   "Numbers of a photograph: auto (its colour profile, else sRGB), srgb or linear")
       ->check(CLI::IsMember({"auto", "srgb", "linear"}));
+  add_cube_options(command);
+}
+
+void SceneChoice::add_cube_options(CLI::App& command) {
+  command.add_option("--scene-quantity", quantity, "What the numbers of an ENVI, NumPy or OpenEXR file are")
+      ->check(CLI::IsMember({"radiance", "reflectance", "emissivity", "temperature"}));
+  command.add_option("--scene-unit", unit, "Of such radiance: W.m^-2.sr^-1.nm^-1, uW/cm2/sr/nm or the like");
+  command.add_option("--scene-scale", scale, "Multiplies such numbers before anything else");
+  command.add_option("--scene-bands", file_bands,
+                     "Wavelengths of such a file that does not say them [nm]: 400:10:700");
+  command.add_flag("--scene-negative-zero", negative_is_zero, "Take such numbers below 0 for 0");
+  command.add_option("--scene-temperature", temperature, "Of all surfaces, for emissivities [K]");
+  command.add_option("--scene-emissivity", emissivity, "Of all surfaces, for a map of temperatures: 0 to 1");
+  command.add_option("--scene-background", background, "Temperature of what warm surfaces mirror [K]");
 }
 
 SceneOptions SceneChoice::options(SceneOptions defaults) const {
@@ -75,11 +91,26 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!size.empty()) take_size(size, options);
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
   if (!illuminant.empty()) options.illuminant = illuminant;
+  take_cube(options);
   if (!encoding.empty())
     options.encoding = encoding == "srgb"     ? PhotographEncoding::srgb
                        : encoding == "linear" ? PhotographEncoding::linear
                                               : PhotographEncoding::by_file;
   return options;
+}
+
+void SceneChoice::take_cube(SceneOptions& options) const {
+  if (!quantity.empty()) options.quantity = parse_scene_quantity(quantity);
+  options.radiance_unit = unit;
+  options.negative_is_zero = negative_is_zero;
+  if (!scale.empty()) options.scale = positive("--scene-scale", scale, "a positive number");
+  if (!file_bands.empty()) options.file_bands_nm = parse_wavelengths_nm(file_bands);
+  if (!temperature.empty())
+    options.thermal.temperature_k = positive("--scene-temperature", temperature, "kelvins above 0");
+  if (!background.empty())
+    options.thermal.background_k = positive("--scene-background", background, "kelvins above 0");
+  if (!emissivity.empty())
+    options.thermal.emissivity = positive("--scene-emissivity", emissivity, "a number above 0, up to 1,");
 }
 
 }  // namespace petzval::app

@@ -16,6 +16,8 @@ struct SceneChoice {
   std::string path_or_name;
   /// As typed; empty: not given.
   std::string angle, distance, luminance, size, wavelengths, illuminant, encoding;
+  std::string quantity, unit, scale, file_bands, temperature, emissivity, background;
+  bool negative_is_zero = false;
 
   /// Adds the positional SCENE (or `--scene` when `positional` is false) and the options.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
@@ -29,6 +31,10 @@ struct SceneChoice {
   bool is_chart() const { return is_builtin_scene(path_or_name); }
   /// Whether it takes any angle and distance: a chart or a photograph.
   bool is_open() const { return is_open_scene(path_or_name); }
+
+ private:
+  void add_cube_options(CLI::App& command);
+  void take_cube(SceneOptions& options) const;
 };
 
 }  // namespace petzval::app

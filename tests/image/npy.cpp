@@ -107,7 +107,7 @@ TEST(Npy, RefusesWhatItCannotHold) {
   EXPECT_TRUE(refused("{'descr': '<f4', 'fortran_order': False, 'shape': (-2,)}", 8));
   EXPECT_TRUE(refused("{'descr': '<f4', 'fortran_order': False, 'shape': (2 1)}", 8));
   EXPECT_TRUE(refused("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 2)}", 8));
-  EXPECT_TRUE(refused("{'descr': '<i4', 'fortran_order': False, 'shape': (2,)}", 8));
+  EXPECT_TRUE(refused("{'descr': '<i8', 'fortran_order': False, 'shape': (2,)}", 16));
   EXPECT_TRUE(refused("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (2,)}", 8));
   EXPECT_TRUE(refused("{'descr': '<f4', 'shape': (2,)}", 8));
   // Sizes whose product wraps around 2^64 to a small number, and absurd ones.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/colour/colour_map.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/picture.h>
 
@@ -169,6 +170,33 @@ TEST(Picture, RefusesNanAndSenselessOptions) {
   EXPECT_THROW(srgb_picture(image, {}, 12), InputError);
   image.at(3, 2, 1) = std::nanf("");
   EXPECT_THROW(srgb_picture(image), InputError);
+}
+
+TEST(Picture, WarmthIsShownInFalseColours) {
+  SpectralImage image(5, 1, {9000, 10000, 11000}, 10);
+  const float levels[] = {4, 4.25f, 4.5f, 4.75f, 5};
+  for (int band = 0; band < 3; ++band) std::copy(levels, levels + 5, image.band(band).begin());
+  PictureOptions options;
+  options.percentile = 100;
+  options.false_colour = true;
+  const PngImage picture = srgb_picture(image, options);
+  const std::array<Rgb8, 256> map = colour_table(ColourMap::inferno);
+  for (std::size_t i = 0; i < 5; ++i) {
+    // The darkest pixel is the map's first colour, the brightest its last, those between at even places.
+    const Rgb8 colour = map[(255 * i + 2) / 4];
+    EXPECT_EQ(picture.samples[3 * i], colour.r) << i;
+    EXPECT_EQ(picture.samples[3 * i + 1], colour.g) << i;
+    EXPECT_EQ(picture.samples[3 * i + 2], colour.b) << i;
+  }
+  // 2000 nm wide: 4 and 5 W/m2/nm are 8000 and 10000 W/m2.
+  EXPECT_EQ(PictureRenderer(image, options).description(),
+            "false colours from 8000 to 1e+04 W/m2, the 100th percentile");
+  // Visible light is not touched.
+  SpectralImage visible(1, 1, {500, 550, 600}, 10);
+  for (int band = 0; band < 3; ++band) visible.band(band)[0] = 1;
+  PictureOptions plain;
+  plain.percentile = 100;
+  EXPECT_EQ(srgb_picture(visible, options).samples, srgb_picture(visible, plain).samples);
 }
 
 }  // namespace

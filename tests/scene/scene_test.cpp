@@ -108,9 +108,9 @@ TEST(SceneResampling, IsLinearAndKeepsWhatElseThereIs) {
   scene.name = "ramp";
   scene.depth_m = {1, 2};
   scene.illuminant = Spectrum({400, 700}, {1, 1});
-  const Scene result = scene.resampled(std::vector<double>{400, 450, 600, 650, 700});
-  ASSERT_EQ(result.bands(), 5);
-  for (int band = 0; band < 5; ++band) {
+  const Scene result = scene.resampled(std::vector<double>{400, 450, 500, 600, 650, 700});
+  ASSERT_EQ(result.bands(), 6);
+  for (int band = 0; band < 6; ++band) {
     // A straight line is reproduced, up to single precision at 700.
     EXPECT_NEAR(result.band(band)[0], result.wavelengths_nm()[static_cast<std::size_t>(band)], 1e-4);
     EXPECT_EQ(result.band(band)[1], 1);

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/colour/colour_map.h>
 #include <petzval/image/picture.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -53,6 +55,27 @@ double percentile_of(std::vector<float>& levels, double percent) {
   return level > 0 ? level : *std::max_element(levels.begin(), levels.end());
 }
 
+/// The largest level that `percent` % of the levels and no more do not reach.
+double level_not_reached(std::vector<float>& levels, double percent) {
+  const auto index = static_cast<std::ptrdiff_t>(percent / 100 * static_cast<double>(levels.size() - 1));
+  std::nth_element(levels.begin(), levels.begin() + index, levels.end());
+  return levels[static_cast<std::size_t>(index)];
+}
+
+/// Linear sRGB of a map's colours, by place from 0 to 1.
+LinearRgb false_colour(double place) {
+  static const std::array<LinearRgb, 256> colours = [] {
+    std::array<LinearRgb, 256> linear{};
+    const std::array<Rgb8, 256> table = colour_table(ColourMap::inferno);
+    std::transform(table.begin(), table.end(), linear.begin(), [](Rgb8 colour) {
+      return LinearRgb{srgb_decoded(colour.r / 255.0), srgb_decoded(colour.g / 255.0),
+                       srgb_decoded(colour.b / 255.0)};
+    });
+    return linear;
+  }();
+  return colours[static_cast<std::size_t>(std::lround(255 * std::clamp(place, 0.0, 1.0)))];
+}
+
 double mean_of(const std::vector<float>& levels) {
   double sum = 0;
   for (const float level : levels) sum += level;
@@ -91,6 +114,7 @@ PictureRenderer::PictureRenderer(const SpectralImage& image, const PictureOption
   if (image.bands() == 0) throw InputError("an image without bands cannot be shown");
   image.validate();
   weights_ = level_weights(image.wavelengths_nm(), visible_);
+  false_colour_ = !visible_ && options.false_colour;
   grey_ = !visible_ || (image.bands() == 1 && !options.monochrome_in_colour);
   display_from_xyz_ = srgb_from_xyz();
   if (options.scene_white && !grey_ && image.bands() > 1)
@@ -123,6 +147,12 @@ double PictureRenderer::level_for(const PictureOptions& options, std::vector<flo
     return 1;
   }
   description_ = fmt::format("white is {:.4g} {}, {}", level, unit, rule);
+  if (!false_colour_) return level;
+  if (options.exposure == PictureOptions::Exposure::percentile) {
+    const double low = level_not_reached(levels, 100 - options.percentile);
+    black_level_ = low < level ? low : 0;
+  }
+  description_ = fmt::format("false colours from {:.4g} to {:.4g} {}, {}", black_level_, level, unit, rule);
   return level;
 }
 
@@ -147,6 +177,10 @@ void PictureRenderer::linear_row(int row, std::span<LinearRgb> pixels) const {
       sums[i] = sums[i] + static_cast<double>(values[i]) * weight;
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (false_colour_) {
+      pixels[i] = false_colour((white_level_ * sums[i].y - black_level_) / (white_level_ - black_level_));
+      continue;
+    }
     const Xyz rgb = grey_ ? Xyz{sums[i].y, sums[i].y, sums[i].y} : display_from_xyz_ * sums[i];
     pixels[i] = {rgb.x, rgb.y, rgb.z};
   }

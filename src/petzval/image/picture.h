@@ -36,6 +36,11 @@ struct PictureOptions {
   /// An image of a single band has no colour but that of the band. It is shown in grey, or, if this is set,
   /// in the colour of the wavelength as far as sRGB can show it (what lies outside the gamut is clipped).
   bool monochrome_in_colour = false;
+
+  /// An image without visible light is shown in grey, from nothing to the white level, or, if this is set, in
+  /// false colours (ColourMap::inferno). With the exposure `percentile` these run from the level that
+  /// 100 − percentile % of the pixels do not reach: a warm scene has little contrast over much light.
+  bool false_colour = false;
 };
 
 /// An image made ready to be shown: the exposure is settled, rows come out one by one. It refers to the
@@ -58,10 +63,11 @@ class PictureRenderer {
   double level_for(const PictureOptions& options, std::vector<float> levels);
 
   const SpectralImage& image_;
-  bool visible_ = true, grey_ = false;
+  bool visible_ = true, grey_ = false, false_colour_ = false;
   std::vector<Xyz> weights_;  ///< of each band, in the unit of the level
   ColourMatrix display_from_xyz_{};
   double white_level_ = 1;
+  double black_level_ = 0;  ///< of false colours
   std::string description_;
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/colour/band_resampling.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/scene.h>
 
@@ -11,9 +13,6 @@
 namespace petzval {
 
 namespace {
-
-/// Wavelengths that differ by less than this are the same one [nm]: a file's rounding, not another colour.
-constexpr double same_wavelength_nm = 1e-6;
 
 void check_wavelengths(std::span<const double> wavelengths_nm) {
   if (wavelengths_nm.empty()) throw InputError("a scene needs at least one wavelength");
@@ -35,24 +34,6 @@ void check_distance(std::optional<double> distance_m) {
   if (distance_m && !(*distance_m > 0 && std::isfinite(*distance_m)))
     throw InputError(
         fmt::format("a scene at {} m; a positive distance or none (infinity) would be right", *distance_m));
-}
-
-/// A wavelength among others: between `lower` and `lower + 1`, `fraction` of the way.
-struct BandPosition {
-  int lower = 0;
-  double fraction = 0;
-};
-
-BandPosition band_position(const std::vector<double>& bands_nm, double wavelength_nm) {
-  if (!(wavelength_nm >= bands_nm.front() - same_wavelength_nm &&
-        wavelength_nm <= bands_nm.back() + same_wavelength_nm))
-    throw InputError(fmt::format("the scene has no radiance at {} nm; its bands reach from {} to {} nm",
-                                 wavelength_nm, bands_nm.front(), bands_nm.back()));
-  const auto above = std::upper_bound(bands_nm.begin(), bands_nm.end(), wavelength_nm);
-  if (above == bands_nm.end()) return {static_cast<int>(bands_nm.size()) - 1, 0.0};
-  if (above == bands_nm.begin()) return {0, 0.0};
-  const double below = *(above - 1);
-  return {static_cast<int>(above - bands_nm.begin()) - 1, (wavelength_nm - below) / (*above - below)};
 }
 
 }  // namespace
@@ -145,22 +126,24 @@ void Scene::scale(double factor) {
 
 Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
   check_wavelengths(wavelengths_nm);
-  std::vector<BandPosition> positions;
-  for (double wavelength : wavelengths_nm) positions.push_back(band_position(wavelengths_nm_, wavelength));
-
+  const BandResampling resampling(wavelengths_nm_, wavelengths_nm);
   Scene result(columns_, rows_, {wavelengths_nm.begin(), wavelengths_nm.end()}, horizontal_angle_deg_,
                distance_m_);
   result.name = name;
   result.illuminant = illuminant;
+  if (illuminant && illuminant->front_nm() <= wavelengths_nm.front() &&
+      illuminant->back_nm() >= wavelengths_nm.back())
+    result.illuminant = petzval::resampled(*illuminant, wavelengths_nm);  // as the radiance of a white is
   result.depth_m = depth_m;
-  for (int index = 0; index < result.bands(); ++index) {
-    const auto [lower, fraction] = positions[static_cast<std::size_t>(index)];
-    const std::span<const float> below = band(lower);
-    const std::span<const float> above = band(std::min(lower + 1, bands() - 1));
-    const std::span<float> out = result.band(index);
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = static_cast<float>((1 - fraction) * below[i] + fraction * above[i]);
-  }
+  parallel_for(resampling.bands(), [&](std::size_t index) {
+    const std::span<float> out = result.band(static_cast<int>(index));
+    std::vector<double> sums(out.size(), 0.0);
+    for (const auto& [from, weight] : resampling.terms(index)) {
+      const std::span<const float> values = band(static_cast<int>(from));
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += weight * static_cast<double>(values[i]);
+    }
+    std::transform(sums.begin(), sums.end(), out.begin(), [](double sum) { return static_cast<float>(sum); });
+  });
   return result;
 }
 

@@ -62,7 +62,8 @@ class Scene {
   void set_mean_luminance_cd_m2(double luminance);
   /// Multiplies all radiance and the illuminant. \throws InputError unless the factor is positive and finite.
   void scale(double factor);
-  /// The scene at other wavelengths: linear between its bands. \throws InputError for one outside the bands.
+  /// The scene at other wavelengths, its radiance kept (BandResampling). \throws InputError for one outside
+  /// the bands.
   Scene resampled(std::span<const double> wavelengths_nm) const;
   /// \throws InputError at the first NaN, infinity or negative radiance, naming band, row and column.
   void validate() const;

@@ -5,8 +5,12 @@
 #include <petzval/base/error.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/scene/charts.h>
+#include <petzval/scene/formats/envi.h>
 #include <petzval/scene/formats/iset_mat.h>
+#include <petzval/scene/formats/name_file.h>
+#include <petzval/scene/formats/npy_scene.h>
 #include <petzval/scene/formats/scene_exr.h>
+#include <petzval/scene/illuminant_swap.h>
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
 
@@ -94,6 +98,22 @@ const Chart* find_chart(const std::string& text) {
   return chart == charts.end() ? nullptr : &*chart;
 }
 
+/// What only files of bare numbers leave open.
+void refuse_cube_options(const std::string& what, const SceneOptions& options) {
+  if (options.quantity || options.scale || !options.radiance_unit.empty() || !options.file_bands_nm.empty() ||
+      options.negative_is_zero)
+    throw InputError(what,
+                     "says what its numbers are; --scene-quantity, --scene-unit, --scene-scale, "
+                     "--scene-bands and --scene-negative-zero are for ENVI, NumPy and OpenEXR files");
+}
+
+void refuse_thermal_options(const std::string& what, const SceneOptions& options) {
+  if (options.thermal.temperature_k || options.thermal.background_k || options.thermal.emissivity != 1)
+    throw InputError(what,
+                     "is no thermal scene; --scene-temperature, --scene-emissivity and --scene-background "
+                     "are for emissivities and maps of temperature");
+}
+
 Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions& options) {
   const std::size_t colon = text.find(':');
   std::optional<double> parameter;
@@ -105,6 +125,8 @@ Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions
   if (options.encoding)
     throw InputError(
         fmt::format("scene {}: a chart has no encoding; --scene-encoding is for photographs", text));
+  refuse_cube_options("scene " + text, options);
+  refuse_thermal_options("scene " + text, options);
   Scene scene = chart.make(chart_options(options), parameter);
   scene.name = text;
   return scene;
@@ -132,34 +154,63 @@ Scene read_photograph_file(const std::string& path, const SceneOptions& options)
   return read_photograph_scene(path, photograph);
 }
 
+CubeOptions cube_options(const SceneOptions& options) {
+  CubeOptions cube;
+  cube.quantity = options.quantity;
+  cube.radiance_unit = options.radiance_unit;
+  cube.scale = options.scale.value_or(1);
+  cube.file_bands_nm = options.file_bands_nm;
+  cube.wavelengths_nm = options.wavelengths_nm;
+  cube.horizontal_angle_deg = options.horizontal_angle_deg;
+  if (!options.illuminant.empty()) cube.illuminant = illuminant(options.illuminant);
+  cube.thermal = options.thermal;
+  cube.negative_is_zero = options.negative_is_zero;
+  return cube;
+}
+
+Scene read_cube_file(const std::string& path, const std::string& extension, const SceneOptions& options) {
+  SpectralCube cube = extension == ".exr"   ? read_scene_exr(path)
+                      : extension == ".npy" ? read_npy_scene(path)
+                                            : read_envi(path);
+  const std::optional<SceneQuantity> quantity = options.quantity ? options.quantity : cube.quantity;
+  if (quantity == SceneQuantity::radiance || quantity == SceneQuantity::reflectance)
+    refuse_thermal_options(path, options);
+  return naming_file(path, [&] { return scene_of(std::move(cube), cube_options(options)); });
+}
+
+Scene read_mat_file(const std::string& path, const SceneOptions& options) {
+  refuse_cube_options(path, options);
+  refuse_thermal_options(path, options);
+  Scene scene = read_iset_mat(path, options.horizontal_angle_deg);
+  if (!options.illuminant.empty())
+    naming_file(path, [&] { swap_illuminant(scene, illuminant(options.illuminant)); });
+  return scene;
+}
+
 Scene read_spectral_file(const std::string& path, const SceneOptions& options) {
   const std::string extension = lower_extension(path);
-  if (extension != ".mat" && extension != ".exr")
+  if (extension != ".mat" && extension != ".exr" && extension != ".npy" && !is_envi_path(path))
     throw InputError(path,
-                     "a scene is an ISET .mat, a spectral .exr, a photograph (.png, .jpg, .tif) or a chart's "
-                     "name (petzval scene list)");
+                     "a scene is an ISET .mat, a spectral .exr, an ENVI .hdr, a NumPy .npy, a photograph "
+                     "(.png, .jpg, .tif) "
+                     "or a chart's name (petzval scene list)");
   if (options.encoding) throw InputError(path, "holds spectra; --scene-encoding is for photographs");
-  if (extension == ".exr") {
-    SceneExrOptions exr{options.horizontal_angle_deg, std::nullopt};
-    if (!options.illuminant.empty()) exr.illuminant = illuminant(options.illuminant);
-    return read_scene_exr(path, exr);
-  }
-  if (!options.illuminant.empty())
-    throw InputError(path, "holds radiance, the light is in it; --illuminant is for charts and reflectances");
-  return read_iset_mat(path, options.horizontal_angle_deg);
+  return extension == ".mat" ? read_mat_file(path, options) : read_cube_file(path, extension, options);
 }
 
 Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   if (options.columns || options.rows)
     throw InputError(path, "has a size of its own; --scene-size is for charts");
   const bool is_photograph = has_photograph_name(path);
+  if (is_photograph) refuse_cube_options(path, options), refuse_thermal_options(path, options);
   Scene scene = is_photograph ? read_photograph_file(path, options) : read_spectral_file(path, options);
   if (scene.name.empty()) scene.name = fs::path(path).stem().string();
   if (options.distance_m) scene.set_distance_m(finite_distance(*options.distance_m));
   if (is_photograph) return scene;
   if (options.horizontal_angle_deg) scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
   if (options.mean_luminance_cd_m2) scene.set_mean_luminance_cd_m2(*options.mean_luminance_cd_m2);
-  if (!options.wavelengths_nm.empty()) scene = scene.resampled(options.wavelengths_nm);
+  if (!options.wavelengths_nm.empty() && options.wavelengths_nm != scene.wavelengths_nm())
+    scene = scene.resampled(options.wavelengths_nm);
   return scene;
 }
 

@@ -4,6 +4,7 @@
 
 #include <petzval/image/photograph.h>
 #include <petzval/scene/scene.h>
+#include <petzval/scene/spectral_cube.h>
 
 #include <optional>
 #include <string>
@@ -17,14 +18,25 @@ struct SceneOptions {
   std::vector<double> wavelengths_nm;  ///< empty: the file's bands; default_bands_nm() where it has none
   std::optional<double> horizontal_angle_deg;  ///< replaces the file's; 40 for charts and photographs
   std::optional<double> distance_m;  ///< replaces the file's; they stand at infinity. inf: at infinity
-  std::string illuminant;            ///< charts, photographs (D65) and reflectance pictures only
+  std::string illuminant;  ///< of charts, photographs (D65) and reflectances; swapped for that of a scene
+                           ///< whose light is known
   std::optional<double> mean_luminance_cd_m2;  ///< of the whole spectrum, whatever wavelengths are then taken
                                                ///< from it; replaces the file's; 100 for charts, photographs
   std::optional<PhotographEncoding> encoding;  ///< photographs only; absent: as the file says
+
+  // Files of bare numbers only: ENVI, NumPy, spectral OpenEXR (CubeOptions).
+  std::optional<SceneQuantity> quantity;  ///< absent: as the file says
+  std::string radiance_unit;              ///< empty: the file's, or W·m⁻²·sr⁻¹·nm⁻¹
+  std::optional<double> scale;            ///< times every number
+  std::vector<double> file_bands_nm;      ///< wavelengths of a file that does not say them
+  bool negative_is_zero = false;          ///< instead of an error
+  ThermalOptions thermal;                 ///< of emissivities and temperatures
 };
 
 /// Reads a scene:
-///   a file     .mat (ISET) or .exr (spectral OpenEXR), or the name of a bundled one (data/scenes)
+///   a file     .mat (ISET), .exr (spectral OpenEXR), .hdr (ENVI) or .npy (NumPy), or the name of a bundled
+///   one
+///              (data/scenes)
 ///   a photograph  .png, .jpg or .tif: photograph_scene()
 ///   a chart    "checkerboard", "checkerboard:16", "slanted-edge:5" … as builtin_scenes() lists them
 /// \throws InputError for an unknown name, a bad parameter, a damaged file, an option that does not apply.

@@ -12,6 +12,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 
 namespace petzval {
 
@@ -186,6 +187,25 @@ std::vector<Value> decoded(std::string_view data, std::size_t count, bool big_en
   return values;
 }
 
+/// Whole numbers become the smallest floating-point type that holds them all.
+template <class Whole, class Value>
+std::vector<Value> converted(std::string_view data, std::size_t count, bool big_endian) {
+  const std::vector<Whole> whole = decoded<Whole, std::make_unsigned_t<Whole>>(data, count, big_endian);
+  return {whole.begin(), whole.end()};
+}
+
+std::variant<std::vector<float>, std::vector<double>> any_decoded(std::string_view data, std::size_t count,
+                                                                  std::string_view kind, bool big_endian) {
+  if (kind == "f8") return decoded<double, std::uint64_t>(data, count, big_endian);
+  if (kind == "f4") return decoded<float, std::uint32_t>(data, count, big_endian);
+  if (kind == "u1") return converted<std::uint8_t, float>(data, count, big_endian);
+  if (kind == "i1") return converted<std::int8_t, float>(data, count, big_endian);
+  if (kind == "u2") return converted<std::uint16_t, float>(data, count, big_endian);
+  if (kind == "i2") return converted<std::int16_t, float>(data, count, big_endian);
+  if (kind == "u4") return converted<std::uint32_t, double>(data, count, big_endian);
+  return converted<std::int32_t, double>(data, count, big_endian);
+}
+
 }  // namespace
 
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values) {
@@ -221,18 +241,19 @@ NpyArray read_npy(const std::string& path) {
   std::string_view data = bytes;
   HeaderParser header(take_header(data, path), path);
   header.parse();
+  // "<f4": byte order ('|' where there is none), kind, size.
   const std::string_view type = header.type;
-  if (type != "<f4" && type != ">f4" && type != "<f8" && type != ">f8")
-    throw InputError(path, fmt::format("has values of type '{}'; save it as float32 or float64", type));
+  const std::string_view kind = type.size() == 3 ? type.substr(1) : std::string_view();
+  const bool known = kind == "f4" || kind == "f8" || kind == "u1" || kind == "i1" || kind == "u2" ||
+                     kind == "i2" || kind == "u4" || kind == "i4";
+  if (!known || (type[0] != '<' && type[0] != '>' && type[0] != '|'))
+    throw InputError(
+        path, fmt::format("has values of type '{}'; save it as float32 or float64", type.substr(0, 20)));
   if (*header.fortran_order && header.shape->size() > 1)
     throw InputError(path, "is in Fortran order; save numpy.ascontiguousarray(a) instead");
   NpyArray array{std::move(*header.shape), {}};
-  const bool is_double = type[2] == '8', big_endian = type[0] == '>';
-  const std::size_t count = checked_count(array.shape, is_double ? 8 : 4, data.size(), path);
-  if (is_double)
-    array.values = decoded<double, std::uint64_t>(data, count, big_endian);
-  else
-    array.values = decoded<float, std::uint32_t>(data, count, big_endian);
+  const auto size = static_cast<std::size_t>(kind[1] - '0');
+  array.values = any_decoded(data, checked_count(array.shape, size, data.size(), path), kind, type[0] == '>');
   return array;
 }
 

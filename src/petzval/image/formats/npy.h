@@ -26,7 +26,7 @@ void write_npy(const std::string& path, std::span<const std::size_t> shape, std:
 /// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹].
 void write_npy(const std::string& path, const SpectralImage& image);
 
-/// Reads float32 and float64 of either byte order, in C order.
+/// Reads float32, float64 and whole numbers of 8 to 32 bits, of either byte order, in C order.
 /// \throws InputError for another type or order, a damaged header, or a file shorter or longer than its shape
 /// says.
 NpyArray read_npy(const std::string& path);

@@ -14,7 +14,7 @@ namespace petzval {
 namespace {
 
 MatValue ray_trace_of(const MatFile& file) {
-  MatValue value = file.variable();
+  MatValue value = file.first();
   if (value.name() == "oi" || value.name() == "opticalimage") value = value.at("optics");
   return value.name() == "rayTrace" ? value : value.at("rayTrace");
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/scene/formats/iset_basis.h>
 #include <petzval/scene/formats/iset_mat.h>
 #include <petzval/scene/formats/mat_file.h>
 #include <petzval/scene/formats/name_file.h>
@@ -101,18 +102,17 @@ void take_depth(Scene& scene, const MatValue& file) {
   }
 }
 
-/// The light of the scene, unless there is none or it differs from place to place.
-std::optional<Spectrum> illuminant_of(const MatValue& scene) {
-  const std::optional<MatValue> illuminant = scene.find("illuminant");
-  if (!illuminant) return std::nullopt;
-  const std::optional<MatValue> data = illuminant->find("data");
+}  // namespace
+
+std::optional<Spectrum> iset_illuminant(const MatValue& illuminant, const std::vector<double>& bands_nm) {
+  const std::optional<MatValue> data = illuminant.find("data");
   if (!data || !data->is_struct()) return std::nullopt;
   const std::optional<MatValue> photons = data->find("photons");
   const std::optional<MatValue> energy = photons ? std::nullopt : data->find("energy");
   if (!photons && !energy) return std::nullopt;
 
-  const std::optional<MatValue> own = illuminant->find("spectrum");
-  std::vector<double> wavelengths = (own ? *own : scene.at("spectrum")).at("wave").numbers().values();
+  const std::optional<MatValue> own = illuminant.find("spectrum");
+  std::vector<double> wavelengths = own ? own->at("wave").numbers().values() : bands_nm;
   const MatNumbers stored = (photons ? *photons : *energy).numbers();
   if (stored.size() != wavelengths.size()) return std::nullopt;
   const Rescaling scale = rescaling(stored, *data, "min", "max");
@@ -121,6 +121,8 @@ std::optional<Spectrum> illuminant_of(const MatValue& scene) {
     values.push_back(scale(stored[i]) * (photons ? photon_energy_j(wavelengths[i]) : 1.0));
   return Spectrum(std::move(wavelengths), std::move(values));
 }
+
+namespace {
 
 Scene scene_of(const MatValue& file, std::optional<double> horizontal_angle_deg) {
   if (!file.is_struct()) file.fail("is no struct, so no ISET scene");
@@ -132,7 +134,8 @@ Scene scene_of(const MatValue& file, std::optional<double> horizontal_angle_deg)
               distance_m(file));
   take_radiance(scene, cube);
   take_depth(scene, file);
-  scene.illuminant = illuminant_of(file);
+  if (const std::optional<MatValue> illuminant = file.find("illuminant"))
+    scene.illuminant = iset_illuminant(*illuminant, scene.wavelengths_nm());
   if (const std::optional<MatValue> name = file.find("name")) scene.name = name->text();
   scene.validate();
   return scene;
@@ -146,8 +149,11 @@ double photon_energy_j(double wavelength_nm) {
 }
 
 Scene read_iset_mat(const std::string& path, std::optional<double> horizontal_angle_deg) {
-  const MatFile file(path, "scene");
-  return naming_file(path, [&] { return scene_of(file.variable(), horizontal_angle_deg); });
+  const MatFile file(path, {"scene", "mcCOEF", "basis", "imgMean", "illuminant", "fov", "dist", "name"});
+  return naming_file(path, [&] {
+    if (!file.find("scene") && has_iset_basis(file)) return read_iset_basis(file, horizontal_angle_deg);
+    return scene_of(file.at("scene"), horizontal_angle_deg);
+  });
 }
 
 }  // namespace petzval

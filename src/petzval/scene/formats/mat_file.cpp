@@ -70,6 +70,10 @@ std::size_t element_count(const matvar_t& variable) {
   return count;
 }
 
+bool is_nothing(const matvar_t& variable) {
+  return variable.class_type == MAT_C_EMPTY || variable.rank == 0 || element_count(variable) == 0;
+}
+
 bool is_number_class(const matvar_t& variable) {
   return variable.class_type >= MAT_C_DOUBLE && variable.class_type <= MAT_C_UINT64;
 }
@@ -90,8 +94,7 @@ std::optional<MatValue> MatValue::find(const std::string& field) const {
   if (!is_struct() || element_count(*variable_) != 1) fail("must be a single struct");
   // matio's look-up takes a variable that it may alter, and leaves it as it is.
   const matvar_t* found = Mat_VarGetStructFieldByName(const_cast<matvar_t*>(variable_), field.c_str(), 0);
-  if (!found || found->class_type == MAT_C_EMPTY || found->rank == 0 || element_count(*found) == 0)
-    return std::nullopt;
+  if (!found || is_nothing(*found)) return std::nullopt;
   return MatValue(found, name_ + "." + field, *file_);
 }
 
@@ -141,7 +144,8 @@ void MatFile::Free::operator()(matvar_t* variable) const {
   Mat_VarFree(variable);
 }
 
-MatFile::MatFile(const std::string& path, const std::vector<std::string>& variables) : path_(path) {
+MatFile::MatFile(const std::string& path, const std::vector<std::string>& variables)
+    : path_(path), names_(variables) {
   {
     const std::string bytes = read_whole_file(path);
     check_mat_structure(std::as_bytes(std::span(bytes)), path);
@@ -150,14 +154,30 @@ MatFile::MatFile(const std::string& path, const std::vector<std::string>& variab
   matio_message.clear();
   Mat_LogInitFunc("petzval", keep_matio_message);
   const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
-  for (std::size_t i = 0; file && !variable_ && i < variables.size(); ++i) {
-    name_ = variables[i];
-    variable_.reset(Mat_VarRead(file.get(), name_.c_str()));
-    if (!variable_) Mat_Rewind(file.get());
+  for (const std::string& name : names_) {
+    if (!file) break;
+    Mat_Rewind(file.get());
+    if (matvar_t* const variable = Mat_VarRead(file.get(), name.c_str())) variables_[name].reset(variable);
   }
   if (!matio_message.empty())
     throw InputError(path, fmt::format("is damaged: matio says \"{}\"", matio_message));
-  if (!variable_) throw InputError(path, fmt::format("has no variable '{}'", fmt::join(variables, "' or '")));
+}
+
+std::optional<MatValue> MatFile::find(const std::string& variable) const {
+  const auto found = variables_.find(variable);
+  if (found == variables_.end() || is_nothing(*found->second)) return std::nullopt;
+  return MatValue(found->second.get(), variable, path_);
+}
+
+MatValue MatFile::at(const std::string& variable) const {
+  if (const std::optional<MatValue> value = find(variable)) return *value;
+  throw InputError(path_, fmt::format("has no variable '{}'", variable));
+}
+
+MatValue MatFile::first() const {
+  for (const std::string& name : names_)
+    if (const std::optional<MatValue> value = find(name)) return *value;
+  throw InputError(path_, fmt::format("has no variable '{}'", fmt::join(names_, "' or '")));
 }
 
 }  // namespace petzval

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,24 +60,27 @@ class MatValue {
   const std::string* file_;
 };
 
-/// One variable of a MAT file of version 5 or 7, read after check_mat_structure has seen all of it.
+/// The variables of a MAT file of version 5 or 7, read after check_mat_structure has seen all of it.
 class MatFile {
  public:
-  /// \throws InputError for a damaged file, or one without the variable.
-  MatFile(const std::string& path, const std::string& variable)
-      : MatFile(path, std::vector<std::string>{variable}) {}
-  /// The first of these variables that the file has.
+  /// Reads those of these variables that are there. \throws InputError for a damaged file.
   MatFile(const std::string& path, const std::vector<std::string>& variables);
 
-  MatValue variable() const { return {variable_.get(), name_, path_}; }
+  /// A variable that was asked for, if it is there and not empty.
+  std::optional<MatValue> find(const std::string& variable) const;
+  /// \throws InputError if it is not.
+  MatValue at(const std::string& variable) const;
+  /// The first of those that were asked for. \throws InputError if there is none of them.
+  MatValue first() const;
   const std::string& path() const { return path_; }
 
  private:
   struct Free {
     void operator()(matvar_t* variable) const;
   };
-  std::string path_, name_;
-  std::unique_ptr<matvar_t, Free> variable_;
+  std::string path_;
+  std::vector<std::string> names_;
+  std::map<std::string, std::unique_ptr<matvar_t, Free>> variables_;
 };
 
 }  // namespace petzval

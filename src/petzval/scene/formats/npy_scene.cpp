@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/image/formats/npy.h>
+#include <petzval/scene/formats/name_file.h>
+#include <petzval/scene/formats/npy_scene.h>
+
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+namespace petzval {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+double number_of(const nlohmann::json& value, const std::string& key, const std::string& file) {
+  if (!value.is_number()) throw InputError(file, fmt::format("{} must be a number", key));
+  return value.get<double>();
+}
+
+std::string text_of(const nlohmann::json& value, const std::string& key, const std::string& file) {
+  if (!value.is_string()) throw InputError(file, fmt::format("{} must be text", key));
+  return value.get<std::string>();
+}
+
+std::vector<double> numbers_of(const nlohmann::json& value, const std::string& key, const std::string& file) {
+  if (!value.is_array()) throw InputError(file, fmt::format("{} must be a list of numbers", key));
+  std::vector<double> numbers;
+  for (const nlohmann::json& each : value) numbers.push_back(number_of(each, key, file));
+  return numbers;
+}
+
+/// From (rows, columns, bands) to planes.
+template <typename Value>
+void take_planes(const std::vector<Value>& values, std::size_t bands, SpectralCube& cube) {
+  cube.values.resize(values.size());
+  const std::size_t pixels = cube.band_size();
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
+    for (std::size_t band = 0; band < bands; ++band)
+      cube.values[band * pixels + pixel] = static_cast<float>(values[pixel * bands + band]);
+}
+
+}  // namespace
+
+void describe_cube(std::string_view json, const std::string& file, SpectralCube& cube) {
+  const nlohmann::json root = nlohmann::json::parse(json, nullptr, false);
+  if (!root.is_object())
+    throw InputError(file, "is no JSON object; {\"wavelengths_nm\": [450, 550]} would be one");
+  for (const auto& [key, value] : root.items()) {
+    if (key == "quantity") {
+      cube.quantity = naming_file(file, [&] { return parse_scene_quantity(text_of(value, key, file)); });
+    } else if (key == "unit") {
+      cube.radiance_unit = text_of(value, key, file);
+    } else if (key == "wavelengths_nm") {
+      cube.wavelengths_nm = numbers_of(value, key, file);
+    } else if (key == "angle_deg") {
+      cube.horizontal_angle_deg = number_of(value, key, file);
+    } else if (key == "distance_m") {
+      cube.distance_m = number_of(value, key, file);
+    } else if (key == "name") {
+      cube.name = text_of(value, key, file);
+    } else if (key == "scale") {
+      const double scale = number_of(value, key, file);
+      if (!(scale > 0)) throw InputError(file, "scale must be positive");
+      for (float& each : cube.values) each = static_cast<float>(each * scale);
+    } else {
+      throw InputError(file,
+                       fmt::format("has the unknown key '{}'; quantity, unit, wavelengths_nm, angle_deg, "
+                                   "distance_m, scale and name are known",
+                                   key.substr(0, 40)));
+    }
+  }
+}
+
+SpectralCube read_npy_scene(const std::string& path) {
+  const NpyArray array = read_npy(path);
+  if (array.shape.size() != 2 && array.shape.size() != 3)
+    throw InputError(
+        path, fmt::format("has {} dimensions; (rows, columns, bands) or (rows, columns) would be right",
+                          array.shape.size()));
+  constexpr std::size_t most = std::numeric_limits<int>::max();
+  const std::size_t bands = array.shape.size() == 3 ? array.shape[2] : 1;
+  if (array.shape[0] < 1 || array.shape[1] < 1 || bands < 1 || array.shape[0] > most || array.shape[1] > most)
+    throw InputError(path, fmt::format("is an array of {} x {} x {}; at least one of each would be right",
+                                       array.shape[0], array.shape[1], bands));
+  SpectralCube cube;
+  cube.rows = static_cast<int>(array.shape[0]), cube.columns = static_cast<int>(array.shape[1]);
+  std::visit([&](const auto& values) { take_planes(values, bands, cube); }, array.values);
+  const fs::path beside = fs::path(path).replace_extension(".json");
+  std::error_code ignored;
+  if (fs::is_regular_file(beside, ignored))
+    describe_cube(read_whole_file(beside.string(), std::size_t{1} << 24), beside.string(), cube);
+  return cube;
+}
+
+}  // namespace petzval

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/scene/illuminant_swap.h>
+#include <petzval/scene/radiance_unit.h>
+#include <petzval/scene/spectral_cube.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+constexpr double reflectance_luminance_cd_m2 = 100;  // as of charts
+
+SceneQuantity quantity_of(const SpectralCube& cube, const CubeOptions& options) {
+  if (options.quantity) return *options.quantity;
+  if (cube.quantity) return *cube.quantity;
+  throw InputError(
+      "does not say what its numbers are; --scene-quantity radiance, reflectance, emissivity or temperature "
+      "does");
+}
+
+double angle_of(const SpectralCube& cube, const CubeOptions& options) {
+  if (options.horizontal_angle_deg) return *options.horizontal_angle_deg;
+  if (cube.horizontal_angle_deg) return *cube.horizontal_angle_deg;
+  throw InputError("does not say how wide the scene is; --scene-angle DEGREES does");
+}
+
+std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& options, SceneQuantity quantity) {
+  const std::size_t planes = cube.values.size() / cube.band_size();
+  if (quantity == SceneQuantity::temperature) {
+    if (planes != 1)
+      throw InputError(fmt::format("is a map of temperatures with {} bands; one would be right", planes));
+    if (options.wavelengths_nm.empty())
+      throw InputError(
+          "is a map of temperatures; --wavelengths 8000:500:14000 or the like says where it shines");
+    return options.wavelengths_nm;
+  }
+  const std::vector<double>& bands =
+      options.file_bands_nm.empty() ? cube.wavelengths_nm : options.file_bands_nm;
+  if (bands.empty())
+    throw InputError(
+        fmt::format("does not say the wavelengths of its {} bands; --scene-bands 400:10:700 or the "
+                    "like does",
+                    planes));
+  if (bands.size() != planes)
+    throw InputError(fmt::format("has {} bands, but {} wavelengths are given", planes, bands.size()));
+  return bands;
+}
+
+/// Reflectance × illuminant.
+void light(Scene& scene, const std::optional<Spectrum>& illuminant) {
+  if (!illuminant)
+    throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
+  bool any = false;
+  for (int index = 0; index < scene.bands(); ++index) {
+    const double factor = illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(index)]);
+    any = any || factor > 0;
+    for (float& value : scene.band(index)) value = static_cast<float>(value * factor);
+  }
+  if (!any) throw InputError("the illuminant has no light in the bands of the scene");
+  scene.illuminant = illuminant;
+  if (scene.mean_luminance_cd_m2() > 0) scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
+}
+
+void scale(std::vector<float>& values, const CubeOptions& options) {
+  if (!(options.scale > 0 && std::isfinite(options.scale)))
+    throw InputError(fmt::format("a scale of {}; a positive one would be right", options.scale));
+  if (options.scale != 1)
+    for (float& value : values) value = static_cast<float>(value * options.scale);
+  if (options.negative_is_zero)
+    for (float& value : values) value = value < 0 ? 0.0f : value;  // NaN stays, to be refused
+}
+
+}  // namespace
+
+SceneQuantity parse_scene_quantity(const std::string& word) {
+  if (word == "radiance") return SceneQuantity::radiance;
+  if (word == "reflectance") return SceneQuantity::reflectance;
+  if (word == "emissivity") return SceneQuantity::emissivity;
+  if (word == "temperature") return SceneQuantity::temperature;
+  throw InputError(
+      fmt::format("a quantity '{}'; radiance, reflectance, emissivity or temperature would be right", word));
+}
+
+Scene scene_of(SpectralCube cube, const CubeOptions& options) {
+  const SceneQuantity quantity = quantity_of(cube, options);
+  Scene scene(cube.columns, cube.rows, bands_of(cube, options, quantity), angle_of(cube, options),
+              cube.distance_m);
+  scene.name = cube.name;
+  scene.illuminant = cube.illuminant;
+  if (options.illuminant && (quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature))
+    throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
+  scale(cube.values, options);
+  if (quantity == SceneQuantity::temperature) {
+    warm_temperatures(scene, cube.values, options.thermal);
+    return scene;
+  }
+  for (int index = 0; index < scene.bands(); ++index)
+    std::copy_n(
+        cube.values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(index) * cube.band_size()),
+        cube.band_size(), scene.band(index).begin());
+  scene.validate();
+  const std::string& unit = options.radiance_unit.empty() ? cube.radiance_unit : options.radiance_unit;
+  if (quantity == SceneQuantity::radiance && !unit.empty()) {
+    const double factor = radiance_scale(unit);
+    if (factor != 1)
+      for (int index = 0; index < scene.bands(); ++index)
+        for (float& value : scene.band(index)) value = static_cast<float>(value * factor);
+  }
+  if (quantity == SceneQuantity::reflectance) light(scene, options.illuminant);
+  if (quantity == SceneQuantity::radiance && options.illuminant) swap_illuminant(scene, *options.illuminant);
+  if (quantity == SceneQuantity::emissivity) warm_emissivities(scene, options.thermal);
+  return scene;
+}
+
+}  // namespace petzval
