@@ -24,6 +24,7 @@
 
 #include "raw_formats.h"
 #include "require.h"
+#include "scene_format.h"
 #include "table_formats.h"
 
 namespace petzval::fuzz {
@@ -275,6 +276,17 @@ const std::vector<Format>& formats() {
        {"# focal_length_mm: 8\n", "# magnification: -0.1\n", "# object_distance_mm: 100\n", "field_mm",
         "frequency_cpmm", ",", ";", "\n", "0,550,", "1e-300", "-"}},
       {"kept", try_kept, {"null", "\"inf\"", "[]", "{}", "\"psf\":", "\"size\":", "1e400", "-1", ","}},
+      {"scene",
+       try_scene,
+       {"AttributeBegin\n", "AttributeEnd\n", "\"float", "\"rgb L\" [ 1 2 3 ]", "]", "[", "\"", "#",
+        "Shape \"sphere\"\n", "ObjectInstance \"o\"\n", "Material \"conductor\"\n",
+        "Material \"coateddiffuse\"\n", "AreaLightSource \"diffuse\"\n", "Include \"fuzz.pbrt\"\n",
+        "Scale 1e30 1 1\n", "Identity\n", "ReverseOrientation\n", "WorldBegin\n",
+        "\"texture reflectance\" \"t\""}},
+      {"ply",
+       try_ply,
+       {"property float nx\n", "property list uchar int vertex_indices\n", "element face 1\n", "end_header\n",
+        "comment\n", std::string(4, '\xFF'), std::string(4, '\0'), "uchar", "double", "obj_info\n", "\r"}},
       {"packed", packed, {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
   };
   return all;

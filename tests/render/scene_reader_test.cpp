@@ -60,6 +60,13 @@ TEST(SceneReader, NamesFileLineAndColumn) {
   expect_refused(refusal("Shape \"sphere\""), "s.pbrt:1:1: ", "before WorldBegin");
 }
 
+TEST(SceneReader, RefusesLightsThatAreNone) {
+  expect_refused(in_world("LightSource \"point\" \"rgb I\" [ 1e300 1 1 ]"),
+                 "s.pbrt:2:21: ", "would be right");
+  expect_refused(in_world("LightSource \"point\" \"float scale\" -1"), "s.pbrt:2:1: ", "would be right");
+  expect_refused(in_world("LightSource \"spot\" \"point3 to\" [ 0 0 0 ]"), "s.pbrt:2:1: ", "no direction");
+}
+
 TEST(SceneReader, RefusesSingularTransformations) {
   expect_refused(in_world("Scale 1 0 1"), "s.pbrt:2:1: ", "singular");
   expect_refused(in_world("LookAt 0 0 0  0 0 0  0 1 0"), "s.pbrt:2:1: ", "sees nothing");
@@ -86,6 +93,45 @@ TEST(SceneReader, RefusesMeshesThatMakeNoSense) {
   expect_refused(in_world("Shape \"trianglemesh\" " + p + "\"normal N\" [ 0 0 1 ]"),
                  "s.pbrt:2:1: ", "normals");
   EXPECT_EQ(in_world("Shape \"trianglemesh\" " + p), "");
+}
+
+/// What other files hold is told with their name, and where the scene names them.
+TEST(SceneReader, TellsWhereFilesAreNamedThatCannotBeUsed) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-scene-files-test";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "nan.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+         "y\nproperty float z\nelement face 1\nproperty list uchar int "
+         "vertex_indices\nend_header\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n";
+  std::ofstream(folder / "words.spd") << "400 one 500 two\n";
+  std::ofstream(folder / "empty.png");
+  const auto refused = [&](const std::string& text) {
+    try {
+      Unsupported unsupported;
+      const SceneDescription scene =
+          parse_scene_description("WorldBegin\n" + text, (folder / "s.pbrt").string(), unsupported);
+      build_world(scene, WavelengthGroups({550}), {}, unsupported);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string scene = (folder / "s.pbrt").string();
+  expect_refused(refused("Shape \"plymesh\" \"string filename\" \"nan.ply\""), scene + ":2:17: ", "nan.ply");
+  expect_refused(refused("Shape \"plymesh\" \"string filename\" \"empty.png\""),
+                 scene + ":2:17: ", "empty.png");
+  expect_refused(refused("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"empty.png\""),
+                 scene + ":2:35: ", "empty.png");
+  expect_refused(refused("LightSource \"infinite\" \"string filename\" \"none.exr\""),
+                 scene + ":2:24: ", "none.exr");
+  expect_refused(refused("LightSource \"infinite\" \"spectrum L\" \"none.spd\""),
+                 scene + ":2:24: ", "none.spd");
+  expect_refused(refused("LightSource \"infinite\" \"spectrum L\" \"words.spd\""),
+                 (folder / "words.spd").string() + ":1:5: ", "number");
+  const std::string p = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] ";
+  expect_refused(refused(p + "\"normal N\" [ 0 0 1 0 nan 1 0 0 1 ]"), scene + ":2:55: ", "finite");
+  expect_refused(refused(p + "\"point2 uv\" [ 0 0 1 inf 0 1 ]"), scene + ":2:55: ", "finite");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
@@ -159,7 +205,7 @@ TEST(SceneReader, SurvivesDamagedText) {
       std::string damaged = text;
       damaged[i] = byte;
       const std::string message = refusal(damaged);
-      EXPECT_EQ(message.find('\n'), std::string::npos);
+      EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos);
     }
   }
 }

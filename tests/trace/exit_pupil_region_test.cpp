@@ -78,6 +78,51 @@ TEST_P(ExitPupil, RegionHoldsAllTheLightAndLittleElse) {
   EXPECT_GT(smallest_share, 0.6) << "a box would hold a disc to π/4, a vignetted pupil worse";
 }
 
+/// χ² of drawn directions over a grid about the pupil, against the integral of the density.
+TEST_P(ExitPupil, DirectionsFollowTheirDensity) {
+  const Lens lens = read_lens(GetParam().lens).lens;
+  const Tracer tracer(lens, 550);
+  const ExitPupilRegions regions(std::span(&tracer, 1), GetParam().film_radius_mm);
+  constexpr int cells = 12, fine = 40, samples = 100000;
+  for (const double share : {0.0, 0.55, 0.9}) {
+    const double x = 0.6 * share * GetParam().film_radius_mm, y = 0.8 * share * GetParam().film_radius_mm;
+    const auto centre = regions.sample(x, y, 0.5, 0.0);
+    ASSERT_TRUE(centre);
+    const double half = 2.5 * std::sqrt(regions.area_sr(x, y) / M_PI);
+    const auto cell_of = [&](double cosine, double middle) {
+      return static_cast<int>(std::floor((cosine - middle + half) / (2 * half) * cells));
+    };
+    std::vector<double> found(cells * cells), expected(cells * cells);
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < samples; ++i) {
+      const auto sample = regions.sample(x, y, unit(random), unit(random));
+      const int a = cell_of(sample->alpha, centre->alpha), b = cell_of(sample->beta, centre->beta);
+      ASSERT_TRUE(a >= 0 && a < cells && b >= 0 && b < cells);
+      found[static_cast<std::size_t>(a * cells + b)] += 1;
+    }
+    const double step = 2 * half / (cells * fine);
+    for (int i = 0; i < cells * fine; ++i)
+      for (int j = 0; j < cells * fine; ++j)
+        expected[static_cast<std::size_t>(i / fine * cells + j / fine)] +=
+            samples * step * step *
+            regions.density_per_sr(x, y, centre->alpha - half + (i + 0.5) * step,
+                                   centre->beta - half + (j + 0.5) * step);
+    double chi2 = 0, counted = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (expected[i] < 20) continue;
+      // The region's edge through a cell of 40² points: half a point along 40 of them, over the cell's share.
+      const double rule =
+          samples * step * step * regions.density_per_sr(x, y, centre->alpha, centre->beta) * 10;
+      chi2 += (found[i] - expected[i]) * (found[i] - expected[i]) / (expected[i] + rule * rule);
+      counted += 1;
+    }
+    // Mean `counted`, variance 2·counted; five deviations.
+    EXPECT_GT(counted, 10);
+    EXPECT_LT(chi2, counted + 5 * std::sqrt(2 * counted)) << "at " << share;
+  }
+}
+
 /// The lanes round to floats: only directions within a few roundings of the rim may fall on its other side.
 TEST_P(ExitPupil, LanesGiveTheScalarDensity) {
   const Lens lens = read_lens(GetParam().lens).lens;

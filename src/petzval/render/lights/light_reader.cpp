@@ -9,20 +9,32 @@ namespace petzval::render {
 
 namespace {
 
+/// Far above any light, far below what a float holds.
+constexpr double strongest = 1e20;
+
 /// The spectrum of a light and the factor that makes it a radiance or intensity: pbrt-v4's "scale", and the
 /// division by ∫ ȳ of its shape.
 struct Strength {
   SceneSpectrum spectrum;
   double scale = 1;
+  Location place;
 
+  /// \throws InputError for light that is negative, or so strong that sums over it are lost.
   BandSpectrum at(const WavelengthGroups& groups, double factor = 1) const {
-    return groups.sampled([&](double nm) { return factor * scale * spectrum.at(nm); });
+    return groups.sampled([&](double nm) {
+      const double value = factor * scale * spectrum.at(nm);
+      if (!(value >= 0 && value <= strongest))
+        throw scene_error(
+            place, fmt::format("a light of {:g} at {:g} nm; 0 to {:g} would be right", value, nm, strongest));
+      return value;
+    });
   }
 };
 
 Strength read_strength(const Parameters& parameters, const char* name, bool absolute,
                        Unsupported& unsupported) {
   Strength strength;
+  strength.place = parameters.location_of(name);
   strength.scale = parameters.number("scale", 1);
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
   strength.spectrum = given ? *given : white_light();
@@ -67,6 +79,8 @@ SmallLight read_spot(const LightDescription& description, const WavelengthGroups
   const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
   light.position = description.world_from_light.point(from);
   light.direction = normalised(description.world_from_light.direction(to - from));
+  if (!(length(light.direction) > 0))
+    throw scene_error(parameters.location(), "this light shines in no direction");
   const double cone = parameters.number("coneangle", 30), edge = parameters.number("conedeltaangle", 5);
   if (!(cone > 0 && cone <= 180 && edge >= 0))
     throw scene_error(parameters.location_of("coneangle"),

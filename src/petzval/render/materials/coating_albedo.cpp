@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/render/materials/coating_albedo.h>
 #include <petzval/render/materials/fresnel.h>
 #include <petzval/render/materials/microfacets.h>
@@ -35,16 +36,15 @@ double rough_albedo(double eta, double cos, double alpha) {
 // Row r stands for alpha = r/(roughnesses − 1), row 0 for the smooth boundary, whose values outside() has
 // exactly; column c for cos = (c + ½)/angles.
 CoatingAlbedo::CoatingAlbedo(double eta) : eta_(eta) {
-  for (int r = 0; r < roughnesses; ++r) {
+  parallel_for(roughnesses, [&](std::size_t r) {
     const double alpha = static_cast<double>(r) / (roughnesses - 1);
-    double& mean = mean_[static_cast<std::size_t>(r)];
     for (int c = 0; c < angles; ++c) {
       const double cos = (c + 0.5) / angles;
       const double value = r == 0 ? dielectric_reflectance(cos, eta) : rough_albedo(eta, cos, alpha);
-      table_[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = value;
-      mean += 2 * cos * value / angles;
+      table_[r][static_cast<std::size_t>(c)] = value;
+      mean_[r] += 2 * cos * value / angles;
     }
-  }
+  });
   mean_[0] = mean_dielectric_reflectance(eta);
 }
 

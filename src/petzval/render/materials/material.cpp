@@ -3,6 +3,7 @@
 #include <petzval/render/materials/material.h>
 
 #include <algorithm>
+#include <map>
 
 namespace petzval::render {
 
@@ -41,8 +42,11 @@ void read_diffuse_transmission(const Parameters& parameters, const TextureLibrar
   material.transmittance_scale = parameters.number("scale", 1);
 }
 
+/// By index: what materials share.
+using Coatings = std::map<double, std::shared_ptr<const CoatingAlbedo>>;
+
 void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures,
-                         Unsupported& unsupported, Material& material) {
+                         Unsupported& unsupported, Coatings& coatings, Material& material) {
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
   read_roughness(parameters, textures, 0, material);
@@ -50,7 +54,9 @@ void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& tex
   if (!(eta > 1 && eta < 4))
     throw scene_error(parameters.location_of("eta"),
                       fmt::format("a coating of index {}; above 1 and below 4 would be right", eta));
-  material.coating = std::make_shared<CoatingAlbedo>(eta);
+  std::shared_ptr<const CoatingAlbedo>& coating = coatings[eta];
+  if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
+  material.coating = coating;
   // A clear coating without thickness: how its light is scattered at random, and how far it travels, do not
   // matter.
   for (const char* ignored : {"thickness", "maxdepth", "nsamples", "g"}) parameters.find(ignored);
@@ -94,7 +100,7 @@ void read_mix(const SceneDescription& scene, const Parameters& parameters, const
 }
 
 Material make_material(const SceneDescription& scene, const Entity& entity, const TextureLibrary& textures,
-                       Unsupported& unsupported) {
+                       Unsupported& unsupported, Coatings& coatings) {
   const Parameters& parameters = entity.parameters;
   Material material;
   if (entity.type == "diffuse") {
@@ -102,7 +108,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
   } else if (entity.type == "diffusetransmission") {
     read_diffuse_transmission(parameters, textures, material);
   } else if (entity.type == "coateddiffuse") {
-    read_coated_diffuse(parameters, textures, unsupported, material);
+    read_coated_diffuse(parameters, textures, unsupported, coatings, material);
   } else if (entity.type == "conductor") {
     read_conductor(parameters, textures, material, entity.location());
   } else if (entity.type == "dielectric") {
@@ -181,8 +187,9 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
                                      Unsupported& unsupported) {
   std::vector<Material> materials;
   materials.reserve(scene.materials.size());
+  Coatings coatings;
   for (const Entity& entity : scene.materials)
-    materials.push_back(make_material(scene, entity, textures, unsupported));
+    materials.push_back(make_material(scene, entity, textures, unsupported, coatings));
   check_mixtures(materials, scene);
   return materials;
 }

@@ -100,12 +100,13 @@ PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureText
   parameters.number("maxanisotropy", 8);
   const std::string name = parameters.string("filename", "");
   if (name.empty()) throw scene_error(parameters.location(), "an imagemap needs a \"string filename\"");
-  std::shared_ptr<const PictureFile>& picture = pictures_[name + "\n" + encoding];
+  const std::string path = resolved_path(parameters.location(), name);
+  std::shared_ptr<const PictureFile>& picture = pictures_[path + "\n" + encoding];
   if (!picture) try {
-      picture = std::make_shared<const PictureFile>(read_picture_file(
-          resolved_path(parameters.location(), name), encoding == "sRGB"     ? PictureEncoding::srgb
-                                                      : encoding == "linear" ? PictureEncoding::linear
-                                                                             : PictureEncoding::by_format));
+      picture = std::make_shared<const PictureFile>(
+          read_picture_file(path, encoding == "sRGB"     ? PictureEncoding::srgb
+                                  : encoding == "linear" ? PictureEncoding::linear
+                                                         : PictureEncoding::by_format));
     } catch (const InputError& error) {
       throw scene_error(parameters.location_of("filename"), error.what());
     }

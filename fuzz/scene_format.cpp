@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_format.h"
+
+#include <petzval/render/camera/scene_camera.h>
+#include <petzval/render/path_tracer.h>
+
+#include <cmath>
+
+#include "require.h"
+
+namespace petzval::fuzz {
+
+namespace {
+
+/// Radiance along a few rays from the camera's place: a number, however absurd the lights are.
+void follow_light(const render::World& world, const render::Transform& world_from_camera) {
+  using namespace render;
+  PathOptions options;
+  options.max_depth = 3;
+  const PathTracer tracer(world, options);
+  for (const double slope : {-0.3, 0.0, 0.4}) {
+    SobolSample sample(1, static_cast<std::uint32_t>(10 * (slope + 1)));
+    const Vector3 direction = world_from_camera.direction({slope, 0.1 * slope, 1});
+    if (!(length(direction) > 0) || !std::isfinite(length(direction))) continue;
+    const PathLight light =
+        tracer.trace(world_from_camera.point({0, 0, 0}), normalised(direction), 0, 0, sample);
+    require(light.shared[0] >= 0 && light.alone >= 0, "light that is negative or no number");
+  }
+}
+
+}  // namespace
+
+bool try_scene(std::string_view bytes) {
+  using namespace render;
+  try {
+    Unsupported unsupported;
+    const SceneDescription scene =
+        parse_scene_description(std::string(bytes), "/nowhere/fuzz.pbrt", unsupported);
+    const SceneCamera camera = set_up_camera(scene, {}, unsupported);
+    const auto world = build_world(scene, WavelengthGroups({550, 600}), {}, unsupported);
+    follow_light(*world, camera.world_from_camera);
+    return true;
+  } catch (const InputError& error) {
+    require_one_line(error);
+    return false;
+  }
+}
+
+bool try_ply(std::string_view bytes) {
+  try {
+    const render::TriangleMesh mesh = render::parse_ply(bytes, "fuzz");
+    for (const auto& triangle : mesh.triangles)
+      for (const auto corner : triangle)
+        require(static_cast<std::size_t>(corner) < mesh.positions.size(), "a corner that is not there");
+    for (const auto& position : mesh.positions)
+      for (const float each : position) require(std::isfinite(each), "a vertex that is no place");
+    return true;
+  } catch (const InputError& error) {
+    require_one_line(error);
+    return false;
+  }
+}
+
+}  // namespace petzval::fuzz

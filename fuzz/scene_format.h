@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Entries of three-dimensional scenes and their meshes.
+#pragma once
+
+#include <string_view>
+
+namespace petzval::fuzz {
+
+/// A scene is refused in one line, or has a camera and makes a world through which light can be followed.
+bool try_scene(std::string_view bytes);
+
+/// A PLY mesh is refused in one line, or its triangles are corners that there are.
+bool try_ply(std::string_view bytes);
+
+}  // namespace petzval::fuzz

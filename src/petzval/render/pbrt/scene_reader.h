@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The reader of pbrt scene files, directive by directive: transform_, block_, option_ and
+// world_directives.cpp.
+#pragma once
+
+#include <petzval/render/pbrt/scene_description.h>
+#include <petzval/render/pbrt/tokens.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace petzval::render {
+
+/// What AttributeBegin saves and AttributeEnd brings back.
+struct GraphicsState {
+  Transform world_from_object;  ///< pbrt's current transformation matrix
+  bool reverse_orientation = false;
+  int material = 0, area_light = -1;
+  std::map<std::string, std::vector<Parameter>> defaults;  ///< of Attribute "shape" …, by target
+};
+
+/// Follows the directives of a scene file and writes down what they say.
+class SceneReader {
+ public:
+  SceneReader(SceneDescription& scene, Unsupported& unsupported) : scene_(scene), unsupported_(unsupported) {}
+
+  void read_file(const std::string& path, const Location* included_from);
+  void read_text(const std::string& text, const std::string& file);
+  void finish();
+
+ private:
+  struct Saved {
+    GraphicsState state;
+    const char* ended_by;  ///< "AttributeEnd"
+    Location at;
+  };
+
+  void follow(Tokens& tokens);
+  bool follow_transform(const std::string& word, Tokens& tokens, const Location& at);
+  bool follow_block(const std::string& word, Tokens& tokens, const Location& at);
+  bool follow_option(const std::string& word, Tokens& tokens, const Location& at);
+  bool follow_world(const std::string& word, Tokens& tokens, const Location& at);
+  [[noreturn]] void refuse_unknown(const std::string& word, const Location& at);
+
+  void include(Tokens& tokens, const Location& at);
+  void camera(Tokens& tokens, const Location& at);
+  void begin_object(Tokens& tokens, const Location& at);
+  void place_object(Tokens& tokens, const Location& at);
+  void texture(Tokens& tokens, const Location& at);
+  void named_material(Tokens& tokens, const Location& at);
+  void shape(Tokens& tokens, const Location& at);
+  void attribute(Tokens& tokens, const Location& at);
+  void save(const char* ended_by, const Location& at) { saved_.push_back({state_, ended_by, at}); }
+  void restore(const std::string& word, const Location& at);
+
+  std::string quoted(Tokens& tokens, const Location& at, const char* what);
+  std::vector<double> numbers(Tokens& tokens, const Location& at, std::size_t count);
+  Entity entity(Tokens& tokens, const Location& at, const char* what, const char* defaults = "");
+  void transform(const Location& at, const std::function<Transform()>& make);
+  void set(const Location& at, const std::function<Transform()>& make);
+
+  SceneDescription& scene_;
+  Unsupported& unsupported_;
+  GraphicsState state_;
+  std::vector<Saved> saved_;
+  std::vector<std::string> open_files_;
+  std::map<std::string, Transform> coordinate_systems_;  ///< world (or camera) from the named system
+  std::map<std::string, int> objects_;
+  int open_object_ = -1;
+  Location object_at_;
+  bool in_world_ = false;
+};
+
+}  // namespace petzval::render
