@@ -24,6 +24,7 @@
 
 #include "field_option.h"
 #include "scene_option.h"
+#include "sensor_option.h"
 #include "shot_option.h"
 
 namespace petzval::app {
@@ -35,6 +36,7 @@ struct ImageCommand {
   LensChoice lens;
   FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
   std::string optics, sensor;
+  std::vector<std::string> sensor_settings;
   std::string focus = "auto", method = "product", interpolate = "psf", fit = "monotone", surround = "error";
   std::optional<double> f_number;
   SectionOptions sections;
@@ -338,8 +340,10 @@ void image(const ImageCommand& command, const CLI::App& app, const Shared& share
   ImagingOptions options = imaging_options(command);
   std::optional<Sensor> camera_sensor;
   std::optional<SensorGeometry> wanted;
+  if (command.sensor.empty() && !command.sensor_settings.empty())
+    throw InputError("--sensor-set alters the --sensor, and there is none");
   if (!command.sensor.empty()) {
-    camera_sensor = read_sensor(command.sensor);
+    camera_sensor = read_sensor(command.sensor, command.sensor_settings);
     wanted = camera_sensor->geometry;
     options.photosite = camera_sensor->photosite;
   }
@@ -441,6 +445,7 @@ void add_image_command(CLI::App& app, Shared& shared) {
   add_lens_options(*command, *options);
   command->add_option("--sensor", options->sensor,
                       "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
+  add_sensor_settings(*command, options->sensor_settings);
   add_method_options(*command, *options);
   command
       ->add_option(

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sense_option.h"
+#include "sensor_option.h"
 
 namespace petzval::app {
 
@@ -19,6 +20,7 @@ namespace {
 
 struct SenseCommand {
   std::string irradiance, sensor;
+  std::vector<std::string> sensor_settings;
   SenseChoice choice;
   std::vector<std::string> outputs;
 };
@@ -86,7 +88,7 @@ void sense(const SenseCommand& command, const Shared& shared) {
   StagedFiles files;
   std::vector<std::string> staged;
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
-  const Sensor sensor = read_sensor(command.sensor);
+  const Sensor sensor = read_sensor(command.sensor, command.sensor_settings);
   sensor.require_electronics();
   const RawImage raw = command.choice.expose(read_irradiance(command.irradiance), sensor, shared);
   for (const std::string& path : staged) write_raw(path, raw);
@@ -109,6 +111,7 @@ void add_sense_command(CLI::App& app, Shared& shared) {
       ->add_option("irradiance", options->irradiance, "Spectral irradiance, .exr, as petzval image writes it")
       ->required();
   command->add_option("--sensor", options->sensor, "A sensor file or the name of a bundled one")->required();
+  add_sensor_settings(*command, options->sensor_settings);
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs, "RAW.dng, .tif, .npy or .exr; may be given several times")

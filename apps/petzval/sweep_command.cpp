@@ -4,6 +4,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/render/pbrt/scene_files.h>
 #include <petzval/report/html.h>
 
 #include <algorithm>
@@ -36,6 +37,7 @@ struct PointResult {
   std::vector<std::string> arguments;
   bool done = false;
   std::string error, picture;
+  Json checksums;  ///< of the files that the arguments name
   Json numbers;
 };
 
@@ -50,7 +52,11 @@ const CLI::App& swept_app(const CLI::App& program, const SweepCommand& options) 
   throw InputError(fmt::format("sweep lens: there is no command lens {}", options.words.front()));
 }
 
-/// Arguments of a point: an option of the command, its LENS, or else a --set of the lens.
+/// What the names of a sensor's entries begin with.
+constexpr std::string_view sensor_prefix = "sensor.";
+
+/// Arguments of a point: an option of the command, its LENS, an entry of the sensor, or else a --set of the
+/// lens.
 std::vector<std::string> arguments_of(const CLI::App& app, const SweepCommand& options,
                                       const SweepPoint& point, const Shared& shared) {
   std::vector<std::string> arguments{options.command};
@@ -64,6 +70,9 @@ std::vector<std::string> arguments_of(const CLI::App& app, const SweepCommand& o
     } else if (app.get_option_no_throw("--" + key) != nullptr) {
       arguments.push_back("--" + key);
       arguments.push_back(value);
+    } else if (key.starts_with(sensor_prefix) && app.get_option_no_throw("--sensor-set") != nullptr) {
+      arguments.push_back("--sensor-set");
+      arguments.push_back(key.substr(sensor_prefix.size()) + "=" + value);
     } else {
       arguments.push_back("--set");
       arguments.push_back(key + "=" + value);
@@ -91,8 +100,24 @@ std::string last_line(const std::string& text) {
   return line.compare(0, prefix.size(), prefix) == 0 ? line.substr(prefix.size()) : line;
 }
 
+/// Checksums of the files that arguments name, as they stand or behind '=': a lens that was edited since
+/// makes another point. \param outputs  that the point writes begin so.
+Json checksums_of(const std::vector<std::string>& arguments, const std::string& outputs) {
+  Json sums = Json::object();
+  for (const std::string& argument : arguments)
+    for (const std::string& name : {argument, argument.substr(argument.find('=') + 1)}) {
+      std::error_code ignored;
+      if (!name.starts_with(outputs) && std::filesystem::is_regular_file(name, ignored))
+        sums[name] = render::hash_text(read_whole_file(name));
+    }
+  return sums;
+}
+
 Json record_of(const PointResult& result) {
-  return {{"version", version()}, {"arguments", result.arguments}, {"numbers", result.numbers}};
+  return {{"version", version()},
+          {"arguments", result.arguments},
+          {"files", result.checksums},
+          {"numbers", result.numbers}};
 }
 
 /// Takes the point from an earlier run of the same arguments, if it was finished then.
@@ -102,7 +127,8 @@ bool recall(const std::string& record_path, PointResult& result) {
   if (!result.picture.empty() && !std::filesystem::exists(result.picture, ignored)) return false;
   const Json record = Json::parse(read_whole_file(record_path), nullptr, false);
   if (record.is_discarded() || !record.is_object() || record.value("version", "") != version() ||
-      record.value("arguments", Json()) != Json(result.arguments))
+      record.value("arguments", Json()) != Json(result.arguments) ||
+      record.value("files", Json()) != result.checksums)
     return false;
   result.numbers = record.value("numbers", Json::object());
   return result.done = true;
@@ -120,6 +146,7 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
     if (!options.irradiance.empty())
       result.arguments.insert(result.arguments.end(), {"-o", stem + "." + options.irradiance});
   }
+  result.checksums = checksums_of(result.arguments, stem);
   if (recall(stem + ".json", result)) return result;
   const ChildOutcome outcome = run_again(result.arguments, stem + ".out", stem + ".err");
   result.numbers = Json::parse(outcome.out, nullptr, false);
@@ -257,10 +284,10 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   });
   command->allow_extras();
   command
-      ->add_option(
-          "--vary", options->vary,
-          "KEY=FROM:TO:STEP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens) or "
-          "a parameter of the lens (surfaces[4].thickness_mm); repeatable: all combinations")
+      ->add_option("--vary", options->vary,
+                   "KEY=FROM:TO:STEP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
+                   "a parameter of the lens (surfaces[4].thickness_mm) or of the sensor (sensor.pitch_um); "
+                   "repeatable: all combinations")
       ->required()
       ->take_all()
       ->allow_extra_args(false);

@@ -66,6 +66,26 @@ class Sweep(ProgramTest):
         self.assert_succeeds(*IMAGE, "--vary", "f-number=8", "-o", "out")
         self.assertNotEqual(first.read_bytes(), bytes_before)
 
+    def test_an_edited_lens_makes_its_points_anew(self):
+        self.assert_succeeds("lens", "convert", "edmund-54852", "own.json")
+        sweep = ["sweep", "lens", "info", "--vary", "lens=own.json,cooke-triplet", "-o", "out"]
+        self.assert_succeeds(*sweep)
+        self.assert_succeeds("lens", "convert", "double-gauss", "own.json")
+        stamp = (self.folder / "out" / "point-0001.json").stat().st_mtime_ns
+        said = self.json_of(*sweep)
+        self.assertAlmostEqual(said["rows"][0]["efl_mm"], self.json_of("lens", "info", "double-gauss")["efl_mm"])
+        self.assertEqual((self.folder / "out" / "point-0001.json").stat().st_mtime_ns, stamp)
+
+    def test_lenses_and_sensors_side_by_side_and_entries_of_a_sensor(self):
+        said = self.json_of("sweep", "image", "checkerboard", "--wavelengths", "550", "--vary",
+                            "lens=edmund-54852,cooke-triplet", "--vary", "sensor=48x36@80,64x48@60", "-o", "out")
+        self.assertEqual([(row["lens"], row["pitch_um"]) for row in said["rows"]],
+                         [("edmund-54852", 80), ("edmund-54852", 60), ("cooke-triplet", 80), ("cooke-triplet", 60)])
+        said = self.json_of(*IMAGE, "--vary", "sensor.pitch_um=40:80:20", "--vary", "sensor.columns=24,48", "-o", "of")
+        self.assertEqual([(row["pitch_um"], row["columns"]) for row in said["rows"]],
+                         [(p, c) for p in (40, 60, 80) for c in (24, 48)])
+        self.assert_error(self.petzval(*IMAGE, "--vary", "sensor.pitch=3", "-o", "none"), 1, "pitch")
+
     def test_refuses_what_cannot_be_swept(self):
         self.assert_refused(*IMAGE, "--vary", "f-number", "-o", "out", words=["KEY=FROM:TO:STEP"])
         self.assert_refused(*IMAGE, "--vary", "f-number=2,,4", "-o", "out", words=["empty"])

@@ -3,6 +3,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/sensor/sensor.h>
+#include <petzval/sensor/sensor_reader.h>
 
 #include <cmath>
 #include <filesystem>
@@ -138,6 +139,26 @@ TEST(BundledSensors, AreReadable) {
     EXPECT_FALSE(sensor.name.empty()) << name;
     EXPECT_FALSE(sensor.source.empty()) << name;
   }
+}
+
+TEST(SensorSettings, AlterEntriesOfTheFile) {
+  const Sensor sensor = read_sensor("third-inch-1280x960", {"pitch_um=5", "gain_modes[0].read_noise_e=1.5"});
+  EXPECT_EQ(sensor.geometry.pitch_um, 5);
+  EXPECT_EQ(sensor.geometry.columns, 1280);
+  EXPECT_EQ(sensor.require_electronics().gain_modes[0].read_noise_e, 1.5);
+  EXPECT_EQ(read_sensor("768x576@6.25", {"columns=100"}).geometry.columns, 100);
+  EXPECT_EQ(read_sensor("768x576@6.25", std::vector<std::string>{}).geometry.columns, 768);
+}
+
+TEST(SensorSettings, AreCheckedAsTheFileIs) {
+  for (const std::string wrong : {"pitch_um=-1", "pitch=3", "pitch_um", "gain_modes[9].read_noise_e=1", "=3",
+                                  "columns=1.5", "gain_modes[0].read_noise_e=low", "name.first=x"})
+    try {
+      read_sensor("third-inch-1280x960", {wrong});
+      ADD_FAILURE() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(wrong), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

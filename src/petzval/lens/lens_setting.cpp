@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// "surfaces[4].thickness_mm=0.5": a path into the native JSON form, and a JSON value.
+// Settings of a lens: assignments to its native JSON form.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/number_text.h>
+#include <petzval/lens/formats/json_setting.h>
 #include <petzval/lens/formats/native.h>
 
 #include <set>
@@ -12,42 +12,6 @@ namespace petzval {
 namespace {
 
 using nlohmann::json;
-
-/// A key of an object or an index of a list.
-struct Step {
-  std::string key;
-  std::optional<std::size_t> index;
-};
-
-[[noreturn]] void bad_path(const std::string& path) {
-  throw InputError(
-      fmt::format("\"{}\" is not a path; write it like surfaces[4].thickness_mm or aperture.f_number", path));
-}
-
-std::vector<Step> split_path(const std::string& path) {
-  std::vector<Step> steps;
-  std::size_t at = 0;
-  while (at < path.size()) {
-    if (path[at] == '[') {
-      const std::size_t close = path.find(']', at);
-      if (close == path.npos || steps.empty()) bad_path(path);
-      const auto index = parse_integer(path.substr(at + 1, close - at - 1));
-      if (!index || *index < 0) bad_path(path);
-      steps.push_back({"", static_cast<std::size_t>(*index)});
-      at = close + 1;
-      continue;
-    }
-    if (!steps.empty() && path[at++] != '.') bad_path(path);
-    // Wavelengths as keys have points of their own: all that follows "index_table." is one key.
-    const bool last_key = !steps.empty() && steps.back().key == "index_table";
-    const std::size_t end = last_key ? path.size() : std::min(path.find_first_of(".[", at), path.size());
-    if (end == at) bad_path(path);
-    steps.push_back({path.substr(at, end - at), {}});
-    at = end;
-  }
-  if (steps.empty()) bad_path(path);
-  return steps;
-}
 
 /// Objects that say one thing in several ways: naming another way replaces what was there.
 void clear_alternatives(json& object, const std::string& parent_key, const std::string& key) {
@@ -60,33 +24,16 @@ void clear_alternatives(json& object, const std::string& parent_key, const std::
 }
 
 /// The entry that the steps lead to, made on the way where the format lets it be absent.
-json& follow(json& root, const std::vector<Step>& steps) {
+json& follow(json& root, const std::vector<JsonStep>& steps) {
   json* at = &root;
   std::string path, parent_key;
-  for (const Step& step : steps) {
-    if (step.index) {
-      if (!at->is_array())
-        throw InputError(fmt::format("{} is not a list and has no [{}]", path, *step.index));
-      if (*step.index >= at->size())
-        throw InputError(fmt::format("{}[{}] is not there; {} has {} entries, 0 to {}", path, *step.index,
-                                     path, at->size(), at->size() - 1));
-      at = &(*at)[*step.index];
-      path = item_path(path, *step.index);
-      continue;
-    }
-    clear_alternatives(*at, parent_key, step.key);
-    if (at->is_null()) *at = json::object();
-    if (!at->is_object()) throw InputError(fmt::format("{} has no entries, so no {}", path, step.key));
-    at = &(*at)[step.key];
-    path = member_path(path, step.key);
-    parent_key = step.key;
+  for (const JsonStep& step : steps) {
+    if (!step.index) clear_alternatives(*at, parent_key, step.key);
+    at = &follow_json_step(*at, step, path);
+    path = step.index ? item_path(path, *step.index) : member_path(path, step.key);
+    if (!step.index) parent_key = step.key;
   }
   return *at;
-}
-
-json parse_value(const std::string& text) {
-  json value = json::parse(text, nullptr, false);
-  return value.is_discarded() ? json(text) : value;
 }
 
 /// Optional entries that null or, for glass, "air" takes away.
@@ -96,7 +43,7 @@ bool removes(const std::string& key, const json& value) {
   return (value.is_null() && optional.count(key)) || air;
 }
 
-json altered(json root, const std::vector<Step>& steps, const json& value) {
+json altered(json root, const std::vector<JsonStep>& steps, const json& value) {
   json& entry = follow(root, steps);
   if (steps.size() != 3 || steps[0].key != "surfaces" || !steps[1].index) {
     entry = value;
@@ -119,13 +66,10 @@ json altered(json root, const std::vector<Step>& steps, const json& value) {
 Lens with_setting(const Lens& lens, const std::string& assignment, const LensReadOptions& options) {
   const std::string origin = "--set " + assignment;
   JsonDocument document(lens_to_json(lens), lens.name);
-  const std::size_t equals = assignment.find('=');
   try {
-    if (equals == assignment.npos)
-      throw InputError("has no value; write it like surfaces[4].thickness_mm=0.5");
-    const std::string path = assignment.substr(0, equals);
-    const json value = parse_value(assignment.substr(equals + 1));
-    document.replace(altered(document.root(), split_path(path), value), path, origin);
+    const JsonSetting setting =
+        parse_json_setting(assignment, "surfaces[4].thickness_mm or aperture.f_number");
+    document.replace(altered(document.root(), setting.steps, setting.value), setting.path, origin);
   } catch (const InputError& error) {
     throw InputError(origin, error.what());
   }

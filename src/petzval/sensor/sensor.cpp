@@ -3,6 +3,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/lens/formats/json_setting.h>
 #include <petzval/sensor/sensor.h>
 #include <petzval/sensor/sensor_reader.h>
 
@@ -78,17 +79,65 @@ const SensorElectronics& Sensor::require_electronics() const {
   return *electronics;
 }
 
-Sensor read_sensor(const std::string& text) {
-  if (const auto geometry = parse_geometry(text)) {
-    if (const std::string wrong = complaint_about(*geometry); !wrong.empty())
-      throw InputError(fmt::format("sensor {}: {}", text, wrong));
-    return {text, "given as columns x rows @ pitch", *geometry, {}, {}};
-  }
+namespace {
+
+/// The file of a sensor: its text and its path.
+std::pair<std::string, std::string> sensor_file(const std::string& text) {
   if (text.find('@') != std::string::npos && !std::filesystem::exists(text))
     throw InputError(
         fmt::format("sensor {}: a geometry is written 768x576@6.25 (columns x rows @ pitch in µm)", text));
   const std::string path = find_data_file("sensors", ".json", text, "sensor");
-  return parse_sensor(read_whole_file(path, max_file_bytes), path);
+  return {read_whole_file(path, max_file_bytes), path};
+}
+
+Sensor sensor_of_geometry(const std::string& text, const SensorGeometry& geometry) {
+  if (const std::string wrong = complaint_about(geometry); !wrong.empty())
+    throw InputError(fmt::format("sensor {}: {}", text, wrong));
+  return {text, "given as columns x rows @ pitch", geometry, {}, {}};
+}
+
+/// What a file of the sensor would hold.
+JsonDocument document_of(const std::string& text) {
+  const auto geometry = parse_geometry(text);
+  if (!geometry) {
+    const auto [json, path] = sensor_file(text);
+    return {json, path};
+  }
+  const Sensor sensor = sensor_of_geometry(text, *geometry);
+  const nlohmann::json json = {{"format", "petzval-sensor/1"}, {"name", sensor.name},
+                               {"source", sensor.source},      {"columns", geometry->columns},
+                               {"rows", geometry->rows},       {"pitch_um", geometry->pitch_um}};
+  return {json.dump(), text};
+}
+
+}  // namespace
+
+Sensor read_sensor(const std::string& text) {
+  if (const auto geometry = parse_geometry(text)) return sensor_of_geometry(text, *geometry);
+  const auto [json, path] = sensor_file(text);
+  return parse_sensor(json, path);
+}
+
+Sensor read_sensor(const std::string& text, const std::vector<std::string>& settings) {
+  if (settings.empty()) return read_sensor(text);
+  JsonDocument document = document_of(text);
+  for (const std::string& assignment : settings) {
+    const std::string origin = fmt::format("sensor {} with {}", text, assignment);
+    try {
+      const JsonSetting setting = parse_json_setting(assignment, "gain_modes[0].read_noise_e");
+      nlohmann::json root = document.root(), *at = &root;
+      std::string path;
+      for (const JsonStep& step : setting.steps) {
+        at = &follow_json_step(*at, step, path);
+        path = step.index ? item_path(path, *step.index) : member_path(path, step.key);
+      }
+      *at = setting.value;
+      document.replace(std::move(root), setting.path, origin);
+    } catch (const InputError& error) {
+      throw InputError(origin, error.what());
+    }
+  }
+  return parse_sensor(document);
 }
 
 }  // namespace petzval

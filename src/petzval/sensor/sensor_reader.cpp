@@ -312,7 +312,10 @@ std::string complaint_about(const SensorGeometry& geometry) {
 }
 
 Sensor parse_sensor(const std::string& text, const std::string& file) {
-  const JsonDocument document(text, file);
+  return parse_sensor(JsonDocument(text, file));
+}
+
+Sensor parse_sensor(const JsonDocument& document) {
   const JsonEntry root(document);
   root.allow_only({"format",      "name",        "source",   "columns", "rows",         "pitch_um",
                    "photosite",   "low_pass_um", "channels", "mosaic",  "microlens",    "crosstalk",

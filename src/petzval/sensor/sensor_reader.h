@@ -2,6 +2,7 @@
 // Sensor files: JSON, "petzval-sensor/1".
 #pragma once
 
+#include <petzval/lens/formats/json_document.h>
 #include <petzval/sensor/sensor.h>
 
 #include <string>
@@ -12,6 +13,11 @@ namespace petzval {
 /// \throws InputError with file and line for anything that is no sound sensor: unknown or missing keys,
 /// numbers out of range, and parts that contradict each other.
 Sensor parse_sensor(const std::string& text, const std::string& file);
+Sensor parse_sensor(const JsonDocument& document);
+
+/// read_sensor(text) with some entries of its file altered: "pitch_um=3", "gain_modes[0].read_noise_e=1.5".
+/// \throws InputError as that does, naming the setting.
+Sensor read_sensor(const std::string& text, const std::vector<std::string>& settings);
 
 /// What is wrong with a frame, or nothing.
 std::string complaint_about(const SensorGeometry& geometry);
