@@ -62,6 +62,12 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
       .add_option("--scene-encoding", encoding,
                   "Numbers of a photograph: auto (its colour profile, else sRGB), srgb or linear")
       ->check(CLI::IsMember({"auto", "srgb", "linear"}));
+  command
+      .add_option("--scene-projection", projection,
+                  "plane, or equirectangular: a panorama of all directions, its middle straight ahead")
+      ->check(CLI::IsMember({"plane", "equirectangular"}));
+  command.add_option("--scene-yaw", yaw, "Turns the camera to the right within a panorama [degrees]");
+  command.add_option("--scene-pitch", pitch, "Tilts it up [degrees]");
   add_cube_options(command);
 }
 
@@ -91,12 +97,27 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!size.empty()) take_size(size, options);
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
   if (!illuminant.empty()) options.illuminant = illuminant;
+  take_panorama(options);
   take_cube(options);
   if (!encoding.empty())
     options.encoding = encoding == "srgb"     ? PhotographEncoding::srgb
                        : encoding == "linear" ? PhotographEncoding::linear
                                               : PhotographEncoding::by_file;
   return options;
+}
+
+void SceneChoice::take_panorama(SceneOptions& options) const {
+  const auto angle_of = [](const char* option, const std::string& text) {
+    const std::optional<double> value = text.empty() ? std::optional(0.0) : whole_text<double>(text);
+    if (!value || !std::isfinite(*value))
+      throw InputError(fmt::format("{} {}: an angle in degrees would be right", option, text));
+    return *value;
+  };
+  if (is_panorama()) {
+    options.panorama = {angle_of("--scene-yaw", yaw), angle_of("--scene-pitch", pitch)};
+  } else if (!yaw.empty() || !pitch.empty()) {
+    throw InputError("--scene-yaw and --scene-pitch are for --scene-projection equirectangular");
+  }
 }
 
 void SceneChoice::take_cube(SceneOptions& options) const {

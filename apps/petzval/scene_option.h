@@ -16,6 +16,7 @@ struct SceneChoice {
   std::string path_or_name;
   /// As typed; empty: not given.
   std::string angle, distance, luminance, size, wavelengths, illuminant, encoding;
+  std::string projection, yaw, pitch;
   std::string quantity, unit, scale, file_bands, temperature, emissivity, background;
   bool negative_is_zero = false;
 
@@ -29,11 +30,13 @@ struct SceneChoice {
   Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
   /// Whether the scene is a chart, which can be made in any size.
   bool is_chart() const { return is_builtin_scene(path_or_name); }
-  /// Whether it takes any angle and distance: a chart or a photograph.
-  bool is_open() const { return is_open_scene(path_or_name); }
+  bool is_panorama() const { return projection == "equirectangular"; }
+  /// Whether it takes any angle and distance: a chart or a photograph on a plane.
+  bool is_open() const { return !is_panorama() && is_open_scene(path_or_name); }
 
  private:
   void add_cube_options(CLI::App& command);
+  void take_panorama(SceneOptions& options) const;
   void take_cube(SceneOptions& options) const;
 };
 

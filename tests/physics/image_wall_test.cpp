@@ -22,6 +22,7 @@ struct Wall {
   bool at_infinity;
   double share_off;  ///< of the pixels that may be off by more than 1e-3
   double most_off;
+  bool panorama = false;  ///< the wall is all around
 };
 
 class ImageWall : public ::testing::TestWithParam<Wall> {};
@@ -38,6 +39,10 @@ TEST_P(ImageWall, ComesOutAsTheBackwardTraceSays) {
   std::optional<double> distance_m = object_to_sensor_mm(table);
   if (distance_m) *distance_m /= mm_per_m;
   Scene wall(8, 6, {587.5618}, 40, distance_m);
+  if (at.panorama) {
+    wall = Scene(16, 8, {587.5618}, 40, distance_m);
+    wall.make_panorama();
+  }
   std::fill(wall.band(0).begin(), wall.band(0).end(), 1.0F);
   ImagingOptions options;
   options.supersample = at.supersample;
@@ -70,7 +75,8 @@ INSTANTIATE_TEST_SUITE_P(Bundled, ImageWall,
                                            Wall{"edmund-54852", {768, 576, 6.25}, 1, false, 0.01, 5e-3},
                                            Wall{"dgauss-50mm", {360, 240, 100}, 1, true, 0, 1e-3},
                                            Wall{"wide-22mm", {300, 200, 80}, 1, true, 0, 1e-3},
-                                           Wall{"fisheye-10mm", {320, 320, 50}, 1, true, 0, 1e-3}),
+                                           Wall{"fisheye-10mm", {320, 320, 50}, 1, true, 0, 1e-3},
+                                           Wall{"fisheye-10mm", {160, 160, 100}, 1, true, 0, 1e-3, true}),
                          [](const auto& info) {
                            std::string name = info.param.lens;
                            std::replace(name.begin(), name.end(), '-', '_');

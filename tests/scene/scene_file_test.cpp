@@ -63,6 +63,26 @@ TEST(SceneExr, ComesBackAsItWent) {
   EXPECT_EQ(back.illuminant->values(), scene.illuminant->values());
 }
 
+TEST(SceneExr, PanoramaComesBackAsOne) {
+  const Scratch scratch;
+  Scene scene(4, 2, {450, 550}, 25, std::nullopt);
+  scene.make_panorama({30, -12.5});
+  write_scene_exr(scratch.path("all.exr"), scene);
+  const Scene back = read_scene(scratch.path("all.exr"));
+  ASSERT_TRUE(back.is_panorama());
+  EXPECT_EQ(back.view().yaw_deg, 30);
+  EXPECT_EQ(back.view().pitch_deg, -12.5);
+  EXPECT_EQ(back.horizontal_angle_deg(), 360);
+  SceneOptions options;
+  options.panorama = PanoramaView{5, 0};
+  EXPECT_EQ(read_scene(scratch.path("all.exr"), options).view().yaw_deg, 5);
+  options.horizontal_angle_deg = 40;
+  EXPECT_TRUE(contains(refusal(scratch.path("all.exr"), options), "--scene-angle"));
+  options = {};
+  options.distance_m = 3;
+  EXPECT_TRUE(contains(refusal(scratch.path("all.exr"), options), "infinity"));
+}
+
 TEST(SceneExr, SceneAtInfinityComesBackFromThere) {
   const Scratch scratch;
   Scene scene = ramp();

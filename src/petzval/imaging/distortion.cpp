@@ -2,6 +2,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/panorama_band.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@ namespace {
 
 /// From a field of the table to a radius in the scene, in samples.
 double scene_radius(double field, std::optional<double> object_to_sensor_mm, const Scene& scene) {
+  if (scene.is_panorama()) return radians(field) / scene.tangent_per_sample();
   if (object_to_sensor_mm) return field / (*object_to_sensor_mm * scene.tangent_per_sample());
   constexpr double widest_deg = 89.999;  // a plane cannot fill half of space: from here on, beyond any scene
   return std::tan(radians(std::min(field, widest_deg))) / scene.tangent_per_sample();
@@ -114,12 +116,13 @@ SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid) {
   return seen;
 }
 
-CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                           int parts, Surround surround) {
+namespace {
+
+/// Takes the scene at several points of each cell. \param seen  radiance at the place of a point, given the
+/// place of its cell's centre.
+template <typename Seen>
+CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, const Seen& seen) {
   CellPlane plane(grid);
-  const std::span<const float> radiance = scene.band(band);
-  // From a cell's centre to its farthest point, in samples, and one more for the bilinear neighbours.
-  const double room = map.finest_samples_per_mm() * grid.pitch_um * mm_per_um + 1.5;
   const double pitch_mm = grid.pitch_um * mm_per_um;
   constexpr double rounding = 1e-6;
   std::vector<std::vector<double>> offsets_mm(static_cast<std::size_t>(parts) + 1);
@@ -131,9 +134,7 @@ CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, co
     for (std::size_t column = 0; column < plane.columns(); ++column) {
       const double x_mm = grid.x_mm(double(column) + 0.5);
       const SceneMap::Surroundings near = map.around(x_mm, y_mm);
-      const SceneMap::Place centre = near.place(x_mm, y_mm);
-      const bool inside = centre.column > room && centre.column < scene.columns() - room &&
-                          centre.row > room && centre.row < scene.rows() - room;
+      const auto radiance = seen(near.place(x_mm, y_mm));
       // A distorted image shrinks the scene here more than there.
       const double samples = near.finest_samples_per_mm() * pitch_mm;
       const auto count =
@@ -142,15 +143,46 @@ CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, co
       for (const double down_mm : offsets_mm[count])
         for (const double across_mm : offsets_mm[count]) {
           const SceneMap::Place place = near.place(x_mm + across_mm, y_mm + down_mm);
-          if (place.g_source_sr == 0) continue;
-          sum += place.g_source_sr *
-                 (inside ? radiance_inside(radiance.data(), scene.columns(), place.column, place.row)
-                         : radiance_at(radiance, scene, place.column, place.row, surround));
+          if (place.g_source_sr != 0) sum += place.g_source_sr * radiance(place);
         }
       plane.row(row)[column] = static_cast<float>(sum / double(count * count));
     }
   });
   return plane;
+}
+
+CellPlane ideal_of_plane(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                         int parts, Surround surround) {
+  const std::span<const float> radiance = scene.band(band);
+  // From a cell's centre to its farthest point, in samples, and one more for the bilinear neighbours.
+  const double room = map.finest_samples_per_mm() * grid.pitch_um * mm_per_um + 1.5;
+  return averaged(map, grid, parts, [&](const SceneMap::Place& centre) {
+    const bool inside = centre.column > room && centre.column < scene.columns() - room && centre.row > room &&
+                        centre.row < scene.rows() - room;
+    return [&, inside](const SceneMap::Place& place) {
+      return inside ? radiance_inside(radiance.data(), scene.columns(), place.column, place.row)
+                    : radiance_at(radiance, scene, place.column, place.row, surround);
+    };
+  });
+}
+
+CellPlane ideal_of_panorama(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                            int parts) {
+  const PanoramaBand panorama(scene, band);
+  const double middle_column = scene.columns() / 2.0, middle_row = scene.rows() / 2.0;
+  return averaged(map, grid, parts, [&](const SceneMap::Place&) {
+    return [&](const SceneMap::Place& place) {
+      return panorama.radiance(place.column - middle_column, place.row - middle_row);
+    };
+  });
+}
+
+}  // namespace
+
+CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                           int parts, Surround surround) {
+  return scene.is_panorama() ? ideal_of_panorama(scene, band, map, grid, parts)
+                             : ideal_of_plane(scene, band, map, grid, parts, surround);
 }
 
 }  // namespace petzval

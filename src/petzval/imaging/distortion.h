@@ -25,7 +25,9 @@ enum class Surround {
 /// tangent of the object angle (object at infinity) or the object height (finite) in units of scene samples.
 /// ρ/r' and g_source are smooth functions of r'², and are kept as such, at 4096 steps with straight lines in
 /// between: no square root, no trigonometry and no division on the way from cell to sample, and an error
-/// below 1e-7 for smooth lenses.
+/// below 1e-7 for smooth lenses. For a panorama ρ is the object angle itself, in samples of its equator, so
+/// that places are those of the azimuthal equidistant map about the axis, and fields of 90° and beyond are as
+/// good as any (PanoramaBand).
 class SceneMap {
  public:
   /// \param lens  at the wavelength; beyond its last field there is darkness.

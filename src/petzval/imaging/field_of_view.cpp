@@ -38,6 +38,8 @@ double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
 }
 
 SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, const ImagingOptions& options) {
+  if (scene.is_panorama())
+    throw InputError("a panorama ends nowhere, and so would its image: a --sensor is needed");
   const double pitch_um = natural_pitch_um(scene, table.first_order);
   const auto frame_of = [&](int columns) {
     const double rows = double(columns) * scene.rows() / scene.columns();

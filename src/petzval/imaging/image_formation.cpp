@@ -37,6 +37,7 @@ void check_distances(const Scene& scene, const LensDataTable& table) {
 /// \throws InputError if the scene ends before the field does and nothing was said about its surroundings.
 void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
                     Surround surround, std::vector<std::string>& notes) {
+  if (scene.is_panorama()) return;  // it is everywhere
   const SeenExtent seen = seen_extent(plans, frame);
   int margin = 0;
   for (const BandPlan& plan : plans) margin = std::max(margin, plan.margin);

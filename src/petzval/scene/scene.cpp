@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace petzval {
 
@@ -66,25 +67,42 @@ std::span<const float> Scene::band(int index) const {
   return std::span(radiance_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
+void Scene::make_panorama(PanoramaView view) {
+  if (columns_ != 2 * rows_)
+    throw InputError(
+        fmt::format("a panorama of {} x {} samples; twice as many columns as rows (360 x 180 degrees) "
+                    "would be right",
+                    columns_, rows_));
+  if (distance_m_) throw InputError("a panorama is at infinity; --scene-distance inf would be right");
+  if (!std::isfinite(view.yaw_deg) || !std::isfinite(view.pitch_deg))
+    throw InputError("a view of a panorama must be a finite angle");
+  view_ = view;
+}
+
 double Scene::tangent_per_sample() const {
+  if (is_panorama()) return 2 * std::numbers::pi / columns_;
   return 2 * std::tan(radians(horizontal_angle_deg_) / 2) / columns_;
 }
 
 double Scene::vertical_angle_deg() const {
+  if (is_panorama()) return 180;
   return degrees(2 * std::atan(tangent_per_sample() * rows_ / 2));
 }
 
 double Scene::diagonal_angle_deg() const {
+  if (is_panorama()) return 360;
   return degrees(2 * std::atan(tangent_per_sample() * std::hypot(columns_, rows_) / 2));
 }
 
 void Scene::set_distance_m(std::optional<double> distance_m) {
   check_distance(distance_m);
+  if (is_panorama() && distance_m) throw InputError("a panorama is at infinity; no other distance is right");
   distance_m_ = distance_m;
 }
 
 void Scene::set_horizontal_angle_deg(double angle) {
   check_angle(angle);
+  if (is_panorama()) throw InputError("a panorama is 360 degrees wide; no other angle is right");
   horizontal_angle_deg_ = angle;
 }
 
@@ -129,6 +147,7 @@ Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
   const BandResampling resampling(wavelengths_nm_, wavelengths_nm);
   Scene result(columns_, rows_, {wavelengths_nm.begin(), wavelengths_nm.end()}, horizontal_angle_deg_,
                distance_m_);
+  result.view_ = view_;
   result.name = name;
   result.illuminant = illuminant;
   if (illuminant && illuminant->front_nm() <= wavelengths_nm.front() &&

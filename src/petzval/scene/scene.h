@@ -15,10 +15,19 @@ namespace petzval {
 /// The bands of charts and photographs unless others are asked for: 400 to 700 nm every 10 nm.
 std::vector<double> default_bands_nm();
 
+/// Where a camera looks within a panorama: turned to the right by `yaw`, then tilted up by `pitch`.
+struct PanoramaView {
+  double yaw_deg = 0, pitch_deg = 0;
+};
+
 /// Spectral radiance [W·m⁻²·sr⁻¹·nm⁻¹] on a plane perpendicular to the optical axis, Lambertian. Samples are
 /// squares, rows from the top, upright as a person at the camera sees it. The angular width w belongs to the
 /// scene: at distance d its width is 2 d tan(w/2), so that the tangent of the object angle is linear in the
 /// sample index, for infinite distance too.
+///
+/// Or a panorama of all directions, at infinity: equirectangular, so that columns are even steps of longitude
+/// from −180° on the left to 180° on the right, rows of latitude from 90° on top to −90°; the middle lies
+/// straight ahead.
 class Scene {
  public:
   /// The most samples times bands that a scene may have (8 GiB).
@@ -42,15 +51,24 @@ class Scene {
   /// All bands, one after the other.
   std::span<const float> values() const { return radiance_; }
 
-  /// Full horizontal angle; the vertical one follows from square samples.
-  double horizontal_angle_deg() const { return horizontal_angle_deg_; }
+  /// Makes a panorama of the samples. \throws InputError unless there are twice as many columns as rows, at
+  /// infinity, and the view is finite.
+  void make_panorama(PanoramaView view = {});
+  bool is_panorama() const { return view_.has_value(); }
+  /// Of a panorama.
+  PanoramaView view() const { return view_.value_or(PanoramaView{}); }
+
+  /// Full horizontal angle; the vertical one follows from square samples. A panorama has 360° × 180°.
+  double horizontal_angle_deg() const { return is_panorama() ? 360 : horizontal_angle_deg_; }
   double vertical_angle_deg() const;
   double diagonal_angle_deg() const;
-  /// tan(object angle) from one sample to the next.
+  /// tan(object angle) from one sample to the next; of a panorama the angle, at its middle.
   double tangent_per_sample() const;
   /// From the sensor plane to the scene [m]; absent: at infinity.
   std::optional<double> distance_m() const { return distance_m_; }
+  /// \throws InputError unless positive; a panorama stays at infinity.
   void set_distance_m(std::optional<double> distance_m);
+  /// \throws InputError unless between 0 and 180, or for a panorama.
   void set_horizontal_angle_deg(double angle);
 
   /// Mean spectral radiance of each band over all samples [W·m⁻²·sr⁻¹·nm⁻¹].
@@ -78,6 +96,7 @@ class Scene {
   std::vector<double> wavelengths_nm_;
   double horizontal_angle_deg_ = 0;
   std::optional<double> distance_m_;
+  std::optional<PanoramaView> view_;  ///< of a panorama
   std::vector<float> radiance_;
 };
 

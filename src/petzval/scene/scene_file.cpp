@@ -19,6 +19,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -207,7 +208,8 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   if (scene.name.empty()) scene.name = fs::path(path).stem().string();
   if (options.distance_m) scene.set_distance_m(finite_distance(*options.distance_m));
   if (is_photograph) return scene;
-  if (options.horizontal_angle_deg) scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
+  if (options.horizontal_angle_deg && !options.panorama)
+    scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
   if (options.mean_luminance_cd_m2) scene.set_mean_luminance_cd_m2(*options.mean_luminance_cd_m2);
   if (!options.wavelengths_nm.empty() && options.wavelengths_nm != scene.wavelengths_nm())
     scene = scene.resampled(options.wavelengths_nm);
@@ -251,13 +253,26 @@ void add_wavelengths(std::string_view item, std::vector<double>& wavelengths, co
   for (int i = 0; i <= std::floor(steps + rounding); ++i) wavelengths.push_back(numbers[0] + i * numbers[1]);
 }
 
+Scene read_plane(const std::string& path_or_name, const SceneOptions& options) {
+  if (is_file(path_or_name)) return read_scene_file(path_or_name, options);
+  if (const Chart* chart = find_chart(path_or_name)) return make_chart(path_or_name, *chart, options);
+  return read_scene_file(find_scene_file(path_or_name), options);
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
-  if (is_file(path_or_name)) return read_scene_file(path_or_name, options);
-  if (const Chart* chart = find_chart(path_or_name)) return make_chart(path_or_name, *chart, options);
-  return read_scene_file(find_scene_file(path_or_name), options);
+  if (!options.panorama) return read_plane(path_or_name, options);
+  if (options.horizontal_angle_deg)
+    throw InputError(path_or_name, "is a panorama, 360 degrees wide; --scene-angle is for plane scenes");
+  SceneOptions plane = options;
+  constexpr double any_angle_deg = 90;  // no file need say how wide it is
+  plane.horizontal_angle_deg = any_angle_deg;
+  if (!plane.distance_m) plane.distance_m = std::numeric_limits<double>::infinity();
+  Scene scene = read_plane(path_or_name, plane);
+  naming_file(path_or_name, [&] { scene.make_panorama(*options.panorama); });
+  return scene;
 }
 
 bool is_builtin_scene(const std::string& path_or_name) {

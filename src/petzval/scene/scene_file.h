@@ -24,6 +24,8 @@ struct SceneOptions {
                                                ///< from it; replaces the file's; 100 for charts, photographs
   std::optional<PhotographEncoding> encoding;  ///< photographs only; absent: as the file says
 
+  std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
+
   // Files of bare numbers only: ENVI, NumPy, spectral OpenEXR (CubeOptions).
   std::optional<SceneQuantity> quantity;  ///< absent: as the file says
   std::string radiance_unit;              ///< empty: the file's, or W·m⁻²·sr⁻¹·nm⁻¹

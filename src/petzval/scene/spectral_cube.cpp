@@ -23,6 +23,8 @@ SceneQuantity quantity_of(const SpectralCube& cube, const CubeOptions& options) 
 }
 
 double angle_of(const SpectralCube& cube, const CubeOptions& options) {
+  constexpr double any_angle_deg = 90;
+  if (cube.panorama) return any_angle_deg;  // until the scene becomes one
   if (options.horizontal_angle_deg) return *options.horizontal_angle_deg;
   if (cube.horizontal_angle_deg) return *cube.horizontal_angle_deg;
   throw InputError("does not say how wide the scene is; --scene-angle DEGREES does");
@@ -91,6 +93,7 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
               cube.distance_m);
   scene.name = cube.name;
   scene.illuminant = cube.illuminant;
+  if (cube.panorama) scene.make_panorama(*cube.panorama);
   if (options.illuminant && (quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature))
     throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
   scale(cube.values, options);

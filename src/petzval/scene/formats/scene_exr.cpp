@@ -14,6 +14,10 @@ namespace {
 
 constexpr const char* angle_attribute = "sceneAngle_deg";
 constexpr const char* distance_attribute = "sceneDistance_m";
+constexpr const char* projection_attribute = "sceneProjection";
+constexpr const char* equirectangular = "equirectangular";
+constexpr const char* yaw_attribute = "sceneYaw_deg";
+constexpr const char* pitch_attribute = "scenePitch_deg";
 constexpr const char* name_attribute = "sceneName";
 constexpr const char* illuminant_attribute = "sceneIlluminant";  // "400:0.12 410:0.13": nm, W·m⁻²·sr⁻¹·nm⁻¹
 /// \throws InputError naming the attribute.
@@ -47,6 +51,13 @@ SpectralCube read_scene_exr(const std::string& path) {
   if (const auto name = exr.strings.find(name_attribute); name != exr.strings.end()) cube.name = name->second;
   if (const auto text = exr.strings.find(illuminant_attribute); text != exr.strings.end())
     cube.illuminant = spectrum_of(text->second, path);
+  if (const auto text = exr.strings.find(projection_attribute); text != exr.strings.end()) {
+    if (text->second != equirectangular)
+      throw InputError(path, fmt::format("has the projection '{}'; {} is known", text->second.substr(0, 40),
+                                         equirectangular));
+    cube.panorama.emplace(
+        PanoramaView{number(exr, yaw_attribute).value_or(0), number(exr, pitch_attribute).value_or(0)});
+  }
   return cube;
 }
 
@@ -57,6 +68,11 @@ void write_scene_exr(const std::string& path, const Scene& scene) {
   exr.wavelengths_nm = scene.wavelengths_nm();
   exr.units = spectral_radiance_units;
   exr.numbers[angle_attribute] = scene.horizontal_angle_deg();
+  if (scene.is_panorama()) {
+    exr.strings[projection_attribute] = equirectangular;
+    exr.numbers[yaw_attribute] = scene.view().yaw_deg;
+    exr.numbers[pitch_attribute] = scene.view().pitch_deg;
+  }
   if (scene.distance_m()) exr.numbers[distance_attribute] = *scene.distance_m();
   if (!scene.name.empty()) exr.strings[name_attribute] = scene.name;
   if (scene.illuminant) exr.strings[illuminant_attribute] = spectrum_text(*scene.illuminant);

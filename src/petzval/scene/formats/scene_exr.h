@@ -11,7 +11,7 @@ namespace petzval {
 
 /// Reads radiance from S0 channels, in the unit that `emissiveUnits` says (radiance_scale), or reflectance
 /// from T channels. Read from attributes, if they are there: sceneAngle_deg, sceneDistance_m, sceneName,
-/// sceneIlluminant. \throws InputError for a damaged file.
+/// sceneIlluminant, sceneProjection, sceneYaw_deg, scenePitch_deg. \throws InputError for a damaged file.
 SpectralCube read_scene_exr(const std::string& path);
 
 /// Writes S0 channels with those attributes; depth is left out. \throws InputError, Failure as
