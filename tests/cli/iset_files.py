@@ -162,3 +162,44 @@ def write_zemax(folder, header="Values are relative intensity.", encoding="latin
         for j in range(len(WAVES)):
             name = f"CLOSED_PSF_{i + 1}_{j + 1}.dat" if old_names else f"CLOSED_2D_PSF_Fld{i + 1}_Wave{j + 1}.dat"
             (folder / name).write_bytes(listing(i, j, header).encode(encoding))
+
+
+# Reading what was exported.
+
+def read_mat(path):
+    """(name, value) of the one variable of a packed file; structs are dictionaries, arrays are in MATLAB's shape."""
+    data = path.read_bytes()
+    assert data[:6] == b"MATLAB" and data[124:128] == b"\0\1IM"
+    kind, size = struct.unpack_from("<II", data, 128)
+    assert kind == 15 and 136 + size == len(data)
+    return _read_matrix(zlib.decompress(data[136:])[8:])
+
+
+def _read_element(data, at):
+    """(type, content, where the next one begins)."""
+    kind, size = struct.unpack_from("<II", data, at)
+    if kind >> 16:  # small
+        return kind & 0xffff, data[at + 4:at + 4 + (kind >> 16)], at + 8
+    return kind, data[at + 8:at + 8 + size], at + 8 + size + (-size % 8 if kind != 14 else 0)
+
+
+def _read_matrix(data):
+    _, flags, at = _read_element(data, 0)
+    _, shape, at = _read_element(data, at)
+    shape = struct.unpack(f"<{len(shape) // 4}i", shape)
+    _, name, at = _read_element(data, at)
+    array_class = flags[0]
+    if array_class == 2:
+        _, width, at = _read_element(data, at)
+        _, names, at = _read_element(data, at)
+        width = struct.unpack("<i", width)[0]
+        value = {}
+        for start in range(0, len(names), width):
+            _, field, at = _read_element(data, at)
+            value[names[start:start + width].split(b"\0")[0].decode()] = _read_matrix(field)[1]
+        return name.decode(), value
+    kind, content, _ = _read_element(data, at)
+    if array_class == 4:
+        return name.decode(), content.decode("utf-16-le" if kind in (4, 17) else "utf-8")
+    numbers = np.frombuffer(content, {1: "<i1", 2: "<u1", 3: "<i2", 4: "<u2", 5: "<i4", 6: "<u4", 9: "<f8"}[kind])
+    return name.decode(), numbers.astype("f8").reshape(shape, order="F")

@@ -136,6 +136,36 @@ class Iset(Exchange):
             table["centre"] = (table["psf"].sum(axis=3, dtype="f8") * rows).sum(axis=2) * table["psf_spacing"]
         np.testing.assert_allclose(one["centre"], built["centre"], atol=1e-5)  # um: single precision
 
+    def test_what_is_exported_is_what_iset_wants(self):
+        self.native()
+        self.assert_succeeds("optics", "export", "native.h5", "--to", "iset", "-o", "out.mat")
+        name, optics = iset_files.read_mat(self.folder / "out.mat")
+        self.assertEqual((name, optics["model"]), ("optics", "raytrace"))
+        trace, wanted = optics["rayTrace"], iset_files.ray_trace()
+        for key in ("referenceWavelength", "mag", "fNumber", "effectiveFocalLength", "effectiveFNumber", "fov"):
+            np.testing.assert_allclose(trace[key], [[wanted[key]]], rtol=1e-12)
+        self.assertEqual(trace["objectDistance"], math.inf)
+        for key in ("geometry", "relIllum"):
+            for part in ("function", "fieldHeight", "wavelength"):
+                np.testing.assert_allclose(trace[key][part], wanted[key][part], rtol=1e-12, atol=1e-15)
+        np.testing.assert_allclose(trace["psf"]["sampleSpacing"], [[0.001, 0.001]])
+        # Two samples more a side, so that the chief ray can be sample size/2 counted from 1.
+        ours, theirs = trace["psf"]["function"], wanted["psf"]["function"]
+        self.assertEqual(ours.shape, (130, 130, 13, 2))
+        np.testing.assert_allclose(ours[1:128, 1:128], theirs[:127, :127], atol=1e-6 * theirs.max())
+
+    def test_listings_that_are_exported_lie_as_zemax_has_them(self):
+        self.native()
+        self.assert_succeeds("optics", "export", "native.h5", "--to", "zemax", "-o", "texts")
+        text = (self.folder / "texts" / "closed_form_2D_PSF_Fld13_Wave1.dat").read_text()
+        head, values = text.split("Values are normalized.\n")
+        ours = np.array([[float(word) for word in line.split()] for line in values.split("\n") if line])
+        wanted = iset_files.listing(12, 0).split("Values are relative intensity.")[1]
+        wanted = np.array([[float(word) for word in line.split()] for line in wanted.split("\r\n") if line])
+        wanted /= wanted.sum()
+        self.assertIn("Center point is: row 66, column 66", head)
+        np.testing.assert_allclose(ours[2:129, 2:129], wanted[1:, 1:], atol=2e-6 * wanted.max())
+
     def test_altered_files_are_taken_at_their_word(self):
         self.native()
         self.assert_succeeds("optics", "export", "native.h5", "--to", "zemax", "-o", "texts")
@@ -161,6 +191,20 @@ class Zemax(Exchange):
                 # Seven digits of the listings, six of f-number and focal length, seven of the largest height.
                 self.assert_same_table(self.table("z.h5"), native, 1e-6, 2e-6)
         self.assert_same_picture("z.h5", 5e-5)
+
+    def test_matrices_of_code_v(self):
+        """No headers: size and spacing stand in ISETPARMS, the chief ray is sample size/2 + 1, away is up."""
+        native = self.native()
+        iset_files.write_zemax(self.folder / "v", old_names=True)
+        for path in (self.folder / "v").glob("*PSF*"):
+            rows = path.read_text("latin-1").split("intensity.\n")[1].strip().split("\n")
+            matrix = np.array([[float(word) for word in row.split()] for row in rows])
+            # Turned about the chief ray by half a turn, the field at -y' comes to +y'; the first row and column wrap.
+            turned = np.roll(matrix[::-1, ::-1], (1, 1), (0, 1))
+            path.write_text("\n".join(" ".join(f"{v:.6E}" for v in row) for row in turned))
+        done = self.petzval("optics", "import", "v", "--from", "codev", "-o", "v.h5")
+        self.assertIn("taken to be up", done.stderr)
+        self.assert_same_table(self.table("v.h5"), native, 1e-6, 2e-6)
 
     def test_says_what_it_assumes(self):
         iset_files.write_zemax(self.folder / "z")
