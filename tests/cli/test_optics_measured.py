@@ -82,6 +82,22 @@ class Mtf(Measured):
         self.assertLess(np.interp(ring, places[middle:], line), 0.004 * line[0])
         self.assertGreater(np.interp(0.75 * ring, places[middle:], line), 0.05 * line[0])
 
+    def test_the_picture_of_an_edge_has_the_mtf_that_went_in(self):
+        """A bench's MTF, a table, a picture of a slanted edge, and `sfr` on it: the bench's MTF times the pixel."""
+        pitch_um, tilt = 5.0, math.radians(5)
+        frequencies = np.arange(10, 210, 10)
+        contrast = np.exp(-frequencies / 90)  # as a bench might find it: no Gaussian, long tails of light
+        self.take(mtf_csv([(field, 550, f, c, c) for field in (0, 1) for f, c in zip(frequencies, contrast)]))
+        self.assert_succeeds("image", "slanted-edge:5", "--optics", "m.h5", "--sensor", "160x160@5", "--wavelengths", "550",
+                             "--scene-size", "2400x2400", "--scene-angle", "8", "--supersample", 4, "-o", "edge.exr")
+        edge, = self.json_of("sfr", "edge.exr", "--roi", "40,20,80,120")["edges"]
+        sfr = {round(f, 2): value for f, value in zip(edge["frequencies_cpp"], edge["sfr"])}
+        for cpp in (0.1, 0.2, 0.3, 0.4, 0.5):
+            pixel = np.sinc(cpp * math.cos(tilt)) * np.sinc(cpp * math.sin(tilt))
+            wanted = np.exp(-1000 * cpp / pitch_um / 90) * pixel
+            # 0.01 as in test_closed_loop: what lies beyond the windows of PSF and edge.
+            self.assertAlmostEqual(sfr[cpp], wanted, delta=0.01, msg=cpp)
+
     def test_says_how_well_it_meets_what_no_light_can_do(self):
         # Contrast that stays at 1 and falls off a cliff: its PSF would be negative in rings.
         rows = [(field, 550, f, c, c) for field in (0, 1) for f, c in ((10, 1), (50, 1), (51, 0), (100, 0))]

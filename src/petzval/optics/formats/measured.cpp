@@ -157,6 +157,7 @@ MeasuredFile read_measured(std::string_view text, const std::string& file, std::
   RayTraceData& data = measured.data;
   data.program = "a measurement";
   data.lens_file = columns.text("name");
+  if (data.lens_file.empty()) data.lens_file = "measured lens";
   data.effective_focal_length_mm = columns.number("focal_length_mm").value_or(RayTraceData::unknown);
   if (std::isnan(data.effective_focal_length_mm))
     columns.fail("does not say the focal length: a line \"# focal_length_mm: …\" would be right");
