@@ -7,6 +7,8 @@
 #include <petzval/render/materials/coating_albedo.h>
 #include <petzval/render/materials/fresnel.h>
 
+#include <complex>
+
 #include "scene_text.h"
 #include "sphere_cells.h"
 
@@ -117,6 +119,15 @@ TEST(Fresnel, KnownValues) {
   EXPECT_EQ(dielectric_reflectance(0.5, 1 / 1.5), 1);  // beyond the critical angle
   EXPECT_NEAR(conductor_reflectance(1, 0.5, 3), (0.25 + 9) / (2.25 + 9), 1e-15);
   EXPECT_NEAR(conductor_reflectance(0.3, 1.5, 0), dielectric_reflectance(0.3, 1.5), 1e-15);
+  // Fresnel's equations as they stand, with a complex index.
+  for (const double cos : {1e-3, 0.1, 0.5, 0.9, 1.0})
+    for (const std::complex<double> n :
+         {std::complex<double>{0.2, 3.4}, {1.3, 7}, {2, 0.1}, {0.05, 0}, {4, 4}}) {
+      const std::complex<double> far = std::sqrt(1.0 - (1 - cos * cos) / (n * n));
+      const double s = std::norm((cos - n * far) / (cos + n * far)),
+                   p = std::norm((n * cos - far) / (n * cos + far));
+      EXPECT_NEAR(conductor_reflectance(cos, n.real(), n.imag()), (s + p) / 2, 1e-14) << cos << " " << n;
+    }
   // 0.0918 from outside and 0.5963 from inside at 1.5: Egan & Hilgeman, Appl. Opt. 12 (1973) 1816.
   EXPECT_NEAR(mean_dielectric_reflectance(1.5), 0.0918, 1e-4);
   EXPECT_NEAR(mean_dielectric_reflectance(1 / 1.5), 0.5963, 1e-4);

@@ -41,47 +41,62 @@ constexpr DirectionNumbers direction_numbers(int dimension) {
   return v;
 }
 
-/// The exclusive or of the direction numbers of all bits of each byte of an index.
+constexpr std::uint32_t reversed_bits(std::uint32_t x) {
+#if defined(__GNUC__)
+  x = __builtin_bswap32(x);
+#else
+  x = (x << 16) | (x >> 16);
+  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+#endif
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+/// The exclusive or of the direction numbers of all bits of each byte of an index. Scrambling works on digits
+/// in reverse, and its result is the next index: so everything here is kept in reverse, index and numbers.
 using ByteTables = std::array<std::array<std::array<std::uint32_t, 256>, 4>, dimensions>;
 
-constexpr ByteTables make_byte_tables() {
+constexpr ByteTables make_reversed_tables() {
   ByteTables tables{};
   for (int d = 0; d < dimensions; ++d) {
     const DirectionNumbers v = direction_numbers(d);
     for (std::size_t byte = 0; byte < 4; ++byte)
       for (std::size_t value = 0; value < 256; ++value)
         for (std::size_t bit = 0; bit < 8; ++bit)
-          if (value >> bit & 1) tables[static_cast<std::size_t>(d)][byte][value] ^= v[8 * byte + bit];
+          if (value >> bit & 1)
+            tables[static_cast<std::size_t>(d)][byte][value] ^= reversed_bits(v[31 - (8 * byte + bit)]);
   }
   return tables;
 }
 
-constexpr ByteTables byte_tables = make_byte_tables();
+constexpr ByteTables reversed_tables = make_reversed_tables();
 
-constexpr std::uint32_t reversed_bits(std::uint32_t x) {
-  x = (x << 16) | (x >> 16);
-  x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
-  x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
-  return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
-}
-
-}  // namespace
-
-std::uint32_t sobol(std::uint32_t index, int dimension) {
-  const auto& table = byte_tables[static_cast<std::size_t>(dimension)];
+/// sobol() in reverse, of an index in reverse.
+std::uint32_t reversed_sobol(std::uint32_t index, int dimension) {
+  const auto& table = reversed_tables[static_cast<std::size_t>(dimension)];
   return table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
          table[3][index >> 24];
 }
 
-std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed) {
-  std::uint32_t x = reversed_bits(digits);
+/// owen_scrambled() of digits in reverse, in reverse.
+std::uint32_t scrambled_in_reverse(std::uint32_t x, std::uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return reversed_bits(x);
+  return x;
+}
+
+}  // namespace
+
+std::uint32_t sobol(std::uint32_t index, int dimension) {
+  return reversed_bits(reversed_sobol(reversed_bits(index), dimension));
+}
+
+std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed) {
+  return reversed_bits(scrambled_in_reverse(reversed_bits(digits), seed));
 }
 
 std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
@@ -94,11 +109,12 @@ std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
 template <std::size_t Count>
 std::array<double, Count> SobolSample::next() {
   const std::uint32_t set_seed = hashed(seed_, set_++);
-  const std::uint32_t shuffled = owen_scrambled(index_, set_seed);
+  const std::uint32_t shuffled = scrambled_in_reverse(reversed_bits(index_), set_seed);
   std::array<double, Count> point;
   for (std::size_t d = 0; d < Count; ++d)
-    point[d] = unit * owen_scrambled(sobol(shuffled, static_cast<int>(d)),
-                                     hashed(set_seed, 0x9e3779b9u + static_cast<std::uint32_t>(d)));
+    point[d] = unit * reversed_bits(scrambled_in_reverse(
+                          reversed_sobol(shuffled, static_cast<int>(d)),
+                          hashed(set_seed, 0x9e3779b9u + static_cast<std::uint32_t>(d))));
   return point;
 }
 

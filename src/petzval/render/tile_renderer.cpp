@@ -75,11 +75,12 @@ class TileRenderer {
   void add_light(std::size_t i, int group, const PathLight& light) {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
+    const Pixel own = pixel_of(i);
     for (int lane = 0; lane < world_.groups.lanes(group); ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
-      std::optional<Pixel> pixel = pixel_of(i);
+      std::optional<Pixel> pixel = own;
       if (ray.spread && lane != hero)
         pixel =
             sampling_.pixel_at(places_[i], static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),

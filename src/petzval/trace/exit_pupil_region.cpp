@@ -141,7 +141,7 @@ const ExitPupilRegions::Zone& ExitPupilRegions::zone_at(double radius_mm) const 
 }
 
 ExitPupilRegions::Place ExitPupilRegions::place(double x_mm, double y_mm) const {
-  const double radius = std::hypot(x_mm, y_mm);
+  const double radius = std::sqrt(x_mm * x_mm + y_mm * y_mm);
   const Zone& zone = zone_at(radius);
   const auto index = static_cast<double>(&zone - zones_.data());
   const double step = film_radius_mm_ / static_cast<double>(zones_.size());
