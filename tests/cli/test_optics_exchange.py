@@ -68,6 +68,14 @@ class Iset(Exchange):
         np.testing.assert_allclose(self.table("rt.h5")["g_source"], native["g_source"], rtol=1e-12)
         self.assert_same_picture("rt.h5", 1e-6)
 
+    def test_transmittance_of_the_optics(self):
+        native = self.native()
+        iset_files.write_mat(self.folder / "t.mat", "optics", {
+            "rayTrace": iset_files.ray_trace(), "transmittance": {"wave": [[450.0], [550.0]], "scale": [[1.0], [0.8]]}})
+        self.assert_succeeds("optics", "import", "t.mat", "-o", "t.h5")
+        # 0.9 at 500 nm; ISET takes 1 at 600 nm, beyond its wavelengths.
+        np.testing.assert_allclose(self.table("t.h5")["g_sensor"], native["g_sensor"] * [0.9, 1], rtol=1e-12)
+
     def test_psfs_that_stand_on_end_are_told_by_their_symmetry(self):
         lean, iset_files.LEAN = iset_files.LEAN, 0.0
         self.addCleanup(setattr, iset_files, "LEAN", lean)
@@ -148,6 +156,7 @@ class Iset(Exchange):
         for key in ("geometry", "relIllum"):
             for part in ("function", "fieldHeight", "wavelength"):
                 np.testing.assert_allclose(trace[key][part], wanted[key][part], rtol=1e-12, atol=1e-15)
+        np.testing.assert_array_equal(optics["transmittance"]["scale"], [[1], [1]])
         np.testing.assert_allclose(trace["psf"]["sampleSpacing"], [[0.001, 0.001]])
         # Two samples more a side, so that the chief ray can be sample size/2 counted from 1.
         ours, theirs = trace["psf"]["function"], wanted["psf"]["function"]

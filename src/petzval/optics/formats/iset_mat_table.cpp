@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/numeric/interpolation.h>
 #include <petzval/optics/formats/iset_mat_table.h>
 #include <petzval/scene/formats/mat_file.h>
 #include <petzval/scene/formats/mat_writer.h>
@@ -13,10 +14,32 @@ namespace petzval {
 
 namespace {
 
-MatValue ray_trace_of(const MatFile& file) {
-  MatValue value = file.first();
-  if (value.name() == "oi" || value.name() == "opticalimage") value = value.at("optics");
-  return value.name() == "rayTrace" ? value : value.at("rayTrace");
+/// The optics structure, or nothing where the file holds a rayTrace structure alone.
+std::optional<MatValue> optics_of(const MatValue& variable) {
+  if (variable.name() == "oi" || variable.name() == "opticalimage") return variable.at("optics");
+  return variable.name() == "rayTrace" ? std::nullopt : std::optional(variable);
+}
+
+/// What ISET multiplies the light by: linear between its wavelengths, 1 beyond. Empty if it is 1 throughout.
+std::vector<double> transmittance_of(const MatValue& optics, const std::vector<double>& wavelengths_nm) {
+  const std::optional<MatValue> holder = optics.find("transmittance");
+  if (!holder || !holder->is_struct() || !holder->find("wave") || !holder->find("scale")) return {};
+  const std::vector<double> waves = holder->at("wave").numbers().values();
+  const std::vector<double> scale = holder->at("scale").numbers().values();
+  if (waves.size() != scale.size() || !std::is_sorted(waves.begin(), waves.end(), std::less_equal<>()))
+    holder->fail("must have as many scales as wavelengths, and wavelengths that increase");
+  for (const double value : scale)
+    if (!(value >= 0 && value <= 1))
+      holder->fail(fmt::format("has a scale of {}; 0 to 1 would be right", value));
+  std::vector<double> values;
+  for (const double nm : wavelengths_nm) {
+    const bool outside = waves.size() < 2 || !(nm >= waves.front() && nm <= waves.back());
+    const std::size_t i = outside ? 0 : bracket(waves, nm);
+    values.push_back(
+        outside ? 1 : scale[i] + (scale[i + 1] - scale[i]) * (nm - waves[i]) / (waves[i + 1] - waves[i]));
+  }
+  const bool clear = std::all_of(values.begin(), values.end(), [](double value) { return value == 1; });
+  return clear ? std::vector<double>() : values;
 }
 
 double number_or_unknown(const MatValue& holder, const char* field) {
@@ -175,11 +198,20 @@ MatItem psf_item(const RayTraceData& data) {
                           {"sampleSpacing", {MatDoubles{{1, 2}, {spacing_mm, spacing_mm}}}}}};
 }
 
+/// ISET does not do without it; light that the lens takes is in the illumination.
+MatItem clear_glass(const std::vector<double>& wavelengths_nm) {
+  const double beside = 1;
+  return {MatItem::Fields{
+      {"wave", MatItem::column({wavelengths_nm.front() - beside, wavelengths_nm.back() + beside})},
+      {"scale", MatItem::column({1, 1})}}};
+}
+
 }  // namespace
 
 RayTraceFile read_iset_mat_table(const std::string& path, const PsfLie& lie) {
   const MatFile mat(path, {"optics", "rayTrace", "oi", "opticalimage"});
-  const MatValue trace = ray_trace_of(mat);
+  const std::optional<MatValue> optics = optics_of(mat.first());
+  const MatValue trace = optics ? optics->at("rayTrace") : mat.first();
   RayTraceFile file;
   RayTraceData& data = file.data;
   data.program = text_or_nothing(trace, "program");
@@ -195,6 +227,7 @@ RayTraceFile read_iset_mat_table(const std::string& path, const PsfLie& lie) {
   const MatValue geometry = trace.at("geometry");
   data.field_height_mm = geometry.at("fieldHeight").numbers().values();
   data.wavelengths_nm = geometry.at("wavelength").numbers().values();
+  if (optics) data.transmittance = transmittance_of(*optics, data.wavelengths_nm);
   data.distorted_height_mm = by_field(geometry, data);
   data.relative_illumination = by_field(trace.at("relIllum"), data);
   take_psfs(trace.at("psf"), lie, file);
@@ -223,6 +256,7 @@ void write_iset_mat_table(const RayTraceData& data, const std::string& path) {
                       {"model", {std::string("raytrace")}},
                       {"fNumber", MatItem::number(data.f_number)},
                       {"focalLength", MatItem::number(data.effective_focal_length_mm / mm_per_m)},
+                      {"transmittance", clear_glass(data.wavelengths_nm)},
                       {"rayTrace", trace}}};
   write_mat(path, "optics", optics);
 }

@@ -63,6 +63,8 @@ void require_whole(const RayTraceData& data) {
   require_size(data.distorted_height_mm.size(), expected, data, "the geometry");
   require_size(data.relative_illumination.size(), expected, data, "the relative illumination");
   require_size(data.psf.size(), expected, data, "the list of PSFs");
+  if (!data.transmittance.empty() && data.transmittance.size() != data.wavelengths_nm.size())
+    throw InputError("the transmittance has another number of wavelengths");
   for (const double height : data.field_height_mm)
     if (!(std::isfinite(height) && height >= 0))
       throw InputError(fmt::format("a field height is {} mm; heights are finite and start at 0", height));
@@ -120,7 +122,7 @@ bool same(const RayTraceData& a, const RayTraceData& b) {
          agree(a.effective_f_number, b.effective_f_number) &&
          agree(a.effective_focal_length_mm, b.effective_focal_length_mm) &&
          agree(a.field_height_mm, b.field_height_mm) && a.wavelengths_nm == b.wavelengths_nm &&
-         agree(a.relative_illumination, b.relative_illumination);
+         agree(a.relative_illumination, b.relative_illumination) && a.transmittance == b.transmittance;
 }
 
 /// The table that the structure was made from; nothing if somebody has changed the structure since.
@@ -213,7 +215,10 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
   table.real_image_height_mm = data.distorted_height_mm;
   table.psf = data.psf;
   const double axis = g_axis_sr(data, reading, finite, imported.notes);
-  for (const double relative : data.relative_illumination) table.g_sensor_sr.push_back(axis * relative);
+  for (std::size_t i = 0; i < data.relative_illumination.size(); ++i) {
+    const double passes = data.transmittance.empty() ? 1 : data.transmittance[i % data.wavelengths_nm.size()];
+    table.g_sensor_sr.push_back(axis * passes * data.relative_illumination[i]);
+  }
   table.g_source_sr = table.g_sensor_sr;
   table.validate();
   if (reading.illumination == RayTraceReading::Illumination::sensor)

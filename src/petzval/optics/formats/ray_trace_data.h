@@ -31,6 +31,7 @@ struct RayTraceData {
   std::vector<double> distorted_height_mm;    ///< of the real chief ray
   std::vector<double> relative_illumination;  ///< 1 on the axis
   std::vector<Psf> psf;
+  std::vector<double> transmittance;  ///< of the lens, by wavelength; empty: 1
   /// What Petzval keeps beside it (kept_beside()); empty in files of others.
   std::string kept;
 };
