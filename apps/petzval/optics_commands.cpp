@@ -234,7 +234,7 @@ void print_header(const LensDataTable& table) {
              table.provenance, object, table.vertex_to_sensor_mm, table.first_order.wavelength_nm);
   table_layout::for_each_first_order(table.first_order, [](const std::string& name, double number) {
     if (name == "wavelength_nm") return;
-    fmt::print("  {:<28} {:>14}\n", name, std::isnan(number) ? "not known" : fmt::format("{:.6f}", number));
+    fmt::print("  {:<31} {:>14}\n", name, std::isnan(number) ? "not known" : fmt::format("{:.6f}", number));
   });
 }
 

@@ -3,9 +3,13 @@
 
 import csv
 import json
+import os
+import signal
+import subprocess
+import time
 import unittest
 
-from petzval_cli import ProgramTest
+from petzval_cli import PROGRAM, ProgramTest
 
 IMAGE = ["sweep", "image", "checkerboard", "--lens", "edmund-54852", "--wavelengths", "550", "--sensor", "48x36@80"]
 
@@ -65,6 +69,22 @@ class Sweep(ProgramTest):
         # Another sweep into the same folder makes its own points.
         self.assert_succeeds(*IMAGE, "--vary", "f-number=8", "-o", "out")
         self.assertNotEqual(first.read_bytes(), bytes_before)
+
+    def test_a_killed_sweep_goes_on(self):
+        sweep = ["sweep", "lens", "psf", "edmund-54852", "--wavelengths", "550", "--vary", "fields=0:2.8:0.4", "-o", "out"]
+        running = subprocess.Popen([PROGRAM, *sweep], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   start_new_session=True)
+        first = self.folder / "out" / "point-0000.json"
+        while not first.exists() and running.poll() is None:
+            time.sleep(0.005)
+        os.killpg(running.pid, signal.SIGKILL)  # the point that is being made, too
+        running.wait()
+        self.assertFalse((self.folder / "out" / "sweep.csv").exists(), "it was killed before its end")
+        stamp = first.stat().st_mtime_ns
+        said = self.json_of(*sweep)
+        self.assertEqual((said["points"], said["failed"]), (8, 0))
+        self.assertEqual(first.stat().st_mtime_ns, stamp)
+        self.assertFalse([path.name for path in (self.folder / "out").iterdir() if path.name.endswith((".out", ".err"))])
 
     def test_an_edited_lens_makes_its_points_anew(self):
         self.assert_succeeds("lens", "convert", "edmund-54852", "own.json")
