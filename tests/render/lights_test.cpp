@@ -174,6 +174,16 @@ INSTANTIATE_TEST_SUITE_P(
                   "] \"integer "
                   "indices\" [ 0 1 2 0 2 3 ]"},
         NamedText{"bilinear patch", "Shape \"bilinearmesh\" \"point3 P\" [ -2 -2 0 2 -2 1 -2 2 1 2 2 0 ]"},
+        NamedText{"tube",
+                  "Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.6 \"float width1\" 0.2 "
+                  "\"point3 P\" "
+                  "[ -1 -1 0 -1 1 0 1 -1 0.5 1 1 0 ]"},
+        NamedText{"ribbon",
+                  "Shape \"curve\" \"float width\" 0.6 \"point3 P\" [ -1 -1 0 -1 1 0 1 -1 0.5 1 1 0 ]"},
+        NamedText{
+            "placed tube",
+            "ObjectBegin \"o\"\nShape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.6 \"point3 "
+            "P\" [ -1 -1 0 -1 1 0 1 -1 0.5 1 1 0 ]\nObjectEnd\nRotate 30 0 0 1\nObjectInstance \"o\""},
         NamedText{
             "placed objects",
             "ObjectBegin \"o\"\nShape \"sphere\" \"float radius\" 0.5\nShape \"disk\"\nObjectEnd\nScale 1 2 "

@@ -153,7 +153,8 @@ TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
 TEST(SceneReader, ListsEverythingThatIsNotSupported) {
   Unsupported unsupported(true);
   const SceneDescription scene = parse_scene_description(
-      "WorldBegin\nMaterial \"hair\"\nShape \"curve\" \"float width\" 1\nShape \"sphere\" \"float alpha\" "
+      "WorldBegin\nMaterial \"hair\"\nShape \"loopsubdiv\" \"integer levels\" 1\nShape \"sphere\" \"float "
+      "alpha\" "
       "0.5\n"
       "LightSource \"goniometric\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
       "s.pbrt", unsupported);
@@ -161,7 +162,7 @@ TEST(SceneReader, ListsEverythingThatIsNotSupported) {
   std::vector<std::string> list;
   for (const Complaint& each : unsupported.list()) list.push_back(each.at.text() + " " + each.what);
   EXPECT_EQ(list, (std::vector<std::string>{"s.pbrt:6:1 a participating medium",
-                                            "s.pbrt:2:1 Material \"hair\"", "s.pbrt:3:1 Shape \"curve\"",
+                                            "s.pbrt:2:1 Material \"hair\"", "s.pbrt:3:1 Shape \"loopsubdiv\"",
                                             "s.pbrt:4:16 the parameter \"float alpha\" of Shape \"sphere\"",
                                             "s.pbrt:5:1 LightSource \"goniometric\""}));
 }

@@ -33,6 +33,8 @@ class WorldBuilder {
       geometry.shape = read_triangle_mesh(description, unsupported_);
     } else if (type == "sphere" || type == "disk" || type == "cylinder") {
       geometry.shape = read_quadric(description, unsupported_);
+    } else if (type == "curve") {
+      geometry.shape = read_curve(description, unsupported_);
     } else {
       return unsupported_.report(parameters.location(), fmt::format("Shape \"{}\"", type));
     }
@@ -45,6 +47,8 @@ class WorldBuilder {
   }
 
   void light_up(const ShapeDescription& description, Geometry& geometry) {
+    if (std::holds_alternative<CurveSegments>(geometry.shape))
+      return unsupported_.report(description.entity.location(), "a curve that shines");
     const Entity& entity = scene_.area_lights[static_cast<std::size_t>(description.area_light)];
     double area = 0;
     for (std::size_t i = 0; i < geometry.primitives(); ++i) area += geometry.primitive_area(i);

@@ -68,11 +68,39 @@ SurfacePoint quadric_point(const Geometry& geometry, const Quadric& quadric, Vec
   return point;
 }
 
+/// Embree finds curves nearly: to this share of the radius.
+constexpr double tube_clearance = 0.01;
+/// A ribbon turns about its middle line to face the next ray, too, which must be beyond it by then.
+constexpr double ribbon_clearance = 2;
+
+/// \param from  unit direction of the ray that meets it.
+SurfacePoint curve_point(const Geometry& geometry, const CurveSegments& curve, const Hit& hit,
+                         Vector3 position, Vector3 from) {
+  const auto segment = static_cast<std::size_t>(hit.primitive);
+  const CurveSegments::Place place = curve.at(segment, hit.b1);
+  const Vector3 tangent = normalised(place.tangent), off = position - place.centre;
+  const bool tube = curve.kind == CurveSegments::Kind::cylinder;
+  const Vector3 outwards = tube ? off : -from;
+  SurfacePoint point;
+  point.position = position;
+  point.normal = normalised(outwards - dot(outwards, tangent) * tangent);
+  if (!(dot(point.normal, point.normal) > 0)) point.normal = -from;  // straight along the curve
+  if (geometry.reversed) point.normal = -point.normal;
+  point.shading_normal = point.normal;
+  point.along_u = place.tangent;
+  point.u = (static_cast<double>(segment) + hit.b1) / static_cast<double>(curve.segments());
+  const double across = dot(off, normalised(cross(tangent, -from))) / std::max(2 * place.radius, 1e-30);
+  point.v = std::clamp(0.5 + across, 0.0, 1.0);
+  point.clearance = (tube ? tube_clearance : ribbon_clearance) * place.radius;
+  return point;
+}
+
 }  // namespace
 
 std::size_t Geometry::primitives() const {
-  const auto* mesh = std::get_if<TriangleMesh>(&shape);
-  return mesh ? mesh->triangles.size() : 1;
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) return mesh->triangles.size();
+  if (const auto* curve = std::get_if<CurveSegments>(&shape)) return curve->segments();
+  return 1;
 }
 
 double Geometry::primitive_area(std::size_t primitive) const {
@@ -82,7 +110,7 @@ double Geometry::primitive_area(std::size_t primitive) const {
 
 Vector3 SurfacePoint::origin_towards(Vector3 direction) const {
   const double size = std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)});
-  return position + float_clearance * size * facing(normal, direction);
+  return position + float_clearance * size * facing(normal, direction) + clearance * direction;
 }
 
 SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 origin, Vector3 direction,
@@ -94,12 +122,16 @@ SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 ori
   } else {
     Vector3 near = origin + hit.distance * direction;
     if (place) near = place->inverse_point(near);
-    point = quadric_point(geometry, std::get<Quadric>(geometry.shape), near);
+    const auto* curve = std::get_if<CurveSegments>(&geometry.shape);
+    point = curve ? curve_point(geometry, *curve, hit, near,
+                                normalised(place ? place->inverse_direction(direction) : direction))
+                  : quadric_point(geometry, std::get<Quadric>(geometry.shape), near);
   }
   if (!place) return point;
   point.position = place->point(point.position);
   point.normal = normalised(place->normal(point.normal));
   point.shading_normal = normalised(place->normal(point.shading_normal));
+  if (point.clearance > 0) point.clearance *= length(place->direction(normalised(point.along_u)));
   point.along_u = place->direction(point.along_u);
   return point;
 }

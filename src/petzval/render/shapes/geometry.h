@@ -2,6 +2,7 @@
 // The surfaces of a scene as they are met by rays.
 #pragma once
 
+#include <petzval/render/shapes/curve_segments.h>
 #include <petzval/render/shapes/quadric.h>
 #include <petzval/render/shapes/triangle_mesh.h>
 
@@ -13,7 +14,7 @@ namespace petzval::render {
 
 /// One shape of a scene.
 struct Geometry {
-  std::variant<TriangleMesh, Quadric> shape;
+  std::variant<TriangleMesh, Quadric, CurveSegments> shape;
   int material = 0;
   bool reversed = false;          ///< ReverseOrientation
   bool swaps_handedness = false;  ///< its transformation is a mirror image
@@ -27,7 +28,8 @@ struct Geometry {
 struct Hit {
   double distance = 0;  ///< in units of the direction's length
   int geometry = 0, primitive = 0, instance = -1;
-  double b1 = 0, b2 = 0;  ///< barycentric coordinates of corners 1 and 2 of a triangle
+  /// Barycentric coordinates of corners 1 and 2 of a triangle; b1 is the place along a segment of a curve.
+  double b1 = 0, b2 = 0;
 };
 
 /// A point of a surface, in world space.
@@ -37,6 +39,7 @@ struct SurfacePoint {
   Vector3 shading_normal;  ///< of its interpolated normals, on the same side
   Vector3 along_u;
   double u = 0, v = 0;
+  double clearance = 0;  ///< how far rays must get away before they may meet the surface again
 
   /// Where a ray to `direction` begins so that it does not meet the point's own surface again, for all that
   /// Embree computes in single precision.

@@ -100,6 +100,20 @@ struct Intersector::Impl {
     return result;
   }
 
+  RTCGeometry new_curve(const CurveSegments& curve) const {
+    const bool tube = curve.kind == CurveSegments::Kind::cylinder;
+    RTCGeometry handle = rtcNewGeometry(
+        device, tube ? RTC_GEOMETRY_TYPE_ROUND_BEZIER_CURVE : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), curve.points.size()));
+    auto* first = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), curve.segments()));
+    check();
+    for (const auto& point : curve.points) vertices = std::copy(point.begin(), point.end(), vertices);
+    for (std::size_t i = 0; i < curve.segments(); ++i) first[i] = static_cast<unsigned>(4 * i);
+    return handle;
+  }
+
   void attach(RTCScene to, const Geometry& geometry, unsigned id) const {
     RTCGeometry handle;
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shape)) {
@@ -112,6 +126,8 @@ struct Intersector::Impl {
       for (const auto& vertex : mesh->positions) vertices = std::copy(vertex.begin(), vertex.end(), vertices);
       for (const auto& triangle : mesh->triangles)
         indices = std::copy(triangle.begin(), triangle.end(), indices);
+    } else if (const auto* curve = std::get_if<CurveSegments>(&geometry.shape)) {
+      handle = new_curve(*curve);
     } else {
       handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
       rtcSetGeometryUserPrimitiveCount(handle, 1);
