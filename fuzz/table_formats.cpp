@@ -1,42 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "table_formats.h"
 
-#include <fmt/format.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/optics/formats/iset_mat_table.h>
 #include <petzval/optics/formats/isetparms.h>
 #include <petzval/optics/formats/kept_beside.h>
 #include <petzval/optics/formats/measured.h>
 #include <petzval/optics/formats/psf_listing.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <optional>
 
+#include "memory_file.h"
 #include "require.h"
 
 namespace petzval::fuzz {
 
 namespace {
-
-/// Bytes as a file that has a path but no place on a disk.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::string_view bytes) : descriptor_(memfd_create("fuzz", 0)) {
-    require(descriptor_ >= 0, "no file in memory");
-    require(write(descriptor_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
-            "a file in memory that cannot be written");
-  }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-
- private:
-  int descriptor_;
-};
 
 template <typename Work>
 bool accepted(Work work) {

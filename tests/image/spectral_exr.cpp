@@ -226,6 +226,19 @@ TEST(SpectralExr, RefusesASizeThatTheFileCannotHold) {
   EXPECT_NE(message.find("10000000000 pixels"), std::string::npos) << message;
 }
 
+/// OpenEXR reads a float of four bytes whatever size the file states, and would take the rest for attributes.
+TEST(SpectralExr, RefusesAttributesWhoseSizeIsNotTheirTypes) {
+  const test::Scratch scratch;
+  write_spectral_exr(scratch.path("a.exr"), example());
+  std::string bytes = read_whole_file(scratch.path("a.exr"));
+  const std::string attribute("pixelAspectRatio\0float\0", 23);
+  const std::size_t size_at = bytes.find(attribute) + attribute.size();
+  ASSERT_EQ(bytes[size_at], 4);
+  bytes[size_at] = 12;
+  bytes.insert(size_at + 8, std::string("x\0y\0\xFF\xFF\xFF\x70", 8));
+  EXPECT_NE(message_of(scratch.with("b.exr", bytes)).find("damaged"), std::string::npos);
+}
+
 TEST(SpectralExr, NanIsReadAndReportedByValidate) {
   const test::Scratch scratch;
   SpectralExr exr = example();

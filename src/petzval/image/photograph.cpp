@@ -10,9 +10,12 @@
 #include <petzval/image/photograph.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <optional>
+#include <string_view>
 #include <variant>
 
 namespace petzval {
@@ -36,24 +39,40 @@ std::string lower_extension(const std::string& path) {
   return extension;
 }
 
+enum class PictureKind { png, jpeg, tiff };
+
+/// By the first bytes: names lie.
+PictureKind kind_of(const std::string& path) {
+  using namespace std::string_view_literals;
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 4> start{};
+  file.read(start.data(), start.size());
+  const std::string_view bytes(start.data(), static_cast<std::size_t>(file.gcount()));
+  if (bytes == "\x89PNG"sv) return PictureKind::png;
+  if (bytes.starts_with("\xFF\xD8"sv)) return PictureKind::jpeg;
+  if (bytes == "II*\0"sv || bytes == "MM\0*"sv || bytes == "II+\0"sv || bytes == "MM\0+"sv)
+    return PictureKind::tiff;
+  throw InputError(path, "is no photograph: neither PNG, JPEG nor TIFF");
+}
+
 StoredPicture read_stored(const std::string& path) {
-  const std::string extension = lower_extension(path);
+  const PictureKind kind = kind_of(path);
   StoredPicture picture;
   const auto take = [&](auto& image) {
     picture.columns = image.columns, picture.rows = image.rows, picture.channels = image.channels;
     picture.samples = std::move(image.samples);
     picture.icc_profile = std::move(image.icc_profile);
   };
-  if (extension == ".png") {
+  if (kind == PictureKind::png) {
     PngImage png = read_png(path);
     take(png);
     picture.white = png.bits == 8 ? 255 : 65535;
     picture.linear = png.transfer == PngTransfer::linear;
-  } else if (extension == ".jpg" || extension == ".jpeg") {
+  } else if (kind == PictureKind::jpeg) {
     JpegImage jpeg = read_jpeg(path);
     take(jpeg);
     picture.orientation = jpeg.orientation;
-  } else if (extension == ".tif" || extension == ".tiff") {
+  } else {
     TiffImage tiff = read_tiff(path);
     picture.linear = std::holds_alternative<std::vector<float>>(tiff.samples);
     picture.white = picture.linear                                                    ? 1
@@ -62,8 +81,6 @@ StoredPicture read_stored(const std::string& path) {
     const int orientation = tiff.orientation;
     take(tiff);
     picture.orientation = orientation;
-  } else {
-    throw InputError(path, "is no photograph; .png, .jpg or .tif would be right");
   }
   return picture;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/scene/radiance_unit.h>
 
 #include <array>
@@ -181,8 +182,8 @@ double radiance_scale(std::string_view unit) {
   if (is(1, -3, -1)) return std::pow(10.0, d->ten - nm_per_m_power);
   if (is(1, -2, -1)) return std::pow(10.0, d->ten);
   const char* const what = is(1, -3, 0) || is(1, -2, 0) ? " (irradiance)" : "";
-  throw InputError(
-      fmt::format("values in {}{}; a scene is radiance, in W.m^-2.sr^-1.nm^-1 or the like", unit, what));
+  throw InputError(fmt::format("values in {}{}; a scene is radiance, in W.m^-2.sr^-1.nm^-1 or the like",
+                               quotable(unit), what));
 }
 
 }  // namespace petzval

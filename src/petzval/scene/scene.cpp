@@ -37,6 +37,10 @@ void check_distance(std::optional<double> distance_m) {
         fmt::format("a scene at {} m; a positive distance or none (infinity) would be right", *distance_m));
 }
 
+double gib(double values) {
+  return values * sizeof(float) / (1024.0 * 1024 * 1024);
+}
+
 }  // namespace
 
 std::vector<double> default_bands_nm() {
@@ -52,8 +56,10 @@ Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double h
     throw InputError(fmt::format("a scene of {} x {} samples; at least 1 x 1 would be right", columns, rows));
   check_wavelengths(wavelengths_nm_);
   if (band_size() > max_values / wavelengths_nm_.size())
-    throw InputError(fmt::format("a scene of {} x {} samples in {} bands is too large; up to {} values fit",
-                                 columns, rows, bands(), max_values));
+    throw InputError(fmt::format(
+        "a scene of {} x {} samples in {} bands would take {:.1f} GiB; up to {:.0f} GiB fit", columns, rows,
+        bands(), gib(static_cast<double>(band_size()) * bands()), gib(static_cast<double>(max_values))));
+
   set_horizontal_angle_deg(horizontal_angle_deg);
   set_distance_m(distance_m);
   radiance_.resize(band_size() * wavelengths_nm_.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/scene/illuminant_swap.h>
 #include <petzval/scene/radiance_unit.h>
 #include <petzval/scene/spectral_cube.h>
@@ -83,8 +84,8 @@ SceneQuantity parse_scene_quantity(const std::string& word) {
   if (word == "reflectance") return SceneQuantity::reflectance;
   if (word == "emissivity") return SceneQuantity::emissivity;
   if (word == "temperature") return SceneQuantity::temperature;
-  throw InputError(
-      fmt::format("a quantity '{}'; radiance, reflectance, emissivity or temperature would be right", word));
+  throw InputError(fmt::format(
+      "a quantity '{}'; radiance, reflectance, emissivity or temperature would be right", quotable(word)));
 }
 
 Scene scene_of(SpectralCube cube, const CubeOptions& options) {

@@ -7,7 +7,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace petzval {
 
@@ -60,13 +62,60 @@ class Walker {
     return word;
   }
 
+  /// OpenEXR reads values of these types without a look at the size that the file states: the next attribute
+  /// would begin elsewhere for it than for us.
+  static std::optional<std::size_t> size_of_type(std::string_view type) {
+    static constexpr std::pair<std::string_view, std::size_t> sizes[] = {{"box2i", 16},
+                                                                         {"box2f", 16},
+                                                                         {"chromaticities", 32},
+                                                                         {"compression", 1},
+                                                                         {"deepImageState", 1},
+                                                                         {"double", 8},
+                                                                         {"envmap", 1},
+                                                                         {"float", 4},
+                                                                         {"int", 4},
+                                                                         {"keycode", 28},
+                                                                         {"lineOrder", 1},
+                                                                         {"m33f", 36},
+                                                                         {"m33d", 72},
+                                                                         {"m44f", 64},
+                                                                         {"m44d", 128},
+                                                                         {"rational", 8},
+                                                                         {"tiledesc", 9},
+                                                                         {"timecode", 8},
+                                                                         {"v2i", 8},
+                                                                         {"v2f", 8},
+                                                                         {"v2d", 16},
+                                                                         {"v3i", 12},
+                                                                         {"v3f", 12},
+                                                                         {"v3d", 24}};
+    for (const auto& [name, size] : sizes)
+      if (type == name) return size;
+    return std::nullopt;
+  }
+
   void take_attribute(std::string_view name) {
-    text();  // the type
+    const std::string_view type = text();
     const std::string_view value = bytes(number());
     Walker inside(path_, value, file_bytes_);
+    if (const std::optional<std::size_t> size = size_of_type(type); size && value.size() != *size) damaged();
+    if (type == "chlist") inside.check_channel_list();
+    if (type == "preview") inside.check_preview();
     if (name == "channels") bytes_per_pixel_ = inside.channel_bytes();
     if (name == "dataWindow") pixels_ = inside.window_pixels();
     if (name == "tiles") tile_pixels_ = std::uint64_t{inside.number()} * inside.number();
+  }
+  void check_channel_list() const {
+    Walker list = *this;
+    list.channel_bytes();
+    if (!list.rest_.empty()) damaged();
+  }
+  void check_preview() const {
+    Walker preview = *this;
+    const std::uint64_t columns = preview.number(), rows = preview.number();
+    constexpr std::uint64_t pixel_bytes = 4;
+    if (rows != 0 && columns > preview.rest_.size() / rows) damaged();
+    if (preview.rest_.size() != pixel_bytes * columns * rows) damaged();
   }
   std::uint64_t channel_bytes() {
     std::uint64_t sum = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/output_file.h>
 
@@ -247,8 +248,8 @@ NpyArray read_npy(const std::string& path) {
   const bool known = kind == "f4" || kind == "f8" || kind == "u1" || kind == "i1" || kind == "u2" ||
                      kind == "i2" || kind == "u4" || kind == "i4";
   if (!known || (type[0] != '<' && type[0] != '>' && type[0] != '|'))
-    throw InputError(
-        path, fmt::format("has values of type '{}'; save it as float32 or float64", type.substr(0, 20)));
+    throw InputError(path,
+                     fmt::format("has values of type '{}'; save it as float32 or float64", quotable(type)));
   if (*header.fortran_order && header.shape->size() > 1)
     throw InputError(path, "is in Fortran order; save numpy.ascontiguousarray(a) instead");
   NpyArray array{std::move(*header.shape), {}};

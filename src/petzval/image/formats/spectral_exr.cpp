@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/image/formats/exr_header.h>
 #include <petzval/image/formats/exr_stream.h>
 #include <petzval/image/formats/output_file.h>
@@ -50,21 +51,20 @@ std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr::Kind& 
       (parsed->kind == SpectralExr::Kind::emissive ? light : reflectance)
           .push_back({parsed->wavelength_nm, channel.name()});
     if (parsed && (channel.channel().xSampling != 1 || channel.channel().ySampling != 1))
-      throw InputError(path,
-                       fmt::format("channel {} is subsampled; every pixel needs a value", channel.name()));
+      throw InputError(
+          path, fmt::format("channel {} is subsampled; every pixel needs a value", quotable(channel.name())));
   }
   kind = light.empty() ? SpectralExr::Kind::reflective : SpectralExr::Kind::emissive;
   std::vector<Band> bands = light.empty() ? reflectance : light;
   if (bands.empty())
-    throw InputError(path,
-                     fmt::format("has no spectral channels such as S0.550,0nm or T.550,0nm, only {:.200}",
-                                 others.empty() ? "polarised ones" : others));
+    throw InputError(path, fmt::format("has no spectral channels such as S0.550,0nm or T.550,0nm, only {}",
+                                       others.empty() ? "polarised ones" : quotable(others)));
   std::sort(bands.begin(), bands.end(),
             [](const Band& a, const Band& b) { return a.wavelength_nm < b.wavelength_nm; });
   for (std::size_t i = 1; i < bands.size(); ++i)
     if (bands[i].wavelength_nm - bands[i - 1].wavelength_nm < same_band_nm)
       throw InputError(path, fmt::format("has the wavelength {} nm twice: {} and {}", bands[i].wavelength_nm,
-                                         bands[i - 1].channel, bands[i].channel));
+                                         quotable(bands[i - 1].channel), quotable(bands[i].channel)));
   return bands;
 }
 
@@ -190,7 +190,7 @@ SpectralExr read_spectral_exr(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw Failure(path + ": not enough memory to read it");
   } catch (const std::exception& error) {
-    throw InputError(path, fmt::format("is damaged: {}", error.what()));
+    throw InputError(path, fmt::format("is damaged: {}", quotable(error.what())));
   }
 }
 

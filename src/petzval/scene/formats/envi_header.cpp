@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/scene/formats/envi_header.h>
 
 #include <algorithm>
@@ -96,8 +97,8 @@ class EntryReader {
     const char* const end = entry->value.data() + entry->value.size();
     const auto [rest, error] = std::from_chars(entry->value.data(), end, value);
     if (error != std::errc{} || rest != end || value < least || value > most)
-      fail(*entry, fmt::format("{} = {}; a whole number from {} to {} would be right", key, entry->value,
-                               least, most));
+      fail(*entry, fmt::format("{} = {}; a whole number from {} to {} would be right", key,
+                               quotable(entry->value), least, most));
     return value;
   }
 
@@ -118,7 +119,7 @@ class EntryReader {
       double value = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
-        fail(*entry, fmt::format("{}: '{}' is no number", key, word.substr(0, 40)));
+        fail(*entry, fmt::format("{}: '{}' is no number", key, quotable(word)));
       values.push_back(value);
     }
     return values;
@@ -182,7 +183,8 @@ void take_layout(const EntryReader& entries, const std::string& file, EnviHeader
   const std::string interleave = plain_key(entries.text("interleave"));
   if (interleave != "bsq" && interleave != "bil" && interleave != "bip" &&
       !(interleave.empty() && header.bands == 1))
-    throw InputError(file, fmt::format("has interleave '{}'; bsq, bil or bip would be right", interleave));
+    throw InputError(
+        file, fmt::format("has interleave '{}'; bsq, bil or bip would be right", quotable(interleave)));
   header.interleave = interleave == "bil"   ? EnviInterleave::bil
                       : interleave == "bip" ? EnviInterleave::bip
                                             : EnviInterleave::bsq;
@@ -229,8 +231,8 @@ double wavelength_unit_nm(const EntryReader& entries, const std::vector<double>&
                                                       {"angstroms", 0.1}};
   const auto found = units.find(unit);
   if (found == units.end())
-    entries.fail(*entry,
-                 fmt::format("wavelength units = {}; nanometers or micrometers would be right", unit));
+    entries.fail(*entry, fmt::format("wavelength units = {}; nanometers or micrometers would be right",
+                                     quotable(unit)));
   return found->second;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/scene/formats/name_file.h>
@@ -71,7 +72,7 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
       throw InputError(file,
                        fmt::format("has the unknown key '{}'; quantity, unit, wavelengths_nm, angle_deg, "
                                    "distance_m, scale and name are known",
-                                   key.substr(0, 40)));
+                                   quotable(key)));
     }
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/scene/formats/scene_exr.h>
@@ -53,8 +54,8 @@ SpectralCube read_scene_exr(const std::string& path) {
     cube.illuminant = spectrum_of(text->second, path);
   if (const auto text = exr.strings.find(projection_attribute); text != exr.strings.end()) {
     if (text->second != equirectangular)
-      throw InputError(path, fmt::format("has the projection '{}'; {} is known", text->second.substr(0, 40),
-                                         equirectangular));
+      throw InputError(
+          path, fmt::format("has the projection '{}'; {} is known", quotable(text->second), equirectangular));
     cube.panorama.emplace(
         PanoramaView{number(exr, yaw_attribute).value_or(0), number(exr, pitch_attribute).value_or(0)});
   }
