@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval optics: building a lens data table and looking at it."""
 
+import math
 import unittest
 
 from petzval_cli import ProgramTest
@@ -32,6 +33,14 @@ class Optics(ProgramTest):
         self.assertLess(after["distortion_percent"], -8.40)
         self.assertAlmostEqual(rows[0]["g_sensor_sr"], 0.22123, delta=0.22123e-3)  # an independent ray count
         self.assertEqual(rows[0]["relative_illumination"], 1)
+
+    def test_compares_the_light_on_the_axis_with_formulas(self):
+        info = self.build("--wavelengths", "587.5618", "--fields", "2", "--image-height", "1")
+        first, light = info["first_order"], info["axial_light"]
+        for key, n in (("by_f_number_sr", first["f_number"]), ("by_isetcam_sr", first["working_f_number"])):
+            self.assertAlmostEqual(light[key], math.pi / (1 + 4 * n ** 2 * (1 - first["magnification"]) ** 2), delta=1e-12)
+        self.assertEqual(light["g_sensor_sr"], info["rows"][0]["g_sensor_sr"])
+        self.assertIn("ISETCam", self.assert_succeeds("optics", "info", "t.h5"))
 
     def test_the_same_bytes_for_any_number_of_threads(self):
         for threads in ("1", "2"):
