@@ -6,14 +6,15 @@
 #include <petzval/image/formats/output_file.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 
 namespace petzval {
 
@@ -175,15 +176,15 @@ std::size_t checked_count(const std::vector<std::size_t>& shape, std::size_t val
   return count;
 }
 
-template <class Value, class Bits>
+template <class Value>
 std::vector<Value> decoded(std::string_view data, std::size_t count, bool big_endian) {
   std::vector<Value> values(count);
   if (count > 0) std::memcpy(values.data(), data.data(), count * sizeof(Value));
-  if (!big_endian) return values;
+  if (!big_endian || sizeof(Value) == 1) return values;
   for (Value& value : values) {
-    Bits bits = std::bit_cast<Bits>(value), swapped = 0;
-    for (std::size_t i = 0; i < sizeof(Bits); ++i, bits >>= 8) swapped = (swapped << 8) | (bits & 0xff);
-    value = std::bit_cast<Value>(swapped);
+    auto bytes = std::bit_cast<std::array<std::byte, sizeof(Value)>>(value);
+    std::reverse(bytes.begin(), bytes.end());
+    value = std::bit_cast<Value>(bytes);
   }
   return values;
 }
@@ -191,14 +192,14 @@ std::vector<Value> decoded(std::string_view data, std::size_t count, bool big_en
 /// Whole numbers become the smallest floating-point type that holds them all.
 template <class Whole, class Value>
 std::vector<Value> converted(std::string_view data, std::size_t count, bool big_endian) {
-  const std::vector<Whole> whole = decoded<Whole, std::make_unsigned_t<Whole>>(data, count, big_endian);
+  const std::vector<Whole> whole = decoded<Whole>(data, count, big_endian);
   return {whole.begin(), whole.end()};
 }
 
 std::variant<std::vector<float>, std::vector<double>> any_decoded(std::string_view data, std::size_t count,
                                                                   std::string_view kind, bool big_endian) {
-  if (kind == "f8") return decoded<double, std::uint64_t>(data, count, big_endian);
-  if (kind == "f4") return decoded<float, std::uint32_t>(data, count, big_endian);
+  if (kind == "f8") return decoded<double>(data, count, big_endian);
+  if (kind == "f4") return decoded<float>(data, count, big_endian);
   if (kind == "u1") return converted<std::uint8_t, float>(data, count, big_endian);
   if (kind == "i1") return converted<std::int8_t, float>(data, count, big_endian);
   if (kind == "u2") return converted<std::uint16_t, float>(data, count, big_endian);

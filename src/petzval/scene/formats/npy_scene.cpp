@@ -53,7 +53,8 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
     throw InputError(file, "is no JSON object; {\"wavelengths_nm\": [450, 550]} would be one");
   for (const auto& [key, value] : root.items()) {
     if (key == "quantity") {
-      cube.quantity = naming_file(file, [&] { return parse_scene_quantity(text_of(value, key, file)); });
+      const std::string word = text_of(value, key, file);
+      cube.quantity = naming_file(file, [&word] { return parse_scene_quantity(word); });
     } else if (key == "unit") {
       cube.radiance_unit = text_of(value, key, file);
     } else if (key == "wavelengths_nm") {
