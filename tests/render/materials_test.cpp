@@ -44,8 +44,9 @@ Vector3 direction(double cos, double phi) {
 /// χ² of the samples over cells of the sphere against the integral of the density; mirror samples left out.
 TEST(Bsdf, SamplesFollowTheirDensity) {
   constexpr int samples = 200000;
-  for (const auto& [name, bsdf, lossless] : rough_and_diffuse())
+  for (const NamedBsdf& each : rough_and_diffuse())
     for (const double cos : {0.9, 0.4, -0.7}) {
+      const Bsdf& bsdf = each.bsdf;
       const Vector3 wo = direction(cos, 0.3);
       SphereCells cells;
       for (int i = 0; i < samples; ++i) {
@@ -56,7 +57,7 @@ TEST(Bsdf, SamplesFollowTheirDensity) {
         if (chosen && !chosen->mirror) cells.count(chosen->wi);
       }
       // The midpoint rule over a cell is good to half a percent where the density is steep.
-      cells.expect_density(samples, 24, 0.005, name + " at cos " + std::to_string(cos),
+      cells.expect_density(samples, 24, 0.005, each.name + " at cos " + std::to_string(cos),
                            [&](Vector3 wi) { return bsdf.pdf(wo, wi); });
     }
 }
