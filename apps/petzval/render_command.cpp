@@ -15,6 +15,7 @@
 #include <filesystem>
 
 #include "field_option.h"
+#include "focus_output.h"
 #include "render_fingerprint.h"
 #include "render_option.h"
 #include "scene_focus.h"
@@ -30,7 +31,7 @@ struct RenderCommand {
   int bits = 8;
   double noise = 0;
   double checkpoint_seconds = 60;
-  std::string checkpoint, depth, normals, albedo;
+  std::string checkpoint, depth, normals, albedo, focus_plot;
   std::optional<double> white;
   bool list_unsupported = false;
   std::vector<std::string> outputs;
@@ -151,15 +152,16 @@ void write_outputs(const RenderCommand& command, render::Rendering& picture, con
   files.commit();
 }
 
-/// Moves the film to where the zones are sharpest.
+/// Moves the film to where the zones are sharpest, and tells how it was found.
 void focus(const RenderCommand& command, const Shared& shared, PreparedScene& scene) {
   Shared silent = shared;
   silent.quiet = true;
   const FocusResult result =
-      autofocus(prepare_scene(command.choice, focus_wavelengths_nm(), silent), command.focus, shared);
+      autofocus(prepare_scene(command.choice, focus_wavelengths_nm(), silent), command.focus, shared).result;
   scene.camera = scene.camera.with_film_distance_mm(result.film_distance_mm);
-  note(shared, fmt::format("focused by itself: film distance {:.4f} mm, after {} evaluations",
-                           result.film_distance_mm, result.evaluations.size()));
+  note_focus_at_the_end(result, shared);
+  if (!command.focus_plot.empty()) draw_focus(result, scene.camera.lens->name, command.focus_plot);
+  if (!shared.quiet && !shared.json) fmt::print("{}", focus_text(result, command.focus.measure));
 }
 
 void render_scene(const RenderCommand& command, const Shared& shared) {
@@ -174,6 +176,7 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   const auto seconds_since = [](std::chrono::steady_clock::time_point from) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
   };
+  if (!command.focus_plot.empty()) require_extension(command.focus_plot, {".svg"}, "a plot");
   PreparedScene scene = prepare_scene(command.choice, default_wavelengths_nm(), shared);
   if (!command.focus.zones_file.empty() || !command.focus.zones.empty()) focus(command, shared, scene);
   const std::unique_ptr<const render::FilmCamera> camera = scene.camera.make(scene.world->groups);
@@ -227,6 +230,12 @@ void add_render_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command->add_option("--autofocus", options->focus.zones_file,
                       "Focus by itself on the zones of this file (see petzval focus)");
+  command
+      ->add_option("--zone", options->focus.zones,
+                   "Focus by itself on a zone: left,right,top,bottom (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--focus-plot", options->focus_plot, "Draw the evaluations of that into this SVG file");
   options->focus.add_to(*command);
   command
       ->add_option("--spp", options->samples,

@@ -2,10 +2,14 @@
 #include "scene_focus.h"
 
 #include <fmt/format.h>
+#include <petzval/analysis/best_focus.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/camera/camera.h>
 #include <petzval/colour/display.h>
 #include <petzval/colour/observer.h>
+#include <petzval/focus/focus_scan.h>
+#include <petzval/focus/golden_search_2006.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/render/renderer.h>
 
@@ -19,8 +23,22 @@ namespace {
 /// How far from the focus of infinity the film may go, in focal lengths: as far as for an object eight focal
 /// lengths away.
 constexpr double extension = 0.15;
-/// Share of the depth of focus to which the distance is wanted.
+/// Where golden section ends, in depths of focus.
 constexpr double share_of_depth = 0.05;
+/// How far the film may go beyond the focus of infinity, in depths of focus: a peak there has two flanks.
+constexpr double depths_beyond = 4;
+
+/// Where the film stands for an object at infinity: at the paraxial focus, or where the spot on the axis is
+/// smallest, whichever is nearer to the lens (spherical aberration parts them).
+double infinity_focus_mm(const Lens& lens) {
+  Camera camera(lens);
+  camera.focus_at_m({});
+  FieldTableRequest axis = FieldTableRequest::of(camera.lens());
+  axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};
+  const double film_mm = camera.lens().surfaces.back().thickness_mm;
+  return std::min(paraxial_image_distance_mm(lens, {}, lens.reference_wavelength_nm),
+                  film_mm + best_spot_focus(camera.lens(), axis).shift_mm);
+}
 
 render::PixelWindow window_of(const FocusZone& zone, const SensorGeometry& film) {
   const auto at = [](double share, int pixels) {
@@ -49,10 +67,20 @@ GreyPicture brightest_component(const SpectralImage& image) {
   return grey;
 }
 
+/// One zone as the camera sees it; adds to the account of camera rays.
+GreyPicture zone_picture(const PreparedScene& scene, const render::SceneCamera& set_up,
+                         const render::FilmCamera& camera, const render::RenderOptions& options,
+                         std::uint64_t& camera_rays) {
+  const render::Rendering picture =
+      render_picture(*scene.world, camera, set_up.world_from_camera, set_up.film, options);
+  camera_rays += picture.rays;
+  return brightest_component(picture.irradiance);
+}
+
 /// Pictures of the zones of a scene.
 PicturesAt zone_pictures(const PreparedScene& scene, const std::vector<FocusZone>& zones,
-                         const FocusChoice& choice, const Shared& shared) {
-  return [&scene, &zones, &choice, &shared](double film_distance_mm) {
+                         const FocusChoice& choice, const Shared& shared, std::uint64_t& camera_rays) {
+  return [&scene, &zones, &choice, &shared, &camera_rays](double film_distance_mm) {
     const render::SceneCamera moved = scene.camera.with_film_distance_mm(film_distance_mm);
     const auto camera = moved.make(scene.world->groups);
     std::vector<ZonePicture> pictures;
@@ -62,13 +90,10 @@ PicturesAt zone_pictures(const PreparedScene& scene, const std::vector<FocusZone
       options.path = scene.path;
       options.photosite = moved.photosite;
       options.window = window_of(zone, moved.film);
-      ZonePicture picture;
       options.seed = 2 * shared.seed;
-      picture.first = brightest_component(
-          render_picture(*scene.world, *camera, moved.world_from_camera, moved.film, options).irradiance);
+      ZonePicture picture{zone_picture(scene, moved, *camera, options, camera_rays), {}};
       options.seed = 2 * shared.seed + 1;
-      picture.second = brightest_component(
-          render_picture(*scene.world, *camera, moved.world_from_camera, moved.film, options).irradiance);
+      picture.second = zone_picture(scene, moved, *camera, options, camera_rays);
       pictures.push_back(std::move(picture));
     }
     return pictures;
@@ -88,18 +113,23 @@ void FocusChoice::add_to(CLI::App& command) {
   command.add_option("--focus-threshold", threshold, "Modified Laplacians below this do not count")
       ->capture_default_str();
   command
-      .add_option("--focus-search", search,
-                  "Coarse places then Brent's method, or the golden sections of 2006")
-      ->check(CLI::IsMember({"brent", "golden-2006"}))
+      .add_option(
+          "--focus-search", search,
+          "Coarse places then Brent's method, the golden sections of 2006, or all places evenly over the "
+          "range (scan)")
+      ->check(CLI::IsMember({"brent", "golden-2006", "scan"}))
       ->capture_default_str();
   command.add_option("--focus-spp", samples, "Camera paths a pixel of the zones")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
   command.add_option("--focus-from", from_mm,
-                     "Film distances searched, from [mm]; default: sharp at infinity");
+                     "Film distances searched, from [mm]; default: a little before infinity is sharp");
   command.add_option("--focus-to", to_mm,
-                     "Film distances searched, to [mm]; default: 0.15 focal lengths farther");
-  command.add_option("--focus-tolerance", tolerance_mm, "[mm]; default: a twentieth of f-number times pixel");
+                     "Film distances searched, to [mm]; default: 0.15 focal lengths beyond that of infinity");
+  command
+      .add_option("--focus-depth", depth_mm,
+                  "Depth of focus [mm], the scale of the search; default: f-number times pixel")
+      ->check(positive_number());
   command.add_option("--focus-evaluations", most_evaluations, "At most so many")->capture_default_str();
 }
 
@@ -114,31 +144,36 @@ std::vector<FocusZone> focus_zones(const FocusChoice& choice) {
   return zones;
 }
 
-FocusResult autofocus(const PreparedScene& scene, const FocusChoice& choice, const Shared& shared) {
+FocusRun autofocus(const PreparedScene& scene, const FocusChoice& choice, const Shared& shared) {
   if (!scene.camera.lens) throw InputError("an ideal camera has nothing to focus; --lens names a lens");
   const Lens& lens = *scene.camera.lens;
   const FirstOrder first = first_order(lens);
   const std::vector<FocusZone> zones = focus_zones(choice);
-  const PicturesAt pictures = zone_pictures(scene, zones, choice, shared);
-  const double infinity_mm = paraxial_image_distance_mm(lens, {}, lens.reference_wavelength_nm);
-  const double from = choice.from_mm.value_or(infinity_mm),
-               to = choice.to_mm.value_or(from + extension * first.efl_mm);
-  const double tolerance =
-      choice.tolerance_mm.value_or(share_of_depth * first.f_number * scene.camera.film.pitch_um * mm_per_um);
+  FocusRun run;
+  const PicturesAt pictures = zone_pictures(scene, zones, choice, shared, run.camera_rays);
+  run.depth_mm = choice.depth_mm.value_or(first.f_number * scene.camera.film.pitch_um * mm_per_um);
+  const double infinity_mm = infinity_focus_mm(lens);
+  const double from =
+      choice.from_mm.value_or(std::max(infinity_mm - depths_beyond * run.depth_mm, infinity_mm / 2));
+  const double to = choice.to_mm.value_or(infinity_mm + extension * first.efl_mm);
   const FocusMeasureOptions measure{focus_measure_of(choice.measure), choice.step, choice.threshold};
   if (choice.search == "golden-2006") {
     GoldenSearchOptions options;
     options.measure = measure;
     options.nearest_mm = from, options.farthest_mm = to;
-    options.tolerance_mm = tolerance;
-    return find_focus_2006(pictures, zones, options);
+    options.tolerance_mm = share_of_depth * run.depth_mm;
+    run.result = find_focus_2006(pictures, zones, options);
+  } else if (choice.search == "scan") {
+    run.result = scan_focus(pictures, zones, measure, from, to, choice.most_evaluations);
+  } else {
+    FocusSearchOptions options;
+    options.measure = measure;
+    options.nearest_mm = from, options.farthest_mm = to;
+    options.depth_mm = run.depth_mm;
+    options.most_evaluations = choice.most_evaluations;
+    run.result = find_focus(pictures, zones, options);
   }
-  FocusSearchOptions options;
-  options.measure = measure;
-  options.nearest_mm = from, options.farthest_mm = to;
-  options.tolerance_mm = tolerance;
-  options.most_evaluations = choice.most_evaluations;
-  return find_focus(pictures, zones, options);
+  return run;
 }
 
 std::vector<double> focus_wavelengths_nm() {

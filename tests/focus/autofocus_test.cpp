@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/focus/autofocus.h>
+#include <petzval/focus/focus_scan.h>
+#include <petzval/focus/golden_search_2006.h>
 #include <petzval/numeric/random.h>
 
 #include <cmath>
@@ -109,7 +111,7 @@ TEST(Autofocus, FindsTheTruthInTwelvePictures) {
   for (const Case& each : cases()) {
     FocusSearchOptions options;
     options.nearest_mm = each.nearest_mm, options.farthest_mm = each.farthest_mm;
-    options.tolerance_mm = depth_of_focus_mm(each.subjects[0]) / 20;
+    options.depth_mm = depth_of_focus_mm(each.subjects[0]);
     int asked = 0;
     const FocusResult result = find_focus(camera(each.subjects, &asked), each.zones, options);
     EXPECT_LE(asked, 12) << each.name;
@@ -125,7 +127,7 @@ TEST(Autofocus, AgreesWithBruteForceUnderSphericalAberration) {
   const Subject subject{52.4, 2, -0.3};
   FocusSearchOptions options;
   options.nearest_mm = 49, options.farthest_mm = 56;
-  options.tolerance_mm = depth_of_focus_mm(subject) / 20;
+  options.depth_mm = depth_of_focus_mm(subject);
   const PicturesAt pictures = camera({subject});
   const FocusResult result = find_focus(pictures, {FocusZone{}}, options);
   double best = 0, best_mm = 0;
@@ -146,10 +148,37 @@ TEST(Autofocus, GoldenSectionOf2006NeedsMorePictures) {
   const FocusResult baseline = find_focus_2006(camera({subject}), {FocusZone{}}, golden);
   FocusSearchOptions options;
   options.nearest_mm = 49, options.farthest_mm = 60;
-  options.tolerance_mm = golden.tolerance_mm;
+  options.depth_mm = depth_of_focus_mm(subject);
   const FocusResult result = find_focus(camera({subject}), {FocusZone{}}, options);
   EXPECT_NEAR(baseline.film_distance_mm, 57.3, depth_of_focus_mm(subject) / 3);
   EXPECT_LT(result.evaluations.size(), baseline.evaluations.size());
+}
+
+/// Wherever the peak lies between the coarse places, and however fine the pixels are against the range: a
+/// search that creeps towards a peak from one side runs out of evaluations.
+TEST(Autofocus, FindsTheTruthAnywhereInTheRange) {
+  for (const double sharp_at_mm : {49.3, 50.9, 51.75, 53.0, 54.4, 55.6, 57.1, 58.2, 59.8}) {
+    const Subject subject{sharp_at_mm, 1.4, 0, 0, 5};
+    FocusSearchOptions options;
+    options.nearest_mm = 49, options.farthest_mm = 60;
+    options.depth_mm = depth_of_focus_mm(subject);  // a 390th of the range
+    const FocusResult result = find_focus(camera({subject}), {FocusZone{}}, options);
+    EXPECT_LE(result.evaluations.size(), 12u) << sharp_at_mm;
+    EXPECT_NEAR(result.film_distance_mm, sharp_at_mm, depth_of_focus_mm(subject) / 10);
+  }
+}
+
+/// A scan needs no luck, only places; the cubic says where between them the peak is.
+TEST(Autofocus, AScanFindsThePeakBetweenItsPlaces) {
+  const Subject subject{53.137, 2};
+  const double depth = depth_of_focus_mm(subject);
+  const FocusResult result =
+      scan_focus(camera({subject}), {FocusZone{}}, {}, 53.1 - 2 * depth, 53.1 + 2 * depth, 11);
+  EXPECT_EQ(result.evaluations.size(), 11u);
+  EXPECT_NEAR(result.film_distance_mm, 53.137, depth / 50);
+  EXPECT_FALSE(result.at_the_end);
+  EXPECT_TRUE(scan_focus(camera({subject}), {FocusZone{}}, {}, 49, 53, 5).at_the_end);
+  EXPECT_THROW(scan_focus(camera({subject}), {FocusZone{}}, {}, 49, 53, 2), InputError);
 }
 
 TEST(Autofocus, SaysWhenTheSharpPlaceMayLieBeyond) {

@@ -17,7 +17,7 @@ using PicturesAt = std::function<std::vector<ZonePicture>(double film_distance_m
 
 struct FocusEvaluation {
   double film_distance_mm = 0, measure = 0;
-  std::string stage;  ///< "coarse", "fine", "golden"
+  std::string stage;  ///< "coarse", "close", "settle", "golden", "scan"
 };
 
 struct FocusResult {
@@ -30,33 +30,23 @@ struct FocusResult {
 struct FocusSearchOptions {
   FocusMeasureOptions measure;
   double nearest_mm = 0, farthest_mm = 0;  ///< range of film distances
-  double tolerance_mm = 0;  ///< how exactly the sharpest place is wanted; 0: a thousandth of the range
-  int coarse = 5;           ///< evaluations that find the bracket, evenly over the range; ≥ 3
+  /// Depth of focus: how far the film moves until a point is blurred over a pixel, f-number × pixel. The
+  /// scale in which sharpness changes; 0: a hundredth of the range.
+  double depth_mm = 0;
+  int coarse = 5;  ///< evaluations that find the bracket, evenly over the range; ≥ 3
   int most_evaluations = 12;
 };
 
-/// Coarse evaluations over the range find three places of which the middle one is the sharpest (several
-/// distant peaks of a noisy measure do not mislead them as they mislead a search that trusts its first
-/// bracket). From there on each next place is the peak of the curve that fits all evaluations best: geometry
-/// blurs by a disc whose width grows with the distance x − x0 from the sharp place, so that the measure is
-/// nearly A·((x − x0)² + w²)^(−p), far off a cusp, near by a parabola. Where no such curve fits, Brent's
-/// method without derivatives (Algorithms for Minimization, 1973, ch. 5) on the logarithm of the measure
-/// takes the step. Zones count by their area. \throws InputError for a range or options that make no sense,
-/// or when no picture has any contrast.
+/// Evaluations evenly over the range find the neighbourhood of the peak (several distant peaks of a noisy
+/// measure do not mislead them as they mislead a search that trusts its first bracket). From there on each
+/// next place is the peak of the curve that fits all evaluations best: geometry blurs by a disc whose width
+/// grows with the distance x − x0 from the sharp place, so that the measure is nearly A·((x − x0)² +
+/// w²)^(−p), far off a cusp, near by a parabola. Where no such curve fits, Brent's method without derivatives
+/// (Algorithms for Minimization, 1973, ch. 5) on the logarithm of the measure takes the step. When places
+/// within some depths of focus lie on both sides, the polynomial through them says where the peak is. Its
+/// places lie two depths apart, so that noise of the measure matters little. Zones count by their area.
+/// \throws InputError for a range or options that make no sense, or when no picture has any contrast.
 FocusResult find_focus(const PicturesAt& pictures_at, const std::vector<FocusZone>& zones,
                        const FocusSearchOptions& options);
-
-/// The search of the CS348B report of 2006, as a baseline: golden section in sub-intervals that grow with the
-/// distance from the lens, each halted after several evaluations in a row below a share of the best so far.
-struct GoldenSearchOptions {
-  FocusMeasureOptions measure;
-  double nearest_mm = 0, farthest_mm = 220;
-  double tolerance_mm = 0.1;
-  double first_interval_mm = 10, growth = 1.5;
-  int weak_in_a_row = 3;
-  double weak_share = 0.5;
-};
-FocusResult find_focus_2006(const PicturesAt& pictures_at, const std::vector<FocusZone>& zones,
-                            const GoldenSearchOptions& options);
 
 }  // namespace petzval
