@@ -2,6 +2,7 @@
 // petzval lens draw.
 #include <fmt/format.h>
 #include <petzval/analysis/field_values.h>
+#include <petzval/analysis/film_fan.h>
 #include <petzval/analysis/ray_fan.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
@@ -24,7 +25,26 @@ struct DrawCommand {
   CameraChoice camera;
   int rays = 5;
   std::string output;
+  std::vector<double> film_heights_mm;
+  std::string section = "meridional";
 };
+
+/// Rays from points of the film instead of fields.
+std::vector<DrawnRay> film_rays(const DrawCommand& options, const Lens& lens, const Tracer& tracer,
+                                LensDrawingOptions& drawing, const Shared& shared) {
+  const FilmSection section = options.section == "sagittal" ? FilmSection::sagittal : FilmSection::meridional;
+  std::vector<DrawnRay> rays;
+  for (std::size_t i = 0; i < options.film_heights_mm.size(); ++i) {
+    const double height = options.film_heights_mm[i];
+    const std::string colour = series_colour(i).hex();
+    const auto fan = film_fan(tracer, height, section, options.rays, 0.25 * lens.total_track_mm());
+    if (fan.empty()) note(shared, fmt::format("no light reaches the film at {:g} mm", height));
+    for (const FilmRay& path : fan) rays.push_back({path, colour});
+    drawing.legend.push_back(
+        {fmt::format("film point at {:g} mm, {} section", height, options.section), colour});
+  }
+  return rays;
+}
 
 void draw(const DrawCommand& options, const Shared& shared) {
   require_extension(options.output, {".svg"}, "a drawing");
@@ -37,8 +57,8 @@ void draw(const DrawCommand& options, const Shared& shared) {
       request.clip);
   LensDrawingOptions drawing;
   drawing.title = fmt::format("{} — rays at {:g} nm", lens.name, tracer.tracer().wavelength_nm());
-  std::vector<DrawnRay> rays;
-  for (std::size_t i = 0; i < request.fields.size(); ++i) {
+  std::vector<DrawnRay> rays = film_rays(options, lens, tracer.tracer(), drawing, shared);
+  for (std::size_t i = 0; options.film_heights_mm.empty() && i < request.fields.size(); ++i) {
     const double field = object_field(lens, request.field_kind, request.fields[i]);
     const std::string colour = series_colour(i).hex();
     const auto fan = meridional_fan(tracer, field, options.rays, 0.25 * lens.total_track_mm());
@@ -63,6 +83,16 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
   options->fields.add_to(*command);
   options->camera.add_to(*command);
   command->add_option("--rays", options->rays, "Rays a field")->check(CLI::Range(1, 1001));
+  command
+      ->add_option("--film-heights", options->film_heights_mm,
+                   "Rays from these points of the film out through the lens, instead of fields [mm]")
+      ->delimiter(',');
+  command
+      ->add_option(
+          "--section", options->section,
+          "Of the rays from film points: in the plane of point and axis, or across it, seen from above")
+      ->check(CLI::IsMember({"meridional", "sagittal"}))
+      ->capture_default_str();
   command->add_option("-o,--output", options->output, "SVG file to write")->required();
 }
 

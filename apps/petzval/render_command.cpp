@@ -189,7 +189,7 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   options.seed = shared.seed;
   options.path = scene.path;
   options.photosite = scene.camera.photosite;
-  if (command.choice.far_distance > 0) options.far_distance = command.choice.far_distance;
+  options.clipping = scene.camera.clipping;
   options.first_surfaces = !command.depth.empty() || !command.normals.empty() || !command.albedo.empty();
   options.checkpoint = command.checkpoint;
   options.checkpoint_seconds = command.checkpoint_seconds;

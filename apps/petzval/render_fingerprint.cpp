@@ -46,7 +46,8 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
   // A picture that ends at a noise is the beginning of one that ends at less.
   text += options.noise > 0 ? std::string("samples as the noise demands\n")
                             : fmt::format("samples {}\n", options.samples_per_pixel);
-  text += fmt::format("max-depth {}\nfar {}\n", options.path.max_depth, options.far_distance);
+  text += fmt::format("max-depth {}\nnear {} far {}\n", options.path.max_depth, options.clipping.near,
+                      options.clipping.far);
   text += fmt::format("first-surfaces {}\n", options.first_surfaces);
   text += fmt::format("film {}x{} pixels of {} um\n", camera.film.columns, camera.film.rows,
                       camera.film.pitch_um);
@@ -57,6 +58,7 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
                   camera.lens ? "lens, its origin at the " + choice.camera_origin
                               : fmt::format("perspective, lens radius {}", camera.perspective.lens_radius),
                   choice.sampling);
+  text += fmt::format("blades {} turned by {}\n", choice.blades, choice.blade_rotation_deg);
   text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
   text += lens_line(camera, nm) + losses_line(camera.options.losses);
   return text + render::scene_files_fingerprint(scene.description);

@@ -39,6 +39,8 @@ render::CameraChoice camera_choice(const RenderChoice& choice, const Shared& sha
     throw InputError(
         fmt::format("--scene-unit {}: the length of a scene's unit in mm is above 0", choice.scene_unit_mm));
   camera.options.scene_units_per_mm = 1 / choice.scene_unit_mm;
+  camera.options.blades = {choice.blades, choice.blade_rotation_deg};
+  camera.options.blades.validate();
   camera.options.origin_at_front = choice.camera_origin == "front";
   if (choice.sampling == "rear-disk")
     camera.options.sampling = render::LensCameraOptions::Sampling::rear_disk;
@@ -69,6 +71,11 @@ PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wav
       throw InputError("reflection and absorption belong to a lens; --lens names one");
     prepared.camera.options.losses = choice.losses.losses(*prepared.camera.lens, shared);
   }
+  if (choice.near_distance) prepared.camera.clipping.near = *choice.near_distance;
+  if (choice.far_distance) prepared.camera.clipping.far = *choice.far_distance;
+  if (!(prepared.camera.clipping.near < prepared.camera.clipping.far))
+    throw InputError(fmt::format("nothing lies between the clipping planes at {:g} and {:g}",
+                                 prepared.camera.clipping.near, prepared.camera.clipping.far));
   prepared.path = path_options(choice, prepared.description, unsupported);
   const render::WavelengthGroups groups(
       choice.wavelengths.empty() ? wavelengths_nm : parse_wavelengths_nm(choice.wavelengths));
@@ -86,6 +93,14 @@ void RenderChoice::add_to(CLI::App& command) {
   command.add_option("--film-diagonal", film_diagonal_mm, "Of the film, corner to corner [mm]");
   command.add_option("--aperture-diameter", aperture_diameter_mm, "Of the stop [mm]");
   command.add_option("--f-number", f_number, "Stop down to this paraxial f-number at infinity");
+  command
+      .add_option("--blades", blades,
+                  "Blades of the iris: the stop is a polygon with its corners on the circle; 0: round")
+      ->capture_default_str();
+  command
+      .add_option("--blade-rotation", blade_rotation_deg,
+                  "Of the first corner from the top, anticlockwise as seen from the film [deg]")
+      ->capture_default_str();
   command.add_option("--film-distance", film_distance_mm, "From the last surface to the film [mm]");
   command.add_option("--focus-distance", focus_distance_m, "From the film to what is to be sharp [m]");
   command.add_flag("--pinhole", pinhole, "The scene's perspective through a pinhole, for comparison");
@@ -110,9 +125,11 @@ void RenderChoice::add_to(CLI::App& command) {
                   "Times that light is scattered at most; default: the scene's, or 5")
       ->check(CLI::Range(1, 10000));
   command
-      .add_option("--far", far_distance,
-                  "Surfaces beyond this distance along a ray are not seen [scene units]")
+      .add_option(
+          "--near", near_distance,
+          "Surfaces nearer than this to the camera's place, along its axis, are not seen [scene units]")
       ->check(positive_number());
+  command.add_option("--far", far_distance, "Nor surfaces beyond this")->check(positive_number());
   command.add_flag(
       "--absolute-spectra", absolute_spectra,
       "Spectra of lights are radiances [W/(m2 sr nm)] as they stand, not scaled as pbrt-v4 scales them");

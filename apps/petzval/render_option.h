@@ -22,9 +22,11 @@ struct RenderChoice {
   bool pinhole = false, absolute_spectra = false;
   std::string sensor, size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
   std::optional<double> film_diagonal_mm, aperture_diameter_mm, f_number, film_distance_mm, focus_distance_m;
+  int blades = 0;
+  double blade_rotation_deg = 0;
   double scene_unit_mm = 1000;
   int max_depth = 0;  ///< 0: as the scene has it
-  double far_distance = 0;
+  std::optional<double> near_distance, far_distance;
 
   void add_to(CLI::App& command);
 };

@@ -89,6 +89,7 @@ PicturesAt zone_pictures(const PreparedScene& scene, const std::vector<FocusZone
       options.samples_per_pixel = std::max(1, choice.samples / 2);
       options.path = scene.path;
       options.photosite = moved.photosite;
+      options.clipping = moved.clipping;
       options.window = window_of(zone, moved.film);
       options.seed = 2 * shared.seed;
       ZonePicture picture{zone_picture(scene, moved, *camera, options, camera_rays), {}};

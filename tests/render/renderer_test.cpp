@@ -188,6 +188,38 @@ TEST(Renderer, LambertsWallHasTheRadianceThatPhotometrySays) {
     EXPECT_NEAR(picture.first_surfaces->normal[i], -1, 1e-6);
 }
 
+/// Three walls that glow, one behind the other: clipping planes stand across the axis, whatever the angle of
+/// the ray.
+TEST(Renderer, SeesWhatLiesBetweenTheClippingPlanes) {
+  std::string text;
+  for (const int z : {1, 2, 3}) {
+    const std::string at = std::to_string(z), side = std::to_string(20 * z);
+    text += "AttributeBegin\nAreaLightSource \"diffuse\" \"spectrum L\" [ 200 " + at + " 900 " + at +
+            " ] \"bool twosided\" true\nTranslate 0 0 " + at + "\nShape \"disk\" \"float radius\" " + side +
+            "\nAttributeEnd\n";
+  }
+  const auto world = world_of(text);
+  PerspectiveOptions perspective;
+  perspective.columns = perspective.rows = 8;
+  perspective.field_of_view_deg = 100;  // corners lie 59 degrees off the axis, where z = 2 is 3.9 away
+  const PerspectiveCamera camera(perspective);
+  const auto seen = [&](double near, double far) {
+    RenderOptions options;
+    options.samples_per_pixel = 4;
+    options.path.max_depth = 0;
+    options.clipping = {near, far};
+    const Rendering picture = render_picture(*world, camera, Transform(), {8, 8, 10}, options);
+    for (const float value : picture.irradiance.values()) EXPECT_EQ(value, picture.irradiance.values()[0]);
+    return picture.irradiance.values()[0];
+  };
+  constexpr double forever = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(seen(0, forever), 1, 1e-6);
+  EXPECT_NEAR(seen(1.01, forever), 2, 1e-6);
+  EXPECT_NEAR(seen(2.01, 3.01), 3, 1e-6);
+  EXPECT_NEAR(seen(2.01, 2.99), 0, 1e-6);
+  EXPECT_NEAR(seen(0, 0.99), 0, 1e-6);
+}
+
 /// What a white wall at z = 3 sends back from the point (0, 0, 3), seen from the side, times π: the
 /// irradiance there.
 double irradiance_on_wall(const std::string& light) {

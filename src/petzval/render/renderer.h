@@ -4,6 +4,7 @@
 
 #include <petzval/base/progress.h>
 #include <petzval/image/spectral_image.h>
+#include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/film_camera.h>
 #include <petzval/render/film/film.h>
 #include <petzval/render/film/film_sampling.h>
@@ -23,8 +24,8 @@ struct RenderOptions {
   double noise = 0;
   std::uint64_t seed = 1;
   PathOptions path;
-  double far_distance = std::numeric_limits<double>::infinity();  ///< along the ray, scene units
-  std::optional<PixelWindow> window;                              ///< only these pixels are rendered
+  ClippingPlanes clipping;
+  std::optional<PixelWindow> window;  ///< only these pixels are rendered
   Photosite photosite;  ///< over which each pixel's value is a mean, and the low-pass filter before it
   bool first_surfaces = false;
   std::string checkpoint;   ///< a file to resume from and to save to; empty: none

@@ -62,12 +62,14 @@ class TileRenderer {
     ++result_.rays;
     if (!ray.passes) return;
     ++result_.passed;
-    const Vector3 origin = world_from_camera_.point(ray.origin);
-    const Vector3 direction = normalised(world_from_camera_.direction(ray.direction));
+    const ClippingPlanes::Part part = options_.clipping.part_of(ray.origin, ray.direction);
+    if (!(part.to > part.from)) return;
+    const Vector3 origin = world_from_camera_.point(ray.origin + part.from * ray.direction);
+    const Vector3 along = world_from_camera_.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
     const PathLight light =
-        tracer_.trace(origin, direction, group, places_[i].hero, samples_[i], options_.far_distance,
-                      film_.has_first_surfaces() ? &first : nullptr);
+        tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
+                      (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, light);
     if (first.met) add_first(i, group, first);
   }

@@ -3,6 +3,7 @@
 // for radiance, without.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,6 +23,9 @@ struct KernelSurface {
   T index_ratio = 1;   ///< before / behind
   T index_ratio_sq = 1, one_minus_index_ratio_sq = 0;
   T clear_radius_sq = 0, per_clear_radius_sq = 0;  ///< count where `clips`
+  /// Of a stop that is a polygon besides: unit normals of its edges, and how far they are from its middle.
+  std::vector<std::array<T, 2>> edges;
+  T edge_distance = 0, per_edge_distance = 0;
   /// Horner coefficients in t = r²/ρ² (even) or t = r/ρ (odd), a_p ρ^p: in float they neither overflow nor
   /// vanish.
   std::vector<T> polynomial;

@@ -58,6 +58,15 @@ KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backwa
   return surface;
 }
 
+template <class T>
+void set_edges(const Tracer& tracer, KernelSurface<T>& stop) {
+  const double distance = tracer.stop_radius_mm() * tracer.stop_blades().apothem();
+  for (const auto& [x, y] : tracer.stop_blades().normals())
+    stop.edges.push_back({static_cast<T>(x), static_cast<T>(y)});
+  stop.edge_distance = static_cast<T>(distance * (1 + Tracer::rim_tolerance / 2));
+  stop.per_edge_distance = static_cast<T>(1 / distance);
+}
+
 }  // namespace
 
 template <class T>
@@ -77,6 +86,7 @@ KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip
     const double next = flip * surfaces[i].vertex_z_mm;
     surface.to_vertex_mm = static_cast<T>(vertex_z - next);
     vertex_z = next;
+    if (i == tracer.stop_index() && clip != Tracer::Clip::none) set_edges(tracer, surface);
     path.surfaces.push_back(std::move(surface));
   }
   path.last_vertex_z_mm = static_cast<T>(vertex_z);

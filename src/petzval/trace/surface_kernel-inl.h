@@ -54,6 +54,21 @@ HWY_ATTR HWY_INLINE void advance(const KernelSurface<T>& surface, Vector<T> dist
     ray.opl = hn::MulAdd(hn::Set(Lanes<T>(), surface.index_before), distance, ray.opl);
 }
 
+/// The blades of a stop.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void clip_by_edges(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
+  const Lanes<T> d;
+  auto farthest = hn::Zero(d);
+  for (const auto& [x, y] : surface.edges)
+    farthest = hn::Max(farthest, hn::MulAdd(ray.x, hn::Set(d, x), hn::Mul(ray.y, hn::Set(d, y))));
+  if constexpr (measures) {
+    const auto share = hn::Mul(farthest, hn::Set(d, surface.per_edge_distance));
+    ray.worst = hn::Max(ray.worst, hn::Mul(share, share));
+  } else {
+    ray.alive = hn::And(ray.alive, hn::Le(farthest, hn::Set(d, surface.edge_distance)));
+  }
+}
+
 template <class T, bool measures>
 HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   if (!surface.clips) return;
@@ -62,6 +77,7 @@ HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T, meas
     ray.worst = hn::Max(ray.worst, hn::Mul(radius_sq, hn::Set(Lanes<T>(), surface.per_clear_radius_sq)));
   else
     ray.alive = hn::And(ray.alive, hn::Le(radius_sq, hn::Set(Lanes<T>(), surface.clear_radius_sq)));
+  if (!surface.edges.empty()) clip_by_edges(surface, ray);
 }
 
 template <class T, bool measures>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/error.h>
 #include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
@@ -120,6 +121,25 @@ double Tracer::clip_radius_sq(std::size_t surface, Clip clip) const {
   return limit * (1 + rim_tolerance);
 }
 
+double Tracer::clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip) const {
+  double share = (x_mm * x_mm + y_mm * y_mm) / clip_radius_sq(surface, clip);
+  if (blade_normals_.empty() || surface != stop_index_ || clip == Clip::none) return share;
+  double farthest = 0;
+  for (const auto& [nx, ny] : blade_normals_) farthest = std::max(farthest, nx * x_mm + ny * y_mm);
+  const double distance = stop_radius_mm_ * blades_.apothem();
+  return std::max(share, farthest * farthest / (distance * distance * (1 + rim_tolerance)));
+}
+
+Tracer Tracer::with_blades(const StopBlades& blades) const {
+  blades.validate();
+  if (blades.count > 0 && !std::isfinite(stop_radius_mm_))
+    throw InputError("blades close a stop of some radius, and this one is unbounded");
+  Tracer bladed = *this;
+  bladed.blades_ = blades;
+  bladed.blade_normals_ = blades.normals();
+  return bladed;
+}
+
 namespace {
 
 void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
@@ -127,7 +147,7 @@ void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
   walk(
       tracer.surfaces(), backward, ray,
       [&](std::size_t i, const SurfaceRay& at, const double*) {
-        return at.x * at.x + at.y * at.y <= tracer.clip_radius_sq(i, clip);
+        return tracer.clip_share_sq(i, at.x, at.y, clip) <= 1;
       },
       [&](std::size_t i, const SurfaceRay& at, const double* normal) {
         if (path)
@@ -195,7 +215,7 @@ Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) co
   walk(
       surfaces_, backward, result.ray,
       [&](std::size_t i, const SurfaceRay& at, const double*) {
-        const double excess = (at.x * at.x + at.y * at.y) * (1 + rim_tolerance) / clip_radius_sq(i, clip) - 1;
+        const double excess = clip_share_sq(i, at.x, at.y, clip) * (1 + rim_tolerance) - 1;
         if (excess > result.worst) {
           result.worst = excess;
           result.surface = static_cast<int>(i);

@@ -4,6 +4,7 @@
 
 #include <petzval/lens/lens.h>
 #include <petzval/trace/ray_batch.h>
+#include <petzval/trace/stop_blades.h>
 
 #include <array>
 #include <cstddef>
@@ -44,6 +45,11 @@ class Tracer {
   /// Clips at a stop radius that the caller gives (infinity: the stop is no aperture).
   Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm);
 
+  /// The same with an iris of blades at the stop: light that would pass the round stop and not the polygon is
+  /// vignetted. \throws InputError as StopBlades::validate(), and for blades of a stop without a radius.
+  Tracer with_blades(const StopBlades& blades) const;
+  const StopBlades& stop_blades() const { return blades_; }
+
   double wavelength_nm() const { return wavelength_nm_; }
   std::size_t surface_count() const { return surfaces_.size(); }
   std::size_t stop_index() const { return stop_index_; }
@@ -68,6 +74,9 @@ class Tracer {
   /// forward only).
   Ray trace(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
   Ray trace_backward(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
+
+  /// (r/r_clear)² at a surface, of the worst of its limits; clips where above 1.
+  double clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip) const;
 
   /// As trace(), never clipped, and says by how much the ray clears the apertures: the largest over all
   /// clipping surfaces of (r/r_clear)² − 1: negative inside, positive outside, +infinity if the ray was
@@ -94,6 +103,8 @@ class Tracer {
   std::vector<PreparedSurface> surfaces_;
   std::size_t stop_index_ = 0;
   double image_z_mm_ = 0, stop_radius_mm_ = 0;
+  StopBlades blades_;
+  std::vector<std::array<double, 2>> blade_normals_;
 };
 
 /// The radius of the aperture stop [mm]: `aperture.value` when the file gives it (stop_semi_diameter_mm),

@@ -42,8 +42,9 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     tracers_.emplace_back(lens, nm[i], stop_radius);
 
   for (const Tracer& tracer : tracers_) {
-    to_scene_.push_back(kernel_path<double>(tracer, true, Tracer::Clip::apertures));
-    if (disperses_) to_film_.emplace_back(tracer, RadianceTracer::Direction::forward);
+    const Tracer bladed = tracer.with_blades(options.blades);
+    to_scene_.push_back(kernel_path<double>(bladed, true, Tracer::Clip::apertures));
+    if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
     ExitPupilRegions regions = find_regions(lens);
@@ -61,7 +62,8 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   }
 }
 
-/// The pupils of the ends and the middle of the spectrum hold those between.
+/// Of the round stop, whatever its blades: regions depend on the film radius alone. The pupils of the ends
+/// and the middle of the spectrum hold those between.
 ExitPupilRegions LensCamera::find_regions(const Lens& lens) const {
   std::vector<Tracer> ends{tracers_.front()};
   if (disperses_) ends = {tracers_.front(), tracers_[tracers_.size() / 2], tracers_.back()};

@@ -22,6 +22,7 @@ struct LensCameraOptions {
   /// picture, more noise.
   enum class Sampling { exit_pupil, rear_disk };
   Sampling sampling = Sampling::exit_pupil;
+  StopBlades blades;  ///< make the stop a polygon
   double scene_units_per_mm = 1e-3;
   Losses losses;  ///< reflection and absorption in the lens; none unless set
   /// How far outside of the film's frame light may be asked for: half of what a low-pass filter parts
@@ -65,7 +66,7 @@ class LensCamera final : public FilmCamera {
   SensorGeometry film_;
   WavelengthGroups groups_;
   LensCameraOptions options_;
-  std::vector<Tracer> tracers_;               ///< by band; one when nothing disperses
+  std::vector<Tracer> tracers_;               ///< by band; one when nothing disperses; with a round stop
   std::vector<KernelPath<double>> to_scene_;  ///< of each tracer
   std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
   bool disperses_ = false;

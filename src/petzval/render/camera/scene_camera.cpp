@@ -6,6 +6,7 @@
 #include <petzval/render/camera/scene_camera.h>
 
 #include <cmath>
+#include <limits>
 
 namespace petzval::render {
 
@@ -49,7 +50,12 @@ SensorGeometry sensor_film(const Sensor& sensor, const CameraChoice& choice) {
   return geometry;
 }
 
-SensorGeometry read_film(const Entity& film, const CameraChoice& choice, Unsupported& unsupported) {
+SensorGeometry read_film(const Entity& film, const Entity& camera, CameraChoice choice,
+                         Unsupported& unsupported) {
+  if (camera.type == "realistic" && camera.parameters.find("filmdiag") && !choice.film_diagonal_mm &&
+      !choice.sensor)
+    choice.film_diagonal_mm = camera.parameters.number("filmdiag", 0);
+
   const Parameters& parameters = film.parameters;
   if (film.type != "rgb" && film.type != "spectral" && film.type != "gbuffer" && film.type != "image" &&
       !film.type.empty())
@@ -85,13 +91,14 @@ void read_perspective(const Parameters& parameters, SceneCamera& camera) {
 }
 
 Lens read_scene_lens(const Parameters& parameters) {
-  const std::string name = parameters.string("lensfile", "");
+  const char* key = parameters.find("specfile") ? "specfile" : "lensfile";
+  const std::string name = parameters.string(key, "");
   if (name.empty())
     throw scene_error(parameters.location(), "a realistic camera needs a \"string lensfile\"");
   try {
     return read_lens(resolved_path(parameters.location(), name)).lens;
   } catch (const InputError& error) {
-    throw scene_error(parameters.location_of("lensfile"), error.what());
+    throw scene_error(parameters.location_of(key), error.what());
   }
 }
 
@@ -106,10 +113,18 @@ void set_stop(Lens& lens, double diameter_mm, std::vector<std::string>& notes) {
                                 diameter_mm));
 }
 
+/// From the last surface; the assignment of CS348B has it in the scene.
+std::optional<double> film_distance(const CameraChoice& choice, const Parameters& parameters,
+                                    bool realistic) {
+  const bool in_scene = realistic && parameters.find("filmdistance");
+  if (choice.film_distance_mm || choice.focus_distance_m || !in_scene) return choice.film_distance_mm;
+  return parameters.number("filmdistance", 0);
+}
+
 void focus(Camera& camera, const CameraChoice& choice, const Parameters& parameters, bool realistic,
            SceneCamera& result) {
   const double m_per_unit = 1 / (choice.options.scene_units_per_mm * mm_per_m);
-  if (choice.film_distance_mm) return;
+  if (film_distance(choice, parameters, realistic)) return;
   if (choice.focus_distance_m) return camera.focus_at_m(*choice.focus_distance_m);
   const char* name = realistic ? "focusdistance" : "focaldistance";
   const double distance = parameters.number(name, realistic ? 10 : -1);
@@ -123,7 +138,8 @@ Lens lens_in_use(const CameraChoice& choice, const Parameters& parameters, bool 
                  SceneCamera& result) {
   Lens lens = choice.lens ? *choice.lens : read_scene_lens(parameters);
   if (realistic) parameters.string("lensfile", "");
-  const double scene_stop = realistic ? parameters.number("aperturediameter", 1) : -1;
+  const double scene_stop =
+      realistic ? parameters.number("aperture_diameter", parameters.number("aperturediameter", 1)) : -1;
   if (choice.aperture_diameter_mm && choice.f_number)
     throw InputError("give the stop either a diameter or an f-number");
   if (choice.aperture_diameter_mm)
@@ -136,13 +152,22 @@ Lens lens_in_use(const CameraChoice& choice, const Parameters& parameters, bool 
     throw InputError("give the film either a distance from the lens or a distance to focus on");
   focus(camera, choice, parameters, realistic, result);
   Lens used = camera.lens();
-  if (choice.film_distance_mm) {
-    if (!(*choice.film_distance_mm > 0) || !std::isfinite(*choice.film_distance_mm))
-      throw InputError(fmt::format("a film {} mm behind the lens; a positive distance would be right",
-                                   *choice.film_distance_mm));
-    used.surfaces.back().thickness_mm = *choice.film_distance_mm;
+  if (const std::optional<double> distance = film_distance(choice, parameters, realistic)) {
+    if (!(*distance > 0) || !std::isfinite(*distance))
+      throw InputError(
+          fmt::format("a film {} mm behind the lens; a positive distance would be right", *distance));
+    used.surfaces.back().thickness_mm = *distance;
   }
   return used;
+}
+
+/// A clipping plane as pbrt's first version had them. \throws InputError unless it is no nearer than 0.
+double clipping(const Parameters& parameters, const char* name, double otherwise) {
+  const double distance = parameters.number(name, otherwise);
+  if (!(distance >= 0))
+    throw scene_error(parameters.location_of(name),
+                      fmt::format("\"{}\" at {}; 0 or more would be right", name, distance));
+  return distance;
 }
 
 void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsupported& unsupported,
@@ -152,6 +177,8 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
   const bool realistic = entity.type == "realistic";
   if (!realistic && entity.type != "perspective" && !entity.type.empty())
     unsupported.report(entity.location(), fmt::format("Camera \"{}\"", entity.type));
+  camera.clipping.near = clipping(parameters, "hither", 0);
+  camera.clipping.far = clipping(parameters, "yon", std::numeric_limits<double>::infinity());
   for (const char* ignored : {"shutteropen", "shutterclose", "simpleweighting"}) parameters.find(ignored);
   if (const Parameter* aperture = parameters.find("aperture"))
     if (aperture->strings.empty() || aperture->strings[0] != "circular")
@@ -167,7 +194,9 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
     throw InputError("film distance, focus and stop belong to a lens; --lens names one");
   if (choice.pinhole) camera.perspective.lens_radius = 0;
   if (realistic)
-    for (const char* each : {"aperturediameter", "focusdistance", "lensfile"}) parameters.find(each);
+    for (const char* each : {"aperturediameter", "focusdistance", "lensfile", "aperture_diameter",
+                             "filmdistance", "filmdiag", "specfile"})
+      parameters.find(each);
   unsupported.report_unused(parameters, fmt::format("Camera \"{}\"", entity.type));
 }
 
@@ -176,7 +205,7 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
 SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
                           Unsupported& unsupported) {
   SceneCamera camera;
-  camera.film = read_film(scene.film, choice, unsupported);
+  camera.film = read_film(scene.film, scene.camera, choice, unsupported);
   if (choice.sensor) camera.photosite = choice.sensor->photosite;
   camera.options = choice.options;
   camera.options.margin_pixels = std::max(camera.photosite.separation_x, camera.photosite.separation_y) / 2;

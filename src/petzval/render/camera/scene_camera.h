@@ -2,6 +2,7 @@
 // The camera that a scene file asks for, and what the user wants instead.
 #pragma once
 
+#include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/camera/perspective_camera.h>
 #include <petzval/render/pbrt/scene_description.h>
@@ -36,6 +37,7 @@ struct SceneCamera {
   PerspectiveOptions perspective;
   LensCameraOptions options;
   Transform world_from_camera;
+  ClippingPlanes clipping;
   std::vector<std::string> notes;
 
   /// The same camera with its film elsewhere. \throws InputError unless it has a lens and the distance is
@@ -46,8 +48,9 @@ struct SceneCamera {
 };
 
 /// Reads the Film and Camera of a scene: perspective, realistic (pbrt-v4's parameters: lensfile,
-/// aperturediameter [mm], focusdistance [scene units]), and film sizes. \throws InputError with file, line
-/// and column for bad values, and through `unsupported`.
+/// aperturediameter [mm], focusdistance [scene units]; or those of the assignment of CS348B, 2006: specfile,
+/// aperture_diameter, filmdistance, filmdiag [mm], hither, yon [scene units]), and film sizes. \throws
+/// InputError with file, line and column for bad values, and through `unsupported`.
 SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
                           Unsupported& unsupported);
 
