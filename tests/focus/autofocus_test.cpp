@@ -168,6 +168,20 @@ TEST(Autofocus, FindsTheTruthAnywhereInTheRange) {
   }
 }
 
+/// A range of 700 depths of focus, in noise that hides the detail of single pixels but near the peak: coarser
+/// detail shows the way.
+TEST(Autofocus, FindsSmallPeaksInWideRanges) {
+  for (const double sharp_at_mm : {54.4, 57.1, 62.0}) {
+    const Subject subject{sharp_at_mm, 1.4, 0, 0.0004, 7};
+    FocusSearchOptions options;
+    options.nearest_mm = 50, options.farthest_mm = 69.6;
+    options.depth_mm = depth_of_focus_mm(subject);
+    const FocusResult result = find_focus(camera({subject}), {FocusZone{}}, options);
+    EXPECT_LE(result.evaluations.size(), 12u) << sharp_at_mm;
+    EXPECT_NEAR(result.film_distance_mm, sharp_at_mm, depth_of_focus_mm(subject) / 5) << sharp_at_mm;
+  }
+}
+
 /// A scan needs no luck, only places; the cubic says where between them the peak is.
 TEST(Autofocus, AScanFindsThePeakBetweenItsPlaces) {
   const Subject subject{53.137, 2};
@@ -219,6 +233,19 @@ TEST(FocusMeasure, KnownPictures) {
   EXPECT_EQ(focus_measure({bowl, {}}, sml), 0);
   EXPECT_NEAR(focus_measure({ramp, {}}, {FocusMeasure::gradient_energy}), 4 + 9, 1e-12);
   EXPECT_NEAR(focus_measure({bowl, {}}, {FocusMeasure::laplacian_energy}), 0, 1e-12);
+}
+
+TEST(FocusMeasure, BinsWholeSquares) {
+  GreyPicture picture{35, 26, {}};
+  for (int row = 0; row < 26; ++row)
+    for (int column = 0; column < 35; ++column) picture.values.push_back(column + 100.0 * row);
+  const GreyPicture half = binned(picture, 3);
+  EXPECT_EQ(half.columns, 11);
+  EXPECT_EQ(half.rows, 8);
+  EXPECT_NEAR(half.at(2, 5), 7 + 1600, 1e-9);
+  // An eighth of 26 is 3.
+  EXPECT_EQ(binned(picture, 10).columns, 11);
+  EXPECT_EQ(binned(picture, 1).values, picture.values);
 }
 
 /// Two pictures of pure noise that share nothing measure nothing; one alone measures its noise.

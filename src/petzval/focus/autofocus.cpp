@@ -77,15 +77,27 @@ std::optional<double> next_place(const FocusResult& result, const Bracket& brack
   return best.x + std::clamp(step, -inside * below, inside * above);
 }
 
-void close_in(FocusJudge& judge, const FocusSearchOptions& options, double depth) {
+/// Brackets the peak in pictures binned by a scale (none: as they are).
+void close_in(FocusJudge& judge, std::optional<std::size_t> scale, double depth, int most_evaluations) {
   double last_move = 0;
-  while (judge.count() < options.most_evaluations) {
-    const Bracket bracket = bracket_of(judge.result);
-    const std::optional<double> x = next_place(judge.result, bracket, last_move, depth);
+  while (judge.count() < most_evaluations) {
+    const FocusResult seen = scale ? judge.seen_at(*scale) : judge.result;
+    if (!(seen.measure > 0)) return;
+    const std::optional<double> x = next_place(seen, bracket_of(seen), last_move, depth);
     if (!x) return;
     judge.at(*x, "close");
-    last_move = judge.result.film_distance_mm - bracket.best.x;
+    last_move = (scale ? judge.seen_at(*scale) : judge.result).film_distance_mm - seen.film_distance_mm;
   }
+}
+
+/// In pixels: detail so coarse that the first places are no farther apart than a few of its own depths of
+/// focus, and on the way from there to single pixels. Few or none where the range is short.
+std::vector<int> scales_for(double step, double depth) {
+  constexpr double depths_between_places = 8;
+  const int coarsest = static_cast<int>(std::lround(std::min(step / (depths_between_places * depth), 1e4)));
+  if (coarsest < 3) return {};
+  if (coarsest < 12) return {coarsest};
+  return {coarsest, static_cast<int>(std::lround(std::sqrt(coarsest)))};
 }
 
 /// Asks for what the last fit is to rest upon: the peak and both its flanks.
@@ -109,11 +121,17 @@ FocusResult find_focus(const PicturesAt& pictures_at, const std::vector<FocusZon
     throw InputError("a search for focus takes at least 3 coarse evaluations, and no fewer in all");
   const double range = options.farthest_mm - options.nearest_mm;
   const double depth = options.depth_mm > 0 ? options.depth_mm : range / 100;
-  FocusJudge judge(pictures_at, zones, options.measure);
+  const std::vector<int> scales = scales_for(range / (options.coarse - 1), depth);
+  FocusJudge judge(pictures_at, zones, options.measure, scales);
   for (int i = 0; i < options.coarse; ++i)
     judge.at(options.nearest_mm + range * i / (options.coarse - 1), "coarse");
+  require_contrast(scales.empty() ? judge.result : judge.seen_at(0));
+  // Enough must be left for the peak itself.
+  constexpr int for_the_peak = 4;
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    close_in(judge, i, scales[i] * depth, options.most_evaluations - for_the_peak);
+  close_in(judge, {}, depth, options.most_evaluations);
   require_contrast(judge.result);
-  close_in(judge, options, depth);
   settle(judge, options, depth);
   FocusResult result = std::move(judge.result);
   result.film_distance_mm = std::clamp(

@@ -70,6 +70,27 @@ GreyPicture mean_of(const ZonePicture& picture) {
 
 }  // namespace
 
+GreyPicture binned(const GreyPicture& picture, int k) {
+  check(picture);
+  k = std::clamp(k, 1, std::max(1, std::min(picture.columns, picture.rows) / 8));
+  if (k == 1) return picture;
+  GreyPicture result{picture.columns / k, picture.rows / k, {}};
+  for (int row = 0; row < result.rows; ++row)
+    for (int column = 0; column < result.columns; ++column) {
+      double sum = 0;
+      for (int i = 0; i < k; ++i)
+        for (int j = 0; j < k; ++j) sum += picture.at(k * column + j, k * row + i);
+      result.values.push_back(sum / (k * k));
+    }
+  return result;
+}
+
+ZonePicture binned(const ZonePicture& picture, int k) {
+  ZonePicture result{binned(picture.first, k), {}};
+  if (picture.second) result.second = binned(*picture.second, k);
+  return result;
+}
+
 FocusMeasure focus_measure_of(const std::string& name) {
   for (const FocusMeasure each :
        {FocusMeasure::sum_modified_laplacian, FocusMeasure::gradient_energy, FocusMeasure::laplacian_energy})

@@ -44,6 +44,12 @@ struct FocusMeasureOptions {
 FocusMeasure focus_measure_of(const std::string& name);
 const char* to_string(FocusMeasure measure);
 
+/// Means over squares of k × k pixels; what is left over at the right and below is left out. Squares grow no
+/// larger than an eighth of the picture's shorter side. Detail of k pixels tells of focus from k times as far
+/// away as that of one, and has 1/k² of the noise.
+GreyPicture binned(const GreyPicture& picture, int k);
+ZonePicture binned(const ZonePicture& picture, int k);
+
 /// Per pixel, so that zones of several sizes may be compared; 0 for a picture smaller than the operator.
 /// \throws InputError if sizes and values do not agree or the step is below 1.
 double focus_measure(const ZonePicture& picture, const FocusMeasureOptions& options);
