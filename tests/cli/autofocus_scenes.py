@@ -72,6 +72,8 @@ SCENES = {
     "Petzval's lens, f/1.6": (HEAD + SKY + boards() + wall(3, 0.75), ["--lens", "petzval-lens"], MIDDLE),
     "telephoto": (HEAD + SKY + boards() + wall(12, 1.2), ["--lens", "telephoto-250mm"], MIDDLE),
     "noisy": (HEAD + LAMP + boards() + wall(1.2, 0.6), ["--lens", "dgauss-50mm", "--focus-spp", "4"], MIDDLE),
+    # 19 um: the range is 200 depths of focus.
+    "small pixels": (HEAD + SKY + boards() + wall(1, 0.12), ["--lens", "dgauss-50mm", "--size", "1920x1280"], ["0.47,0.53,0.47,0.53"]),
 }
 
 # Film distances [mm]
@@ -84,6 +86,7 @@ TRUTH = {
     "Petzval's lens, f/1.6": 18.8327,
     "telephoto": 109.6185,
     "noisy": 38.3964,
+    "small pixels": 38.8876,
 }
 
 

@@ -16,7 +16,7 @@ Lens stop_alone() {
   Lens lens;
   lens.name = "stop";
   Surface stop;
-  stop.is_stop = true;
+  stop.stop = true;
   stop.thickness_mm = 10;
   lens.surfaces = {stop};
   lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 5};

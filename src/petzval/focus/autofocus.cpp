@@ -16,7 +16,7 @@ namespace {
 
 /// In depths of focus. A blur disc of three pixels takes about half of the measure: flanks there are steep
 /// and still near.
-constexpr double flank = 2, far_flank = 3.2;
+constexpr double flank = 2, far_flank = 2.6;
 /// Nearer than this to a place that has been tried there is little to learn.
 constexpr double known = 0.5;
 /// How narrow a peak may be, half of what a sharp lens and the finest detail of pixels leave.
