@@ -162,6 +162,26 @@ class Render(ProgramTest):
             (self.folder / name).write_text(kept)
         self.assert_succeeds(*self.rendering("x.npy"))
 
+    def test_focuses_on_zones_of_the_command_line_and_draws_how(self):
+        said = self.assert_succeeds("render", "s.pbrt", "--lens", "dgauss-50mm", "--size", "128x96", "--spp", "4", "--zone", "0.1,0.5,0.1,0.9",
+                                    "--zone", "0.6,0.9,0.1,0.9", "--focus-plot", "f.svg", "-o", "x.npy")
+        self.assertIn("evaluations", said)
+        self.assertIn("coarse", said)
+        self.assertTrue((self.folder / "f.svg").read_text().startswith("<"))
+        self.assert_refused("render", "s.pbrt", *LENS, "--spp", "4", "--zone", "0.5,0.1,0,1", "-o", "y.npy", words=["left < right"])
+
+    def test_blades_and_clipping_planes(self):
+        def light(*options):
+            return self.json_of("render", "s.pbrt", *LENS, "--spp", "8", "-o", "x.npy", *options)["mean_irradiance"]
+        # A triangle has 41 % of the stop's area; off the axis other rims cut the round pupil, too. The pupil's sines and tangents part by 2 %
+        # at f/2, and 8 samples of 768 pixels leave 1 %.
+        middle = ("--film-diagonal", "1")
+        self.assertAlmostEqual(light(*middle, "--blades", "3") / light(*middle), 0.413, delta=0.02)
+        # The wall reflects half of the sky's light and hides it.
+        self.assertGreater(light("--near", "1.5"), 1.2 * light())
+        for options, part in [(["--blades", "2"], "blades"), (["--near", "2", "--far", "1"], "clipping"), (["--near", "-1"], "--near")]:
+            self.assert_refused("render", "s.pbrt", *LENS, *options, "-o", "y.npy", words=[part])
+
 
 if __name__ == "__main__":
     unittest.main()
