@@ -44,7 +44,7 @@ TEST(LobattoNodes, ReachBothEndsAndTheirPolynomialsSumToOne) {
 // of layout, lanes, flips, margins or wrap-around. Rounding of float transforms: 5e-7 of the image's norm.
 TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
   TableRecipe recipe;
-  recipe.psf = [](double, double) { return Psf{1, 20.0, {1.0F}, 1.0}; };  // a square at any azimuth
+  recipe.psf = [](double, double) { return Psf{1, 0.01, {1.0F}, 1.0}; };  // a point at any azimuth
   const PsfField psfs(make_table(recipe), 550, pitch_um);
   for (const SensorGeometry grid :
        {SensorGeometry{96, 64, pitch_um}, {77, 51, pitch_um}, {5, 90, pitch_um}, {1, 1, pitch_um}}) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/otf_interpolation.h>
 #include <petzval/imaging/psf_kernel.h>
 
@@ -14,7 +15,7 @@ using namespace testing;
 
 void add(const Psf& psf, double weight, const std::array<double, 2>& direction, double cell_um,
          Kernel& kernel) {
-  deposit(RunningPsf(psf), {weight, {1, 1}}, direction, cell_um, kernel);
+  deposit(MergedPsf(psf), {weight, {1, 1}}, direction, cell_um, kernel);
 }
 
 /// First and third moments of a kernel along a direction of the picture, in cells.
@@ -184,14 +185,18 @@ TEST(PsfKernel, TakesTheMomentsOfThePsfAndKeepsTheLight) {
     expect_moments(moved.moments(), wanted, 1e-4, fmt::format("{}", wanted.uu));
     EXPECT_GE(*std::min_element(moved.weights.begin(), moved.weights.end()), 0);
   }
-  // Two cells cannot be less spread than their centroid asks for: that is met, by two neighbours.
+  // A point that moves by a part of a cell, and is less spread than two cells that share it: a lobe a
+  // twentieth as deep as the peak is high, the centroid exact, the spread between what was asked for and that
+  // of two cells.
   Kernel point(2);
   point.at(0, 0) = 1;
   Kernel shifted = point;
   shifted.match({{0.25, 0}, 0.1, 0, 0});
-  EXPECT_NEAR(shifted.at(0, 0), 0.75, 1e-15);
-  EXPECT_NEAR(shifted.at(0, 1), 0.25, 1e-15);
-  // Whatever is asked for: the light is kept, and none becomes negative.
+  EXPECT_NEAR(shifted.at(0, -1), -0.05 * 0.75, 1e-15);
+  EXPECT_NEAR(shifted.moments().mean[0], 0.25, 1e-15);
+  EXPECT_GT(shifted.moments().uu, 0.1);
+  EXPECT_LT(shifted.moments().uu, 0.25);
+  // Whatever is asked for: the light is kept, and lobes are bounded.
   std::mt19937 random(1841);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -201,7 +206,8 @@ TEST(PsfKernel, TakesTheMomentsOfThePsfAndKeepsTheLight) {
                4 * uniform(random),
                4 * uniform(random)});
     EXPECT_NEAR(any.sum(), 1, 1e-14);
-    EXPECT_GE(*std::min_element(any.weights.begin(), any.weights.end()), -1e-15);
+    const auto [lowest, highest] = std::minmax_element(any.weights.begin(), any.weights.end());
+    EXPECT_GE(*lowest, -0.06 * *highest);  // a twentieth of the peak before the exact part is mixed in
   }
 }
 
@@ -229,13 +235,14 @@ TEST(PsfKernel, SamplesCoarserThanCellsAreSquares) {
   // outer rows hold half.
   Kernel kernel(2);
   add(Psf{1, 4.0, {1.0F}, 1.0}, 1, {0, 1}, 1.0, kernel);
-  EXPECT_NEAR(kernel.at(0, 0), 1.0 / 16, 1e-15);
-  EXPECT_NEAR(kernel.at(2, 0), 0.5 / 16, 1e-15);
-  EXPECT_NEAR(kernel.at(-2, 2), 0.25 / 16, 1e-15);
+  EXPECT_NEAR(kernel.at(0, 0), 1.0 / 16, 1e-12);
+  EXPECT_NEAR(kernel.at(2, 0), 0.5 / 16, 1e-12);
+  EXPECT_NEAR(kernel.at(-2, 2), 0.25 / 16, 1e-12);
 }
 
-// PSFs of one spread and different shape: between them lies their mixture.
-TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
+// PSFs of one spread and different shape: between them lies the mixture that field_shares() says, at either
+// wavelength.
+TEST(PsfKernel, MixesFieldsAndWavelengths) {
   TableRecipe recipe;
   recipe.wavelengths_nm = {500, 600};
   recipe.height_mm = [](double field, double nm) { return field / 10 * (1 + (nm - 500) / 1000); };
@@ -250,13 +257,15 @@ TEST(PsfKernel, IsLinearBetweenHeightsAndWavelengths) {
   const PsfField between(table, 525, 2.0);
   const Kernel kernel = between.kernel_at(0, height_mm);
   Kernel expected(kernel.radius);
-  add(table.psf[table.index(2, 0)], 0.75 * 0.8, {0, 1}, 2.0, expected);
-  add(table.psf[table.index(3, 0)], 0.75 * 0.2, {0, 1}, 2.0, expected);
+  for (const FieldShare& share : field_shares(std::vector<double>{0, 0.5, 1, 1.5}, height_mm))
+    add(table.psf[table.index(share.field, 0)], 0.75 * share.weight, {0, 1}, 2.0, expected);
   add(table.psf[table.index(2, 1)], 0.25, {0, 1}, 2.0, expected);
-  // Samples that meet the edges of cells spread the deposit by 1/200 of a cell squared too much.
   expected.match(kernel.moments());
+  // 2 ‰ of the peak: eight steps between fields, on samples of half a micrometre. A linear mixture of two
+  // fields is 7 ‰ off.
+  const double peak = *std::max_element(expected.weights.begin(), expected.weights.end());
   for (std::size_t i = 0; i < kernel.weights.size(); ++i)
-    EXPECT_NEAR(kernel.weights[i], expected.weights[i], 1e-5);
+    EXPECT_NEAR(kernel.weights[i], expected.weights[i], 3e-3 * peak);
 }
 
 TEST(PsfKernel, RefusesDamagedTablesAndForeignWavelengths) {

@@ -19,6 +19,7 @@ struct Wall {
   const char* lens;
   SensorGeometry sensor;
   int supersample;
+  double tolerance;
   bool at_infinity;
   double share_off;  ///< of the pixels that may be off by more than 1e-3
   double most_off;
@@ -46,6 +47,7 @@ TEST_P(ImageWall, ComesOutAsTheBackwardTraceSays) {
   std::fill(wall.band(0).begin(), wall.band(0).end(), 1.0F);
   ImagingOptions options;
   options.supersample = at.supersample;
+  options.product.tolerance = at.tolerance;
   options.surround = Surround::extend;
   const SpectralImage image = form_image(wall, table, at.sensor, options);
 
@@ -61,27 +63,30 @@ TEST_P(ImageWall, ComesOutAsTheBackwardTraceSays) {
       off += error > 1e-3;
       ++pixels;
     }
-  std::printf("%s, %g um: worst pixel %.2e, %.3f %% of %d off by more than 1e-3\n", at.lens,
-              at.sensor.pitch_um, worst, 100.0 * off / pixels, pixels);
+  std::printf(
+      "%s, %g um, supersample %d, tolerance %g: worst pixel %.2e, %.3f %% of %d off by more than 1e-3\n",
+      at.lens, at.sensor.pitch_um, at.supersample, at.tolerance, worst, 100.0 * off / pixels, pixels);
   EXPECT_GT(pixels, at.sensor.rows * at.sensor.columns / 2);
   EXPECT_LE(off, at.share_off * pixels);
   EXPECT_LE(worst, at.most_off);
 }
 
-// The project promises 1e-3. With one cell a pixel, the paper's lens exceeds it towards the corners, where
-// its PSF is a core finer than a cell within a wide flare: weights that are not negative cannot follow both.
-INSTANTIATE_TEST_SUITE_P(Bundled, ImageWall,
-                         ::testing::Values(Wall{"edmund-54852", {320, 240, 15}, 4, false, 0, 1e-3},
-                                           Wall{"edmund-54852", {768, 576, 6.25}, 1, false, 0.01, 5e-3},
-                                           Wall{"dgauss-50mm", {360, 240, 100}, 1, true, 0, 1e-3},
-                                           Wall{"wide-22mm", {300, 200, 80}, 1, true, 0, 1e-3},
-                                           Wall{"fisheye-10mm", {320, 320, 50}, 1, true, 0, 1e-3},
-                                           Wall{"fisheye-10mm", {160, 160, 100}, 1, true, 0, 1e-3, true}),
-                         [](const auto& info) {
-                           std::string name = info.param.lens;
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name + "_" + std::to_string(info.index);
-                         });
+// The project promises 1e-3. At its default settings the paper's lens exceeds it in a few pixels towards the
+// corners, where its PSF changes fastest: the tolerance is one of pictures, not of pixels.
+INSTANTIATE_TEST_SUITE_P(
+    Bundled, ImageWall,
+    ::testing::Values(Wall{"edmund-54852", {768, 576, 6.25}, 2, 3e-4, false, 0, 1e-3},
+                      Wall{"edmund-54852", {768, 576, 6.25}, 1, 1e-3, false, 1e-3, 2e-3},
+                      Wall{"edmund-54852", {320, 240, 15}, 4, 1e-3, false, 1e-3, 2e-3},
+                      Wall{"dgauss-50mm", {360, 240, 100}, 1, 1e-3, true, 0, 1e-3},
+                      Wall{"wide-22mm", {300, 200, 80}, 1, 1e-3, true, 0, 1e-3},
+                      Wall{"fisheye-10mm", {320, 320, 50}, 1, 1e-3, true, 0, 1e-3},
+                      Wall{"fisheye-10mm", {160, 160, 100}, 1, 1e-3, true, 0, 1e-3, true}),
+    [](const auto& info) {
+      std::string name = info.param.lens;
+      std::replace(name.begin(), name.end(), '-', '_');
+      return name + "_" + std::to_string(info.index);
+    });
 
 }  // namespace
 }  // namespace petzval

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/psf_deposit.h>
+#include <petzval/numeric/fft.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace petzval {
@@ -11,67 +13,121 @@ namespace {
 
 using Vector = std::array<double, 2>;  ///< picture column, row [cells]
 
-/// The cells of a kernel with one more all around, so that a square on the rim needs no test.
+/// The cells of a kernel with one more all around, so that a sample on the rim needs no test, and one for
+/// rounding. What begins in a cell is kept in its four parts until the end: here, right, below, right below.
 struct Canvas {
   int width;
-  std::vector<double> sums;
-  explicit Canvas(int radius) : width(2 * radius + 3), sums(static_cast<std::size_t>(width * width)) {}
-};
-
-/// One coordinate of a square of side `box` ≤ 1 that moves in even steps across cells of side 1.
-struct Walker {
-  double step, inverse_step, box, inverse_box;
-
-  Walker(double step_length, double box_side)
-      : step(step_length),
-        inverse_step(step_length == 0 ? 0 : 1 / step_length),
-        box(box_side),
-        inverse_box(1 / box_side) {}
-
-  /// The share of the square at [at, at + box] that lies beyond `cell`, in which it begins.
-  double beyond(double at, int cell) const { return std::max(0.0, (at + box - (cell + 1)) * inverse_box); }
-  /// How many more steps a square that lies within `cell` stays within it.
-  double steps_inside(double at, int cell) const {
-    constexpr double endless = 1e9;
-    if (step > 0) return (cell + 1 - box - at) * inverse_step;
-    return step < 0 ? (cell - at) * inverse_step : endless;
+  AlignedVector<double> parts;
+  explicit Canvas(int radius) : width(2 * radius + 4), parts(static_cast<std::size_t>(4 * width * width)) {}
+  double* cell(int row, int column) { return parts.data() + 4 * (row * width + column); }
+  double sum(int row, int column) {
+    return cell(row, column)[0] + cell(row, column - 1)[1] + cell(row - 1, column)[2] +
+           cell(row - 1, column - 1)[3];
   }
 };
 
-/// Adds all samples as squares of side `box`; the lower corner of sample [i][j]'s lies at first + i·per_row +
-/// j·per_column. Runs of samples that lie within one cell are added at once.
-void add_squares(const RunningPsf& psf, double share, double box, const Vector& first, const Vector& per_row,
-                 const Vector& per_column, Canvas& canvas) {
-  const Walker across(per_column[0], box), down(per_column[1], box);
-  const auto size = static_cast<std::size_t>(psf.size());
-  const auto light = [&](std::size_t row, std::size_t from, std::size_t to) {
-    return share * psf.run(row, from, to);
+/// The shadow of a sample on one axis of cells of side 1. Between samples light is linear: each is a pyramid
+/// over twice the spacing, turned with the lattice; its shadow is that of two boxes of one side and two of
+/// the other, one after the other, and no longer than a cell.
+class Shadow {
+ public:
+  explicit Shadow(const Vector& sides)
+      : inside_(1 - 2 * (sides[0] + sides[1])), entries_per_length_(entries / (1 - inside_)) {
+    double here = 0;
+    for (int i = 0; i < entries; ++i) {
+      const double next = share_within(double(i + 1) / entries_per_length_, sides);
+      pieces_[static_cast<std::size_t>(i)] = {here, next - here};
+      here = next;
+    }
+    pieces_[entries] = {here, 0};
+  }
+
+  /// The share of a shadow that reaches beyond the cell in which it begins, `at` of the cell from its start.
+  double beyond(double at) const {
+    const double over = std::max(0.0, (at - inside_) * entries_per_length_);
+    const int i = static_cast<int>(over);
+    const Piece& piece = pieces_[static_cast<std::size_t>(i)];
+    return piece.value + (over - i) * piece.rise;
+  }
+
+ private:
+  struct Piece {
+    double value, rise;
   };
-  const double end = canvas.width - 1;  // a square that begins before it may reach one cell on
+  static constexpr int entries = 64;  // evenly over the shadow, so that mirrored ones have mirrored shares
+  /// The share within `length` of one end: the integral of a spline with knots i·a + j·b.
+  static double share_within(double length, const Vector& sides) {
+    const double a = std::max(sides[0], sides[1]), b = std::min(sides[0], sides[1]);
+    constexpr std::array<double, 3> binomial{1, -2, 1};
+    const bool two_boxes = b < 1e-4 * a;
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < (two_boxes ? 1 : 3); ++j) {
+        const double left = std::max(0.0, length - double(i) * a - double(j) * b), square = left * left;
+        sum += binomial[i] * binomial[j] * (two_boxes ? square : square * square);
+      }
+    return two_boxes ? sum / (2 * a * a) : sum / (24 * a * a * b * b);
+  }
+
+  double inside_;  ///< as far as a shadow may begin and lie within the cell
+  double entries_per_length_;
+  std::array<Piece, entries + 1> pieces_{};  ///< one more for rounding
+};
+
+/// How samples lie on the cells.
+struct Lattice {
+  Vector first;                ///< where the shadows of the first sample begin
+  Vector per_row, per_column;  ///< from sample to sample
+};
+
+/// The samples of a row whose shadow begins within [0, end) on both axes.
+std::array<std::size_t, 2> samples_inside(const Vector& first, const Vector& step, double end,
+                                          std::size_t count) {
+  double from = 0, to = double(count);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (step[axis] == 0) {
+      if (!(first[axis] >= 0 && first[axis] < end)) return {0, 0};
+      continue;
+    }
+    const double at_zero = -first[axis] / step[axis], at_end = (end - first[axis]) / step[axis];
+    from = std::max(from, std::min(at_zero, at_end));
+    to = std::min(to, std::max(at_zero, at_end));
+  }
+  if (!(from < to)) return {0, 0};
+  return {static_cast<std::size_t>(std::ceil(from)), static_cast<std::size_t>(std::ceil(to))};
+}
+
+/// Two PSFs of one lattice with their weights.
+struct Mixture {
+  const MergedPsf &low, &high;
+  double weight_low, weight_high;
+};
+
+/// Adds all samples, each with shadows of 1/parts of its own.
+void add_samples(const Mixture& psfs, double share, int parts, const Lattice& lattice, Canvas& canvas) {
+  const auto& [first, per_row, per_column] = lattice;
+  const auto shadow = [&](std::size_t axis) {
+    return Shadow({std::abs(per_row[axis]) / parts, std::abs(per_column[axis]) / parts});
+  };
+  const Shadow across = shadow(0), down = shadow(1);
+  const auto size = static_cast<std::size_t>(psfs.low.size());
+  const double weight_low = share * psfs.weight_low, weight_high = share * psfs.weight_high;
+  const double end = canvas.width - 2;  // a shadow that begins before it may reach one cell on
   for (std::size_t i = 0; i < size; ++i) {
-    const double u_first = first[0] + double(i) * per_row[0], v_first = first[1] + double(i) * per_row[1];
-    for (std::size_t j = 0; j < size;) {
-      const double u = u_first + double(j) * across.step, v = v_first + double(j) * down.step;
-      if (!(u >= 0 && v >= 0 && u < end && v < end)) {
-        ++j;
-        continue;
-      }
+    const Vector start{first[0] + double(i) * per_row[0], first[1] + double(i) * per_row[1]};
+    const auto [from, to] = samples_inside(start, per_column, end, size);
+    const double *low = psfs.low.row(i), *high = psfs.high.row(i);
+    for (std::size_t j = from; j < to; ++j) {
+      const double u = start[0] + double(j) * per_column[0], v = start[1] + double(j) * per_column[1];
       const int column = static_cast<int>(u), row = static_cast<int>(v);
-      const double right = across.beyond(u, column), below = down.beyond(v, row);
-      double* sum = canvas.sums.data() + static_cast<std::ptrdiff_t>(row) * canvas.width + column;
-      if (right == 0 && below == 0) {
-        const double steps = std::min(across.steps_inside(u, column), down.steps_inside(v, row));
-        const std::size_t next = std::min(size, j + 1 + static_cast<std::size_t>(std::max(0.0, steps)));
-        sum[0] += light(i, j, next);
-        j = next;
-        continue;
-      }
-      const double value = light(i, j, j + 1), lower = value * below, upper = value - lower;
-      sum[0] += upper * (1 - right);
-      sum[1] += upper * right;
-      sum[canvas.width] += lower * (1 - right);
-      sum[canvas.width + 1] += lower * right;
-      ++j;
+      const double value = weight_low * low[j] + weight_high * high[j];
+      const double right = across.beyond(u - column), below = down.beyond(v - row);
+      const double lower = value * below, upper = value - lower;
+      double* cell = canvas.cell(row, column);
+      cell[0] += upper - upper * right;
+      cell[1] += upper * right;
+      cell[2] += lower - lower * right;
+      cell[3] += lower * right;
     }
   }
 }
@@ -95,19 +151,43 @@ Shares shares_towards(const Moments& own, const Moments& wanted) {
   shares.mean_u = wanted.mean[0] - own.mean[0];
   shares.mean_v = wanted.mean[1] - own.mean[1];
   shares.uv = wanted.uv - own.uv - own.mean[0] * shares.mean_v - own.mean[1] * shares.mean_u;
-  const double uu = wanted.uu - own.uu - 2 * own.mean[0] * shares.mean_u;
-  const double vv = wanted.vv - own.vv - 2 * own.mean[1] * shares.mean_v;
+  shares.uu = wanted.uu - own.uu - 2 * own.mean[0] * shares.mean_u;
+  shares.vv = wanted.vv - own.vv - 2 * own.mean[1] * shares.mean_v;
+  return shares;
+}
+
+/// The shares nearest to those wanted that are not negative: the mean as it is, the spread as near as may be.
+Shares without_negative(Shares shares) {
   const double shift = std::abs(shares.mean_u) + std::abs(shares.mean_v);
   const double most_uv = std::max(0.0, 1 - shift);  // more than all cannot be handed on
   shares.uv = std::clamp(shares.uv, -most_uv, most_uv);
   const double least_uu = std::abs(shares.uv) + std::abs(shares.mean_u);
   const double least_vv = std::abs(shares.uv) + std::abs(shares.mean_v);
-  const double more_u = std::max(0.0, uu - least_uu), more_v = std::max(0.0, vv - least_vv);
+  const double more_u = std::max(0.0, shares.uu - least_uu), more_v = std::max(0.0, shares.vv - least_vv);
   const double room = most_uv - std::abs(shares.uv);
   const double part = more_u + more_v > room ? room / (more_u + more_v) : 1;
   shares.uu = least_uu + part * more_u;
   shares.vv = least_vv + part * more_v;
   return shares;
+}
+
+/// Every weight hands shares to the eight about it; at the rim it keeps them.
+Kernel handed_on(const Kernel& kernel, const Shares& shares) {
+  const int radius = kernel.radius;
+  Kernel result(radius);
+  std::array<double, 9> share{};
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j) share[static_cast<std::size_t>(3 * i + j + 4)] = shares.at(i, j);
+  for (int row = -radius; row <= radius; ++row)
+    for (int column = -radius; column <= radius; ++column) {
+      const double weight = kernel.at(row, column);
+      if (weight == 0) continue;
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+          result.at(std::clamp(row + i, -radius, radius), std::clamp(column + j, -radius, radius)) +=
+              weight * share[static_cast<std::size_t>(3 * i + j + 4)];
+    }
+  return result;
 }
 
 }  // namespace
@@ -136,21 +216,28 @@ Moments Kernel::moments() const {
 }
 
 void Kernel::match(const Moments& wanted) {
+  constexpr double deepest = 0.05;  // of the highest weight without lobes
   const Shares shares = shares_towards(moments(), wanted);
-  const std::vector<double> before = weights;
-  std::fill(weights.begin(), weights.end(), 0.0);
-  for (int row = -radius; row <= radius; ++row)
-    for (int column = -radius; column <= radius; ++column) {
-      const double weight = before[index(row, column)];
-      if (weight == 0) continue;
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-          at(std::clamp(row + i, -radius, radius), std::clamp(column + j, -radius, radius)) +=
-              weight * shares.at(i, j);
-    }
+  const Kernel exact = handed_on(*this, shares);
+  const double lowest = *std::min_element(exact.weights.begin(), exact.weights.end());
+  // A weight keeps a ninth of itself or more, or a neighbour gets as much: no need to look closer then.
+  if (lowest >= -deepest / 9 * *std::max_element(weights.begin(), weights.end())) {
+    weights = exact.weights;
+    return;
+  }
+  // As far towards the exact one as lobes allow.
+  const Kernel level = handed_on(*this, without_negative(shares));
+  const double floor = -deepest * *std::max_element(level.weights.begin(), level.weights.end());
+  double part = 1;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (exact.weights[i] < floor)
+      part = std::min(part, (level.weights[i] - floor) / (level.weights[i] - exact.weights[i]));
+  part = std::max(0.0, part);  // where level itself has lobes, of fields that lie beyond
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    weights[i] = part * exact.weights[i] + (1 - part) * level.weights[i];
 }
 
-RunningPsf::RunningPsf(const Psf& psf, double origin_um, int merged)
+MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged)
     : spacing_um_(merged * psf.spacing_um), origin_um_(origin_um) {
   // The middle sample is in the middle of its block, so that a mirrored PSF has mirrored blocks.
   const int middle = psf.size / 2, before = (middle + merged / 2) / merged,
@@ -160,9 +247,9 @@ RunningPsf::RunningPsf(const Psf& psf, double origin_um, int merged)
   const auto size = static_cast<std::size_t>(size_), step = static_cast<std::size_t>(merged);
   const auto samples = static_cast<std::size_t>(psf.size), skipped = static_cast<std::size_t>(shift);
   const double of_square = psf.spacing_um * psf.spacing_um / 12;
-  sums_.assign(size * (size + 1), 0.0);
+  samples_.assign(size * size, 0.0);
   for (std::size_t i = 0; i < samples; ++i) {
-    double* sums = sums_.data() + (i + skipped) / step * (size + 1) + 1;
+    double* row = samples_.data() + (i + skipped) / step * size;
     const double t_um = (double(i) - double(samples / 2)) * psf.spacing_um - origin_um_;
     for (std::size_t j = 0; j < samples; ++j) {
       const double value = double(psf.values[i * samples + j]);
@@ -173,43 +260,77 @@ RunningPsf::RunningPsf(const Psf& psf, double origin_um, int merged)
       moments_.uv += value * s_um * t_um;
       moments_.vv += value * (t_um * t_um + of_square);
       sum_ += value;
-      sums[(j + skipped) / step] += value;
+      row[(j + skipped) / step] += value;
     }
   }
-  for (std::size_t row = 0; row < size; ++row)
-    for (std::size_t column = 0; column < size; ++column)
-      sums_[row * (size + 1) + column + 1] += sums_[row * (size + 1) + column];
 }
 
-void deposit(const RunningPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
-             double cell_um, Kernel& kernel) {
+MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
+    : size_(fine.size()),
+      spacing_um_(spacing_um),
+      origin_um_(0),
+      first_um_(-fine.radius * spacing_um),
+      sum_(fine.sum()) {
+  // Rows run along t, columns along −s.
+  for (int row = -fine.radius; row <= fine.radius; ++row)
+    for (int column = fine.radius; column >= -fine.radius; --column) samples_.push_back(fine.at(row, column));
+}
+
+namespace {
+
+/// \param stretch  of the lattice about {s, t} = `centre` [µm].
+void deposit_mixture(const Mixture& psfs, const Vector& stretch, const Vector& centre,
+                     const Vector& direction, double cell_um, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
-  const auto [stretch_s, stretch_t] = placement.stretch;
-  const double spacing = psf.spacing_um() / cell_um;
-  const double s_mean = psf.moments().mean[0] / psf.sum(), t_mean = psf.moments().mean[1] / psf.sum();
-  const double s_first = psf.first_um(), t_first = s_first - psf.origin_um();
-  const double s = (s_mean + stretch_s * (s_first - s_mean)) / cell_um;
-  const double t = (t_mean + stretch_t * (t_first - t_mean)) / cell_um;
-  const Vector per_row{spacing * stretch_t * e_t[0], spacing * stretch_t * e_t[1]};
-  const Vector per_column{spacing * stretch_s * e_s[0], spacing * stretch_s * e_s[1]};
+  const double spacing = psfs.low.spacing_um() / cell_um;
+  const double s_first = psfs.low.first_um(), t_first = s_first - psfs.low.origin_um();
+  const double s = (centre[0] + stretch[0] * (s_first - centre[0])) / cell_um;
+  const double t = (centre[1] + stretch[1] * (t_first - centre[1])) / cell_um;
+  const Vector per_row{spacing * stretch[1] * e_t[0], spacing * stretch[1] * e_t[1]};
+  const Vector per_column{spacing * stretch[0] * e_s[0], spacing * stretch[0] * e_s[1]};
 
-  // Samples coarser than a cell are cut into squares that are not.
-  const double side = spacing * std::sqrt(stretch_s * stretch_t);
-  const int parts = std::max(1, static_cast<int>(std::ceil(side)));
-  const double box = side / parts, middle = kernel.radius + 1.5 - side / 2;
-  const double share = placement.weight / (double(parts) * parts);
-  const Vector first{middle + s * e_s[0] + t * e_t[0], middle + s * e_s[1] + t * e_t[1]};
+  // Samples with shadows longer than a cell are cut into parts with shorter ones; into as many at any angle,
+  // lest kernels jump where one more is needed.
+  const double longest = 2 * std::numbers::sqrt2 * spacing * std::max(stretch[0], stretch[1]);
+  const int parts = std::max(1, static_cast<int>(std::ceil(longest - 1e-9)));
+  const Vector shadow{2 * (std::abs(per_row[0]) + std::abs(per_column[0])),
+                      2 * (std::abs(per_row[1]) + std::abs(per_column[1]))};
+  const double share = 1 / (double(parts) * parts), middle = kernel.radius + 1.5;
   Canvas canvas(kernel.radius);
   for (int a = 0; a < parts; ++a)
-    for (int b = 0; b < parts; ++b)
-      add_squares(psf, share, box, {first[0] + b * box, first[1] + a * box}, per_row, per_column, canvas);
+    for (int b = 0; b < parts; ++b) {
+      const double i = (a + 0.5) / parts - 0.5, j = (b + 0.5) / parts - 0.5;
+      const auto corner = [&](std::size_t axis) {
+        return middle + s * e_s[axis] + t * e_t[axis] + i * per_row[axis] + j * per_column[axis] -
+               shadow[axis] / (2 * parts);
+      };
+      add_samples(psfs, share, parts, {{corner(0), corner(1)}, per_row, per_column}, canvas);
+    }
 
   const int radius = kernel.radius;
   for (int row = -radius; row <= radius; ++row)
     for (int column = -radius; column <= radius; ++column)
-      kernel.at(row, column) +=
-          canvas.sums[static_cast<std::size_t>((row + radius + 1) * canvas.width + column + radius + 1)];
+      kernel.at(row, column) += canvas.sum(row + radius + 1, column + radius + 1);
+}
+
+}  // namespace
+
+void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
+             double cell_um, Kernel& kernel) {
+  const Moments& moments = psf.moments();
+  deposit_mixture({psf, psf, placement.weight, 0}, placement.stretch,
+                  {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()}, direction, cell_um, kernel);
+}
+
+void deposit(const MergedPsf& low, const MergedPsf& high, double weight_high,
+             const std::array<double, 2>& direction, double cell_um, Kernel& kernel) {
+  if (low.size() == high.size() && low.spacing_um() == high.spacing_um()) {
+    deposit_mixture({low, high, 1 - weight_high, weight_high}, {1, 1}, {0, 0}, direction, cell_um, kernel);
+    return;
+  }
+  deposit_mixture({low, low, 1 - weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, kernel);
+  deposit_mixture({high, high, weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, kernel);
 }
 
 }  // namespace petzval

@@ -33,8 +33,10 @@ struct Kernel {
   /// Of the weights' positions from the middle cell [cells]. Needs a positive sum.
   Moments moments() const;
   /// Moves the moments to the wanted ones by letting every weight hand shares to the eight cells about it; at
-  /// the rim it keeps them. The sum is kept and nothing becomes negative, which leaves one thing undone: a
-  /// kernel that is wider than wanted stays so. The centroid is met all the same.
+  /// the rim it keeps them. The sum is kept. To make a kernel narrower, or to move a peak that is finer than
+  /// a cell by a part of one, shares must be negative: beside the peak that leaves lobes below zero, but none
+  /// deeper than a twentieth of the highest weight. What they would go beyond it stays undone in the spread;
+  /// the centroid is met all the same.
   void match(const Moments& wanted);
 
  private:
@@ -43,13 +45,15 @@ struct Kernel {
   }
 };
 
-/// A PSF with running sums along its rows, so that the light of any run of samples is one subtraction.
-class RunningPsf {
+/// A PSF with samples no finer than cells need them.
+class MergedPsf {
  public:
   /// \param origin_um  how far beyond the chief ray (along t) lies the point that meets a kernel's centre.
   /// \param merged  this many samples along either axis, an odd number, become one: for cells that are much
   /// coarser.
-  explicit RunningPsf(const Psf& psf, double origin_um = 0, int merged = 1);
+  explicit MergedPsf(const Psf& psf, double origin_um = 0, int merged = 1);
+  /// What a kernel of cells as fine as samples holds that was deposited along (0, 1).
+  MergedPsf(const Kernel& fine, double spacing_um);
 
   int size() const { return size_; }
   double spacing_um() const { return spacing_um_; }
@@ -60,10 +64,9 @@ class RunningPsf {
   /// Σ of sample × position from the origin, and × its products: [µm], [µm²]; u is s, v is t. Each sample
   /// of the PSF is a square of its spacing.
   const Moments& moments() const { return moments_; }
-  /// Σ of samples [row][from … to − 1].
-  double run(std::size_t row, std::size_t from, std::size_t to) const {
-    const double* sums = sums_.data() + row * (static_cast<std::size_t>(size_) + 1);
-    return sums[to] - sums[from];
+  /// The samples of a row.
+  const double* row(std::size_t index) const {
+    return samples_.data() + index * static_cast<std::size_t>(size_);
   }
 
  private:
@@ -71,7 +74,7 @@ class RunningPsf {
   double spacing_um_, origin_um_, first_um_;
   double sum_ = 0;
   Moments moments_;
-  std::vector<double> sums_;  ///< size rows of size + 1
+  std::vector<double> samples_;  ///< row-major
 };
 
 /// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.
@@ -81,9 +84,13 @@ struct Placement {
 };
 
 /// Adds a PSF to a kernel, with its tangential direction along `direction` (x', y') of image space,
-/// integrated over cells: each sample is light spread evenly over a square of the spacing (with its sides
-/// along the cells), which the cells under it share by area. What falls outside the kernel is left out.
-void deposit(const RunningPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
+/// integrated over cells: between samples light is linear, and the cells share in it as they lie under its
+/// shadows on the two axes; samples too coarse for that are squares, cut into parts that are not. What falls
+/// outside the kernel is left out.
+void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
              double cell_um, Kernel& kernel);
+/// The same with (1 − weight_high) · low + weight_high · high as they are; at once if they have one lattice.
+void deposit(const MergedPsf& low, const MergedPsf& high, double weight_high,
+             const std::array<double, 2>& direction, double cell_um, Kernel& kernel);
 
 }  // namespace petzval

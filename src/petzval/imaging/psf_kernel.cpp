@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/otf_interpolation.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/numeric/interpolation.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace petzval {
@@ -52,16 +54,47 @@ void check(const Psf& psf, double wavelength_nm) {
                     wavelength_nm));
 }
 
-/// With samples merged to a quarter of a cell at most, and to the PSF's own half width.
-RunningPsf running_psf(const Psf& psf, double origin_um, double cell_um) {
-  RunningPsf fine(psf, origin_um);
-  const Moments& moments = fine.moments();
-  const double s = moments.mean[0] / fine.sum(), t = moments.mean[1] / fine.sum();
-  const double variance = std::min(moments.uu / fine.sum() - s * s, moments.vv / fine.sum() - t * t);
-  const double wanted_um = std::min(cell_um / 4, std::sqrt(std::max(0.0, variance)));
-  const int merged = static_cast<int>(wanted_um / psf.spacing_um);
+/// Without the corners of its window. The PSF on the axis of a centred lens is the same at every azimuth; a
+/// square window is not, and next to the axis, where azimuths change from cell to cell, its corners would
+/// show.
+Psf within_circle(const Psf& psf) {
+  Psf round = psf;
+  const double radius = psf.size / 2;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j)
+      if (std::hypot(i - psf.size / 2, j - psf.size / 2) > radius)
+        round.values[static_cast<std::size_t>(i) * static_cast<std::size_t>(psf.size) +
+                     static_cast<std::size_t>(j)] = 0;
+  return round;
+}
+
+/// How fine samples must be at a height [µm]: a quarter of a cell, an eighth near the axis, where PSFs turn
+/// from cell to cell; and no coarser than the PSF's own half width.
+double needed_spacing_um(const MergedPsf& psf, double cell_um, double height_mm) {
+  constexpr double turning_cells = 64;
+  const Moments& moments = psf.moments();
+  const double s = moments.mean[0] / psf.sum(), t = moments.mean[1] / psf.sum();
+  const double variance = std::min(moments.uu / psf.sum() - s * s, moments.vv / psf.sum() - t * t);
+  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
+  return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
+}
+
+MergedPsf merged_psf(const Psf& psf, double origin_um, double cell_um, double height_mm) {
+  MergedPsf fine(psf, origin_um);
+  const int merged = static_cast<int>(needed_spacing_um(fine, cell_um, height_mm) / psf.spacing_um);
   if (merged < 3) return fine;
-  return RunningPsf(psf, origin_um, merged - (merged + 1) % 2);
+  return MergedPsf(psf, origin_um, merged - (merged + 1) % 2);
+}
+
+/// How far samples with light reach from a kernel's centre along s or t, the farther [µm].
+double half_side_um(const Psf& psf, double origin_um) {
+  double farthest = 0;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j)
+      if (psf.at(i, j) != 0.0F)
+        farthest = std::max({farthest, std::abs((i - psf.size / 2) * psf.spacing_um - origin_um),
+                             std::abs((j - psf.size / 2) * psf.spacing_um)});
+  return farthest;
 }
 
 }  // namespace
@@ -78,31 +111,58 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       const Psf& psf = table.psf.at(entry);
       check(psf, table.wavelengths_nm[wavelength]);
       const double origin_mm = centres.offset_mm(entry), reach = reach_um(psf, origin_mm * um_per_mm);
-      const double radius = std::ceil((reach + psf.spacing_um / 2) / cell_um);
+      const double radius = std::ceil((reach + psf.spacing_um) / cell_um);
       if (!(radius <= max_radius))
         throw InputError(
             fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
                         "pitch or less supersampling helps",
                         reach, radius, cell_um, max_radius));
       radius_ = std::max(radius_, static_cast<int>(radius));
+      layer.half_side_um.push_back(half_side_um(psf, origin_mm * um_per_mm) + psf.spacing_um);
       mirror_symmetric_ = mirror_symmetric_ && is_mirror_symmetric(psf);
       least_captured_ = std::min(least_captured_, psf.captured);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
-      layer.psfs.push_back(running_psf(psf, origin_mm * um_per_mm, cell_um));
+      const double height_mm = layer.height_mm.back();
+      layer.psfs.push_back(
+          merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_mm * um_per_mm, cell_um, height_mm));
     }
     if (layer.psfs.empty()) throw InputError("the lens data table has no fields");
     layer.moments = MomentCurves(layer.height_mm, layer.psfs);
     layers_.push_back(std::move(layer));
   }
+  const std::size_t intervals = std::max<std::size_t>(1, layers_[0].psfs.size() - 1);
+  std::vector<SampleLattice> lattices;
+  for (std::size_t i = 0; i < intervals; ++i) lattices.push_back(lattice_of(i));
+  series_ = std::make_unique<PsfSeries>(layers_[0].height_mm, std::move(lattices));
+}
+
+SampleLattice PsfField::lattice_of(std::size_t interval) const {
+  SampleLattice lattice{std::numeric_limits<double>::infinity(), 0};
+  double half_side = 0;
+  for (const Layer& layer : layers_)
+    for (std::size_t field = interval; field < std::min(interval + 2, layer.psfs.size()); ++field) {
+      const MergedPsf& psf = layer.psfs[field];
+      const double needed = needed_spacing_um(psf, cell_um_, layer.height_mm[field]);
+      lattice.spacing_um = std::min(lattice.spacing_um, std::max(psf.spacing_um(), needed));
+      half_side = std::max(half_side, layer.half_side_um[field]);
+    }
+  lattice.half = static_cast<int>(std::ceil(half_side / lattice.spacing_um));
+  return lattice;
+}
+
+MergedPsf PsfField::psf_at(double height_mm, const SampleLattice& lattice) const {
+  Kernel samples(lattice.half);
+  for (const Layer& layer : layers_)
+    for (const FieldShare& share : field_shares(layer.height_mm, height_mm))
+      add(layer, layer.psfs[share.field], layer.weight * share.weight, {0, share.across_axis ? -1.0 : 1.0},
+          height_mm, lattice.spacing_um, samples);
+  return {samples, lattice.spacing_um};
 }
 
 double PsfField::deposited_samples() const {
-  double samples = 0;
-  for (const Layer& layer : layers_) {
-    const RunningPsf& psf = layer.psfs[layer.psfs.size() / 2];
-    samples += 2.0 * psf.size() * psf.size();
-  }
-  return samples;
+  const double side =
+      2.0 * lattice_of(layers_[0].psfs.size() / 2 - (layers_[0].psfs.size() > 1 ? 1 : 0)).half + 1;
+  return side * side;
 }
 
 Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
@@ -118,11 +178,11 @@ Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
 }
 
 PsfField::MomentCurves::MomentCurves(const std::vector<double>& height_mm,
-                                     const std::vector<RunningPsf>& psfs) {
+                                     const std::vector<MergedPsf>& psfs) {
   using Start = MonotoneCubic::Start;
   const auto curve = [&](Start start, const auto& of) {
     std::vector<double> values;
-    for (const RunningPsf& psf : psfs) values.push_back(of(psf.moments()) / psf.sum());
+    for (const MergedPsf& psf : psfs) values.push_back(of(psf.moments()) / psf.sum());
     return MonotoneCubic(height_mm, std::move(values), start);
   };
   s_ = curve(Start::free, [](const Moments& m) { return m.mean[0]; });
@@ -158,8 +218,9 @@ PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {
   return {&layer.psfs[i], &layer.psfs[i + 1], std::clamp((height_mm - layer.height_mm[i]) / span, 0.0, 1.0)};
 }
 
-void PsfField::add(const Layer& layer, const RunningPsf& psf, double weight,
-                   const std::array<double, 2>& direction, double height_mm, Kernel& kernel) const {
+void PsfField::add(const Layer& layer, const MergedPsf& psf, double weight,
+                   const std::array<double, 2>& direction, double height_mm, double cell_um,
+                   Kernel& kernel) const {
   if (weight == 0) return;
   constexpr double least = 0.5, most = 2;
   const Moments own = psf.moments(), wanted = layer.moments.at(height_mm);
@@ -172,24 +233,21 @@ void PsfField::add(const Layer& layer, const RunningPsf& psf, double weight,
   };
   const double s = stretch(wanted.uu, wanted.mean[0], own.uu, own.mean[0]);
   const double t = stretch(wanted.vv, wanted.mean[1], own.vv, own.mean[1]);
-  deposit(psf, {weight, {s, t}}, direction, cell_um_, kernel);
+  deposit(psf, {weight, {s, t}}, direction, cell_um, kernel);
 }
 
 Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double height_mm) const {
   Kernel kernel(radius_);
-  for (const Layer& layer : layers_) {
-    const Pair pair = pair_at(layer, height_mm);
-    const double high = layer.weight * pair.weight_high;
-    add(layer, *pair.low, layer.weight - high, direction, height_mm, kernel);
-    add(layer, *pair.high, high, direction, height_mm, kernel);
-  }
+  const auto [low, high, weight_high] =
+      series_->at(height_mm, [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
+  deposit(low, high, weight_high, direction, cell_um_, kernel);
   return kernel;
 }
 
 Kernel PsfField::interpolated_otf(const std::array<double, 2>& direction, double height_mm) const {
-  const auto kernel_of = [&](const Layer& layer, const RunningPsf& psf) {
+  const auto kernel_of = [&](const Layer& layer, const MergedPsf& psf) {
     Kernel kernel(radius_);
-    add(layer, psf, 1, direction, height_mm, kernel);
+    add(layer, psf, 1, direction, height_mm, cell_um_, kernel);
     return kernel;
   };
   std::vector<Kernel> of_layers;

@@ -4,30 +4,33 @@
 
 #include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/psf_deposit.h>
+#include <petzval/imaging/psf_series.h>
 #include <petzval/optics/lens_data_table.h>
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace petzval {
 
 /// What is interpolated between the fields and wavelengths of a table.
 enum class PsfInterpolation {
-  psf,  ///< the PSFs, linearly (the same thing as the complex OTFs, linearly)
-  otf   ///< modulus and phase of the OTFs, each linearly: overshoots where zeros move; for comparison
+  psf,  ///< the PSFs, by a cubic through four fields (the same thing as the complex OTFs by that cubic)
+  otf   ///< modulus and phase of the OTFs of two fields, each linearly: overshoots where zeros move; to
+        ///< compare
 };
 
 /// The kernels of one wavelength at every place of the image.
 ///
-/// For light that lands about (x', y') the PSFs of the bracketing field heights, at the bracketing
-/// wavelengths, are stretched to the widths of that height, mixed, rotated to the azimuth of (x', y'),
-/// integrated over the cells and normalised to sum 1 (after Maeda, Catrysse & Wandell 2005, section 2.2.3;
-/// the sum is the OTF at zero frequency). Integrated: each fine sample is spread evenly over a square of its
-/// own spacing, which the cells under it share by area, so that the energy is exact and nothing is missed
-/// between sampling points. What a cell receives is blind to where within the cell it arrives;
-/// Kernel::match() gives the kernel the centroid of the PSF whatever the cells are, and its spread where that
-/// is not exceeded already. Beyond the heights of the table its last PSF holds.
+/// For light that lands about (x', y') the PSFs of the four fields about that height (field_shares()), at the
+/// bracketing wavelengths, are stretched to the widths of the height, mixed, rotated to the azimuth of (x',
+/// y'), integrated over the cells and normalised to sum 1 (after Maeda, Catrysse & Wandell 2005,
+/// section 2.2.3; the sum is the OTF at zero frequency). Integrated: light is linear between the fine samples
+/// and falls on the cells under it, so that the energy is exact and nothing is missed between sampling
+/// points. What a cell receives is blind to where within the cell it arrives; Kernel::match() gives the
+/// kernel the centroid and the spread of the PSF whatever the cells are. Beyond the heights of the table its
+/// last PSF holds.
 class PsfField {
  public:
   /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
@@ -57,7 +60,7 @@ class PsfField {
   class MomentCurves {
    public:
     MomentCurves() = default;
-    MomentCurves(const std::vector<double>& height_mm, const std::vector<RunningPsf>& psfs);
+    MomentCurves(const std::vector<double>& height_mm, const std::vector<MergedPsf>& psfs);
     Moments at(double height_mm) const {
       return {{s_(height_mm), t_(height_mm)}, ss_(height_mm), st_(height_mm), tt_(height_mm)};
     }
@@ -69,26 +72,32 @@ class PsfField {
   struct Layer {
     double weight = 1;
     std::vector<double> height_mm;
-    std::vector<RunningPsf> psfs;
+    std::vector<MergedPsf> psfs;
+    std::vector<double> half_side_um;  ///< of the square about a kernel's centre that holds their light
     MomentCurves moments;
   };
   /// The two PSFs of a layer between which a height lies.
   struct Pair {
-    const RunningPsf *low, *high;
+    const MergedPsf *low, *high;
     double weight_high;
   };
   static Pair pair_at(const Layer& layer, double height_mm);
   /// Of the PSF at this height, taken up by cells [cells].
   Moments moments_at(const std::array<double, 2>& direction, double height_mm) const;
   /// Lays a PSF down, stretched to the spread that PSFs have at this height.
-  void add(const Layer& layer, const RunningPsf& psf, double weight, const std::array<double, 2>& direction,
-           double height_mm, Kernel& kernel) const;
+  void add(const Layer& layer, const MergedPsf& psf, double weight, const std::array<double, 2>& direction,
+           double height_mm, double cell_um, Kernel& kernel) const;
+  /// For the PSFs between two fields: as fine as theirs, as wide as their light.
+  SampleLattice lattice_of(std::size_t interval) const;
+  /// The mixture of fields and wavelengths for a height.
+  MergedPsf psf_at(double height_mm, const SampleLattice& lattice) const;
   Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
   Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
 
   double cell_um_;
   PsfInterpolation interpolation_;
   std::vector<Layer> layers_;
+  std::unique_ptr<PsfSeries> series_;
   int radius_ = 0;
   bool mirror_symmetric_ = true;
   double least_captured_ = 1;

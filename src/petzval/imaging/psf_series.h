@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// PSFs at many heights between the fields of a table, made when they are first asked for.
+#pragma once
+
+#include <petzval/imaging/psf_deposit.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace petzval {
+
+/// The samples that the PSFs of an interval share.
+struct SampleLattice {
+  double spacing_um = 1;
+  int half = 0;  ///< samples on either side of the middle one
+};
+
+/// PSFs at evenly spaced heights within each interval between two fields, on one lattice an interval, so that
+/// what lies between two of them is nearly always a mixture sample by sample. They are made once, by
+/// whichever thread comes first; what they are does not depend on it.
+class PsfSeries {
+ public:
+  /// Two PSFs, and the weight of the second.
+  struct Between {
+    const MergedPsf &low, &high;
+    double weight_high;
+  };
+
+  /// \param height_mm  of the fields, increasing, at least one. \param lattices  one an interval (one where
+  /// there is but one field). Of each interval as many PSFs are kept as 64 MB allow, 8 at most.
+  PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> lattices);
+
+  /// \param make  (height [mm], lattice) ↦ MergedPsf. Heights beyond the fields: the first and the last.
+  template <typename Make>
+  Between at(double height_mm, const Make& make) const {
+    const Place place = place_of(height_mm);
+    const auto psf = [&](std::size_t index) -> const MergedPsf& {
+      Entry& entry = entries_[index];
+      std::call_once(entry.made, [&] {
+        entry.psf = std::make_unique<MergedPsf>(make(height_of(index), lattice_of(index)));
+      });
+      return *entry.psf;
+    };
+    return {psf(place.index), psf(std::min(place.index + 1, count_ - 1)), place.weight_high};
+  }
+
+ private:
+  struct Entry {
+    std::once_flag made;
+    std::unique_ptr<MergedPsf> psf;
+  };
+  struct Place {
+    std::size_t index;
+    double weight_high;
+  };
+  Place place_of(double height_mm) const;
+  double height_of(std::size_t index) const;
+  const SampleLattice& lattice_of(std::size_t index) const {
+    return lattices_[std::min(index / steps_, lattices_.size() - 1)];
+  }
+
+  std::vector<double> height_mm_;
+  std::vector<SampleLattice> lattices_;
+  std::size_t steps_ = 1, count_ = 1;
+  std::unique_ptr<Entry[]> entries_;  ///< steps of the first interval, of the second, …, the last field
+};
+
+}  // namespace petzval
