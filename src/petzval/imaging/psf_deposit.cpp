@@ -278,9 +278,10 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
 
 namespace {
 
-/// \param stretch  of the lattice about {s, t} = `centre` [µm].
+/// \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
+/// other directions must go on from this one without a jump.
 void deposit_mixture(const Mixture& psfs, const Vector& stretch, const Vector& centre,
-                     const Vector& direction, double cell_um, Kernel& kernel) {
+                     const Vector& direction, double cell_um, bool any_angle, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
   const double spacing = psfs.low.spacing_um() / cell_um;
@@ -292,7 +293,8 @@ void deposit_mixture(const Mixture& psfs, const Vector& stretch, const Vector& c
 
   // Samples with shadows longer than a cell are cut into parts with shorter ones; into as many at any angle,
   // lest kernels jump where one more is needed.
-  const double longest = 2 * std::numbers::sqrt2 * spacing * std::max(stretch[0], stretch[1]);
+  const double longest =
+      2 * (any_angle ? std::numbers::sqrt2 : 1) * spacing * std::max(stretch[0], stretch[1]);
   const int parts = std::max(1, static_cast<int>(std::ceil(longest - 1e-9)));
   const Vector shadow{2 * (std::abs(per_row[0]) + std::abs(per_column[0])),
                       2 * (std::abs(per_row[1]) + std::abs(per_column[1]))};
@@ -320,17 +322,19 @@ void deposit(const MergedPsf& psf, const Placement& placement, const std::array<
              double cell_um, Kernel& kernel) {
   const Moments& moments = psf.moments();
   deposit_mixture({psf, psf, placement.weight, 0}, placement.stretch,
-                  {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()}, direction, cell_um, kernel);
+                  {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()}, direction, cell_um,
+                  direction[0] != 0 && direction[1] != 0, kernel);
 }
 
 void deposit(const MergedPsf& low, const MergedPsf& high, double weight_high,
              const std::array<double, 2>& direction, double cell_um, Kernel& kernel) {
   if (low.size() == high.size() && low.spacing_um() == high.spacing_um()) {
-    deposit_mixture({low, high, 1 - weight_high, weight_high}, {1, 1}, {0, 0}, direction, cell_um, kernel);
+    deposit_mixture({low, high, 1 - weight_high, weight_high}, {1, 1}, {0, 0}, direction, cell_um, true,
+                    kernel);
     return;
   }
-  deposit_mixture({low, low, 1 - weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, kernel);
-  deposit_mixture({high, high, weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, kernel);
+  deposit_mixture({low, low, 1 - weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, true, kernel);
+  deposit_mixture({high, high, weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, true, kernel);
 }
 
 }  // namespace petzval
