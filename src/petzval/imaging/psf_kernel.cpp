@@ -133,7 +133,7 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
   const std::size_t intervals = std::max<std::size_t>(1, layers_[0].psfs.size() - 1);
   std::vector<SampleLattice> lattices;
   for (std::size_t i = 0; i < intervals; ++i) lattices.push_back(lattice_of(i));
-  series_ = std::make_unique<PsfSeries>(layers_[0].height_mm, std::move(lattices));
+  series_ = std::make_unique<PsfSeries>(layers_[0].height_mm, std::move(lattices), 2 * cell_um * mm_per_um);
 }
 
 SampleLattice PsfField::lattice_of(std::size_t interval) const {

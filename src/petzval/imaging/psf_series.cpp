@@ -2,9 +2,11 @@
 #include <petzval/imaging/psf_series.h>
 #include <petzval/numeric/interpolation.h>
 
+#include <cmath>
+
 namespace petzval {
 
-PsfSeries::PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> lattices)
+PsfSeries::PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> lattices, double step_mm)
     : height_mm_(std::move(height_mm)), lattices_(std::move(lattices)) {
   constexpr double most_bytes = 64e6, most_steps = 8;
   double bytes_a_step = 0;
@@ -12,8 +14,13 @@ PsfSeries::PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> l
     const double side = 2.0 * lattice.half + 1;
     bytes_a_step += side * side * sizeof(double);
   }
-  if (height_mm_.size() > 1)
-    steps_ = static_cast<std::size_t>(std::clamp(most_bytes / bytes_a_step - 1, 1.0, most_steps));
+  if (height_mm_.size() > 1) {
+    double widest_mm = 0;
+    for (std::size_t i = 0; i + 1 < height_mm_.size(); ++i)
+      widest_mm = std::max(widest_mm, height_mm_[i + 1] - height_mm_[i]);
+    const double wanted = std::min(std::ceil(widest_mm / step_mm), most_bytes / bytes_a_step - 1);
+    steps_ = static_cast<std::size_t>(std::clamp(wanted, 1.0, most_steps));
+  }
   count_ = height_mm_.size() > 1 ? lattices_.size() * steps_ + 1 : 1;
   entries_ = std::make_unique<Entry[]>(count_);
 }
