@@ -71,7 +71,7 @@ Psf within_circle(const Psf& psf) {
 /// How fine samples must be at a height [µm]: a quarter of a cell, an eighth near the axis, where PSFs turn
 /// from cell to cell; and no coarser than the PSF's own half width.
 double needed_spacing_um(const MergedPsf& psf, double cell_um, double height_mm) {
-  constexpr double turning_cells = 64;
+  constexpr double turning_cells = 24;
   const Moments& moments = psf.moments();
   const double s = moments.mean[0] / psf.sum(), t = moments.mean[1] / psf.sum();
   const double variance = std::min(moments.uu / psf.sum() - s * s, moments.vv / psf.sum() - t * t);
