@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every way to an image begins and ends with.
+#pragma once
+
+#include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/pixel_gather.h>
+
+namespace petzval {
+
+/// A black image of a scene's bands, of the pixels of a sensor and their aperture.
+SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, const ImagingOptions& options);
+
+/// The taps that make pixels of cells, whose number goes into the report with what a user should know of it.
+/// \param report  knows already how many points of the scene a cell sees.
+PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report);
+
+/// Adds to the report what is seen of the finished image.
+void note_result(const SpectralImage& image, const ImagingOptions& options, ImagingReport& report);
+
+}  // namespace petzval
