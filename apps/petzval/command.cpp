@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/text_lines.h>
@@ -12,11 +13,9 @@
 #include <petzval/lens/lens_file.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 namespace petzval::app {
 
@@ -181,9 +180,7 @@ void note(const Shared& shared, const std::string& message) {
 
 void require_extension(const std::string& path, const std::vector<std::string>& extensions,
                        const std::string& what) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
     throw InputError(path, fmt::format("{} is written as {}", what, fmt::join(extensions, ", ")));
 }

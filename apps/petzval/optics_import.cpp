@@ -2,6 +2,7 @@
 // petzval optics import: lens data tables that other programs and laboratories made.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/optics/formats/iset_mat_table.h>
@@ -30,9 +31,7 @@ struct ImportCommand {
 std::string kind_of(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return "zemax";
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   if (extension == ".mat") return "iset";
   if (extension == ".txt") return "zemax";
   if (extension == ".csv") return "measured";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/progress.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/image/formats/irradiance.h>
@@ -42,12 +43,6 @@ std::vector<double> default_wavelengths_nm() {
   std::vector<double> result;
   for (int nm = 400; nm <= 700; nm += 10) result.push_back(nm);
   return result;
-}
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
 }
 
 void list_unsupported(const RenderCommand& command, const Shared& shared) {

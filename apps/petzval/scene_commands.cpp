@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/parallel.h>
 #include <petzval/image/picture.h>
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace petzval::app {
@@ -86,9 +86,7 @@ void write_scene_picture(const std::string& path, const Scene& scene) {
 }
 
 void convert_scene(const SceneChoice& choice, const std::string& out) {
-  std::string extension = std::filesystem::path(out).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(out);
   if (extension != ".exr" && extension != ".png")
     throw InputError(out, "a scene is written as .exr or, to look at, .png");
   const Scene scene = choice.read();

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/isp/display_picture.h>
 #include <petzval/sensor/formats/dng.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace petzval::app {
 
@@ -17,9 +17,7 @@ namespace {
 constexpr const char *exposing = "Exposure of the sensor", *developing = "Development of the picture";
 
 bool ends_in(const std::string& path, const std::vector<std::string>& extensions) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 bool is_raw(const std::string& path) {

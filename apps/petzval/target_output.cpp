@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/colour/display.h>
@@ -13,20 +14,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "field_option.h"
 
 namespace petzval::app {
 
 namespace {
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 /// Code values; values outside 0 … 1 are clipped.
 std::vector<std::uint16_t> code_values(const TargetImage& image, int bits, bool linear) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/formats/glass_lookup.h>
@@ -12,8 +13,6 @@
 #include <petzval/lens/formats/zmx.h>
 #include <petzval/lens/lens_file.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 namespace petzval {
@@ -22,13 +21,6 @@ namespace {
 
 /// No lens file comes near this size.
 constexpr std::size_t largest_file = std::size_t{8} << 20;
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 /// Rows of numbers have no glass that another could take the place of.
 LensFile without_glasses(LensFile file, const std::string& path, const LensReadOptions& options) {

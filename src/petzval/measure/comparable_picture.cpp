@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/measure/comparable_picture.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 namespace petzval {
@@ -81,9 +80,7 @@ void require_finite(const ComparablePicture& picture) {
 }  // namespace
 
 ComparablePicture read_comparable_picture(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   if (extension != ".exr" && extension != ".npy" && extension != ".png")
     throw InputError(path, "cannot be compared: .exr (spectral), .npy and .png can");
   ComparablePicture picture = extension == ".exr"   ? read_exr(path)

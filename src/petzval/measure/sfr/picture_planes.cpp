@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/colour/display.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/png.h>
@@ -8,10 +9,7 @@
 #include <petzval/image/formats/tiff.h>
 #include <petzval/measure/sfr/picture_planes.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 
 namespace petzval {
@@ -121,9 +119,7 @@ Plane PicturePlanes::luminance() const {
 }
 
 PicturePlanes read_picture_planes(const std::string& path, PictureTransfer transfer) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   PicturePlanes picture;
   if (extension == ".png")
     picture = from_png(path, transfer);

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `image` writes and tells.
+#pragma once
+
+#include <petzval/imaging/image_formation.h>
+#include <petzval/optics/lens_data_table.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "image_option.h"
+
+namespace petzval::app {
+
+/// An image, and what it was made of.
+struct FormedImage {
+  SpectralImage light;
+  Scene scene;
+  LensDataTable table;
+  ImagingReport report;
+  std::string method;  ///< method_text
+};
+
+/// How the image was blurred, in a line.
+std::string method_text(const ImagingOptions& options, const ImagingReport& report);
+
+/// Where the scene stands.
+std::string distance_text(const Scene& scene);
+
+/// Writes all outputs or none of them. \return what the sensor made of the light, if it was asked to.
+std::optional<Shot> write_outputs(const ImageChoice& choice, const FormedImage& image,
+                                  const std::optional<Sensor>& sensor, const Shared& shared);
+
+nlohmann::ordered_json summary_json(const FormedImage& image, const std::optional<Shot>& shot,
+                                    const std::vector<std::string>& outputs);
+
+void print_summary(const FormedImage& image, const std::optional<Shot>& shot);
+
+}  // namespace petzval::app

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image_source.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/camera/camera.h>
+#include <petzval/imaging/field_of_view.h>
+#include <petzval/optics/build.h>
+#include <petzval/optics/table_file.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace petzval::app {
+
+namespace {
+
+/// The distance in --focus, if it is one; infinite for "infinity".
+std::optional<double> focus_distance_mm(const std::string& focus) {
+  if (focus == "auto" || focus == "design") return {};
+  if (focus == "infinity" || focus == "inf") return INFINITY;
+  double distance_mm = 0;
+  const auto [end, error] = std::from_chars(focus.data(), focus.data() + focus.size(), distance_mm);
+  if (error != std::errc() || end != focus.data() + focus.size() || !(distance_mm > 0))
+    throw InputError(fmt::format(
+        "--focus {}: auto (the scene), design, infinity or a distance from the sensor in mm would be right",
+        focus));
+  return distance_mm;
+}
+
+/// Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
+Scene read_scene(const ImageChoice& choice, std::optional<double> expected_m, bool expected) {
+  SceneOptions defaults;
+  if (expected && choice.scene.is_open()) defaults.distance_m = expected_m.value_or(INFINITY);
+  Scene scene = choice.scene.read(defaults);
+  scene.validate();
+  return scene;
+}
+
+/// The lens as it is used: focused as asked, the object where the scene is.
+Lens focused(Camera camera, const std::string& focus, std::optional<double> scene_distance_m) {
+  if (focus == "auto") {
+    camera.focus_at_m(scene_distance_m);
+    return camera.lens();
+  }
+  if (const std::optional<double> distance_mm = focus_distance_mm(focus))
+    camera.focus_at_m(*distance_mm / mm_per_m);
+  // The sensor stays; only the object moves.
+  Camera here(camera.lens());
+  if (here.object_distance_from_sensor_m() != scene_distance_m) here.place_object_at_m(scene_distance_m);
+  return here.lens();
+}
+
+/// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image.
+double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<SensorGeometry>& sensor) {
+  if (sensor) return sensor->half_diagonal_mm();
+  return natural_pitch_um(scene, first_order(lens)) * mm_per_um * std::hypot(scene.columns(), scene.rows()) /
+         2;
+}
+
+SceneAndTable from_stored_table(const ImageChoice& choice) {
+  LensDataTable table = read_table(choice.optics);
+  std::optional<double> distance_m = object_to_sensor_mm(table);
+  if (distance_m) *distance_m /= mm_per_m;
+  return {read_scene(choice, distance_m, true), std::move(table)};
+}
+
+SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
+                        const ProgressCallback& progress, const Shared& shared) {
+  focus_distance_mm(choice.focus);  // refuses nonsense before anything is read
+  Camera camera(choice.apertures.prepare(choice.lens.read(shared), shared));
+  if (choice.f_number) camera.set_f_number(*choice.f_number);
+  Scene scene = read_scene(choice, camera.object_distance_from_sensor_m(), choice.focus == "design");
+  const Lens lens = focused(camera, choice.focus, scene.distance_m());
+  TableOptions options;
+  options.wavelengths_nm = scene.wavelengths_nm();
+  if (choice.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  options.max_image_height_mm = image_height_mm(scene, lens, sensor);
+  return {std::move(scene), build_lens_data_table(lens, options, progress)};
+}
+
+}  // namespace
+
+SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
+                          const ProgressCallback& progress, const Shared& shared) {
+  return choice.optics.empty() ? from_lens(choice, sensor, progress, shared) : from_stored_table(choice);
+}
+
+SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions& options, Scene& scene,
+                                 const LensDataTable& table, const std::optional<SensorGeometry>& sensor,
+                                 const Shared& shared) {
+  if (!sensor) {
+    const SensorGeometry frame = natural_sensor(scene, table, options);
+    note(shared,
+         fmt::format("no --sensor: {} x {} pixels of {:.5g} um, the scene's samples as the lens images them "
+                     "on the axis, as many as the scene covers",
+                     frame.columns, frame.rows, frame.pitch_um));
+    return frame;
+  }
+  if (choice.scene.is_open() && choice.scene.angle.empty() && options.surround == Surround::error) {
+    scene.set_horizontal_angle_deg(covering_angle_deg(scene, table, *sensor, options));
+    note(shared,
+         fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
+                     "(--scene-angle sets another)",
+                     choice.scene.is_chart() ? "chart" : "photograph", scene.horizontal_angle_deg()));
+  }
+  return *sensor;
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the light of `image` comes from: a scene, and the lens data table that images it.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/optics/lens_data_table.h>
+#include <petzval/scene/scene.h>
+
+#include <optional>
+
+#include "image_option.h"
+
+namespace petzval::app {
+
+struct SceneAndTable {
+  Scene scene;
+  LensDataTable table;
+};
+
+/// Reads the scene and the stored table, or builds the table of the lens, focused as asked, with the scene
+/// where it stands. \param sensor  how far from the axis light is wanted; the scene's own image if there is
+/// none. \throws InputError naming the file or the option.
+SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
+                          const ProgressCallback& progress, const Shared& shared);
+
+/// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
+/// the scene.
+SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions& options, Scene& scene,
+                                 const LensDataTable& table, const std::optional<SensorGeometry>& sensor,
+                                 const Shared& shared);
+
+}  // namespace petzval::app
