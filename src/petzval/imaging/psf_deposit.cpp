@@ -97,30 +97,35 @@ std::array<std::size_t, 2> samples_inside(const Vector& first, const Vector& ste
   return {static_cast<std::size_t>(std::ceil(from)), static_cast<std::size_t>(std::ceil(to))};
 }
 
-/// Two PSFs of one lattice with their weights.
-struct Mixture {
-  const MergedPsf &low, &high;
-  double weight_low, weight_high;
-};
+/// Of PSFs of one lattice, by their weights: the samples [from, to) of a row.
+void mix_row(std::span<const WeightedPsf> psfs, std::size_t row, std::size_t from, std::size_t to,
+             std::vector<double>& values) {
+  std::fill(values.begin() + std::ptrdiff_t(from), values.begin() + std::ptrdiff_t(to), 0.0);
+  for (const WeightedPsf& part : psfs) {
+    const double *samples = part.psf->row(row), weight = part.weight;
+    for (std::size_t j = from; j < to; ++j) values[j] += weight * samples[j];
+  }
+}
 
 /// Adds all samples, each with shadows of 1/parts of its own.
-void add_samples(const Mixture& psfs, double share, int parts, const Lattice& lattice, Canvas& canvas) {
+void add_samples(std::span<const WeightedPsf> psfs, double share, int parts, const Lattice& lattice,
+                 Canvas& canvas) {
   const auto& [first, per_row, per_column] = lattice;
   const auto shadow = [&](std::size_t axis) {
     return Shadow({std::abs(per_row[axis]) / parts, std::abs(per_column[axis]) / parts});
   };
   const Shadow across = shadow(0), down = shadow(1);
-  const auto size = static_cast<std::size_t>(psfs.low.size());
-  const double weight_low = share * psfs.weight_low, weight_high = share * psfs.weight_high;
+  const auto size = static_cast<std::size_t>(psfs[0].psf->size());
+  std::vector<double> values(size);
   const double end = canvas.width - 2;  // a shadow that begins before it may reach one cell on
   for (std::size_t i = 0; i < size; ++i) {
     const Vector start{first[0] + double(i) * per_row[0], first[1] + double(i) * per_row[1]};
     const auto [from, to] = samples_inside(start, per_column, end, size);
-    const double *low = psfs.low.row(i), *high = psfs.high.row(i);
+    mix_row(psfs, i, from, std::max(from, to), values);
     for (std::size_t j = from; j < to; ++j) {
       const double u = start[0] + double(j) * per_column[0], v = start[1] + double(j) * per_column[1];
       const int column = static_cast<int>(u), row = static_cast<int>(v);
-      const double value = weight_low * low[j] + weight_high * high[j];
+      const double value = share * values[j];
       const double right = across.beyond(u - column), below = down.beyond(v - row);
       const double lower = value * below, upper = value - lower;
       double* cell = canvas.cell(row, column);
@@ -278,14 +283,14 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
 
 namespace {
 
-/// \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
+/// \param psfs  of one lattice. \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
 /// other directions must go on from this one without a jump.
-void deposit_mixture(const Mixture& psfs, const Vector& stretch, const Vector& centre,
+void deposit_mixture(std::span<const WeightedPsf> psfs, const Vector& stretch, const Vector& centre,
                      const Vector& direction, double cell_um, bool any_angle, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
-  const double spacing = psfs.low.spacing_um() / cell_um;
-  const double s_first = psfs.low.first_um(), t_first = s_first - psfs.low.origin_um();
+  const double spacing = psfs[0].psf->spacing_um() / cell_um;
+  const double s_first = psfs[0].psf->first_um(), t_first = s_first - psfs[0].psf->origin_um();
   const double s = (centre[0] + stretch[0] * (s_first - centre[0])) / cell_um;
   const double t = (centre[1] + stretch[1] * (t_first - centre[1])) / cell_um;
   const Vector per_row{spacing * stretch[1] * e_t[0], spacing * stretch[1] * e_t[1]};
@@ -321,20 +326,23 @@ void deposit_mixture(const Mixture& psfs, const Vector& stretch, const Vector& c
 void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
              double cell_um, Kernel& kernel) {
   const Moments& moments = psf.moments();
-  deposit_mixture({psf, psf, placement.weight, 0}, placement.stretch,
-                  {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()}, direction, cell_um,
-                  direction[0] != 0 && direction[1] != 0, kernel);
+  const std::array<WeightedPsf, 1> alone{{{&psf, placement.weight}}};
+  deposit_mixture(alone, placement.stretch, {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()},
+                  direction, cell_um, direction[0] != 0 && direction[1] != 0, kernel);
 }
 
-void deposit(const MergedPsf& low, const MergedPsf& high, double weight_high,
-             const std::array<double, 2>& direction, double cell_um, Kernel& kernel) {
-  if (low.size() == high.size() && low.spacing_um() == high.spacing_um()) {
-    deposit_mixture({low, high, 1 - weight_high, weight_high}, {1, 1}, {0, 0}, direction, cell_um, true,
-                    kernel);
-    return;
+void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
+             Kernel& kernel) {
+  while (!psfs.empty()) {
+    const MergedPsf& first = *psfs[0].psf;
+    const auto other = std::find_if(psfs.begin(), psfs.end(), [&](const WeightedPsf& part) {
+      return part.psf->size() != first.size() || part.psf->spacing_um() != first.spacing_um() ||
+             part.psf->origin_um() != first.origin_um();
+    });
+    const auto alike = static_cast<std::size_t>(other - psfs.begin());
+    deposit_mixture(psfs.first(alike), {1, 1}, {0, 0}, direction, cell_um, true, kernel);
+    psfs = psfs.subspan(alike);
   }
-  deposit_mixture({low, low, 1 - weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, true, kernel);
-  deposit_mixture({high, high, weight_high, 0}, {1, 1}, {0, 0}, direction, cell_um, true, kernel);
 }
 
 }  // namespace petzval

@@ -89,8 +89,13 @@ struct Placement {
 /// outside the kernel is left out.
 void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
              double cell_um, Kernel& kernel);
-/// The same with (1 − weight_high) · low + weight_high · high as they are; at once if they have one lattice.
-void deposit(const MergedPsf& low, const MergedPsf& high, double weight_high,
-             const std::array<double, 2>& direction, double cell_um, Kernel& kernel);
+/// What one PSF contributes to a mixture.
+struct WeightedPsf {
+  const MergedPsf* psf;
+  double weight;
+};
+/// The same with Σ weight · psf as they are; neighbours of one lattice at once.
+void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
+             Kernel& kernel);
 
 }  // namespace petzval

@@ -238,9 +238,9 @@ void PsfField::add(const Layer& layer, const MergedPsf& psf, double weight,
 
 Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double height_mm) const {
   Kernel kernel(radius_);
-  const auto [low, high, weight_high] =
+  const PsfSeries::Mixture psfs =
       series_->at(height_mm, [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
-  deposit(low, high, weight_high, direction, cell_um_, kernel);
+  deposit(psfs, direction, cell_um_, kernel);
   return kernel;
 }
 

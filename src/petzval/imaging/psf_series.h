@@ -5,6 +5,7 @@
 #include <petzval/imaging/psf_deposit.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -18,16 +19,12 @@ struct SampleLattice {
   int half = 0;  ///< samples on either side of the middle one
 };
 
-/// PSFs at evenly spaced heights within each interval between two fields, on one lattice an interval, so that
-/// what lies between two of them is nearly always a mixture sample by sample. They are made once, by
-/// whichever thread comes first; what they are does not depend on it.
+/// PSFs at evenly spaced heights within each interval between two fields, on one lattice an interval. What
+/// lies between them is a mixture of four of the interval by field_shares(), nearly always sample by sample.
+/// They are made once, by whichever thread comes first; what they are does not depend on it.
 class PsfSeries {
  public:
-  /// Two PSFs, and the weight of the second.
-  struct Between {
-    const MergedPsf &low, &high;
-    double weight_high;
-  };
+  using Mixture = std::vector<WeightedPsf>;
 
   /// \param height_mm  of the fields, increasing, at least one. \param lattices  one an interval (one where
   /// there is but one field). \param step_mm  that need not be gone below. Of each interval as many PSFs are
@@ -36,16 +33,17 @@ class PsfSeries {
 
   /// \param make  (height [mm], lattice) ↦ MergedPsf. Heights beyond the fields: the first and the last.
   template <typename Make>
-  Between at(double height_mm, const Make& make) const {
-    const Place place = place_of(height_mm);
-    const auto psf = [&](std::size_t index) -> const MergedPsf& {
-      Entry& entry = entries_[index];
+  Mixture at(double height_mm, const Make& make) const {
+    Mixture mixture;
+    for (const Share& share : shares_at(height_mm)) {
+      if (share.weight == 0) continue;
+      Entry& entry = entries_[share.index];
       std::call_once(entry.made, [&] {
-        entry.psf = std::make_unique<MergedPsf>(make(height_of(index), lattice_of(index)));
+        entry.psf = std::make_unique<MergedPsf>(make(height_of(share.index), lattice_of(share.index)));
       });
-      return *entry.psf;
-    };
-    return {psf(place.index), psf(std::min(place.index + 1, count_ - 1)), place.weight_high};
+      mixture.push_back({entry.psf.get(), share.weight});
+    }
+    return mixture;
   }
 
  private:
@@ -53,11 +51,12 @@ class PsfSeries {
     std::once_flag made;
     std::unique_ptr<MergedPsf> psf;
   };
-  struct Place {
-    std::size_t index;
-    double weight_high;
+  struct Share {
+    std::size_t index = 0;
+    double weight = 0;
   };
-  Place place_of(double height_mm) const;
+  /// In the order of their heights, so that those of one lattice stand together.
+  std::array<Share, 4> shares_at(double height_mm) const;
   double height_of(std::size_t index) const;
   const SampleLattice& lattice_of(std::size_t index) const {
     return lattices_[std::min(index / steps_, lattices_.size() - 1)];
