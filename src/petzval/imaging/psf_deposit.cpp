@@ -97,14 +97,24 @@ std::array<std::size_t, 2> samples_inside(const Vector& first, const Vector& ste
   return {static_cast<std::size_t>(std::ceil(from)), static_cast<std::size_t>(std::ceil(to))};
 }
 
-/// Of PSFs of one lattice, by their weights: the samples [from, to) of a row.
-void mix_row(std::span<const WeightedPsf> psfs, std::size_t row, std::size_t from, std::size_t to,
-             std::vector<double>& values) {
+/// Of PSFs of one spacing about one origin, by their weights: the samples [from, to) of a row of the largest.
+void mix_row(std::span<const WeightedPsf> psfs, std::size_t size, std::size_t row, std::size_t from,
+             std::size_t to, std::vector<double>& values) {
   std::fill(values.begin() + std::ptrdiff_t(from), values.begin() + std::ptrdiff_t(to), 0.0);
   for (const WeightedPsf& part : psfs) {
-    const double *samples = part.psf->row(row), weight = part.weight;
-    for (std::size_t j = from; j < to; ++j) values[j] += weight * samples[j];
+    const auto part_size = static_cast<std::size_t>(part.psf->size());
+    const std::size_t before = (size - part_size) / 2;
+    if (row < before || row >= before + part_size) continue;
+    const double *samples = part.psf->row(row - before), weight = part.weight;
+    const std::size_t end = std::min(to, before + part_size);
+    for (std::size_t j = std::max(from, before); j < end; ++j) values[j] += weight * samples[j - before];
   }
+}
+
+const MergedPsf& largest(std::span<const WeightedPsf> psfs) {
+  return *std::max_element(psfs.begin(), psfs.end(), [](const WeightedPsf& a, const WeightedPsf& b) {
+            return a.psf->size() < b.psf->size();
+          })->psf;
 }
 
 /// Adds all samples, each with shadows of 1/parts of its own.
@@ -115,13 +125,13 @@ void add_samples(std::span<const WeightedPsf> psfs, double share, int parts, con
     return Shadow({std::abs(per_row[axis]) / parts, std::abs(per_column[axis]) / parts});
   };
   const Shadow across = shadow(0), down = shadow(1);
-  const auto size = static_cast<std::size_t>(psfs[0].psf->size());
+  const auto size = static_cast<std::size_t>(largest(psfs).size());
   std::vector<double> values(size);
   const double end = canvas.width - 2;  // a shadow that begins before it may reach one cell on
   for (std::size_t i = 0; i < size; ++i) {
     const Vector start{first[0] + double(i) * per_row[0], first[1] + double(i) * per_row[1]};
     const auto [from, to] = samples_inside(start, per_column, end, size);
-    mix_row(psfs, i, from, std::max(from, to), values);
+    mix_row(psfs, size, i, from, std::max(from, to), values);
     for (std::size_t j = from; j < to; ++j) {
       const double u = start[0] + double(j) * per_column[0], v = start[1] + double(j) * per_column[1];
       const int column = static_cast<int>(u), row = static_cast<int>(v);
@@ -283,14 +293,15 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
 
 namespace {
 
-/// \param psfs  of one lattice. \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
+/// \param psfs  of one spacing about one origin, of odd sizes where these differ. \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
 /// other directions must go on from this one without a jump.
 void deposit_mixture(std::span<const WeightedPsf> psfs, const Vector& stretch, const Vector& centre,
                      const Vector& direction, double cell_um, bool any_angle, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
-  const double spacing = psfs[0].psf->spacing_um() / cell_um;
-  const double s_first = psfs[0].psf->first_um(), t_first = s_first - psfs[0].psf->origin_um();
+  const MergedPsf& whole = largest(psfs);
+  const double spacing = whole.spacing_um() / cell_um;
+  const double s_first = whole.first_um(), t_first = s_first - whole.origin_um();
   const double s = (centre[0] + stretch[0] * (s_first - centre[0])) / cell_um;
   const double t = (centre[1] + stretch[1] * (t_first - centre[1])) / cell_um;
   const Vector per_row{spacing * stretch[1] * e_t[0], spacing * stretch[1] * e_t[1]};
@@ -336,8 +347,7 @@ void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& dir
   while (!psfs.empty()) {
     const MergedPsf& first = *psfs[0].psf;
     const auto other = std::find_if(psfs.begin(), psfs.end(), [&](const WeightedPsf& part) {
-      return part.psf->size() != first.size() || part.psf->spacing_um() != first.spacing_um() ||
-             part.psf->origin_um() != first.origin_um();
+      return part.psf->spacing_um() != first.spacing_um();
     });
     const auto alike = static_cast<std::size_t>(other - psfs.begin());
     deposit_mixture(psfs.first(alike), {1, 1}, {0, 0}, direction, cell_um, true, kernel);

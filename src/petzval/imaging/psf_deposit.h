@@ -94,7 +94,7 @@ struct WeightedPsf {
   const MergedPsf* psf;
   double weight;
 };
-/// The same with Σ weight · psf as they are; neighbours of one lattice at once.
+/// The same with Σ weight · psf as they are, made from kernels; neighbours of one spacing at once.
 void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
              Kernel& kernel);
 

@@ -75,7 +75,7 @@ double needed_spacing_um(const MergedPsf& psf, double cell_um, double height_mm)
   const Moments& moments = psf.moments();
   const double s = moments.mean[0] / psf.sum(), t = moments.mean[1] / psf.sum();
   const double variance = std::min(moments.uu / psf.sum() - s * s, moments.vv / psf.sum() - t * t);
-  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
+  const double parts = getenv("PA") ? atof(getenv("PA")) : height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
   return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
 }
 
@@ -138,20 +138,21 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
 
 SampleLattice PsfField::lattice_of(std::size_t interval) const {
   SampleLattice lattice{std::numeric_limits<double>::infinity(), 0};
-  double half_side = 0;
   for (const Layer& layer : layers_)
     for (std::size_t field = interval; field < std::min(interval + 2, layer.psfs.size()); ++field) {
       const MergedPsf& psf = layer.psfs[field];
       const double needed = needed_spacing_um(psf, cell_um_, layer.height_mm[field]);
       lattice.spacing_um = std::min(lattice.spacing_um, std::max(psf.spacing_um(), needed));
-      half_side = std::max(half_side, layer.half_side_um[field]);
+      lattice.half_side_um = std::max(lattice.half_side_um, layer.half_side_um[field]);
     }
-  lattice.half = static_cast<int>(std::ceil(half_side / lattice.spacing_um));
+  // On a ladder from the cell down, so that neighbouring intervals mostly have the same.
+  const double octaves = std::log2(cell_um_ / lattice.spacing_um);
+  lattice.spacing_um = cell_um_ / std::exp2(std::ceil(2 * octaves - 1e-6) / 2);
   return lattice;
 }
 
 MergedPsf PsfField::psf_at(double height_mm, const SampleLattice& lattice) const {
-  Kernel samples(lattice.half);
+  Kernel samples(lattice.half());
   for (const Layer& layer : layers_)
     for (const FieldShare& share : field_shares(layer.height_mm, height_mm))
       add(layer, layer.psfs[share.field], layer.weight * share.weight, {0, share.across_axis ? -1.0 : 1.0},
@@ -161,7 +162,7 @@ MergedPsf PsfField::psf_at(double height_mm, const SampleLattice& lattice) const
 
 double PsfField::deposited_samples() const {
   const double side =
-      2.0 * lattice_of(layers_[0].psfs.size() / 2 - (layers_[0].psfs.size() > 1 ? 1 : 0)).half + 1;
+      2.0 * lattice_of(layers_[0].psfs.size() / 2 - (layers_[0].psfs.size() > 1 ? 1 : 0)).half() + 1;
   return side * side;
 }
 

@@ -4,8 +4,7 @@
 
 #include <petzval/imaging/psf_deposit.h>
 
-#include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -16,12 +15,17 @@ namespace petzval {
 /// The samples that the PSFs of an interval share.
 struct SampleLattice {
   double spacing_um = 1;
-  int half = 0;  ///< samples on either side of the middle one
+  double half_side_um = 0;  ///< of the square that holds their light
+
+  /// Samples on either side of the middle one.
+  int half() const { return static_cast<int>(std::ceil(half_side_um / spacing_um)); }
 };
 
-/// PSFs at evenly spaced heights within each interval between two fields, on one lattice an interval. What
-/// lies between them is a mixture of four of the interval by field_shares(), nearly always sample by sample.
-/// They are made once, by whichever thread comes first; what they are does not depend on it.
+/// PSFs at evenly spaced heights within each interval between two fields. What lies between them is a mixture
+/// of four of the interval by field_shares(), sample by sample. Neighbouring intervals of one spacing form a
+/// run; over the last interval of a run its samples fade into those of the next, for kernels that jump where
+/// the spacing does would draw a ring on a wall. PSFs are made once, by whichever thread comes first; what
+/// they are does not depend on it.
 class PsfSeries {
  public:
   using Mixture = std::vector<WeightedPsf>;
@@ -36,10 +40,11 @@ class PsfSeries {
   Mixture at(double height_mm, const Make& make) const {
     Mixture mixture;
     for (const Share& share : shares_at(height_mm)) {
-      if (share.weight == 0) continue;
-      Entry& entry = entries_[share.index];
+      const Run& run = runs_[share.run];
+      Entry& entry = run.entries[share.node - run.first_node];
       std::call_once(entry.made, [&] {
-        entry.psf = std::make_unique<MergedPsf>(make(height_of(share.index), lattice_of(share.index)));
+        const SampleLattice lattice{run.spacing_um, half_side_um(share.node)};
+        entry.psf = std::make_unique<MergedPsf>(make(height_of(share.node), lattice));
       });
       mixture.push_back({entry.psf.get(), share.weight});
     }
@@ -51,21 +56,25 @@ class PsfSeries {
     std::once_flag made;
     std::unique_ptr<MergedPsf> psf;
   };
+  /// Intervals of one spacing. Nodes are counted through all intervals, steps_ an interval.
+  struct Run {
+    double spacing_um = 0;
+    std::size_t first_node = 0, last_interval = 0;
+    std::unique_ptr<Entry[]> entries;  ///< from the first node to the end of the last interval
+  };
   struct Share {
-    std::size_t index = 0;
+    std::size_t run = 0, node = 0;
     double weight = 0;
   };
-  /// In the order of their heights, so that those of one lattice stand together.
-  std::array<Share, 4> shares_at(double height_mm) const;
-  double height_of(std::size_t index) const;
-  const SampleLattice& lattice_of(std::size_t index) const {
-    return lattices_[std::min(index / steps_, lattices_.size() - 1)];
-  }
+  /// None of them 0; those of one run stand together.
+  std::vector<Share> shares_at(double height_mm) const;
+  double height_of(std::size_t node) const;
+  double half_side_um(std::size_t node) const;
 
   std::vector<double> height_mm_;
   std::vector<SampleLattice> lattices_;
-  std::size_t steps_ = 1, count_ = 1;
-  std::unique_ptr<Entry[]> entries_;  ///< steps of the first interval, of the second, …, the last field
+  std::size_t steps_ = 1;
+  std::vector<Run> runs_;
 };
 
 }  // namespace petzval
