@@ -41,6 +41,14 @@ class Comatic(ProgramTest):
         across, down = 0.97 * column - 0.25 * row, 0.25 * column + 0.97 * row
         self.check(np.where((np.rint(across / 9) + np.rint(down / 9)) % 2 == 0, 1.0, 0.02))
 
+    def test_a_wall_shows_no_ring(self):
+        """g is the same at every height and the flare grows in proportion to it: nothing may show on a wall."""
+        self.write("wall.exr", spectral_exr(COLUMNS, ROWS, [550], lambda row, column, band: 1.0))
+        for method in (["--method", "exact"], ["--tolerance", "1e-4"]):
+            self.assert_succeeds("image", "wall.exr", *OPTIONS, *method, "-o", "wall.npy")
+            wall = np.load(self.folder / "wall.npy")
+            self.assertLess(np.ptp(wall) / wall.mean(), 1e-3)  # the aim for walls
+
     def test_the_flare_points_away_and_opens(self):
         """A star to the right: the centre of its light lies A beyond the chief ray, and it is wider behind than before."""
         values = np.zeros((121, 161))

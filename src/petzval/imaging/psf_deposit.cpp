@@ -252,8 +252,33 @@ void Kernel::match(const Moments& wanted) {
     weights[i] = part * exact.weights[i] + (1 - part) * level.weights[i];
 }
 
-MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged)
-    : spacing_um_(merged * psf.spacing_um), origin_um_(origin_um) {
+LightMoments light_moments(const Psf& psf, double origin_um) {
+  LightMoments light;
+  const auto size = static_cast<std::size_t>(psf.size);
+  const double of_square = psf.spacing_um * psf.spacing_um / 12;
+  for (std::size_t i = 0; i < size; ++i) {
+    double sum = 0, first = 0, second = 0;  // of the row, over columns from the middle
+    for (std::size_t j = 0; j < size; ++j) {
+      const double value = double(psf.values[i * size + j]), s = double(j) - double(size / 2);
+      sum += value;
+      first += value * s;
+      second += value * (s * s);
+    }
+    first *= psf.spacing_um;
+    second *= psf.spacing_um * psf.spacing_um;
+    const double t_um = (double(i) - double(size / 2)) * psf.spacing_um - origin_um;
+    light.sum += sum;
+    light.sums.mean[0] += first;
+    light.sums.mean[1] += sum * t_um;
+    light.sums.uu += second + sum * of_square;
+    light.sums.uv += first * t_um;
+    light.sums.vv += sum * (t_um * t_um + of_square);
+  }
+  return light;
+}
+
+MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged, const LightMoments& light)
+    : spacing_um_(merged * psf.spacing_um), origin_um_(origin_um), light_(light) {
   // The middle sample is in the middle of its block, so that a mirrored PSF has mirrored blocks.
   const int middle = psf.size / 2, before = (middle + merged / 2) / merged,
             shift = before * merged + merged / 2 - middle;
@@ -261,31 +286,28 @@ MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged)
   first_um_ = -before * spacing_um_;
   const auto size = static_cast<std::size_t>(size_), step = static_cast<std::size_t>(merged);
   const auto samples = static_cast<std::size_t>(psf.size), skipped = static_cast<std::size_t>(shift);
-  const double of_square = psf.spacing_um * psf.spacing_um / 12;
   samples_.assign(size * size, 0.0);
   for (std::size_t i = 0; i < samples; ++i) {
     double* row = samples_.data() + (i + skipped) / step * size;
-    const double t_um = (double(i) - double(samples / 2)) * psf.spacing_um - origin_um_;
+    const float* values = psf.values.data() + i * samples;
+    if (merged == 1) {
+      for (std::size_t j = 0; j < samples; ++j) row[j] = double(values[j]);
+      continue;
+    }
+    std::size_t block = skipped / step, left = step - skipped % step;
     for (std::size_t j = 0; j < samples; ++j) {
-      const double value = double(psf.values[i * samples + j]);
-      const double s_um = (double(j) - double(samples / 2)) * psf.spacing_um;
-      moments_.mean[0] += value * s_um;
-      moments_.mean[1] += value * t_um;
-      moments_.uu += value * (s_um * s_um + of_square);
-      moments_.uv += value * s_um * t_um;
-      moments_.vv += value * (t_um * t_um + of_square);
-      sum_ += value;
-      row[(j + skipped) / step] += value;
+      row[block] += double(values[j]);
+      if (--left == 0) {
+        ++block;
+        left = step;
+      }
     }
   }
 }
 
 MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
-    : size_(fine.size()),
-      spacing_um_(spacing_um),
-      origin_um_(0),
-      first_um_(-fine.radius * spacing_um),
-      sum_(fine.sum()) {
+    : size_(fine.size()), spacing_um_(spacing_um), origin_um_(0), first_um_(-fine.radius * spacing_um) {
+  light_.sum = fine.sum();
   // Rows run along t, columns along −s.
   for (int row = -fine.radius; row <= fine.radius; ++row)
     for (int column = fine.radius; column >= -fine.radius; --column) samples_.push_back(fine.at(row, column));
@@ -293,8 +315,9 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
 
 namespace {
 
-/// \param psfs  of one spacing about one origin, of odd sizes where these differ. \param stretch  of the lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of
-/// other directions must go on from this one without a jump.
+/// \param psfs  of one spacing about one origin, of odd sizes where these differ. \param stretch  of the
+/// lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of other directions must go on
+/// from this one without a jump.
 void deposit_mixture(std::span<const WeightedPsf> psfs, const Vector& stretch, const Vector& centre,
                      const Vector& direction, double cell_um, bool any_angle, Kernel& kernel) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).

@@ -45,25 +45,37 @@ struct Kernel {
   }
 };
 
+/// What a PSF holds, and its sums of sample × position from an origin, and × products of positions: [µm],
+/// [µm²]; u is s, v is t. Each sample is a square of the PSF's spacing.
+struct LightMoments {
+  double sum = 0;
+  Moments sums;
+};
+
+/// \param origin_um  how far beyond the chief ray (along t) positions count from.
+LightMoments light_moments(const Psf& psf, double origin_um);
+
 /// A PSF with samples no finer than cells need them.
 class MergedPsf {
  public:
   /// \param origin_um  how far beyond the chief ray (along t) lies the point that meets a kernel's centre.
   /// \param merged  this many samples along either axis, an odd number, become one: for cells that are much
   /// coarser.
-  explicit MergedPsf(const Psf& psf, double origin_um = 0, int merged = 1);
+  /// \param light  of the PSF about the origin.
+  MergedPsf(const Psf& psf, double origin_um, int merged, const LightMoments& light);
+  explicit MergedPsf(const Psf& psf, double origin_um = 0, int merged = 1)
+      : MergedPsf(psf, origin_um, merged, light_moments(psf, origin_um)) {}
   /// What a kernel of cells as fine as samples holds that was deposited along (0, 1).
   MergedPsf(const Kernel& fine, double spacing_um);
 
   int size() const { return size_; }
   double spacing_um() const { return spacing_um_; }
-  double sum() const { return sum_; }
+  double sum() const { return light_.sum; }
   double origin_um() const { return origin_um_; }
   /// Where the first sample of a row, and of a column, lies from the chief ray.
   double first_um() const { return first_um_; }
-  /// Σ of sample × position from the origin, and × its products: [µm], [µm²]; u is s, v is t. Each sample
-  /// of the PSF is a square of its spacing.
-  const Moments& moments() const { return moments_; }
+  const Moments& moments() const { return light_.sums; }
+  const LightMoments& light() const { return light_; }
   /// The samples of a row.
   const double* row(std::size_t index) const {
     return samples_.data() + index * static_cast<std::size_t>(size_);
@@ -72,8 +84,7 @@ class MergedPsf {
  private:
   int size_;
   double spacing_um_, origin_um_, first_um_;
-  double sum_ = 0;
-  Moments moments_;
+  LightMoments light_;
   std::vector<double> samples_;  ///< row-major
 };
 

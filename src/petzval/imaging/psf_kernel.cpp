@@ -11,22 +11,36 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 namespace petzval {
 
 namespace {
 
-/// Distance from the centre of a kernel, `origin_um` beyond the chief ray, to the farthest sample that holds
-/// light [µm].
-double reach_um(const Psf& psf, double origin_um) {
-  const double origin = origin_um / psf.spacing_um;
-  double farthest_squared = 0;
-  for (int i = 0; i < psf.size; ++i)
-    for (int j = 0; j < psf.size; ++j) {
-      const double t = i - psf.size / 2 - origin, s = j - psf.size / 2;
-      if (psf.at(i, j) != 0.0F) farthest_squared = std::max(farthest_squared, t * t + s * s);
-    }
-  return std::sqrt(farthest_squared) * psf.spacing_um;
+/// How far samples that hold light lie from the centre of a kernel [µm].
+struct Extent {
+  double reach_um = 0;      ///< the farthest
+  double half_side_um = 0;  ///< along s or t, the farther
+};
+
+/// \param origin_um  of the kernel's centre, beyond the chief ray.
+Extent extent_of(const Psf& psf, double origin_um) {
+  const auto size = static_cast<std::size_t>(psf.size);
+  const double middle = double(size / 2), origin = origin_um / psf.spacing_um;
+  double farthest_squared = 0, half_side = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::span<const float> row(psf.values.data() + i * size, size);
+    const auto has_light = [](float value) { return value != 0.0F; };
+    const auto first = std::find_if(row.begin(), row.end(), has_light);
+    if (first == row.end()) continue;
+    const auto last = std::find_if(row.rbegin(), row.rend(), has_light);
+    const double from = double(first - row.begin()) - middle,
+                 to = double(size - 1) - double(last - row.rbegin()) - middle;
+    const double s = std::max(std::abs(from), std::abs(to)), t = std::abs(double(i) - middle - origin);
+    farthest_squared = std::max(farthest_squared, t * t + s * s);
+    half_side = std::max({half_side, s, t});
+  }
+  return {std::sqrt(farthest_squared) * psf.spacing_um, half_side * psf.spacing_um};
 }
 
 bool is_mirror_symmetric(const Psf& psf) {
@@ -70,31 +84,22 @@ Psf within_circle(const Psf& psf) {
 
 /// How fine samples must be at a height [µm]: a quarter of a cell, an eighth near the axis, where PSFs turn
 /// from cell to cell; and no coarser than the PSF's own half width.
-double needed_spacing_um(const MergedPsf& psf, double cell_um, double height_mm) {
+/// \param light  of the PSF.
+double needed_spacing_um(const LightMoments& light, double cell_um, double height_mm) {
   constexpr double turning_cells = 24;
-  const Moments& moments = psf.moments();
-  const double s = moments.mean[0] / psf.sum(), t = moments.mean[1] / psf.sum();
-  const double variance = std::min(moments.uu / psf.sum() - s * s, moments.vv / psf.sum() - t * t);
-  const double parts = getenv("PA") ? atof(getenv("PA")) : height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
+  const Moments& moments = light.sums;
+  const double s = moments.mean[0] / light.sum, t = moments.mean[1] / light.sum;
+  const double variance = std::min(moments.uu / light.sum - s * s, moments.vv / light.sum - t * t);
+  const double parts = getenv("PA")                                      ? atof(getenv("PA"))
+                       : height_mm * um_per_mm < turning_cells * cell_um ? 8
+                                                                         : 4;
   return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
 }
 
 MergedPsf merged_psf(const Psf& psf, double origin_um, double cell_um, double height_mm) {
-  MergedPsf fine(psf, origin_um);
-  const int merged = static_cast<int>(needed_spacing_um(fine, cell_um, height_mm) / psf.spacing_um);
-  if (merged < 3) return fine;
-  return MergedPsf(psf, origin_um, merged - (merged + 1) % 2);
-}
-
-/// How far samples with light reach from a kernel's centre along s or t, the farther [µm].
-double half_side_um(const Psf& psf, double origin_um) {
-  double farthest = 0;
-  for (int i = 0; i < psf.size; ++i)
-    for (int j = 0; j < psf.size; ++j)
-      if (psf.at(i, j) != 0.0F)
-        farthest = std::max({farthest, std::abs((i - psf.size / 2) * psf.spacing_um - origin_um),
-                             std::abs((j - psf.size / 2) * psf.spacing_um)});
-  return farthest;
+  const LightMoments light = light_moments(psf, origin_um);
+  const int merged = static_cast<int>(needed_spacing_um(light, cell_um, height_mm) / psf.spacing_um);
+  return MergedPsf(psf, origin_um, merged < 3 ? 1 : merged - (merged + 1) % 2, light);
 }
 
 }  // namespace
@@ -110,21 +115,22 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       const std::size_t entry = table.index(field, wavelength);
       const Psf& psf = table.psf.at(entry);
       check(psf, table.wavelengths_nm[wavelength]);
-      const double origin_mm = centres.offset_mm(entry), reach = reach_um(psf, origin_mm * um_per_mm);
-      const double radius = std::ceil((reach + psf.spacing_um) / cell_um);
+      const double origin_mm = centres.offset_mm(entry), origin_um = origin_mm * um_per_mm;
+      const Extent extent = extent_of(psf, origin_um);
+      const double radius = std::ceil((extent.reach_um + psf.spacing_um) / cell_um);
       if (!(radius <= max_radius))
         throw InputError(
             fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
                         "pitch or less supersampling helps",
-                        reach, radius, cell_um, max_radius));
+                        extent.reach_um, radius, cell_um, max_radius));
       radius_ = std::max(radius_, static_cast<int>(radius));
-      layer.half_side_um.push_back(half_side_um(psf, origin_mm * um_per_mm) + psf.spacing_um);
+      layer.half_side_um.push_back(extent.half_side_um + psf.spacing_um);
       mirror_symmetric_ = mirror_symmetric_ && is_mirror_symmetric(psf);
       least_captured_ = std::min(least_captured_, psf.captured);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
       const double height_mm = layer.height_mm.back();
       layer.psfs.push_back(
-          merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_mm * um_per_mm, cell_um, height_mm));
+          merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_um, cell_um, height_mm));
     }
     if (layer.psfs.empty()) throw InputError("the lens data table has no fields");
     layer.moments = MomentCurves(layer.height_mm, layer.psfs);
@@ -141,13 +147,13 @@ SampleLattice PsfField::lattice_of(std::size_t interval) const {
   for (const Layer& layer : layers_)
     for (std::size_t field = interval; field < std::min(interval + 2, layer.psfs.size()); ++field) {
       const MergedPsf& psf = layer.psfs[field];
-      const double needed = needed_spacing_um(psf, cell_um_, layer.height_mm[field]);
+      const double needed = needed_spacing_um(psf.light(), cell_um_, layer.height_mm[field]);
       lattice.spacing_um = std::min(lattice.spacing_um, std::max(psf.spacing_um(), needed));
       lattice.half_side_um = std::max(lattice.half_side_um, layer.half_side_um[field]);
     }
-  // On a ladder from the cell down, so that neighbouring intervals mostly have the same.
+  // The nearest on a ladder from the cell down, so that neighbouring intervals mostly have the same.
   const double octaves = std::log2(cell_um_ / lattice.spacing_um);
-  lattice.spacing_um = cell_um_ / std::exp2(std::ceil(2 * octaves - 1e-6) / 2);
+  lattice.spacing_um = cell_um_ / std::exp2(std::round(2 * octaves) / 2);
   return lattice;
 }
 
