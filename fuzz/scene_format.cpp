@@ -2,6 +2,7 @@
 #include "scene_format.h"
 
 #include <petzval/render/camera/scene_camera.h>
+#include <petzval/render/gltf/gltf_scene.h>
 #include <petzval/render/path_tracer.h>
 
 #include <cmath>
@@ -28,14 +29,12 @@ void follow_light(const render::World& world, const render::Transform& world_fro
   }
 }
 
-}  // namespace
-
-bool try_scene(std::string_view bytes) {
+template <class Read>
+bool try_described(Read read) {
   using namespace render;
   try {
     Unsupported unsupported;
-    const SceneDescription scene =
-        parse_scene_description(std::string(bytes), "/nowhere/fuzz.pbrt", unsupported);
+    const SceneDescription scene = read(unsupported);
     const SceneCamera camera = set_up_camera(scene, {}, unsupported);
     const auto world = build_world(scene, WavelengthGroups({550, 600}), {}, unsupported);
     follow_light(*world, camera.world_from_camera);
@@ -44,6 +43,20 @@ bool try_scene(std::string_view bytes) {
     require_one_line(error);
     return false;
   }
+}
+
+}  // namespace
+
+bool try_scene(std::string_view bytes) {
+  return try_described([&](render::Unsupported& unsupported) {
+    return render::parse_scene_description(std::string(bytes), "/nowhere/fuzz.pbrt", unsupported);
+  });
+}
+
+bool try_gltf(std::string_view bytes) {
+  return try_described([&](render::Unsupported& unsupported) {
+    return render::parse_gltf_scene(std::string(bytes), "/nowhere/fuzz.gltf", unsupported);
+  });
 }
 
 bool try_ply(std::string_view bytes) {

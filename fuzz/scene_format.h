@@ -9,6 +9,9 @@ namespace petzval::fuzz {
 /// A scene is refused in one line, or has a camera and makes a world through which light can be followed.
 bool try_scene(std::string_view bytes);
 
+/// The same of a glTF scene, text or binary; it names no files.
+bool try_gltf(std::string_view bytes);
+
 /// A PLY mesh is refused in one line, or its triangles are corners that there are.
 bool try_ply(std::string_view bytes);
 

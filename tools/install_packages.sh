@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build
   # libraries
   libboost-dev libcli11-dev libeigen3-dev libembree-dev libfftw3-dev libfmt-dev libhdf5-dev libhwy-dev libjpeg-dev liblcms2-dev libmatio-dev
-  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libyaml-dev nlohmann-json3-dev zlib1g-dev
+  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev nlohmann-json3-dev zlib1g-dev
 )
 test_packages=(libbenchmark-dev libgtest-dev libimage-exiftool-perl libraw-dev python3 python3-h5py python3-numpy)
 

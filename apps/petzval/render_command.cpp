@@ -45,15 +45,25 @@ std::vector<double> default_wavelengths_nm() {
   return result;
 }
 
+/// With line and column of a text file, or the path of an entry of a JSON file.
+nlohmann::ordered_json complaint_json(const render::Complaint& complaint) {
+  const render::Location& at = complaint.at;
+  nlohmann::ordered_json row{{"file", at.file ? *at.file : ""}};
+  if (at.path) {
+    row["path"] = *at.path;
+  } else {
+    row["line"] = at.line;
+    row["column"] = at.column;
+  }
+  row["unsupported"] = complaint.what;
+  return row;
+}
+
 void list_unsupported(const RenderCommand& command, const Shared& shared) {
   const std::vector<render::Complaint> list = unsupported_in(command.choice, shared);
   if (shared.json) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const render::Complaint& each : list)
-      rows.push_back({{"file", each.at.file ? *each.at.file : ""},
-                      {"line", each.at.line},
-                      {"column", each.at.column},
-                      {"unsupported", each.what}});
+    for (const render::Complaint& each : list) rows.push_back(complaint_json(each));
     return print_json({{"scene", command.choice.scene}, {"rows", rows}});
   }
   for (const render::Complaint& each : list) fmt::print("{}: {}\n", each.at.text(), each.what);
@@ -251,7 +261,7 @@ void add_render_command(CLI::App& app, Shared& shared) {
   command->add_option("--normals", options->normals, "Also write its normals in world space (.npy)");
   command->add_option("--albedo", options->albedo, "Also write its reflectance by band (.npy)");
   command->add_flag("--list-unsupported", options->list_unsupported,
-                    "Only list what the scene has and Petzval has not, with file, line and column");
+                    "Only list what the scene has and Petzval has not, each with its place");
   command->add_option("--white", options->white,
                       "Illuminance that a .png shows as white [lx]; default: the brightest");
   command->add_option("--bits", options->bits, "Of a .png: 8 or 16")

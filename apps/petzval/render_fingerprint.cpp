@@ -60,6 +60,7 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
                   choice.sampling);
   text += fmt::format("blades {} turned by {}\n", choice.blades, choice.blade_rotation_deg);
   text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
+  text += fmt::format("sky {} skip-unsupported {}\n", choice.sky_cd_m2.value_or(0), choice.skip_unsupported);
   text += lens_line(camera, nm) + losses_line(camera.options.losses);
   return text + render::scene_files_fingerprint(scene.description);
 }

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/observer.h>
+#include <petzval/render/gltf/gltf_scene.h>
+#include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/scene/scene_file.h>
 
 #include <cstdio>
@@ -60,11 +63,23 @@ render::PathOptions path_options(const RenderChoice& choice, const render::Scene
   return path;
 }
 
+/// White light of this luminance from all around.
+render::LightDescription white_sky(double cd_m2) {
+  render::EntityMaker light("infinite", {std::make_shared<const std::string>("--sky"), 0, 0});
+  return {light.rgb("L", {1, 1, 1}).number("scale", cd_m2 / lumens_per_watt).made(), {}};
+}
+
+render::SceneDescription read_description(const std::string& name, render::Unsupported& unsupported) {
+  const std::string path = find_data_file("scenes", ".pbrt", name, "three-dimensional scene");
+  return render::has_gltf_name(path) ? render::read_gltf_scene(path, unsupported)
+                                     : render::read_scene_description(path, unsupported);
+}
+
 PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wavelengths_nm,
                       const Shared& shared, render::Unsupported& unsupported) {
   PreparedScene prepared;
-  prepared.description = render::read_scene_description(
-      find_data_file("scenes", ".pbrt", choice.scene, "three-dimensional scene"), unsupported);
+  prepared.description = read_description(choice.scene, unsupported);
+  if (choice.sky_cd_m2) prepared.description.lights.push_back(white_sky(*choice.sky_cd_m2));
   prepared.camera = render::set_up_camera(prepared.description, camera_choice(choice, shared), unsupported);
   if (choice.losses.any()) {
     if (!prepared.camera.lens)
@@ -86,7 +101,10 @@ PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wav
 }  // namespace
 
 void RenderChoice::add_to(CLI::App& command) {
-  command.add_option("scene", scene, "Scene in the text format of pbrt-v4, or the name of a bundled one")
+  command
+      .add_option(
+          "scene", scene,
+          "Scene in the text format of pbrt-v4 or in glTF 2.0 (.gltf, .glb), or the name of a bundled one")
       ->required();
   lens.add_to(command, false, false);
   losses.add_to(command);
@@ -130,6 +148,12 @@ void RenderChoice::add_to(CLI::App& command) {
           "Surfaces nearer than this to the camera's place, along its axis, are not seen [scene units]")
       ->check(positive_number());
   command.add_option("--far", far_distance, "Nor surfaces beyond this")->check(positive_number());
+  command
+      .add_option("--sky", sky_cd_m2,
+                  "White light from all around of this luminance, added to that of the scene [cd/m2]")
+      ->check(positive_number());
+  command.add_flag("--skip-unsupported", skip_unsupported,
+                   "Leave out what the scene has and Petzval has not, instead of refusing the scene");
   command.add_flag(
       "--absolute-spectra", absolute_spectra,
       "Spectra of lights are radiances [W/(m2 sr nm)] as they stand, not scaled as pbrt-v4 scales them");
@@ -137,9 +161,13 @@ void RenderChoice::add_to(CLI::App& command) {
 
 PreparedScene prepare_scene(const RenderChoice& choice, const std::vector<double>& wavelengths_nm,
                             const Shared& shared) {
-  render::Unsupported unsupported;
+  render::Unsupported unsupported(choice.skip_unsupported);
   PreparedScene prepared = prepare(choice, wavelengths_nm, shared, unsupported);
-  for (const std::string& line : prepared.camera.notes) note(shared, line);
+  for (const auto* notes : {&prepared.description.notes, &prepared.camera.notes})
+    for (const std::string& line : *notes) note(shared, line);
+  if (const std::size_t count = unsupported.list().size(); count > 0)
+    note(shared,
+         fmt::format("{} of the scene's features are left out; --list-unsupported shows them", count));
   return prepared;
 }
 

@@ -27,6 +27,8 @@ struct RenderChoice {
   double scene_unit_mm = 1000;
   int max_depth = 0;  ///< 0: as the scene has it
   std::optional<double> near_distance, far_distance;
+  std::optional<double> sky_cd_m2;
+  bool skip_unsupported = false;
 
   void add_to(CLI::App& command);
 };

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval render and petzval focus: pictures of three-dimensional scenes, and what they refuse."""
 
+import pathlib
 import signal
 import subprocess
+import sys
 import time
 import unittest
 
@@ -31,6 +33,7 @@ end_header
 0 1 9
 3 0 1 2
 """
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
 LENS = ["--lens", "dgauss-50mm", "--film-distance", "38"]
 
 
@@ -72,6 +75,24 @@ class Render(ProgramTest):
         rows = self.json_of("render", "s.pbrt", "--list-unsupported")["rows"]
         self.assertEqual([(row["line"], row["column"]) for row in rows], [(2, 1), (3, 1)])
         self.assert_refused("render", "s.pbrt", "-o", "x.npy", words=["s.pbrt:2:1: "])
+
+    def test_reads_gltf(self):
+        subprocess.run([sys.executable, EXAMPLES / "gltf_vases.py", self.folder / "vases.gltf"], check=True)
+        def picture(*options):
+            self.assert_succeeds("render", "vases.gltf", "--size", "16x12", "--spp", "4", "--quiet", *options, "-o", "p.npy")
+            return (self.folder / "p.npy").read_bytes()
+        self.assertEqual(picture("--threads", "1"), picture("--threads", "2"))
+        self.assertNotEqual(picture(), picture("--sky", "100"))
+        text = (self.folder / "vases.gltf").read_text()
+        (self.folder / "vases.gltf").write_text(text.replace('"emissiveFactor"', '"normalTexture": {"index": 0}, "emissiveFactor"'))
+        rows = self.json_of("render", "vases.gltf", "--list-unsupported")["rows"]
+        self.assertEqual([(row["path"], row["unsupported"]) for row in rows], [("materials[4].normalTexture", "a normal map")])
+        self.assert_refused("render", "vases.gltf", "-o", "x.npy", words=["materials[4].normalTexture", "--list-unsupported"])
+        done = self.petzval("render", "vases.gltf", "--skip-unsupported", "--size", "16x12", "--spp", "4", "-o", "x.npy")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("left out", done.stderr)
+        (self.folder / "vases.gltf").write_text(text[:5000])
+        self.assert_refused("render", "vases.gltf", "-o", "x.npy", words=["no sound glTF"])
 
     def test_focuses_on_the_wall(self):
         (self.folder / "z.txt").write_text("0.1 0.9 0.1 0.9\n")

@@ -7,8 +7,9 @@ namespace petzval::render {
 
 namespace {
 
-bool is_mesh(const std::string& type) {
-  return type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh";
+bool is_mesh(const ShapeDescription& shape) {
+  const std::string& type = shape.entity.type;
+  return shape.mesh || type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh";
 }
 
 /// Puts the pieces of a world together.
@@ -29,7 +30,7 @@ class WorldBuilder {
     const std::string& type = description.entity.type;
     const Parameters& parameters = description.entity.parameters;
     Geometry geometry;
-    if (is_mesh(type)) {
+    if (is_mesh(description)) {
       geometry.shape = read_triangle_mesh(description, unsupported_);
     } else if (type == "sphere" || type == "disk" || type == "cylinder") {
       geometry.shape = read_quadric(description, unsupported_);

@@ -133,7 +133,10 @@ class JpegReader {
 }  // namespace
 
 JpegImage read_jpeg(const std::string& path) {
-  const std::string bytes = read_whole_file(path);
+  return parse_jpeg(read_whole_file(path), path);
+}
+
+JpegImage parse_jpeg(const std::string& bytes, const std::string& path) {
   JpegReader reader(path, bytes);
   reader.read_header();
   reader.check();

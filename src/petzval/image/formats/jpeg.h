@@ -22,5 +22,7 @@ struct JpegImage {
 /// Reads grey and colour pictures, baseline and progressive. Nothing is allocated before the sizes have been
 /// checked against the size of the file. \throws InputError for CMYK, and for damaged and truncated files.
 JpegImage read_jpeg(const std::string& path);
+/// The same from bytes. \param name  for messages.
+JpegImage parse_jpeg(const std::string& bytes, const std::string& name);
 
 }  // namespace petzval

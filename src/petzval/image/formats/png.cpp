@@ -143,7 +143,7 @@ void pack(std::span<const std::uint16_t> samples, int bits, std::vector<png_byte
 
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), bytes_(read_whole_file(path)), rest_(bytes_) {
+  Reader(const std::string& path, std::string bytes) : path_(path), bytes_(std::move(bytes)), rest_(bytes_) {
     check_chunks();
     png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &error_, on_error, on_warning);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
@@ -295,7 +295,11 @@ void write_png(const std::string& path, const PngImage& image) {
 }
 
 PngImage read_png(const std::string& path) {
-  Reader reader(path);
+  return parse_png(read_whole_file(path), path);
+}
+
+PngImage parse_png(std::string bytes_of_file, const std::string& path) {
+  Reader reader(path, std::move(bytes_of_file));
   reader.read_header();
   PngImage image;
   static_cast<PngLayout&>(image) = reader.layout();

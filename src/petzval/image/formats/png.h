@@ -47,5 +47,7 @@ void write_png(const std::string& path, const PngImage& image);
 /// fewer than 8 bits become 8. Nothing is allocated before the sizes have been checked against the size of
 /// the file. \throws InputError for anything that is not a sound PNG.
 PngImage read_png(const std::string& path);
+/// The same from bytes. \param name  for messages.
+PngImage parse_png(std::string bytes, const std::string& name);
 
 }  // namespace petzval

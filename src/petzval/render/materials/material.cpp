@@ -33,6 +33,16 @@ Lanes clamped_albedo(Lanes value) {
   return value;
 }
 
+/// The reflectance of a base of whose light, reflected from below by the coating again and again, the share
+/// `seen` comes out: seen = base (1 − inside)/(1 − base · inside), solved for the base.
+Lanes below_coating(Lanes seen, double inside) {
+  for (float& each : seen.v) {
+    const double out = static_cast<double>(each);
+    each = static_cast<float>(out / (1 - inside + out * inside));
+  }
+  return seen;
+}
+
 void read_diffuse_transmission(const Parameters& parameters, const TextureLibrary& textures,
                                Material& material) {
   material.kind = Material::Kind::diffuse_transmission;
@@ -57,6 +67,7 @@ void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& tex
   std::shared_ptr<const CoatingAlbedo>& coating = coatings[eta];
   if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
   material.coating = coating;
+  material.reflectance_through_coating = parameters.boolean("throughcoating", false);
   // A clear coating without thickness: how its light is scattered at random, and how far it travels, do not
   // matter.
   for (const char* ignored : {"thickness", "maxdepth", "nsamples", "g"}) parameters.find(ignored);
@@ -155,9 +166,12 @@ Bsdf Material::bsdf(const TexturePoint& point, int group, int hero) const {
         }
       return Bsdf::diffuse(r, t);
     }
-    case Kind::coated_diffuse:
-      return Bsdf::coated_diffuse(clamped_albedo(reflectance->at(point, group)), coating->eta(),
-                                  facets_at(*this, point, group), *coating);
+    case Kind::coated_diffuse: {
+      const Microfacets facets = facets_at(*this, point, group);
+      Lanes base = clamped_albedo(reflectance->at(point, group));
+      if (reflectance_through_coating) base = below_coating(base, coating->inside_mean(facets.mean_alpha()));
+      return Bsdf::coated_diffuse(base, coating->eta(), facets, *coating);
+    }
     case Kind::conductor: {
       const Microfacets facets = facets_at(*this, point, group);
       if (!reflectance) return Bsdf::conductor(eta->at(point, group), k->at(point, group), facets);

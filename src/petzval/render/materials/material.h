@@ -31,6 +31,8 @@ struct Material {
   FloatTexture roughness_u, roughness_v;
   bool remap_roughness = true;  ///< alpha = √roughness
   std::shared_ptr<const CoatingAlbedo> coating;
+  /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
+  bool reflectance_through_coating = false;
   FloatTexture mix_amount;
   std::array<int, 2> mixed{0, 0};  ///< into the list of materials
 

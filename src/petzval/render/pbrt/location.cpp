@@ -4,10 +4,6 @@
 
 namespace petzval::render {
 
-std::string Location::text() const {
-  return fmt::format("{}:{}:{}", file ? *file : std::string("scene"), line, column);
-}
-
 namespace {
 
 /// Names from a scene may hold anything, also line ends and a megabyte of text.
@@ -20,6 +16,12 @@ std::string one_line(std::string text) {
 }
 
 }  // namespace
+
+std::string Location::text() const {
+  const std::string name = file ? *file : std::string("scene");
+  if (!path) return fmt::format("{}:{}:{}", name, line, column);
+  return path->empty() ? name : fmt::format("{}: {}", name, one_line(*path));
+}
 
 InputError scene_error(const Location& at, const std::string& message) {
   return InputError(fmt::format("{}: {}", at.text(), one_line(message)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a pbrt scene file says, before any of it has been built.
+// What a scene file says, in the terms of pbrt-v4, before any of it has been built.
 #pragma once
 
 #include <petzval/render/pbrt/parameters.h>
@@ -10,6 +10,9 @@
 #include <vector>
 
 namespace petzval::render {
+
+struct PictureFile;
+struct TriangleMesh;
 
 /// What a scene has and Petzval has not, with its place.
 struct Complaint {
@@ -43,6 +46,8 @@ struct TextureDescription {
   std::string name, value_type;  ///< value_type: "float" or "spectrum"
   Entity entity;
   Transform world_from_texture;
+  std::shared_ptr<const PictureFile>
+      picture{};  ///< of an "imagemap", if it is not a file's name that says it
 };
 
 struct LightDescription {
@@ -54,8 +59,9 @@ struct ShapeDescription {
   Entity entity;
   Transform world_from_object;
   bool reverse_orientation = false;
-  int material = 0;     ///< into SceneDescription::materials
-  int area_light = -1;  ///< into SceneDescription::area_lights; −1: does not shine
+  int material = 0;                            ///< into SceneDescription::materials
+  int area_light = -1;                         ///< into SceneDescription::area_lights; −1: does not shine
+  std::shared_ptr<const TriangleMesh> mesh{};  ///< of type "mesh", in the space of the object
 };
 
 struct InstanceDescription {
@@ -67,6 +73,7 @@ struct InstanceDescription {
 struct SceneDescription {
   std::string file;
   std::vector<std::string> files;  ///< this and all that it includes, as they were opened
+  std::vector<std::string> notes;  ///< what the reader decided by itself
   Entity film, camera, sampler, integrator, pixel_filter;
   Transform camera_from_world;
   std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one

@@ -194,7 +194,8 @@ void TriangleMesh::validate() const {
 
 TriangleMesh read_triangle_mesh(const ShapeDescription& shape, Unsupported& unsupported) {
   const Parameters& parameters = shape.entity.parameters;
-  TriangleMesh mesh = shape.entity.type == "plymesh"        ? read_ply_shape(parameters, unsupported)
+  TriangleMesh mesh = shape.mesh                            ? *shape.mesh
+                      : shape.entity.type == "plymesh"      ? read_ply_shape(parameters, unsupported)
                       : shape.entity.type == "bilinearmesh" ? read_bilinear(parameters)
                                                             : read_triangles(parameters);
   try {

@@ -29,8 +29,9 @@ struct TriangleMesh {
   void validate() const;
 };
 
-/// pbrt's "trianglemesh", "bilinearmesh" and "plymesh", in world space. Bilinear patches that are not flat
-/// become 2 × 16² triangles with the patch's own normals. \throws InputError with file, line and column.
+/// pbrt's "trianglemesh", "bilinearmesh" and "plymesh", or the mesh that the description holds, in world
+/// space. Bilinear patches that are not flat become 2 × 16² triangles with the patch's own normals. \throws
+/// InputError with file, line and column.
 TriangleMesh read_triangle_mesh(const ShapeDescription& shape, Unsupported& unsupported);
 
 /// A PLY file: ASCII or binary of either byte order; triangles and quads.

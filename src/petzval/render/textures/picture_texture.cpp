@@ -16,6 +16,16 @@ void TextureMapping::coordinates(const TexturePoint& point, double& s, double& t
   t = scale_v * point.v + offset_v;
 }
 
+namespace {
+
+/// Every second picture the other way round.
+int mirrored(int at, int size) {
+  const int within = (at % (2 * size) + 2 * size) % (2 * size);
+  return within < size ? within : 2 * size - 1 - within;
+}
+
+}  // namespace
+
 void PictureSampler::add_pixel(double weight, int column, int row, std::array<double, 3>& sum) const {
   const int width = picture_->width, height = picture_->height;
   if (wrap_ == PictureWrap::repeat) {
@@ -24,6 +34,9 @@ void PictureSampler::add_pixel(double weight, int column, int row, std::array<do
   } else if (wrap_ == PictureWrap::clamp) {
     column = std::clamp(column, 0, width - 1);
     row = std::clamp(row, 0, height - 1);
+  } else if (wrap_ == PictureWrap::mirror) {
+    column = mirrored(column, width);
+    row = mirrored(row, height);
   } else if (column < 0 || column >= width || row < 0 || row >= height) {
     return;
   }

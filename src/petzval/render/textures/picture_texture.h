@@ -12,7 +12,7 @@
 namespace petzval::render {
 
 /// What happens outside of the picture.
-enum class PictureWrap { repeat, black, clamp };
+enum class PictureWrap { repeat, black, clamp, mirror };
 
 /// A picture that is asked at (s, t) in [0, 1]², t upwards; linear between pixel centres.
 class PictureSampler {

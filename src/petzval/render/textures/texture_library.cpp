@@ -86,18 +86,10 @@ const std::shared_ptr<const ReflectanceTable>& TextureLibrary::reflectances() {
   return reflectances_;
 }
 
-PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureTextureOptions& options,
-                                       const TextureDescription& description) {
-  options.mapping = mapping_of(description, unsupported_);
-  options.scale = parameters.number("scale", 1);
-  options.invert = parameters.boolean("invert", false);
-  const std::string wrap = parameters.choice("wrap", "repeat", {"repeat", "black", "clamp"});
-  const std::string filter =
-      parameters.string("filter", "bilinear");  // all but "point" are taken for bilinear
+std::shared_ptr<const PictureFile> TextureLibrary::picture_file(const Parameters& parameters) {
   const std::string encoding = parameters.string("encoding", "");
   if (!encoding.empty() && encoding != "sRGB" && encoding != "linear")
     unsupported_.report(parameters.location_of("encoding"), fmt::format("the encoding \"{}\"", encoding));
-  parameters.number("maxanisotropy", 8);
   const std::string name = parameters.string("filename", "");
   if (name.empty()) throw scene_error(parameters.location(), "an imagemap needs a \"string filename\"");
   const std::string path = resolved_path(parameters.location(), name);
@@ -110,10 +102,24 @@ PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureText
     } catch (const InputError& error) {
       throw scene_error(parameters.location_of("filename"), error.what());
     }
+  return picture;
+}
+
+PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureTextureOptions& options,
+                                       const TextureDescription& description) {
+  options.mapping = mapping_of(description, unsupported_);
+  options.scale = parameters.number("scale", 1);
+  options.invert = parameters.boolean("invert", false);
+  const std::string wrap = parameters.choice("wrap", "repeat", {"repeat", "black", "clamp", "mirror"});
+  const std::string filter =
+      parameters.string("filter", "bilinear");  // all but "point" are taken for bilinear
+  parameters.number("maxanisotropy", 8);
+  const auto picture = description.picture ? description.picture : picture_file(parameters);
   return {picture,
-          wrap == "repeat"  ? PictureWrap::repeat
-          : wrap == "clamp" ? PictureWrap::clamp
-                            : PictureWrap::black,
+          wrap == "repeat"   ? PictureWrap::repeat
+          : wrap == "clamp"  ? PictureWrap::clamp
+          : wrap == "mirror" ? PictureWrap::mirror
+                             : PictureWrap::black,
           filter != "point"};
 }
 

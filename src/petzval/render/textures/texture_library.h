@@ -32,6 +32,7 @@ class TextureLibrary {
   SpectrumTexture make_spectrum(const TextureDescription& description);
   PictureSampler picture(const Parameters& parameters, PictureTextureOptions& options,
                          const TextureDescription& description);
+  std::shared_ptr<const PictureFile> picture_file(const Parameters& parameters);
   const std::shared_ptr<const ReflectanceTable>& reflectances();
 
   const WavelengthGroups& groups_;

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/colour/observer.h>
+#include <petzval/render/gltf/gltf_extensions.h>
+#include <petzval/render/gltf/gltf_materials.h>
+#include <petzval/render/pbrt/entity_maker.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace petzval::render {
+
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::max();
+
+bool is_white(const std::vector<double>& rgb) {
+  return std::all_of(rgb.begin(), rgb.end(), [](double each) { return each == 1; });
+}
+
+}  // namespace
+
+/// A material while it is read.
+struct GltfMaterials::Reading {
+  const tinygltf::Material& material;
+  std::string path;  ///< "materials[2]"
+  GltfExtension transmission, volume, ior, specular, strength;
+  GltfTexture base{}, metal_and_roughness{}, emission{};
+  std::string colour{}, metallic{}, alpha{};  ///< names of textures; empty: the factors alone
+  double index_of_refraction = 1.5, specular_factor = 1;
+
+  Reading(const GltfFile& file, const tinygltf::Material& of, std::string at)
+      : material(of),
+        path(std::move(at)),
+        transmission(file, of.extensions, "KHR_materials_transmission", path),
+        volume(file, of.extensions, "KHR_materials_volume", path),
+        ior(file, of.extensions, "KHR_materials_ior", path),
+        specular(file, of.extensions, "KHR_materials_specular", path),
+        strength(file, of.extensions, "KHR_materials_emissive_strength", path) {}
+
+  const tinygltf::PbrMetallicRoughness& pbr() const { return material.pbrMetallicRoughness; }
+  std::array<double, 3> base_factor() const {
+    const std::vector<double>& f = pbr().baseColorFactor;
+    return {f[0], f[1], f[2]};
+  }
+  int uv_set() const {
+    for (const GltfTexture* texture : {&base, &metal_and_roughness})
+      if (*texture) return texture->uv_set;
+    return -1;
+  }
+  void with_colour(EntityMaker& maker) const {
+    if (colour.empty())
+      maker.rgb("reflectance", base_factor());
+    else
+      maker.texture("reflectance", colour);
+  }
+  void with_roughness(EntityMaker& maker) const {
+    maker.flag("remaproughness", false);
+    if (alpha.empty())
+      maker.number("roughness", pbr().roughnessFactor * pbr().roughnessFactor);
+    else
+      maker.texture("roughness", alpha);
+  }
+};
+
+namespace {
+
+/// \throws InputError unless all are from 0 to 1.
+void check_factors(const GltfFile& file, const std::string& path, const std::vector<double>& values,
+                   std::size_t count) {
+  const bool right = values.size() == count && std::all_of(values.begin(), values.end(), [](double each) {
+                       return each >= 0 && each <= 1;
+                     });
+  if (!right)
+    throw scene_error(file.at(path), fmt::format("{} from 0 to 1 would be right",
+                                                 count == 1 ? "a number" : fmt::format("{} numbers", count)));
+}
+
+}  // namespace
+
+GltfSurface GltfMaterials::surface(int index, const std::string& path) {
+  if (index >= 0) file_.entry(file_.model.materials, index, "materials", path + ".material");
+  const auto found = read_.find(index);
+  return found != read_.end() ? found->second : read_.emplace(index, read(index)).first->second;
+}
+
+GltfSurface GltfMaterials::read(int index) {
+  static const tinygltf::Material none;
+  const tinygltf::Material& material =
+      index < 0 ? none : file_.model.materials[static_cast<std::size_t>(index)];
+  Reading reading(file_, material, fmt::format("materials[{}]", index));
+  const std::string pbr = reading.path + ".pbrMetallicRoughness";
+  check_factors(file_, pbr + ".baseColorFactor", reading.pbr().baseColorFactor, 4);
+  check_factors(file_, pbr + ".metallicFactor", {reading.pbr().metallicFactor}, 1);
+  check_factors(file_, pbr + ".roughnessFactor", {reading.pbr().roughnessFactor}, 1);
+  reading.index_of_refraction = reading.ior.number("ior", 1.5, 1, 3.99);
+  reading.specular_factor = reading.specular.number("specularFactor", 1, 0, 1);
+  read_textures(reading);
+  check_alpha(reading);
+
+  const double metallic = reading.pbr().metallicFactor;
+  GltfSurface surface;
+  surface.uv_set = reading.uv_set();
+  surface.area_light = add_emission(reading);
+  if (metallic == 0) {
+    surface.material = add_body(reading);
+  } else if (metallic == 1 && reading.metallic.empty()) {
+    surface.material = add_metal(reading);
+  } else {
+    const int body = add_body(reading), metal = add_metal(reading);
+    EntityMaker mix("mix", file_.at(pbr));
+    mix.text("materials", {fmt::format("gltf {}", body), fmt::format("gltf {}", metal)});
+    if (reading.metallic.empty())
+      mix.number("amount", metallic);
+    else
+      mix.texture("amount", reading.metallic);
+    surface.material = add(mix.made());
+  }
+  report_rest(reading);
+  return surface;
+}
+
+void GltfMaterials::read_textures(Reading& reading) {
+  const tinygltf::PbrMetallicRoughness& pbr = reading.pbr();
+  const std::string path = reading.path + ".pbrMetallicRoughness";
+  reading.base = textures_.reference(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
+                                     pbr.baseColorTexture.extensions, path + ".baseColorTexture");
+  const tinygltf::TextureInfo& second = pbr.metallicRoughnessTexture;
+  reading.metal_and_roughness = textures_.reference(second.index, second.texCoord, second.extensions,
+                                                    path + ".metallicRoughnessTexture");
+  const tinygltf::TextureInfo& third = reading.material.emissiveTexture;
+  reading.emission =
+      textures_.reference(third.index, third.texCoord, third.extensions, reading.path + ".emissiveTexture");
+  if (reading.base && reading.metal_and_roughness &&
+      reading.base.uv_set != reading.metal_and_roughness.uv_set)
+    unsupported_.report(file_.at(reading.metal_and_roughness.path + ".texCoord"),
+                        "another set of texture coordinates than that of the base colour");
+  if (reading.base) reading.colour = textures_.add_colour(reading.base, reading.base_factor());
+  if (!reading.metal_and_roughness) return;
+  const double metallic = pbr.metallicFactor, roughness = pbr.roughnessFactor;
+  if (metallic > 0) reading.metallic = textures_.add_channel(reading.metal_and_roughness, 2, metallic);
+  if (roughness > 0)
+    reading.alpha = textures_.add_square(textures_.add_channel(reading.metal_and_roughness, 1, roughness),
+                                         file_.at(reading.metal_and_roughness.path));
+}
+
+/// Transparency that is none, as many exporters write it, is no fault.
+void GltfMaterials::check_alpha(const Reading& reading) {
+  const std::string& mode = reading.material.alphaMode;
+  if (mode == "OPAQUE" || mode.empty()) return;
+  if (mode != "MASK" && mode != "BLEND")
+    throw scene_error(file_.at(reading.path + ".alphaMode"), "OPAQUE, MASK or BLEND would be right");
+  const double alpha =
+      reading.pbr().baseColorFactor[3] * (reading.base ? textures_.least_alpha(reading.base) : 1);
+  if (alpha < (mode == "MASK" ? reading.material.alphaCutoff : 1))
+    unsupported_.report(file_.at(reading.path + ".alphaMode"), "transparency by alpha");
+}
+
+int GltfMaterials::add(Entity entity) {
+  const int index = static_cast<int>(scene_.materials.size());
+  scene_.materials.push_back(std::move(entity));
+  scene_.named_materials[fmt::format("gltf {}", index)] = index;
+  return index;
+}
+
+int GltfMaterials::add_metal(const Reading& reading) {
+  EntityMaker metal("conductor", file_.at(reading.path));
+  reading.with_colour(metal);
+  reading.with_roughness(metal);
+  return add(metal.made());
+}
+
+int GltfMaterials::add_opaque(const Reading& reading) {
+  const bool coated = reading.specular_factor > 0 && reading.index_of_refraction > 1;
+  EntityMaker body(coated ? "coateddiffuse" : "diffuse", file_.at(reading.path));
+  reading.with_colour(body);
+  if (coated) {
+    reading.with_roughness(body);
+    body.number("eta", reading.index_of_refraction).flag("throughcoating", true);
+  }
+  return add(body.made());
+}
+
+int GltfMaterials::add_glass(const Reading& reading) {
+  GltfExtension volume = reading.volume;
+  const bool thin = !(volume.number("thicknessFactor", 0, 0, unbounded) > 0);
+  if (!reading.colour.empty() || reading.base_factor() != std::array<double, 3>{1, 1, 1})
+    unsupported_.report(file_.at(reading.transmission.path()), "light that is coloured by passing a surface");
+  EntityMaker glass(thin ? "thindielectric" : "dielectric", file_.at(reading.transmission.path()));
+  glass.number("eta", reading.index_of_refraction);
+  if (!thin)
+    reading.with_roughness(glass);
+  else if (!reading.alpha.empty() || reading.pbr().roughnessFactor > 0.03)  // below, alpha makes a mirror
+    unsupported_.report(file_.at(reading.path + ".pbrMetallicRoughness.roughnessFactor"),
+                        "a thin sheet that is rough (KHR_materials_volume makes a body)");
+  return add(glass.made());
+}
+
+int GltfMaterials::add_body(const Reading& reading) {
+  GltfExtension transmission = reading.transmission;
+  const double share = transmission.number("transmissionFactor", 0, 0, 1);
+  if (share == 0) return add_opaque(reading);
+  if (share == 1) return add_glass(reading);
+  const int opaque = add_opaque(reading), glass = add_glass(reading);
+  return add(EntityMaker("mix", file_.at(transmission.path()))
+                 .text("materials", {fmt::format("gltf {}", opaque), fmt::format("gltf {}", glass)})
+                 .number("amount", share)
+                 .made());
+}
+
+int GltfMaterials::add_emission(const Reading& reading) {
+  const std::vector<double>& factor = reading.material.emissiveFactor;
+  if (factor.empty()) return -1;
+  check_factors(file_, reading.path + ".emissiveFactor", factor, 3);
+  GltfExtension strength = reading.strength;
+  const double nit = strength.number("emissiveStrength", 1, 0, unbounded);
+  std::array<double, 3> colour{factor[0], factor[1], factor[2]};
+  if (*std::max_element(colour.begin(), colour.end()) == 0 || nit == 0) return -1;
+  if (reading.emission) {
+    unsupported_.report(file_.at(reading.emission.path), "a picture that shines");
+    const std::array<double, 3> mean = textures_.mean_colour(reading.emission);
+    for (std::size_t c = 0; c < 3; ++c) colour[c] *= mean[c];
+  }
+  scene_.area_lights.push_back(EntityMaker("diffuse", file_.at(reading.path + ".emissiveFactor"))
+                                   .rgb("L", colour)
+                                   .number("scale", nit / lumens_per_watt)
+                                   .flag("twosided", reading.material.doubleSided)
+                                   .made());
+  return static_cast<int>(scene_.area_lights.size()) - 1;
+}
+
+void GltfMaterials::report_rest(const Reading& reading) {
+  const auto report = [&](bool there, const std::string& path, const char* what) {
+    if (there) unsupported_.report(file_.at(path), what);
+  };
+  report(reading.material.normalTexture.index >= 0, reading.path + ".normalTexture", "a normal map");
+  // An occlusion map is what light in corners does; here it is followed.
+  GltfExtension transmission = reading.transmission, volume = reading.volume, ior = reading.ior,
+                specular = reading.specular, strength = reading.strength;
+  transmission.number("transmissionFactor", 0, 0, 1);
+  volume.number("thicknessFactor", 0, 0, unbounded);
+  ior.number("ior", 1.5, 0, 4);
+  const double shine = specular.number("specularFactor", 1, 0, 1);
+  report(shine > 0 && shine < 1, specular.path() + ".specularFactor",
+         "a coating that reflects less than its index says");
+  if (shine == 0 || is_white(specular.numbers("specularColorFactor", {1, 1, 1})))
+    specular.numbers("specularColorFactor", {1, 1, 1});
+  else
+    report(true, specular.path() + ".specularColorFactor", "a coating that colours what it reflects");
+  report(!is_white(volume.numbers("attenuationColor", {1, 1, 1})), volume.path() + ".attenuationColor",
+         "glass that absorbs");
+  volume.number("attenuationDistance", 1, 0, unbounded);
+  strength.number("emissiveStrength", 1, 0, unbounded);
+  for (const GltfExtension* each : {&transmission, &volume, &ior, &specular, &strength})
+    each->report_rest(unsupported_);
+  report_gltf_extensions(file_, reading.material.extensions, reading.path,
+                         {"KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior",
+                          "KHR_materials_specular", "KHR_materials_emissive_strength"},
+                         unsupported_);
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Materials of a glTF file in the terms of pbrt-v4.
+#pragma once
+
+#include <petzval/render/gltf/gltf_textures.h>
+
+namespace petzval::render {
+
+/// What a primitive is made of.
+struct GltfSurface {
+  int material = 0;     ///< into SceneDescription::materials
+  int area_light = -1;  ///< into SceneDescription::area_lights; −1: does not shine
+  int uv_set = -1;      ///< that its textures use; −1: it has none
+};
+
+/// Adds materials to the description of a scene, each once.
+///
+/// A metallic-roughness material becomes a mixture: as much conductor of that reflectance as it is metallic,
+/// the rest a coateddiffuse of its index of refraction, whose base looks like the base colour through its
+/// coating; both with facets of alpha = roughness² (glTF 2.0, appendix B). What light the coating lets in,
+/// the base colour's share of it comes out again, as B.3.5 has it. KHR_materials_transmission puts glass in
+/// the place of the base: a thin sheet, or with KHR_materials_volume a body.
+class GltfMaterials {
+ public:
+  GltfMaterials(const GltfFile& file, SceneDescription& scene, Unsupported& unsupported)
+      : file_(file), scene_(scene), unsupported_(unsupported), textures_(file, scene, unsupported) {}
+
+  /// \param index  −1: glTF's default material. \param path  of the primitive. \throws InputError.
+  GltfSurface surface(int index, const std::string& path);
+
+ private:
+  struct Reading;
+  GltfSurface read(int index);
+  void read_textures(Reading& reading);
+  void report_rest(const Reading& reading);
+  void check_alpha(const Reading& reading);
+  int add_body(const Reading& reading);
+  int add_opaque(const Reading& reading);
+  int add_glass(const Reading& reading);
+  int add_metal(const Reading& reading);
+  int add_emission(const Reading& reading);
+  int add(Entity entity);
+
+  const GltfFile& file_;
+  SceneDescription& scene_;
+  Unsupported& unsupported_;
+  GltfTextures textures_;
+  std::map<int, GltfSurface> read_;
+};
+
+}  // namespace petzval::render

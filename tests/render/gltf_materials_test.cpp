@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Materials and textures of glTF.
+#include "gltf_scenes.h"
+
+#include <petzval/render/materials/fresnel.h>
+
+#include <cmath>
+
+namespace petzval::render {
+namespace {
+
+using nlohmann::json;
+
+/// What a material gives back of light from one direction: the mean weight of its samples.
+double albedo_of(const SceneDescription& scene, double cos) {
+  Unsupported unsupported;
+  const WavelengthGroups groups({550});
+  const auto world = build_world(scene, groups, {}, unsupported);
+  const Material& material = world->materials.back();
+  const Bsdf bsdf = material.bsdf({}, 0, 0);
+  double sum = 0;
+  constexpr std::uint32_t samples = 1 << 14;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    SobolSample sample(3, i);
+    const auto [choice, u, v, none] = sample.next4();
+    (void)none;
+    const auto chosen = bsdf.sample({std::sqrt(1 - cos * cos), 0, cos}, choice, u, v);
+    if (chosen) sum += static_cast<double>(chosen->weight[0]) / samples;
+  }
+  return sum;
+}
+
+/// glTF 2.0, B.3.5: a dielectric reflects F, and of the rest that enters the base colour comes back.
+TEST(GltfMaterials, PaintGivesBackItsBaseColourOfWhatItsCoatingLetsIn) {
+  for (const double ior : {1.5, 1.3})
+    for (const double base : {0.1, 0.5, 1.0})
+      for (const double cos : {1.0, 0.5, 0.2}) {
+        GltfText gltf;
+        const int paint = gltf.add_material(
+            {{"pbrMetallicRoughness",
+              {{"metallicFactor", 0}, {"roughnessFactor", 0}, {"baseColorFactor", {base, base, base, 1}}}},
+             {"extensions", {{"KHR_materials_ior", {{"ior", ior}}}}}});
+        gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(paint))}});
+        const double reflected = dielectric_reflectance(cos, ior);
+        // 2^14 Sobol points, and the smooth spectrum of a grey to a few in a thousand.
+        EXPECT_NEAR(albedo_of(read_gltf(gltf.text()), cos), reflected + (1 - reflected) * base, 4e-3)
+            << ior << " " << base << " " << cos;
+      }
+}
+
+TEST(GltfMaterials, MetalnessAndRoughnessComeFromBlueAndGreen) {
+  GltfText gltf;
+  const int texture = gltf.add_texture(png_of(1, 1, 3, {9, 128, 64}));
+  const int material = gltf.add_material({{"pbrMetallicRoughness",
+                                           {{"roughnessFactor", 0.5},
+                                            {"metallicFactor", 0.5},
+                                            {"metallicRoughnessTexture", {{"index", texture}}}}}});
+  gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(material))}});
+  Unsupported unsupported;
+  const auto world = build_world(read_gltf(gltf.text()), WavelengthGroups({550}), {}, unsupported);
+  const Material& mix = world->materials.back();
+  ASSERT_EQ(mix.kind, Material::Kind::mix);
+  EXPECT_NEAR(mix.mix_amount->at({}, 0), 0.5 * 64 / 255, 1e-6);
+  const Material& metal = world->materials[static_cast<std::size_t>(mix.mixed[1])];
+  ASSERT_EQ(metal.kind, Material::Kind::conductor);
+  EXPECT_FALSE(metal.remap_roughness);
+  EXPECT_NEAR(metal.roughness_u->at({}, 0), std::pow(0.5 * 128 / 255, 2), 1e-6);
+}
+
+TEST(GltfMaterials, GlassIsASheetOrABody) {
+  GltfText gltf;
+  gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(gltf.add_material(
+                              {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                               {"extensions",
+                                {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                 {"KHR_materials_ior", {{"ior", 1.7}}}}}})))}});
+  EXPECT_EQ(read_gltf(gltf.text()).materials.back().type, "thindielectric");
+  gltf.json["materials"][0]["extensions"]["KHR_materials_volume"] = {{"thicknessFactor", 0.1}};
+  const SceneDescription body = read_gltf(gltf.text());
+  EXPECT_EQ(body.materials.back().type, "dielectric");
+  EXPECT_EQ(body.materials.back().parameters.number("eta", 0), 1.7);
+}
+
+TEST(GltfMaterials, TexturesLieWhereTheirTransformPutsThem) {
+  // Four columns, dark to bright, in the upper row; white below.
+  const std::string png = png_of(4, 2, 1, {20, 80, 140, 200, 255, 255, 255, 255});
+  GltfText gltf;
+  const int texture = gltf.add_texture(png);
+  gltf.json["samplers"] = {{{"magFilter", 9728}, {"wrapS", 33648}, {"wrapT", 33648}}};
+  gltf.json["textures"][0]["sampler"] = 0;
+  const json transform{{"KHR_texture_transform", {{"offset", {0.25, 0.125}}, {"scale", {0.5, 0.25}}}}};
+  gltf.add_material(
+      {{"pbrMetallicRoughness",
+        {{"metallicFactor", 0}, {"baseColorTexture", {{"index", texture}, {"extensions", transform}}}}}});
+  gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(0))}});
+  Unsupported unsupported;
+  const SceneDescription scene = read_gltf(gltf.text());
+  const WavelengthGroups groups({550});
+  const TextureLibrary library(scene, groups, unsupported);
+  const auto at = [&](double u, double v_down) {
+    const SpectrumTexture texture_of =
+        library.spectrum_parameter(scene.materials.back().parameters, "reflectance", SpectrumRole::albedo);
+    return static_cast<double>(texture_of->at({{}, u, 1 - v_down}, 0)[0]);
+  };
+  const auto level = [](int sample) { return std::pow((sample / 255.0 + 0.055) / 1.055, 2.4); };
+  constexpr double smooth_grey = 5e-3;                 // of the spectrum that stands for a grey
+  EXPECT_NEAR(at(0, 0), level(80), smooth_grey);       // 0.25 → column 1
+  EXPECT_NEAR(at(0.6, 0.5), level(140), smooth_grey);  // 0.55 → column 2
+  EXPECT_NEAR(at(-0.9, 0), level(20), smooth_grey);    // −0.2: column 0, mirrored
+  EXPECT_NEAR(at(-1.1, 0), level(80), smooth_grey);    // −0.3: column 1
+  EXPECT_NEAR(at(0, 1.6), 1, smooth_grey);             // 0.525 → the lower row
+}
+
+}  // namespace
+}  // namespace petzval::render
