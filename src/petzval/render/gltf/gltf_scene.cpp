@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/gltf/gltf_camera.h>
 #include <petzval/render/gltf/gltf_extensions.h>
@@ -141,10 +142,8 @@ void report_node(const GltfFile& file, const GltfNode& node, Unsupported& unsupp
 }  // namespace
 
 bool has_gltf_name(const std::string& path) {
-  std::string end = path.substr(path.find_last_of('.') == path.npos ? path.size() : path.find_last_of('.'));
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ".gltf" || end == ".glb";
+  const std::string extension = extension_of(path);
+  return extension == ".gltf" || extension == ".glb";
 }
 
 SceneDescription parse_gltf_scene(const std::string& bytes, const std::string& path,
