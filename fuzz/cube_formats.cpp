@@ -16,17 +16,6 @@ namespace petzval::fuzz {
 
 namespace {
 
-template <typename Work>
-bool accepted(Work work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
-  return true;
-}
-
 /// What a user would say of a file that leaves things open.
 CubeOptions answers_for(const SpectralCube& cube) {
   CubeOptions options;

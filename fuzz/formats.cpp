@@ -1,28 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats.h"
 
-#include <petzval/base/error.h>
-#include <petzval/base/text_lines.h>
-#include <petzval/glass/byte_reader.h>
-#include <petzval/glass/glass_file.h>
-#include <petzval/glass/packed_catalogue.h>
-#include <petzval/lens/first_order.h>
-#include <petzval/lens/formats/iset.h>
-#include <petzval/lens/formats/native.h>
-#include <petzval/lens/formats/pbrt.h>
-#include <petzval/lens/formats/seq.h>
-#include <petzval/lens/formats/zmx.h>
 #include <petzval/target/formats/polygon_file.h>
 #include <petzval/target/formats/svg_shapes.h>
 #include <petzval/target/visible_regions.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <optional>
 
 #include "cube_formats.h"
+#include "glass_formats.h"
+#include "lens_formats.h"
 #include "raw_formats.h"
 #include "require.h"
 #include "scene_format.h"
@@ -30,144 +17,13 @@
 
 namespace petzval::fuzz {
 
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "fuzz: %s\n", what);
-  std::abort();
-}
-
-void require_one_line(const InputError& error) {
-  const std::string_view message = error.what();
-  constexpr std::size_t longest = 1000;
-  require(!message.empty() && message.size() < longest, "an empty or endless message");
-  require(message.find_first_of("\n\r") == message.npos, "a message of several lines");
-}
-
 namespace {
-
-/// Three glasses are quickly searched, and their nearest names quickly found.
-const LensReadOptions& options() {
-  static const LensReadOptions few = [] {
-    std::vector<Glass> glasses;
-    for (const char* name : {"N-BK7", "F2", "N-SK16"})
-      glasses.push_back(*GlassCatalogue::bundled().find(name, {"SCHOTT"}));
-    LensReadOptions with;
-    with.glasses = GlassCatalogue::of(std::move(glasses));
-    return with;
-  }();
-  return few;
-}
-
-using Read = Lens (*)(const std::string& text);
-using Write = std::string (*)(const Lens& lens);
-
-/// What was read is valid; if it can be written, it is written, read and written the same.
-bool try_lens(std::string_view bytes, Read read, Write write) {
-  std::optional<Lens> lens;
-  try {
-    lens = read(std::string(bytes));
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
-  lens->validate();
-  try {
-    first_order(*lens);
-  } catch (const InputError& error) {
-    require_one_line(error);
-  }
-  std::string text;
-  try {
-    text = write(*lens);
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return true;
-  }
-  const std::string again = write(read(text));
-  if (again != text) std::fprintf(stderr, "%s\nbecame\n%s\n", text.c_str(), again.c_str());
-  require(again == text, "a written lens that reads back as another");
-  return true;
-}
-
-Lens read_native_text(const std::string& text) {
-  return read_native(JsonDocument(text, "fuzz"), options());
-}
-Lens read_zmx_text(const std::string& bytes) {
-  return read_zmx(decoded_text(bytes), "fuzz", options()).lens;
-}
-Lens read_seq_text(const std::string& bytes) {
-  return read_seq(decoded_text(bytes), "fuzz", options()).lens;
-}
-Lens read_pbrt_text(const std::string& bytes) {
-  return read_pbrt(decoded_text(bytes), "fuzz").lens;
-}
-Lens read_iset_text(const std::string& text) {
-  return read_iset(JsonDocument(text, "fuzz")).lens;
-}
-
-void use(const Glass& glass) {
-  require(glass.shortest_nm > 0 && glass.shortest_nm <= glass.longest_nm, "a glass without a range");
-  for (const double share : {0.0, 0.3, 1.0}) {
-    const double nm =
-        std::min(glass.shortest_nm + share * (glass.longest_nm - glass.shortest_nm), glass.longest_nm);
-    try {
-      require(glass.index(nm) > 0, "an index that is not positive");
-    } catch (const InputError& error) {
-      require_one_line(error);
-    }
-    const double t = glass.transmittance_10mm(nm);
-    require(t >= 0 && t <= 1, "a transmittance that is none");
-  }
-}
-
-template <typename Work>
-bool try_glass(Work work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
-  return true;
-}
-
-bool use_all(const GlassFile& file) {
-  for (const Glass& glass : file.glasses) use(glass);
-  // A catalogue is made of them, or it says which name cannot be.
-  try_glass([&] { GlassCatalogue::of(file.glasses); });
-  return true;
-}
-
-bool try_packed(std::string bytes) {
-  return try_glass([&] {
-    const PackedCatalogue catalogue(std::move(bytes), "fuzz");
-    for (std::size_t i = 0; i < catalogue.glass_count(); ++i) use(catalogue.glass(i));
-  });
-}
-
-/// As it is, which the checksum nearly always refuses, and with the checksum made right.
-bool packed(std::string_view bytes) {
-  constexpr std::size_t checksum_at = 8, checked_from = 12;
-  bool accepted = try_packed(std::string(bytes));
-  if (bytes.size() < checked_from) return accepted;
-  std::string mended(bytes);
-  const std::uint32_t checksum = crc32(bytes.substr(checked_from));
-  for (std::size_t i = 0; i < sizeof checksum; ++i)
-    mended[checksum_at + i] = static_cast<char>(checksum >> (8 * i) & 0xFF);
-  return try_packed(std::move(mended)) || accepted;
-}
 
 /// Polygons are refused, or make regions with finite corners.
 template <typename Read>
 bool try_target(std::string_view bytes, Read read) {
   TargetScene scene;
-  try {
-    scene = read(std::string(bytes), "fuzz");
-    validate(scene);
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
+  if (!accepted([&] { validate(scene = read(std::string(bytes), "fuzz")); })) return false;
   require(!scene.polygons.empty(), "a scene without polygons");
   for (const Region& region : visible_regions(scene)) {
     require(std::isfinite(region.step), "a level that is not finite");
@@ -184,16 +40,16 @@ bool try_target(std::string_view bytes, Read read) {
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"native",
-       [](std::string_view b) { return try_lens(b, read_native_text, lens_to_json); },
+       try_native,
        {"\"stop\": true", "\"glass\": \"F2\"", "\"conic\": -1", "\"asphere\": {\"4\": 1e-5}", "null",
         "\"nd\"", "\"index_table\"", "\"object_na\"", "\"radius_mm\"", "{}", "[]", "\\u0000"}},
       {"zmx",
-       [](std::string_view b) { return try_lens(b, read_zmx_text, zmx_text); },
+       try_zmx,
        {"SURF 1\n", "  STOP\n", "  TYPE ODDASPHE\n", "  TYPE XASPHERE\n", "  TYPE XOSPHERE\n", "  XDAT 1 3\n",
         "  PARM 2 1e-5\n", "FLOA\n", "  DIAM 3 1\n", "  GLAS ___BLANK 1 0 1.6 40\n", "UNIT IN\n",
         "OBNA 0.1\n", "INFINITY", "  CONI -1\n", "PWAV 2\n", "FTYP 3 0 2 1\n", "\xFF\xFE", "MNUM 2\n"}},
       {"seq",
-       [](std::string_view b) { return try_lens(b, read_seq_text, seq_text); },
+       try_seq,
        {"RDM\n",
         "RDM N\n",
         "STO\n",
@@ -225,20 +81,16 @@ const std::vector<Format>& formats() {
         "REFL",
         "YIM 0 1\n",
         "REF 1\n"}},
-      {"pbrt",
-       [](std::string_view b) { return try_lens(b, read_pbrt_text, pbrt_text); },
-       {"#", "0 1 0 5\n", "\t", "\n"}},
+      {"pbrt", try_pbrt, {"#", "0 1 0 5\n", "\t", "\n"}},
       {"iset",
-       [](std::string_view b) { return try_lens(b, read_iset_text, iset_text); },
+       try_iset,
        {"\"ior\": 1.5", "\"radius\": 0", "\"surfaces\"", "{}", "[]", "null", "\"metadata\": {}"}},
       {"agf",
-       [](std::string_view b) { return try_glass([&] { use_all(read_agf(b, "fuzz", "FUZZ")); }); },
+       try_agf,
        {"NM A 1 0 1.5 60 0 1\n", "NM A 13 0 1.5 60\n", "NM A 4 0 1.5 60\n", "CD 1 2 3\n", "LD 0.4 0.7\n",
         "IT 0.4 0 10\n", "\xFF\xFE", "OD - -\n"}},
       {"yaml",
-       [](std::string_view b) {
-         return try_glass([&] { use_all(read_glass_yaml(b, "fuzz", "FUZZ", "X")); });
-       },
+       try_glass_yaml,
        {"  - type: formula 4\n", "  - type: tabulated nk\n", "    data: |\n", "formula 9", "formula 6",
         "DATA:\n", "&a ", "*a", "[", "{", "---\n", "    wavelength_range: 0.4 0.7\n", "n_is_absolute: true",
         "PROPERTIES:\n", "? "}},
@@ -360,7 +212,9 @@ const std::vector<Format>& formats() {
        try_photograph,
        {std::string("II*\0", 4), std::string("MM\0*", 4), std::string("\x03\1\3\0\1\0\0\0\5\0\0\0", 12),
         std::string("\x12\1\3\0\1\0\0\0\6\0\0\0", 12), std::string(4, '\xFF'), std::string(4, '\0')}},
-      {"packed", packed, {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
+      {"packed",
+       try_packed,
+       {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},
   };
   return all;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "raw_formats.h"
 
-#include <petzval/base/error.h>
 #include <petzval/isp/develop.h>
 #include <petzval/sensor/capture.h>
 #include <petzval/sensor/formats/dng.h>
@@ -17,17 +16,6 @@
 namespace petzval::fuzz {
 
 namespace {
-
-/// Reads, and says whether it was no refusal. \tparam Value  what is read.
-template <typename Value, typename Read>
-std::optional<Value> read_or_refused(Read read) {
-  try {
-    return read();
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return {};
-  }
-}
 
 void expose(const Sensor& sensor) {
   SpectralImage light(std::min(2, sensor.geometry.columns), std::min(2, sensor.geometry.rows),
@@ -48,19 +36,19 @@ void expose(const Sensor& sensor) {
 }  // namespace
 
 bool try_sensor(std::string_view bytes) {
-  const auto sensor = read_or_refused<Sensor>([&] { return parse_sensor(std::string(bytes), "fuzz"); });
-  if (!sensor) return false;
+  std::optional<Sensor> sensor;
+  if (!accepted([&] { sensor = parse_sensor(std::string(bytes), "fuzz"); })) return false;
   require(complaint_about(sensor->geometry).empty(), "a frame that is none");
   sensor->photosite.validate();
-  if (sensor->electronics) read_or_refused<int>([&] { return expose(*sensor), 0; });
+  if (sensor->electronics) accepted([&] { expose(*sensor); });
   return true;
 }
 
 bool try_dng(std::string_view bytes) {
-  const auto raw = read_or_refused<RawImage>([&] { return parse_dng(std::string(bytes), "fuzz"); });
-  if (!raw) return false;
+  std::optional<RawImage> raw;
+  if (!accepted([&] { raw = parse_dng(std::string(bytes), "fuzz"); })) return false;
   raw->validate();
-  read_or_refused<Planes>([&] { return develop(*raw); });
+  accepted([&] { develop(*raw); });
   if (!fits_dng(*raw)) return true;
   const std::string written = dng_bytes(*raw, "fuzz");
   const RawImage again = parse_dng(written, "fuzz");

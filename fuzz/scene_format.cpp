@@ -32,17 +32,13 @@ void follow_light(const render::World& world, const render::Transform& world_fro
 template <class Read>
 bool try_described(Read read) {
   using namespace render;
-  try {
+  return accepted([&] {
     Unsupported unsupported;
     const SceneDescription scene = read(unsupported);
     const SceneCamera camera = set_up_camera(scene, {}, unsupported);
     const auto world = build_world(scene, WavelengthGroups({550, 600}), {}, unsupported);
     follow_light(*world, camera.world_from_camera);
-    return true;
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
+  });
 }
 
 }  // namespace
@@ -60,18 +56,14 @@ bool try_gltf(std::string_view bytes) {
 }
 
 bool try_ply(std::string_view bytes) {
-  try {
+  return accepted([&] {
     const render::TriangleMesh mesh = render::parse_ply(bytes, "fuzz");
     for (const auto& triangle : mesh.triangles)
       for (const auto corner : triangle)
         require(static_cast<std::size_t>(corner) < mesh.positions.size(), "a corner that is not there");
     for (const auto& position : mesh.positions)
       for (const float each : position) require(std::isfinite(each), "a vertex that is no place");
-    return true;
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
+  });
 }
 
 }  // namespace petzval::fuzz

@@ -18,17 +18,6 @@ namespace petzval::fuzz {
 
 namespace {
 
-template <typename Work>
-bool accepted(Work work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    require_one_line(error);
-    return false;
-  }
-  return true;
-}
-
 bool same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
