@@ -23,9 +23,7 @@ constexpr const char* example = R"({
 })";
 
 std::string complaint(const std::string& before, const std::string& after) {
-  std::string text = example;
-  text.replace(text.find(before), before.size(), after);
-  return error_of([&] { read_text("bad.json", text); });
+  return error_of([&] { read_text("bad.json", with_change(example, before, after)); });
 }
 
 TEST(IsetReader, IsToldByItsContents) {

@@ -55,6 +55,13 @@ inline void expect_relative(double value, double expected, double tolerance) {
   EXPECT_LE(std::abs(value - expected), tolerance * std::abs(expected)) << value << " is not " << expected;
 }
 
+/// The text with one passage replaced, which must stand in it.
+inline std::string with_change(std::string text, const std::string& before, const std::string& after) {
+  const std::size_t at = text.find(before);
+  EXPECT_NE(at, text.npos) << before;
+  return at == text.npos ? text : text.replace(at, before.size(), after);
+}
+
 /// The message of the InputError that `work` throws, which must be one line.
 inline std::string error_of(const std::function<void()>& work) {
   try {

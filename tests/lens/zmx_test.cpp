@@ -77,10 +77,7 @@ constexpr const char* example =
     "CURV 1 2 3\n";
 
 std::string changed(const std::string& before, const std::string& after) {
-  std::string text = example;
-  const std::size_t at = text.find(before);
-  EXPECT_NE(at, text.npos) << before;
-  return at == text.npos ? text : text.replace(at, before.size(), after);
+  return with_change(example, before, after);
 }
 
 LensFile read(const std::string& text, const LensReadOptions& options = {}) {
