@@ -44,6 +44,7 @@ render::CameraChoice camera_choice(const RenderChoice& choice, const Shared& sha
   camera.options.scene_units_per_mm = 1 / choice.scene_unit_mm;
   camera.options.blades = {choice.blades, choice.blade_rotation_deg};
   camera.options.blades.validate();
+  camera.options.diffraction = choice.diffraction;
   camera.options.origin_at_front = choice.camera_origin == "front";
   if (choice.sampling == "rear-disk")
     camera.options.sampling = render::LensCameraOptions::Sampling::rear_disk;
@@ -119,6 +120,8 @@ void RenderChoice::add_to(CLI::App& command) {
       .add_option("--blade-rotation", blade_rotation_deg,
                   "Of the first corner from the top, anticlockwise as seen from the film [deg]")
       ->capture_default_str();
+  command.add_flag("--diffraction", diffraction,
+                   "Bend rays at the stop at random as its edge does: spread without rings, more noise");
   command.add_option("--film-distance", film_distance_mm, "From the last surface to the film [mm]");
   command.add_option("--focus-distance", focus_distance_m, "From the film to what is to be sharp [m]");
   command.add_flag("--pinhole", pinhole, "The scene's perspective through a pinhole, for comparison");

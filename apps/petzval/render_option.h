@@ -19,7 +19,7 @@ struct RenderChoice {
   std::string scene;
   LensChoice lens;
   LossChoice losses;
-  bool pinhole = false, absolute_spectra = false;
+  bool pinhole = false, absolute_spectra = false, diffraction = false;
   std::string sensor, size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
   std::optional<double> film_diagonal_mm, aperture_diameter_mm, f_number, film_distance_mm, focus_distance_m;
   int blades = 0;

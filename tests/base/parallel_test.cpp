@@ -3,6 +3,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/parallel_tasks.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -15,7 +16,10 @@ TEST(ParallelFor, CallsEveryIndexOnce) {
   std::vector<std::atomic<int>> calls(1000);
   parallel_for(calls.size(), [&](std::size_t i) { ++calls[i]; });
   for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 1);
+  parallel_tasks(calls.size(), [&](std::size_t i) { ++calls[i]; });
+  for (const std::atomic<int>& count : calls) EXPECT_EQ(count, 2);
   parallel_for(0, [](std::size_t) { FAIL() << "nothing to do"; });
+  parallel_tasks(0, [](std::size_t) { FAIL() << "nothing to do"; });
 }
 
 TEST(ParallelFor, HandsOnExceptions) {
@@ -23,6 +27,11 @@ TEST(ParallelFor, HandsOnExceptions) {
                             [](std::size_t i) {
                               if (i == 50) throw InputError("fifty");
                             }),
+               InputError);
+  EXPECT_THROW(parallel_tasks(100,
+                              [](std::size_t i) {
+                                if (i == 50) throw InputError("fifty");
+                              }),
                InputError);
 }
 

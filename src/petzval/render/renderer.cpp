@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/parallel_tasks.h>
 #include <petzval/render/film/noise.h>
 #include <petzval/render/renderer.h>
 #include <petzval/render/tile_renderer.h>
@@ -128,16 +129,19 @@ void add_pass(const TileTask& task, const std::vector<PixelWindow>& tiles, const
   const bool half = !film.half.empty() && film.passes % 2 == 1;
   std::vector<TileResult> results(tiles.size());
   std::atomic<std::size_t> done{0};
-  parallel_for(tiles.size(), [&](std::size_t i) {
+  parallel_tasks(tiles.size(), [&](std::size_t i) {
     results[i] = render_tile(task, tiles[i], ranges, half, film);
     told(static_cast<double>(++done) / static_cast<double>(tiles.size()));
   });
-  // In the order of the tiles, whoever finished first.
+  // In the order of the tiles, whoever finished first. Groups of wavelengths have no band in common.
+  parallel_for(ranges.size(), [&](std::size_t group) {
+    for (const TileResult& tile : results)
+      for (const Stray& stray : tile.strays[group]) film.light[stray.at] += stray.light;
+  });
   for (const TileResult& tile : results) {
-    for (const Stray& stray : tile.strays) {
-      film.light[stray.at] += stray.light;
-      if (half) film.half[stray.at % film.half.size()] += stray.light;
-    }
+    if (half)
+      for (const std::vector<Stray>& strays : tile.strays)
+        for (const Stray& stray : strays) film.half[stray.at % film.half.size()] += stray.light;
     film.rays += tile.rays, film.passed += tile.passed;
   }
   ++film.passes;

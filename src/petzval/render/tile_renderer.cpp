@@ -9,19 +9,11 @@ namespace {
 class TileRenderer {
  public:
   TileRenderer(const TileTask& task, const PixelWindow& tile, bool half, Film& film)
-      : world_(task.world),
-        camera_(task.camera),
-        world_from_camera_(task.world_from_camera),
-        sensor_(task.sensor),
-        sampling_(task.sampling),
-        options_(task.options),
-        tracer_(task.world, task.options.path),
-        tile_(tile),
-        half_(half),
-        film_(film) {}
+      : task_(task), tracer_(task.world, task.options.path), tile_(tile), half_(half), film_(film) {}
 
   TileResult run(const std::vector<SampleRange>& of_group) {
-    for (int group = 0; group < world_.groups.count(); ++group)
+    result_.strays.resize(of_group.size());
+    for (int group = 0; group < task_.world.groups.count(); ++group)
       take_samples(group, of_group[static_cast<std::size_t>(group)]);
     return std::move(result_);
   }
@@ -38,23 +30,24 @@ class TileRenderer {
     for (int index = range.first; index < range.last; ++index)
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
-    camera_.trace(group, sampling_, places_, rays_);
+    task_.camera.trace(group, task_.sampling, places_, rays_);
     for (std::size_t i = 0; i < places_.size(); ++i) follow(i, group);
   }
 
   void start_sample(int group, int index, Pixel pixel) {
-    const auto number = static_cast<std::uint32_t>(pixel.row * sensor_.columns + pixel.column);
-    const std::uint32_t stream = hashed(
-        static_cast<std::uint32_t>(options_.seed),
-        static_cast<std::uint32_t>(options_.seed >> 32) ^ static_cast<std::uint32_t>(group) * 0x9e3779b9u);
+    const auto number = static_cast<std::uint32_t>(pixel.row * task_.sensor.columns + pixel.column);
+    const std::uint32_t stream = hashed(static_cast<std::uint32_t>(task_.options.seed),
+                                        static_cast<std::uint32_t>(task_.options.seed >> 32) ^
+                                            static_cast<std::uint32_t>(group) * 0x9e3779b9u);
     // The halves of a picture whose noise is wanted are independent of each other.
     const std::uint32_t seed = hashed(number, half_ ? ~stream : stream);
     samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
     const auto [x, y, u, v] = samples_.back().next4();
-    places_.push_back(sampling_.place(pixel, x, y, u, v));
+    places_.push_back(task_.sampling.place(pixel, x, y, u, v));
+    if (task_.camera.bends()) places_.back().bend = samples_.back().next2();
     // In turn from a random start: every wavelength leads equally often.
     places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
-                                           static_cast<std::uint32_t>(world_.groups.lanes(group)));
+                                           static_cast<std::uint32_t>(task_.world.groups.lanes(group)));
   }
 
   void follow(std::size_t i, int group) {
@@ -62,10 +55,10 @@ class TileRenderer {
     ++result_.rays;
     if (!ray.passes) return;
     ++result_.passed;
-    const ClippingPlanes::Part part = options_.clipping.part_of(ray.origin, ray.direction);
+    const ClippingPlanes::Part part = task_.options.clipping.part_of(ray.origin, ray.direction);
     if (!(part.to > part.from)) return;
-    const Vector3 origin = world_from_camera_.point(ray.origin + part.from * ray.direction);
-    const Vector3 along = world_from_camera_.direction(ray.direction), direction = normalised(along);
+    const Vector3 origin = task_.world_from_camera.point(ray.origin + part.from * ray.direction);
+    const Vector3 along = task_.world_from_camera.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
     const PathLight light =
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
@@ -78,23 +71,25 @@ class TileRenderer {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
     const Pixel own = pixel_of(i);
-    for (int lane = 0; lane < world_.groups.lanes(group); ++lane) {
+    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
       std::optional<Pixel> pixel = own;
       if (ray.spread && lane != hero)
-        pixel =
-            sampling_.pixel_at(places_[i], static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
-                               static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
-      if (pixel) add(*pixel, world_.groups.band(group, lane), value);
+        pixel = task_.sampling.pixel_at(places_[i],
+                                        static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
+                                        static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
+      if (pixel) add(*pixel, group, lane, value);
     }
   }
 
-  void add(Pixel pixel, int band, double value) {
+  void add(Pixel pixel, int group, int lane, double value) {
     const std::size_t within = film_.window.index(pixel.column, pixel.row);
-    const std::size_t at = static_cast<std::size_t>(band) * film_.window.size() + within;
-    if (!tile_.contains(pixel.column, pixel.row)) return result_.strays.push_back({at, value});
+    const auto band = static_cast<std::size_t>(task_.world.groups.band(group, lane));
+    const std::size_t at = band * film_.window.size() + within;
+    if (!tile_.contains(pixel.column, pixel.row))
+      return result_.strays[static_cast<std::size_t>(group)].push_back({at, value});
     film_.light[at] += value;
     if (half_) film_.half[within] += value;
   }
@@ -103,21 +98,16 @@ class TileRenderer {
     const Pixel pixel = pixel_of(i);
     const std::size_t at = film_.window.index(pixel.column, pixel.row);
     film_.met[at] += 1;
-    film_.depth[at] += world_from_camera_.inverse_point(first.position).z;
+    film_.depth[at] += task_.world_from_camera.inverse_point(first.position).z;
     film_.normal[3 * at] += first.normal.x;
     film_.normal[3 * at + 1] += first.normal.y;
     film_.normal[3 * at + 2] += first.normal.z;
-    for (int lane = 0; lane < world_.groups.lanes(group); ++lane)
-      film_.albedo[static_cast<std::size_t>(world_.groups.band(group, lane)) * film_.window.size() + at] +=
-          static_cast<double>(first.albedo[lane]);
+    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
+      film_.albedo[static_cast<std::size_t>(task_.world.groups.band(group, lane)) * film_.window.size() +
+                   at] += static_cast<double>(first.albedo[lane]);
   }
 
-  const World& world_;
-  const FilmCamera& camera_;
-  const Transform& world_from_camera_;
-  const SensorGeometry& sensor_;
-  const FilmSampling& sampling_;
-  const RenderOptions& options_;
+  const TileTask& task_;
   PathTracer tracer_;
   PixelWindow tile_;
   bool half_;

@@ -34,7 +34,7 @@ struct Stray {
 
 /// All that one tile adds in one pass, beside what it has added to its own pixels.
 struct TileResult {
-  std::vector<Stray> strays;
+  std::vector<std::vector<Stray>> strays;  ///< by group of wavelengths
   std::uint64_t rays = 0, passed = 0;
 };
 

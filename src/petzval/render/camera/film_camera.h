@@ -35,6 +35,8 @@ class FilmCamera {
                      std::span<CameraRay> rays) const = 0;
   /// Whether wavelengths part on their way, so that it matters which one leads.
   virtual bool disperses() const { return false; }
+  /// Whether it uses FilmSample::bend.
+  virtual bool bends() const { return false; }
 };
 
 }  // namespace petzval::render

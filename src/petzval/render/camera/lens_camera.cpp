@@ -46,6 +46,9 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     to_scene_.push_back(kernel_path<double>(bladed, true, Tracer::Clip::apertures));
     if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
+  if (options.diffraction)
+    for (std::size_t i = 0; i < nm.size(); ++i)
+      diffraction_.emplace_back(tracers_[disperses_ ? i : 0].with_blades(options.blades), nm[i]);
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
     ExitPupilRegions regions = find_regions(lens);
     if (options.losses.any()) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
@@ -126,10 +129,10 @@ void LensCamera::trace(int group, const FilmSampling& sampling, std::span<const 
                        std::span<CameraRay> rays) const {
   const int lanes = groups_.lanes(group);
   Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}, {}, {}, {}, {}};
-  for (led.hero = 0; led.hero < (disperses_ ? lanes : 1); ++led.hero) {
+  for (led.hero = 0; led.hero < (apart() ? lanes : 1); ++led.hero) {
     led.which.clear();
     for (std::size_t i = 0; i < samples.size(); ++i)
-      if (!disperses_ || samples[i].hero == led.hero) led.which.push_back(i);
+      if (!apart() || samples[i].hero == led.hero) led.which.push_back(i);
     if (!led.which.empty()) trace_led(led);
   }
 }
@@ -158,13 +161,22 @@ void LensCamera::launch(Led& led) const {
     for (double& cosine : *cosines) cosine = -cosine;
 }
 
-void LensCamera::trace_led(Led& led) const {
-  launch(led);
+void LensCamera::trace_to_scene(Led& led) const {
   RayBatch& batch = led.batch;
   led.passes.resize(batch.size());
-  trace_columns(to_scene_[band(led.group, led.hero)],
-                {batch.x_mm.data(), batch.y_mm.data(), batch.z_mm.data(), batch.l.data(), batch.m.data(),
-                 batch.n.data(), batch.opl_mm.data(), led.passes.data(), batch.size()});
+  const RayColumns<double> rays{batch.x_mm.data(),   batch.y_mm.data(), batch.z_mm.data(),
+                                batch.l.data(),      batch.m.data(),    batch.n.data(),
+                                batch.opl_mm.data(), led.passes.data(), batch.size()};
+  if (diffraction_.empty()) return trace_columns(to_scene_[band(led.group, led.hero)], rays);
+  std::vector<std::array<double, 2>> bends;
+  for (const std::size_t which : led.which) bends.push_back(led.samples[which].bend);
+  diffraction_[static_cast<std::size_t>(groups_.band(led.group, led.hero))].trace(rays, bends);
+}
+
+void LensCamera::trace_led(Led& led) const {
+  launch(led);
+  trace_to_scene(led);
+  const RayBatch& batch = led.batch;
   const double unit = options_.scene_units_per_mm;
   const double origin_z = options_.origin_at_front ? 0 : tracers_.front().image_z_mm();
   for (std::size_t k = 0; k < led.which.size(); ++k) {
@@ -174,10 +186,11 @@ void LensCamera::trace_led(Led& led) const {
     if (!ray.passes) continue;
     ray.origin = unit * Vector3{batch.x_mm[k], batch.y_mm[k], origin_z - batch.z_mm[k]};
     ray.direction = {batch.l[k], batch.m[k], -batch.n[k]};
-    ray.weight = Lanes::all(1 / led.density[k]);
     ray.weight_alone = static_cast<float>(led.lanes / led.density[k]);
+    ray.weight = Lanes::all(options_.diffraction ? 0 : 1 / led.density[k]);
+    if (options_.diffraction) ray.weight[led.hero] = ray.weight_alone;
   }
-  if (disperses_) share_among_wavelengths(led);
+  if (disperses_ && !options_.diffraction) share_among_wavelengths(led);
   if (transmittance_) dim(led);
 }
 
@@ -187,7 +200,7 @@ void LensCamera::dim(const Led& led) const {
     CameraRay& ray = led.rays[led.which[k]];
     if (!ray.passes) continue;
     for (int lane = 0; lane < led.lanes; ++lane) {
-      if (disperses_ && lane != led.hero) continue;
+      if (apart() && lane != led.hero) continue;
       const double through = transmittance_->at(static_cast<std::size_t>(groups_.band(led.group, lane)),
                                                 led.x_mm[k], led.y_mm[k], led.alpha[k], led.beta[k]);
       ray.weight[lane] *= static_cast<float>(through);

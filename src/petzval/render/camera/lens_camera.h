@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/render/camera/film_camera.h>
+#include <petzval/render/camera/stop_diffraction.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/sensor/sensor.h>
 #include <petzval/trace/exit_pupil_region.h>
@@ -30,6 +31,8 @@ struct LensCameraOptions {
   double margin_pixels = 0;
   bool origin_at_front =
       false;  ///< the camera's place is the first vertex, as in 2006; else the film's centre
+  /// Rays are bent at the stop (StopDiffraction), each wavelength by itself: every path serves one alone.
+  bool diffraction = false;
 };
 
 /// Traces every film sample backwards through every surface, at its own wavelength: prescription, glass,
@@ -47,6 +50,7 @@ class LensCamera final : public FilmCamera {
   void trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
   bool disperses() const override { return disperses_; }
+  bool bends() const override { return options_.diffraction; }
 
  private:
   struct Start {
@@ -58,6 +62,8 @@ class LensCamera final : public FilmCamera {
   void densities(const PupilDirections& directions, float* per_sr) const;
   void launch(Led& led) const;
   void trace_led(Led& led) const;
+  void trace_to_scene(Led& led) const;
+  bool apart() const { return disperses_ || options_.diffraction; }
   void share_among_wavelengths(const Led& led) const;
   float through(const Led& led, int lane, const RadianceRays& landed, std::size_t k) const;
   void dim(const Led& led) const;
@@ -69,6 +75,7 @@ class LensCamera final : public FilmCamera {
   std::vector<Tracer> tracers_;               ///< by band; one when nothing disperses; with a round stop
   std::vector<KernelPath<double>> to_scene_;  ///< of each tracer
   std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
+  std::vector<StopDiffraction> diffraction_;  ///< by band, if it is wanted
   bool disperses_ = false;
   std::optional<ExitPupilRegions> regions_;  ///< that directions are drawn from
   std::optional<PupilTransmittance> transmittance_;

@@ -6,6 +6,7 @@
 #include <petzval/render/film/pixel_window.h>
 #include <petzval/wave/photosite.h>
 
+#include <array>
 #include <optional>
 
 namespace petzval::render {
@@ -18,6 +19,7 @@ struct FilmSample {
   double u = 0, v = 0;
   double dot_column = 0, dot_row = 0;
   int hero = 0;
+  std::array<double, 2> bend{0.5, 0.5};  ///< two more numbers in [0, 1), for cameras that bend rays at random
 };
 
 /// A pixel of the picture.
