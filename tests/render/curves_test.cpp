@@ -148,9 +148,55 @@ TEST(Curves, RefuseWhatMakesNoSense) {
   expect("Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 ]", "test.pbrt:3:15: ", "through 3 points");
   expect("Shape \"curve\" \"integer degree\" 4" + p, "test.pbrt:3:15: ", "2 or 3");
   expect("Shape \"curve\" \"float width\" -1" + p, "test.pbrt:3:15: ", "0 or more");
-  expect("Shape \"curve\" \"string type\" \"ribbon\"" + p, "test.pbrt:3:15: ", "ribbon");
+  expect("Shape \"curve\" \"string type\" \"plate\"" + p, "test.pbrt:3:15: ", "plate");
   expect("Scale 1 2 1\nShape \"curve\"" + p, "test.pbrt:4:1: ", "stretched");
   expect("AreaLightSource \"diffuse\"\nShape \"curve\"" + p, "test.pbrt:4:1: ", "shines");
+}
+
+double area_of(const World& world) {
+  double area = 0;
+  for (std::size_t i = 0; i < world.geometries.at(0).primitives(); ++i)
+    area += world.geometries[0].primitive_area(i);
+  return area;
+}
+
+constexpr const char* along_z = "\"point3 P\" [ 0 0 0  0 0 1  0 0 2  0 0 3 ] ";
+
+TEST(Ribbons, FaceAlongTheirNormals) {
+  const auto world = world_of(std::string("Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.4 ") +
+                              along_z + "\"normal N\" [ 0 1 0  0 1 0 ]");
+  EXPECT_NEAR(area_of(*world), 3 * 0.4, 1e-5);
+  const auto on = met(*world, {0.19, 5, 1.5}, {0, -1, 0});
+  ASSERT_TRUE(on);
+  EXPECT_NEAR(on->normal.y, 1, 1e-6);
+  EXPECT_NEAR(on->u, 0.5, 1e-5);
+  EXPECT_NEAR(on->v, 0.5 + 0.19 / 0.4, 1e-5);  // across is normal × tangent, +x
+  EXPECT_FALSE(met(*world, {0.21, 5, 1.5}, {0, -1, 0}));
+  EXPECT_FALSE(met(*world, {5, 0.001, 1.5}, {-1, 0, 0}));  // seen on edge
+}
+
+/// ∬ √(1 + (Θv/L)²) dv dz over the length L and width w of a helicoid that turns by Θ.
+TEST(Ribbons, TwistLikeAHelicoid) {
+  const auto world = world_of(std::string("Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 2 ") +
+                              along_z + "\"normal N\" [ 0 1 0  1 0 0 ]");
+  const double slope = 1.5707963267948966 / 3;  // to v = 1
+  const double area = 3 * (std::sqrt(1 + slope * slope) + std::asinh(slope) / slope);
+  // The trapezoid rule over eight strips: slope² (2/8)²/12 of the part that is not flat.
+  EXPECT_NEAR(area_of(*world) / area, 1, 1.5e-3);
+  // A third of the way along it has turned by 30 degrees, from the y axis towards the x axis.
+  const auto on = met(*world, {5 * std::sin(0.5235988), 5 * std::cos(0.5235988), 1},
+                      {-std::sin(0.5235988), -std::cos(0.5235988), 0});
+  ASSERT_TRUE(on);
+  EXPECT_NEAR(on->shading_normal.x, 0.5, 2e-3);
+  EXPECT_NEAR(on->shading_normal.y, std::sqrt(0.75), 2e-3);
+}
+
+TEST(Ribbons, NeedANormalAtEveryEnd) {
+  const std::string start = std::string("Shape \"curve\" \"string type\" \"ribbon\" ") + along_z;
+  EXPECT_NE(refusal(start).find("three for each of its 2"), std::string::npos) << refusal(start);
+  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0 ]").find("3 numbers"), std::string::npos);
+  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0  0 0 0 ]").find("no length"), std::string::npos);
+  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0  0 -1 0 ]").find("either way"), std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/render/lights/light_reader.h>
+#include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
 
 namespace petzval::render {
@@ -35,7 +36,7 @@ class WorldBuilder {
     } else if (type == "sphere" || type == "disk" || type == "cylinder") {
       geometry.shape = read_quadric(description, unsupported_);
     } else if (type == "curve") {
-      geometry.shape = read_curve(description, unsupported_);
+      geometry.shape = curve(description);
     } else {
       return unsupported_.report(parameters.location(), fmt::format("Shape \"{}\"", type));
     }
@@ -45,6 +46,16 @@ class WorldBuilder {
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
     if (description.area_light >= 0) light_up(description, geometry);
     world_.geometries.push_back(std::move(geometry));
+  }
+
+  decltype(Geometry::shape) curve(const ShapeDescription& description) {
+    CurveSegments segments = read_curve(description, unsupported_);
+    if (segments.kind != CurveSegments::Kind::ribbon) return segments;
+    try {
+      return ribbon_mesh(segments);
+    } catch (const InputError& error) {
+      throw scene_error(description.entity.location(), error.what());
+    }
   }
 
   void light_up(const ShapeDescription& description, Geometry& geometry) {

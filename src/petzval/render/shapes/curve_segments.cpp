@@ -82,6 +82,29 @@ std::vector<Vector3> world_points(const ShapeDescription& shape) {
   return points;
 }
 
+/// One where each segment begins, and one at the end.
+std::vector<Vector3> world_normals(const ShapeDescription& shape, std::size_t count) {
+  const Parameters& parameters = shape.entity.parameters;
+  const std::vector<double> numbers = parameters.numbers("N", {"normal", "normal3"});
+  if (numbers.size() != 3 * count)
+    throw scene_error(
+        parameters.location_of("N"),
+        fmt::format("a ribbon with {} numbers in \"normal N\"; three for each of its {} ends of segments "
+                    "would be right",
+                    numbers.size(), count));
+  std::vector<Vector3> normals;
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    const Vector3 n =
+        normalised(shape.world_from_object.normal({numbers[i], numbers[i + 1], numbers[i + 2]}));
+    if (!(dot(n, n) > 0.5)) throw scene_error(parameters.location_of("N"), "a normal has no length");
+    if (!normals.empty() && dot(normals.back(), n) < -1 + 1e-9)
+      throw scene_error(parameters.location_of("N"),
+                        "two normals of a segment point opposite ways, so that it might turn either way");
+    normals.push_back(n);
+  }
+  return normals;
+}
+
 double width_of(const Parameters& parameters, const char* name, double otherwise) {
   const double width = parameters.number(name, otherwise);
   if (!(width >= 0 && width < std::numeric_limits<float>::max() / 16))
@@ -116,6 +139,8 @@ CurveSegments read_curve(const ShapeDescription& shape, Unsupported& unsupported
   const std::string type = parameters.string("type", "flat");
   if (type == "cylinder")
     curve.kind = CurveSegments::Kind::cylinder;
+  else if (type == "ribbon")
+    curve.kind = CurveSegments::Kind::ribbon;
   else if (type != "flat")
     unsupported.report(parameters.location_of("type"), fmt::format("a curve of type \"{}\"", type));
   const bool spline = parameters.choice("basis", "bezier", {"bezier", "bspline"}) == "bspline";
@@ -136,6 +161,7 @@ CurveSegments read_curve(const ShapeDescription& shape, Unsupported& unsupported
       curve.points.push_back({static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
                               static_cast<float>(scale * ((1 - along) * begin + along * end) / 2)});
     }
+  if (curve.kind == CurveSegments::Kind::ribbon) curve.normals = world_normals(shape, cubics.size() + 1);
   return curve;
 }
 

@@ -13,12 +13,14 @@ namespace petzval::render {
 /// beginning to its end.
 struct CurveSegments {
   enum class Kind {
-    flat,     ///< a ribbon that turns its face to whoever looks
-    cylinder  ///< a tube
+    flat,      ///< turns its face to whoever looks
+    cylinder,  ///< a tube
+    ribbon     ///< faces along its normals (ribbon_mesh.h)
   };
   Kind kind = Kind::flat;
   using ControlPoint = std::array<float, 4>;  ///< x, y, z, radius
   std::vector<ControlPoint> points;           ///< four for each segment
+  std::vector<Vector3> normals;               ///< of a ribbon, where segments begin and end; unit
 
   std::size_t segments() const { return points.size() / 4; }
   struct Place {
