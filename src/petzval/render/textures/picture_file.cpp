@@ -6,7 +6,7 @@
 #include <ImfInputFile.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/whole_file.h>
+#include <petzval/colour/display.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/render/textures/picture_file.h>
 
@@ -21,10 +21,6 @@ namespace {
 /// A gigapixel is more than any texture has.
 constexpr std::int64_t most_pixels = std::int64_t{1} << 30;
 
-double linear_from_srgb(double value) {
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) {
   const PngImage png = read_png(path);
   const int used = png.channels <= 2 ? 1 : 3;  // transparency is not light
@@ -34,7 +30,7 @@ PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) 
   std::vector<float> linear(levels);
   for (std::size_t i = 0; i < levels; ++i) {
     const double value = static_cast<double>(i) / static_cast<double>(levels - 1);
-    linear[i] = static_cast<float>(srgb ? linear_from_srgb(value) : value);
+    linear[i] = static_cast<float>(srgb ? srgb_decoded(value) : value);
   }
   PictureFile picture{png.columns, png.rows, used, {}};
   const std::size_t pixels = static_cast<std::size_t>(png.columns) * static_cast<std::size_t>(png.rows);
