@@ -9,6 +9,20 @@ function(petzval_warnings target)
   endif()
 endfunction()
 
+# petzval_precompile_headers(TARGET [REUSE_FROM first] headers...): precompiled once for all targets that name the same
+# first one, which must be made before them, and with the same definitions.
+function(petzval_precompile_headers target)
+  cmake_parse_arguments(ARG "" "REUSE_FROM" "" ${ARGN})
+  if(NOT PETZVAL_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  if(ARG_REUSE_FROM AND NOT ARG_REUSE_FROM STREQUAL target)
+    target_precompile_headers(${target} REUSE_FROM ${ARG_REUSE_FROM})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARG_UNPARSED_ARGUMENTS})
+  endif()
+endfunction()
+
 function(petzval_module name)
   cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/petzval/${name}/*.cpp)

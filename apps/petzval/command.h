@@ -5,11 +5,12 @@
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "cli11.h"
 
 namespace petzval::app {
 

@@ -4,9 +4,10 @@
 
 #include <petzval/wave/pupil_otf.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+
+#include "cli11.h"
 
 namespace petzval::app {
 

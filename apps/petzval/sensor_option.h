@@ -4,9 +4,10 @@
 
 #include <petzval/sensor/sensor_reader.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "cli11.h"
 
 namespace petzval::app {
 

@@ -5,7 +5,6 @@
 #include <petzval/wave/otf.h>
 #include <petzval/wave/photosite.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>

@@ -5,7 +5,6 @@
 #include <petzval/sensor/sensor.h>
 #include <petzval/target/render_target.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
