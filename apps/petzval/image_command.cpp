@@ -7,6 +7,7 @@
 
 #include <memory>
 
+#include "image_depth.h"
 #include "image_option.h"
 #include "image_output.h"
 #include "image_source.h"
@@ -29,13 +30,15 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
   choice.shot.check(sensor, choice.outputs, app);
 
   ProgressBar bar(!shared.quiet);
-  auto [scene, table] = read_source(choice, wanted, bar.callback(), shared);
-  const SensorGeometry frame = fit_to_each_other(choice, options, scene, table, wanted, shared);
-  if (!scene.depth_m.empty())
-    note(shared, "the scene's depth map is not used: the scene is imaged as a plane");
+  auto [scene, table, depth] = read_source(choice, wanted, bar.callback(), shared);
+  const SensorGeometry frame = fit_to_each_other(choice, options, scene, table, depth, wanted, shared);
+  check_depth(scene, depth.has_value(), choice.depth, shared);
 
-  ImagingReport report;
-  SpectralImage light = form_image(scene, table, frame, options, bar.callback(), &report);
+  DepthReport deep;
+  ImagingReport& report = deep.image;
+  SpectralImage light =
+      depth ? form_depth_image(scene, *depth, frame, options, choice.depth, bar.callback(), &deep)
+            : form_image(scene, table, frame, options, bar.callback(), &report);
   const std::string method = method_text(options, report);
   light.provenance =
       fmt::format("petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
@@ -44,8 +47,10 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
   const FormedImage formed = {std::move(light), std::move(scene), std::move(table), std::move(report),
                               method};
   const std::optional<Shot> shot = write_outputs(choice, formed, sensor, shared);
-  if (shared.json) return print_json(summary_json(formed, shot, choice.outputs));
-  if (!shared.quiet) print_summary(formed, shot);
+  if (shared.json) return print_json(with_layers(summary_json(formed, shot, choice.outputs), deep));
+  if (shared.quiet) return;
+  print_summary(formed, shot);
+  print_layers(deep, frame.pitch_um);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image_option.h"
 
+#include "image_depth.h"
+
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
@@ -42,6 +44,8 @@ void check_sources(const ImageChoice& choice) {
   refuse(!choice.lens.substitutions.empty(), "--substitute");
   refuse(choice.apertures.from_fields, "--apertures");
   refuse(choice.apertures.ignore_apertures, "--ignore-apertures");
+  refuse(choice.depth.layers != 0, "--layers");
+  refuse(!choice.scene.depth.empty() && choice.scene.depth != "none", "--scene-depth");
 }
 
 /// Options of one method with another would do nothing.
@@ -150,6 +154,7 @@ void ImageChoice::add_method_options(CLI::App& command) {
 void ImageChoice::add_to(CLI::App& command) {
   scene.add_to(command);
   add_lens_options(command);
+  add_depth_options(command, depth);
   command.add_option("--sensor", sensor,
                      "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
   add_sensor_settings(command, sensor_settings);

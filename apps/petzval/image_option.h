@@ -2,6 +2,7 @@
 // What `image` is asked for on the command line.
 #pragma once
 
+#include <petzval/imaging/depth_layers.h>
 #include <petzval/imaging/image_formation.h>
 
 #include <optional>
@@ -25,6 +26,7 @@ struct ImageChoice {
   SectionOptions sections;
   ProductOptions product;
   int supersample = 1;
+  DepthOptions depth;
   ShotChoice shot;
   std::vector<std::string> outputs;
 

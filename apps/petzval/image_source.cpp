@@ -12,6 +12,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "image_depth.h"
+
 namespace petzval::app {
 
 namespace {
@@ -32,7 +34,8 @@ std::optional<double> focus_distance_mm(const std::string& focus) {
 /// Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
 Scene read_scene(const ImageChoice& choice, std::optional<double> expected_m, bool expected) {
   SceneOptions defaults;
-  if (expected && choice.scene.is_open()) defaults.distance_m = expected_m.value_or(INFINITY);
+  if (expected && choice.scene.is_open() && !choice.scene.is_deep())
+    defaults.distance_m = expected_m.value_or(INFINITY);
   Scene scene = choice.scene.read(defaults);
   scene.validate();
   return scene;
@@ -63,7 +66,15 @@ SceneAndTable from_stored_table(const ImageChoice& choice) {
   LensDataTable table = read_table(choice.optics);
   std::optional<double> distance_m = object_to_sensor_mm(table);
   if (distance_m) *distance_m /= mm_per_m;
-  return {read_scene(choice, distance_m, true), std::move(table)};
+  return {read_scene(choice, distance_m, true), std::move(table), {}};
+}
+
+/// What a scene with depth is focused on: the object of the lens, though each layer will have its own.
+std::optional<double> object_in_focus_m(const ImageChoice& choice, const Scene& scene, const Camera& camera) {
+  if (choice.focus == "auto") return depth_focus_m(scene, camera);
+  const std::optional<double> asked_mm = focus_distance_mm(choice.focus);
+  if (!asked_mm) return camera.object_distance_from_sensor_m();
+  return std::isinf(*asked_mm) ? std::nullopt : std::optional(*asked_mm / mm_per_m);
 }
 
 SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
@@ -72,12 +83,18 @@ SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeo
   Camera camera(choice.apertures.prepare(choice.lens.read(shared), shared));
   if (choice.f_number) camera.set_f_number(*choice.f_number);
   Scene scene = read_scene(choice, camera.object_distance_from_sensor_m(), choice.focus == "design");
-  const Lens lens = focused(camera, choice.focus, scene.distance_m());
+  const bool deep = !scene.depth_m.empty();
+  const Lens lens =
+      focused(camera, choice.focus, deep ? object_in_focus_m(choice, scene, camera) : scene.distance_m());
   TableOptions options;
   options.wavelengths_nm = scene.wavelengths_nm();
   if (choice.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  if (deep) {
+    options.max_image_height_mm = depth_image_height_mm(scene, lens, sensor);
+    return {std::move(scene), facts_alone(lens), DepthCamera{lens, options}};
+  }
   options.max_image_height_mm = image_height_mm(scene, lens, sensor);
-  return {std::move(scene), build_lens_data_table(lens, options, progress)};
+  return {std::move(scene), build_lens_data_table(lens, options, progress), {}};
 }
 
 }  // namespace
@@ -88,10 +105,11 @@ SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorG
 }
 
 SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions& options, Scene& scene,
-                                 const LensDataTable& table, const std::optional<SensorGeometry>& sensor,
-                                 const Shared& shared) {
+                                 const LensDataTable& table, const std::optional<DepthCamera>& depth,
+                                 const std::optional<SensorGeometry>& sensor, const Shared& shared) {
   if (!sensor) {
-    const SensorGeometry frame = natural_sensor(scene, table, options);
+    const SensorGeometry frame = depth ? natural_depth_sensor(scene, *depth, options, choice.depth)
+                                       : natural_sensor(scene, table, options);
     note(shared,
          fmt::format("no --sensor: {} x {} pixels of {:.5g} um, the scene's samples as the lens images them "
                      "on the axis, as many as the scene covers",
@@ -99,7 +117,9 @@ SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions
     return frame;
   }
   if (choice.scene.is_open() && choice.scene.angle.empty() && options.surround == Surround::error) {
-    scene.set_horizontal_angle_deg(covering_angle_deg(scene, table, *sensor, options));
+    scene.set_horizontal_angle_deg(
+        depth ? covering_depth_angle_deg(scene, *depth, *sensor, options, choice.depth)
+              : covering_angle_deg(scene, table, *sensor, options));
     note(shared,
          fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
                      "(--scene-angle sets another)",

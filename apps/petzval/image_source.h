@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/progress.h>
+#include <petzval/imaging/depth_image.h>
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/scene/scene.h>
 
@@ -14,7 +15,8 @@ namespace petzval::app {
 
 struct SceneAndTable {
   Scene scene;
-  LensDataTable table;
+  LensDataTable table;  ///< of a scene with depth only the lens's name and paraxial optics
+  std::optional<DepthCamera> depth;
 };
 
 /// Reads the scene and the stored table, or builds the table of the lens, focused as asked, with the scene
@@ -26,7 +28,7 @@ SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorG
 /// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
 /// the scene.
 SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions& options, Scene& scene,
-                                 const LensDataTable& table, const std::optional<SensorGeometry>& sensor,
-                                 const Shared& shared);
+                                 const LensDataTable& table, const std::optional<DepthCamera>& depth,
+                                 const std::optional<SensorGeometry>& sensor, const Shared& shared);
 
 }  // namespace petzval::app

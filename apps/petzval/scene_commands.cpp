@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval scene list | info | convert
 #include "command.h"
+#include "depth_picture.h"
+#include "field_option.h"
 #include "scene_option.h"
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include <petzval/base/file_extension.h>
 #include <petzval/base/parallel.h>
 #include <petzval/image/picture.h>
+#include <petzval/scene/depth_map.h>
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
@@ -52,6 +55,13 @@ ordered_json facts(const Scene& scene) {
   json["radiance_unit"] = "W.m^-2.sr^-1.nm^-1";
   json["has_illuminant"] = scene.illuminant.has_value();
   json["has_depth"] = !scene.depth_m.empty();
+  if (!scene.depth_m.empty()) {
+    const DepthRange range = depth_range(scene);
+    json["depth_min_m"] = number_or_null(range.least_m);
+    json["depth_max_m"] = number_or_null(range.greatest_m);
+    json["depth_from"] = depth_from_word(scene.depth_from);
+    json["depth_empty_samples"] = range.empty;
+  }
   return json;
 }
 
@@ -69,7 +79,7 @@ void print_facts(const Scene& scene) {
   fmt::print("  radiance        {:.4g} to {:.4g} W/(m2 sr nm)\n", json["min_radiance"].get<double>(),
              json["max_radiance"].get<double>());
   fmt::print("  illuminant      {}\n", scene.illuminant ? "known" : "unknown");
-  fmt::print("  depth           {}\n", scene.depth_m.empty() ? "none" : "a map of it");
+  fmt::print("  depth           {}\n", depth_text(scene));
 }
 
 /// The scene as if it were an image of itself, for the eye.
@@ -85,7 +95,8 @@ void write_scene_picture(const std::string& path, const Scene& scene) {
   write_picture(path, image, options);
 }
 
-void convert_scene(const SceneChoice& choice, const std::string& out) {
+void convert_scene(const SceneChoice& choice, const std::string& out, bool depth, const Shared& shared) {
+  if (depth) return write_depth(out, choice.read(), shared);
   const std::string extension = extension_of(out);
   if (extension != ".exr" && extension != ".png")
     throw InputError(out, "a scene is written as .exr or, to look at, .png");
@@ -116,15 +127,18 @@ void add_scene_commands(CLI::App& app, Shared& shared) {
 
   auto convert = std::make_shared<SceneChoice>();
   auto out = std::make_shared<std::string>();
+  auto depth = std::make_shared<bool>(false);
   CLI::App* command =
       add_command(*scene, shared, "convert", "Write a scene as spectral OpenEXR or as a picture",
                   "petzval scene convert checkerboard:24 --scene-size 1024x768 board.exr", false,
-                  [&shared, convert, out] {
+                  [&shared, convert, out, depth] {
                     const ThreadLimit limit(shared.threads);
-                    convert_scene(*convert, *out);
+                    convert_scene(*convert, *out, *depth, shared);
                   });
   convert->add_to(*command);
   command->add_option("out", *out, "OUT.exr or OUT.png")->required();
+  command->add_flag("--depth", *depth,
+                    "Write the depth map instead: OUT.png in false colours, or OUT.npy [m]");
 }
 
 }  // namespace petzval::app

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/scene/depth_map.h>
 
 #include <charconv>
 #include <cmath>
@@ -68,6 +69,16 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
       ->check(CLI::IsMember({"plane", "equirectangular"}));
   command.add_option("--scene-yaw", yaw, "Turns the camera to the right within a panorama [degrees]");
   command.add_option("--scene-pitch", pitch, "Tilts it up [degrees]");
+  command.add_option("--scene-depth", depth,
+                     "Depth map [m]: a .npy of rows and columns or an .exr with a channel Z; none: leave the "
+                     "scene's own out");
+  command.add_option("--scene-depth-scale", depth_scale, "Multiplies all depths");
+  command
+      .add_option(
+          "--scene-depth-from", depth_from,
+          "Depths count along the axis from the sensor plane (sensor, unless the file says otherwise) or "
+          "from the entrance pupil (pupil), or along the line of sight from the latter (range)")
+      ->check(CLI::IsMember({"sensor", "pupil", "range"}));
   add_cube_options(command);
 }
 
@@ -97,6 +108,10 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!size.empty()) take_size(size, options);
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
   if (!illuminant.empty()) options.illuminant = illuminant;
+  options.depth = depth;
+  if (!depth_scale.empty())
+    options.depth_scale = positive("--scene-depth-scale", depth_scale, "a positive number");
+  if (!depth_from.empty()) options.depth_from = parse_depth_from(depth_from);
   take_panorama(options);
   take_cube(options);
   if (!encoding.empty())

@@ -18,6 +18,7 @@ struct SceneChoice {
   /// As typed; empty: not given.
   std::string angle, distance, luminance, size, wavelengths, illuminant, encoding;
   std::string projection, yaw, pitch;
+  std::string depth, depth_scale, depth_from;
   std::string quantity, unit, scale, file_bands, temperature, emissivity, background;
   bool negative_is_zero = false;
 
@@ -31,6 +32,8 @@ struct SceneChoice {
   Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
   /// Whether the scene is a chart, which can be made in any size.
   bool is_chart() const { return is_builtin_scene(path_or_name); }
+  /// Whether it is a chart that has depth of its own.
+  bool is_deep() const { return is_deep_chart(path_or_name); }
   bool is_panorama() const { return projection == "equirectangular"; }
   /// Whether it takes any angle and distance: a chart or a photograph on a plane.
   bool is_open() const { return !is_panorama() && is_open_scene(path_or_name); }

@@ -31,6 +31,14 @@ Scene slanted_edge_chart(const ChartOptions& options, double angle_deg = 5);
 /// multiples of them. Laid out for 4:3; other shapes get more background.
 Scene studio_chart(const ChartOptions& options);
 
+/// Three cards one in front of the other, at 0.6, 1 and 1.8 times the chart's distance (1 m unless given),
+/// and at 4 times it a dark wall with small lamps. It has depth.
+Scene cards_chart(const ChartOptions& options);
+
+/// A checkerboard on a plane that recedes from 2/3 of the chart's distance (1 m unless given) on the left to
+/// twice that on the right, in perspective. It has depth.
+Scene slanted_plane_chart(const ChartOptions& options);
+
 /// Paints a ColorChecker into a rectangle [pixels] whose width is 1.45 times its height
 /// (colorchecker_aspect).
 void draw_colorchecker(ChartCanvas& canvas, Point corner, double width);

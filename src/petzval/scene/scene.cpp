@@ -160,6 +160,7 @@ Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
       illuminant->back_nm() >= wavelengths_nm.back())
     result.illuminant = petzval::resampled(*illuminant, wavelengths_nm);  // as the radiance of a white is
   result.depth_m = depth_m;
+  result.depth_from = depth_from;
   parallel_for(resampling.bands(), [&](std::size_t index) {
     const std::span<float> out = result.band(static_cast<int>(index));
     std::vector<double> sums(out.size(), 0.0);
@@ -185,6 +186,24 @@ void Scene::validate() const {
                     "be right",
                     *bad, wavelengths_nm_[static_cast<std::size_t>(index)], at / width, at % width));
   }
+  validate_depth();
+}
+
+void Scene::validate_depth() const {
+  if (depth_m.empty()) return;
+  if (is_panorama())
+    throw InputError(
+        "a panorama is at infinity; a depth map belongs to a plane scene (--scene-depth none leaves it out)");
+  if (depth_m.size() != band_size())
+    throw InputError(fmt::format("{} depths for {} x {} samples; one a sample would be right", depth_m.size(),
+                                 columns_, rows_));
+  const auto bad = std::find_if(depth_m.begin(), depth_m.end(), [](float v) { return !(v >= 0); });
+  if (bad == depth_m.end()) return;
+  const auto at = static_cast<std::size_t>(bad - depth_m.begin()), width = static_cast<std::size_t>(columns_);
+  throw InputError(
+      fmt::format("a depth of {} m at row {}, column {}; a positive one, or infinity (0 too stands for "
+                  "\"nothing there\"), would be right",
+                  *bad, at / width, at % width));
 }
 
 }  // namespace petzval

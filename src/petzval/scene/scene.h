@@ -20,6 +20,13 @@ struct PanoramaView {
   double yaw_deg = 0, pitch_deg = 0;
 };
 
+/// Where the depths of a scene count from.
+enum class DepthFrom {
+  sensor,  ///< along the axis, from the sensor plane, as the distances of scenes do
+  pupil,   ///< along the axis, from the viewpoint (the lens's entrance pupil): the depth of a pinhole camera
+  range    ///< along the line of sight, from the viewpoint
+};
+
 /// Spectral radiance [W·m⁻²·sr⁻¹·nm⁻¹] on a plane perpendicular to the optical axis, Lambertian. Samples are
 /// squares, rows from the top, upright as a person at the camera sees it. The angular width w belongs to the
 /// scene: at distance d its width is 2 d tan(w/2), so that the tangent of the object angle is linear in the
@@ -83,15 +90,20 @@ class Scene {
   /// The scene at other wavelengths, its radiance kept (BandResampling). \throws InputError for one outside
   /// the bands.
   Scene resampled(std::span<const double> wavelengths_nm) const;
-  /// \throws InputError at the first NaN, infinity or negative radiance, naming band, row and column.
+  /// \throws InputError at the first NaN, infinity or negative radiance, and the first NaN or negative depth,
+  /// naming band, row and column; for a depth map of another size, or of a panorama.
   void validate() const;
 
   std::string name;
   std::optional<Spectrum>
       illuminant;  ///< spectral irradiance/π [W·m⁻²·sr⁻¹·nm⁻¹] of a perfect white, if known
-  std::vector<float> depth_m;  ///< empty, or rows·columns distances, row-major
+  /// Empty, or rows·columns distances, row-major. Infinity and 0: nothing is there, at any distance.
+  std::vector<float> depth_m;
+  DepthFrom depth_from = DepthFrom::sensor;
 
  private:
+  void validate_depth() const;
+
   int columns_ = 0, rows_ = 0;
   std::vector<double> wavelengths_nm_;
   double horizontal_angle_deg_ = 0;

@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/scene/charts.h>
+#include <petzval/scene/depth_map.h>
 #include <petzval/scene/formats/envi.h>
 #include <petzval/scene/formats/iset_mat.h>
 #include <petzval/scene/formats/name_file.h>
@@ -35,6 +36,7 @@ struct Chart {
   const char* parameter;  // "" if it takes none
   const char* description;
   Scene (*make)(const ChartOptions& options, std::optional<double> parameter);
+  bool deep = false;  // stands at a finite distance, with depth
 };
 
 int whole(double parameter, const char* chart) {
@@ -44,6 +46,8 @@ int whole(double parameter, const char* chart) {
 }
 
 constexpr std::array charts = {
+    Chart{"cards", "", "three cards before a wall with lamps, at four depths",
+          [](const ChartOptions& options, std::optional<double>) { return cards_chart(options); }, true},
     Chart{"checkerboard", "N", "black and white squares, N (16) across",
           [](const ChartOptions& options, std::optional<double> n) {
             return checkerboard_chart(options, whole(n.value_or(16), "checkerboard"));
@@ -58,6 +62,9 @@ constexpr std::array charts = {
           [](const ChartOptions& options, std::optional<double> angle) {
             return slanted_edge_chart(options, angle.value_or(5));
           }},
+    Chart{"slanted-plane", "", "a checkerboard that recedes from left to right, with depth",
+          [](const ChartOptions& options, std::optional<double>) { return slanted_plane_chart(options); },
+          true},
     Chart{"studio", "", "ColorChecker, greys, slanted edges, stars, bars, lettering on a line grid",
           [](const ChartOptions& options, std::optional<double>) { return studio_chart(options); }},
     Chart{"wall", "", "white everywhere",
@@ -128,6 +135,9 @@ Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions
         fmt::format("scene {}: a chart has no encoding; --scene-encoding is for photographs", text));
   refuse_cube_options("scene " + text, options);
   refuse_thermal_options("scene " + text, options);
+  if (chart.deep && options.distance_m && std::isinf(*options.distance_m))
+    throw InputError(fmt::format(
+        "scene {}: its depths are multiples of a finite --scene-distance (1 m unless given)", text));
   Scene scene = chart.make(chart_options(options), parameter);
   scene.name = text;
   return scene;
@@ -259,11 +269,31 @@ Scene read_plane(const std::string& path_or_name, const SceneOptions& options) {
   return read_scene_file(find_scene_file(path_or_name), options);
 }
 
+/// Depth as the options have it.
+Scene with_depth(Scene scene, const SceneOptions& options) {
+  if (options.depth == "none") {
+    scene.depth_m.clear();
+  } else if (!options.depth.empty()) {
+    scene.depth_m = read_depth_file(options.depth, scene.columns(), scene.rows());
+    scene.depth_from = DepthFrom::sensor;
+  }
+  if (scene.depth_m.empty() && (options.depth_scale || options.depth_from))
+    throw InputError(
+        scene.name,
+        "has no depth map; --scene-depth-scale and --scene-depth-from are for scenes that have one");
+  if (options.depth_from) scene.depth_from = *options.depth_from;
+  if (options.depth_scale)
+    for (float& depth : scene.depth_m) depth = static_cast<float>(double(depth) * *options.depth_scale);
+  naming_file(options.depth.empty() || options.depth == "none" ? scene.name : options.depth,
+              [&] { scene.validate(); });
+  return scene;
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
-  if (!options.panorama) return read_plane(path_or_name, options);
+  if (!options.panorama) return with_depth(read_plane(path_or_name, options), options);
   if (options.horizontal_angle_deg)
     throw InputError(path_or_name, "is a panorama, 360 degrees wide; --scene-angle is for plane scenes");
   SceneOptions plane = options;
@@ -272,7 +302,7 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (!plane.distance_m) plane.distance_m = std::numeric_limits<double>::infinity();
   Scene scene = read_plane(path_or_name, plane);
   naming_file(path_or_name, [&] { scene.make_panorama(*options.panorama); });
-  return scene;
+  return with_depth(std::move(scene), options);
 }
 
 bool is_builtin_scene(const std::string& path_or_name) {
@@ -281,6 +311,10 @@ bool is_builtin_scene(const std::string& path_or_name) {
 
 bool is_open_scene(const std::string& path_or_name) {
   return is_builtin_scene(path_or_name) || has_photograph_name(path_or_name);
+}
+
+bool is_deep_chart(const std::string& path_or_name) {
+  return is_builtin_scene(path_or_name) && find_chart(path_or_name)->deep;
 }
 
 std::vector<BuiltinScene> builtin_scenes() {

@@ -26,6 +26,10 @@ struct SceneOptions {
 
   std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
 
+  std::string depth;  ///< a file (read_depth_file); "none": as if the scene had no depth; empty: its own
+  std::optional<double> depth_scale;    ///< times every depth
+  std::optional<DepthFrom> depth_from;  ///< replaces what the file says
+
   // Files of bare numbers only: ENVI, NumPy, spectral OpenEXR (CubeOptions).
   std::optional<SceneQuantity> quantity;  ///< absent: as the file says
   std::string radiance_unit;              ///< empty: the file's, or W·m⁻²·sr⁻¹·nm⁻¹
@@ -53,6 +57,8 @@ std::vector<BuiltinScene> builtin_scenes();
 /// Whether a scene can be taken to be as wide and as far away as is wanted: a chart, or the name of a
 /// photograph.
 bool is_open_scene(const std::string& path_or_name);
+/// Whether it is a chart that has depth.
+bool is_deep_chart(const std::string& path_or_name);
 /// Whether read_scene makes a chart of this name: it is one's name, and no file is called so.
 bool is_builtin_scene(const std::string& path_or_name);
 

@@ -94,6 +94,8 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
               cube.distance_m);
   scene.name = cube.name;
   scene.illuminant = cube.illuminant;
+  scene.depth_m = std::move(cube.depth_m);
+  scene.depth_from = cube.depth_from;
   if (cube.panorama) scene.make_panorama(*cube.panorama);
   if (options.illuminant && (quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature))
     throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");

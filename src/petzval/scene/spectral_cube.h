@@ -31,6 +31,8 @@ struct SpectralCube {
   std::optional<double> horizontal_angle_deg, distance_m;
   std::optional<Spectrum> illuminant;
   std::string name;
+  std::vector<float> depth_m;  ///< as Scene has it
+  DepthFrom depth_from = DepthFrom::sensor;
   std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
 
   std::size_t band_size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }

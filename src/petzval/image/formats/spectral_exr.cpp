@@ -91,6 +91,12 @@ void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralE
   for (std::size_t i = 0; i < bands.size(); ++i)
     buffer.insert(bands[i].channel, Imf::Slice::Make(Imf::FLOAT, exr.plane(i).data(), window, sizeof(float),
                                                      sizeof(float) * static_cast<std::size_t>(exr.width)));
+  if (const Imf::Channel* channel = file.header().channels().findChannel(exr_depth_channel);
+      channel != nullptr && channel->xSampling == 1 && channel->ySampling == 1) {
+    exr.depth.resize(exr.band_size());
+    buffer.insert(exr_depth_channel, Imf::Slice::Make(Imf::FLOAT, exr.depth.data(), window, sizeof(float),
+                                                      sizeof(float) * static_cast<std::size_t>(exr.width)));
+  }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
 }
@@ -127,6 +133,9 @@ void check(const std::string& path, const SpectralExr& exr, std::span<const floa
   if (values.size() != exr.band_size() * exr.wavelengths_nm.size())
     throw InputError(path, fmt::format("{} values for {} x {} pixels in {} bands", values.size(), exr.width,
                                        exr.height, exr.wavelengths_nm.size()));
+  if (!exr.depth.empty() && exr.depth.size() != exr.band_size())
+    throw InputError(path,
+                     fmt::format("{} depths for {} x {} pixels", exr.depth.size(), exr.width, exr.height));
   for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i)
     if (!(exr.wavelengths_nm[i] > 0) || std::isinf(exr.wavelengths_nm[i]) ||
         (i > 0 && exr.wavelengths_nm[i] - exr.wavelengths_nm[i - 1] < same_band_nm))
@@ -155,6 +164,12 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
     auto* plane = reinterpret_cast<char*>(const_cast<float*>(values.data() + i * exr.band_size()));
     buffer.insert(channel, Imf::Slice(Imf::FLOAT, plane, sizeof(float),
                                       sizeof(float) * static_cast<std::size_t>(exr.width)));
+  }
+  if (!exr.depth.empty()) {
+    header.channels().insert(exr_depth_channel, Imf::Channel(Imf::FLOAT));
+    auto* plane = reinterpret_cast<char*>(const_cast<float*>(exr.depth.data()));
+    buffer.insert(exr_depth_channel, Imf::Slice(Imf::FLOAT, plane, sizeof(float),
+                                                sizeof(float) * static_cast<std::size_t>(exr.width)));
   }
   ExrStream stream(output);
   try {

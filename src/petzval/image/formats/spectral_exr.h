@@ -15,6 +15,8 @@ namespace petzval {
 /// Units that Petzval writes in the attribute `emissiveUnits`.
 inline constexpr const char* spectral_radiance_units = "W.m^-2.sr^-1.nm^-1";
 inline constexpr const char* spectral_irradiance_units = "W.m^-2.nm^-1";
+/// Where OpenEXR keeps depth.
+inline constexpr const char* exr_depth_channel = "Z";
 
 /// A spectral image as a file holds it: a scene's radiance, a sensor's irradiance, a texture's reflectance.
 ///
@@ -32,6 +34,7 @@ struct SpectralExr {
   std::vector<double> wavelengths_nm;  ///< strictly increasing
   std::string units;          ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
   std::vector<float> values;  ///< a plane a wavelength, rows from the top
+  std::vector<float> depth;   ///< of the channel Z [as the file has it], a plane; empty: none
   std::map<std::string, std::string> strings;  ///< other attributes of the file that are text
   std::map<std::string, double> numbers;       ///< other attributes that are one number
 

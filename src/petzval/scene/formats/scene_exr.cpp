@@ -4,6 +4,8 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/spectral_exr.h>
+#include <petzval/scene/depth_map.h>
+#include <petzval/scene/formats/name_file.h>
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
@@ -20,6 +22,7 @@ constexpr const char* equirectangular = "equirectangular";
 constexpr const char* yaw_attribute = "sceneYaw_deg";
 constexpr const char* pitch_attribute = "scenePitch_deg";
 constexpr const char* name_attribute = "sceneName";
+constexpr const char* depth_from_attribute = "sceneDepthFrom";
 constexpr const char* illuminant_attribute = "sceneIlluminant";  // "400:0.12 410:0.13": nm, W·m⁻²·sr⁻¹·nm⁻¹
 /// \throws InputError naming the attribute.
 Spectrum spectrum_of(const std::string& text, const std::string& path) {
@@ -47,6 +50,9 @@ SpectralCube read_scene_exr(const std::string& path) {
   const bool light = exr.kind == SpectralExr::Kind::emissive;
   cube.quantity = light ? SceneQuantity::radiance : SceneQuantity::reflectance;
   if (light) cube.radiance_unit = exr.units;
+  cube.depth_m = std::move(exr.depth);
+  if (const auto text = exr.strings.find(depth_from_attribute); text != exr.strings.end())
+    cube.depth_from = naming_file(path, [&] { return parse_depth_from(text->second); });
   cube.horizontal_angle_deg = number(exr, angle_attribute);
   cube.distance_m = number(exr, distance_attribute);
   if (const auto name = exr.strings.find(name_attribute); name != exr.strings.end()) cube.name = name->second;
@@ -77,6 +83,10 @@ void write_scene_exr(const std::string& path, const Scene& scene) {
   if (scene.distance_m()) exr.numbers[distance_attribute] = *scene.distance_m();
   if (!scene.name.empty()) exr.strings[name_attribute] = scene.name;
   if (scene.illuminant) exr.strings[illuminant_attribute] = spectrum_text(*scene.illuminant);
+  if (!scene.depth_m.empty()) {
+    exr.depth = scene.depth_m;
+    exr.strings[depth_from_attribute] = depth_from_word(scene.depth_from);
+  }
   write_spectral_exr(path, exr, scene.values());
 }
 

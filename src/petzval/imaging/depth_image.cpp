@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/band_blur.h>
+#include <petzval/imaging/coverage.h>
+#include <petzval/imaging/depth_image.h>
+#include <petzval/imaging/image_frame.h>
+#include <petzval/imaging/layer_plan.h>
+#include <petzval/imaging/layer_stack.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/sensor/lens_facts.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+
+namespace petzval {
+
+namespace {
+
+/// What a distance is, in words.
+std::string named_distance(std::optional<double> distance_m) {
+  return distance_m ? fmt::format("{:.4g} m", *distance_m) : "infinity";
+}
+
+/// Everything that the layers of one image share.
+class DepthImaging {
+ public:
+  DepthImaging(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
+               const ImagingOptions& options, const DepthOptions& depth, const ProgressCallback& progress,
+               DepthReport& report)
+      : scene_(scene),
+        camera_(camera),
+        options_(options),
+        progress_(progress),
+        report_(report),
+        law_(camera.lens),
+        pixel_um_(sensor.pitch_um),
+        frame_(options.cells_of(sensor)),
+        layers_(lay_depth_layers(scene, camera.lens, law_, sensor.pitch_um, depth)) {
+    report_.layers = layers_.layers;
+    report_.pupil_to_sensor_mm = law_.pupil_to_sensor_mm();
+    if (const auto m = scene.distance_m(); m && *m * mm_per_m <= law_.pupil_to_sensor_mm())
+      throw InputError(
+          fmt::format("the scene is {} m from the sensor, but the entrance pupil {:.4g} m: its "
+                      "angle belongs to no plane in front of the lens",
+                      *m, law_.pupil_to_sensor_mm() / mm_per_m));
+  }
+
+  /// The two ends of the scene, where blur is largest, tell whether the frame is covered.
+  void look_at_ends() {
+    for (const std::size_t layer : {layers_.layers.size() - 1, std::size_t{0}}) {
+      if (ends_.contains(layer)) continue;
+      const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
+      const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm());
+      const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
+      std::vector<std::string> notes;
+      check_coverage(planar.blank(scene_.wavelengths_nm().front()), plans, frame_, options_.surround, notes);
+      if (notes.empty()) note_dark_corners(plans, frame_, notes);
+      for (const std::string& note : notes)
+        says().notes.push_back(
+            fmt::format("layer at {}: {}", named_distance(layers_.layers[layer].distance_m), note));
+      says().scene_points_per_cell = std::max(says().scene_points_per_cell, points_per_cell(plans, frame_));
+    }
+  }
+
+  /// The planes of all bands, in cells.
+  std::vector<CellPlane> planes() {
+    LayerStack stack(frame_, scene_.bands());
+    for (layer_ = 0; layer_ < layers_.layers.size(); ++layer_)
+      if (layers_.layers[layer_].share > 0) add_layer(stack);
+    return std::move(stack).planes();
+  }
+
+ private:
+  ImagingReport& says() { return report_.image; }
+
+  LensDataTable table_of(std::size_t layer) const {
+    return layer_table(camera_, layers_, layer, pixel_um_,
+                       [&](double fraction, const std::string& what) { tell(0.5 * fraction, what); });
+  }
+
+  void add_layer(LayerStack& stack) {
+    const auto end = ends_.extract(layer_);
+    const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_);
+    const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm());
+    const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
+    BandBlur blur(table, options_, says());
+    for (int band = 0; band < scene_.bands(); ++band) {
+      const BandPlan& plan = plans[static_cast<std::size_t>(band)];
+      says().margin_cells = std::max(says().margin_cells, plan.margin);
+      says().least_captured = std::min(says().least_captured, plan.least_captured);
+      add_band(planar, band, plan, blur, stack);
+      tell(0.5 + 0.5 * (band + 1.0) / scene_.bands(), "image");
+    }
+  }
+
+  void add_band(const LayerScene& planar, int band, const BandPlan& plan, BandBlur& blur, LayerStack& stack) {
+    const double wavelength_nm = scene_.wavelengths_nm()[static_cast<std::size_t>(band)];
+    const SensorGeometry grid = grown(frame_, plan.margin);
+    const auto start = std::chrono::steady_clock::now();
+    blur.prepare(wavelength_nm, grid, plan.margin);
+    const auto imaged = [&](const Scene& scene, Surround surround) {
+      const auto start_of_ideal = std::chrono::steady_clock::now();
+      CellPlane ideal = ideal_irradiance(scene, 0, plan.map, grid, says().scene_points_per_cell, surround);
+      says().distortion_seconds += seconds_since(start_of_ideal);
+      return blur(std::move(ideal));
+    };
+    BlurredLayer layer;
+    layer.light = imaged(planar.light(band), options_.surround);
+    if (!planar.is_everything()) {
+      // Darkness around the scene is nothing that could be hidden: it belongs to the farthest layer.
+      layer.white = imaged(planar.white(wavelength_nm), Surround::extend);
+      if (planar.anything_hidden()) layer.unknown = imaged(planar.unknown(wavelength_nm), options_.surround);
+      if (!stack.is_empty(band)) layer.share = imaged(planar.share(wavelength_nm), options_.surround);
+    }
+    stack.add(band, std::move(layer));
+    says().blur_seconds += seconds_since(start);
+  }
+
+  void tell(double fraction, const std::string& what) const {
+    if (progress_) progress_((double(layer_) + fraction) / double(layers_.layers.size()), what);
+  }
+
+  const Scene& scene_;
+  const DepthCamera& camera_;
+  const ImagingOptions& options_;
+  const ProgressCallback& progress_;
+  DepthReport& report_;
+  const DefocusLaw law_;
+  const double pixel_um_;
+  const SensorGeometry frame_;
+  const DepthLayers layers_;
+  std::map<std::size_t, LensDataTable> ends_;  ///< tables of the farthest and the nearest layer
+  std::size_t layer_ = 0;                      ///< at work
+};
+
+}  // namespace
+
+SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
+                               const ImagingOptions& options, const DepthOptions& depth,
+                               const ProgressCallback& progress, DepthReport* report) {
+  DepthReport own;
+  DepthReport& says = report != nullptr ? *report : own;
+  says = {};
+  options.validate();
+  scene.validate();
+  SpectralImage image = blank_image(scene, sensor, options);
+  DepthImaging imaging(scene, camera, sensor, options, depth, progress, says);
+  imaging.look_at_ends();
+  const PixelTaps taps = image_taps(options, says.image);
+  std::vector<CellPlane> planes = imaging.planes();
+  for (int band = 0; band < scene.bands(); ++band) {
+    const CellPlane pixels = gathered(planes[static_cast<std::size_t>(band)], taps);
+    planes[static_cast<std::size_t>(band)] = {};
+    std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
+  }
+  image.lens = lens_facts(camera.lens.name, first_order(camera.lens));
+  note_result(image, options, says.image);
+  return image;
+}
+
+}  // namespace petzval
