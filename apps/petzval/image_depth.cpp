@@ -28,7 +28,9 @@ void check_depth(const Scene& scene, bool used, const DepthOptions& options, con
         "the scene's depth map is not used: a lens data table is made for one distance; --lens would use it");
 }
 
-std::optional<double> depth_focus_m(const Scene& scene, Camera camera) {
+namespace {
+
+std::optional<double> middle_from_sensor_m(const Scene& scene, Camera& camera) {
   const double depth_m = middle_depth_m(scene);
   if (std::isinf(depth_m)) return std::nullopt;
   if (scene.depth_from == DepthFrom::sensor) return depth_m;
@@ -40,6 +42,21 @@ std::optional<double> depth_focus_m(const Scene& scene, Camera camera) {
     camera.focus_at_m(focus_m);
   }
   return focus_m;
+}
+
+}  // namespace
+
+std::optional<double> depth_focus_m(const Scene& scene, Camera camera) {
+  try {
+    const std::optional<double> middle_m = middle_from_sensor_m(scene, camera);
+    camera.focus_at_m(middle_m);
+    return middle_m;
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("the depth in the middle of the picture is {:.4g} m: {} (--focus takes another "
+                    "distance; --scene-depth-scale is for maps in other units than metres)",
+                    middle_depth_m(scene), error.what()));
+  }
 }
 
 double depth_image_height_mm(const Scene& scene, const Lens& lens,

@@ -132,7 +132,7 @@ TEST(DepthImage, WithoutDefocusIsTheSameWhateverTheDepths) {
   fill_depth(scene, [&](double x, double y) { return 1 + 0.01 * std::sin(x / 11 + y / 17); });
   const SpectralImage deep = form_depth_image(scene, camera, frame, edges_go_on(), {5});
   // The blur differs by a hundredth of a pixel, the distortion by less; what is left are the tolerance
-  // of the blur and LayerScene::guess_weight, 1e-3 each.
+  // of the blur and what guesses weigh (LayerScene::guess_weight / 20).
   EXPECT_LT(relative_l2(deep, plane), 2e-3);
 }
 

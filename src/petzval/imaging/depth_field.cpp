@@ -20,7 +20,7 @@ std::vector<BandPlan> plan_ends(const Scene& scene, const DepthCamera& camera, c
   std::vector<BandPlan> plans;
   for (const std::size_t end : {layers.layers.size() - 1, std::size_t{0}}) {
     const LensDataTable table = layer_table(camera, layers, end, sensor.pitch_um);
-    const LayerScene layer(scene, layers, end, law.pupil_to_sensor_mm());
+    const LayerScene layer(scene, layers, end, law.pupil_to_sensor_mm(), sensor.pitch_um);
     for (BandPlan& plan : plan_layer(scene, layer, table, options.cells_of(sensor), options))
       plans.push_back(std::move(plan));
     if (layers.layers.size() == 1) break;

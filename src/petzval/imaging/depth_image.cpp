@@ -54,7 +54,7 @@ class DepthImaging {
     for (const std::size_t layer : {layers_.layers.size() - 1, std::size_t{0}}) {
       if (ends_.contains(layer)) continue;
       const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
-      const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm());
+      const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), pixel_um_);
       const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
       std::vector<std::string> notes;
       check_coverage(planar.blank(scene_.wavelengths_nm().front()), plans, frame_, options_.surround, notes);
@@ -85,7 +85,7 @@ class DepthImaging {
   void add_layer(LayerStack& stack) {
     const auto end = ends_.extract(layer_);
     const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_);
-    const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm());
+    const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), pixel_um_);
     const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
     BandBlur blur(table, options_, says());
     for (int band = 0; band < scene_.bands(); ++band) {

@@ -35,6 +35,12 @@ struct DepthLayers {
   double share(std::size_t sample, std::size_t layer) const {
     return std::max(0.0, 1 - std::abs(double(place[sample]) - double(layer)));
   }
+  /// Of a sample, between those of its layers.
+  double blur_um(std::size_t sample) const {
+    const auto low = static_cast<std::size_t>(place[sample]);
+    const std::size_t high = std::min(low + 1, layers.size() - 1);
+    return std::lerp(layers[low].blur_um, layers[high].blur_um, double(place[sample]) - double(low));
+  }
   /// How much of it lies nearer than the layer, and hides what is there.
   double hiding(std::size_t sample, std::size_t layer) const {
     return std::clamp(double(place[sample]) - double(layer), 0.0, 1.0);

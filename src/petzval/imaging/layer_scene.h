@@ -17,12 +17,17 @@ class LayerScene {
  public:
   /// What may lie behind nearer things counts as much as this against what is seen: where a kernel finds
   /// both, what is seen decides; where it finds nothing else, it is all that there is. The more it counts,
-  /// the less do layers add up to the plane (2e-3 of a texture at 0.1, 1e-3 at 0.05); the less, the more do
+  /// the less do layers add up to the plane (off by a twentieth of it for a texture); the less, the more do
   /// the negative lobes of kernels (3 % of their peak) against it.
-  static constexpr double guess_weight = 0.05;
+  static constexpr double guess_weight = 0.04;
 
-  /// Scene and layers must outlive it.
-  LayerScene(const Scene& scene, const DepthLayers& layers, std::size_t layer, double pupil_to_sensor_mm);
+  /// What is blurred by up to so many pixels more than a layer is taken for the same surface, which goes on
+  /// from it: behind such samples lies more of the same.
+  static constexpr double same_surface_pixels = 2;
+
+  /// Scene and layers must outlive it. \param pixel_um  of the sensor.
+  LayerScene(const Scene& scene, const DepthLayers& layers, std::size_t layer, double pupil_to_sensor_mm,
+             double pixel_um);
 
   std::optional<double> distance_m() const { return layers_.layers[layer_].distance_m; }
   double horizontal_angle_deg() const { return angle_deg_; }
@@ -43,21 +48,18 @@ class LayerScene {
   Scene white(double wavelength_nm) const;
 
  private:
+  void find_behind();
   double weight(std::size_t sample) const { return layers_.share(sample, layer_); }
-  /// How much of the layer may be hidden in a sample: what of it is seen in the nearest sample that is not
-  /// all hidden, itself if it is one.
-  double guess(std::size_t sample) const {
-    if (!anything_hidden()) return 0;
-    const std::size_t like = behind_[sample];
-    return guess_weight * layers_.hiding(sample, layer_) * weight(like) / (1 - layers_.hiding(like, layer_));
-  }
+  /// How much of the layer may be hidden in a sample: what of it is seen in the sample that tells.
+  double guess(std::size_t sample) const;
 
   const Scene& scene_;
   const DepthLayers& layers_;
   std::size_t layer_;
+  double same_surface_um_;
   double angle_deg_;
   bool everything_ = true;
-  std::vector<std::uint32_t> behind_;  ///< of each sample the nearest that is not all hidden
+  std::vector<std::uint32_t> behind_;  ///< of each sample the one that tells what is there: itself if seen
 };
 
 }  // namespace petzval

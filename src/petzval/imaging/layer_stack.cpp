@@ -10,7 +10,7 @@ namespace petzval {
 namespace {
 
 /// What is known of a cell is at least this part of a white world, lest negative lobes of kernels make it
-/// vanish: less than half of what a guess weighs.
+/// vanish: half of what a guess weighs.
 constexpr double least_known = 0.02;
 
 }  // namespace
