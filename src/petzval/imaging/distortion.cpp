@@ -83,7 +83,7 @@ SceneMap::SceneMap(const LightProfile& lens, std::optional<double> object_to_sen
 SceneMap::Surroundings SceneMap::around(double x_mm, double y_mm) const {
   const double square = std::min(x_mm * x_mm + y_mm * y_mm, last_height_squared_);
   const auto k = static_cast<std::size_t>(square * steps_per_square_);
-  const Step& step = steps_[k];
+  const SceneMapStep& step = steps_[k];
   const double further = steps_per_square_ > 0 ? square - double(k) / steps_per_square_ : 0;
   return {middle_column_,
           middle_row_,
@@ -119,9 +119,10 @@ SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid) {
 namespace {
 
 /// Takes the scene at several points of each cell. \param seen  radiance at the place of a point, given the
-/// place of its cell's centre.
-template <typename Seen>
-CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, const Seen& seen) {
+/// place of its cell's centre. \param quick  (row, from, irradiance) ↦ the first cell that it leaves to do.
+template <typename Seen, typename Quick>
+CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, const Seen& seen,
+                   const Quick& quick) {
   CellPlane plane(grid);
   const double pitch_mm = grid.pitch_um * mm_per_um;
   constexpr double rounding = 1e-6;
@@ -131,7 +132,11 @@ CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, c
       offsets_mm[static_cast<std::size_t>(count)].push_back(((part + 0.5) / count - 0.5) * pitch_mm);
   parallel_for(plane.rows(), [&](std::size_t row) {
     const double y_mm = grid.y_mm(double(row) + 0.5);
-    for (std::size_t column = 0; column < plane.columns(); ++column) {
+    const std::size_t slow_at_once = sampled_at_once();
+    for (std::size_t column = 0, slow = 0; column < plane.columns(); ++column) {
+      if (slow == 0) column = quick(row, column, plane.row(row));
+      if (column == plane.columns()) break;
+      slow = (slow + 1) % slow_at_once;
       const double x_mm = grid.x_mm(double(column) + 0.5);
       const SceneMap::Surroundings near = map.around(x_mm, y_mm);
       const auto radiance = seen(near.place(x_mm, y_mm));
@@ -156,25 +161,34 @@ CellPlane ideal_of_plane(const Scene& scene, int band, const SceneMap& map, cons
   const std::span<const float> radiance = scene.band(band);
   // From a cell's centre to its farthest point, in samples, and one more for the bilinear neighbours.
   const double room = map.finest_samples_per_mm() * grid.pitch_um * mm_per_um + 1.5;
-  return averaged(map, grid, parts, [&](const SceneMap::Place& centre) {
+  const PlaneView view = map.view_of(scene, band, room);
+  const auto quick = [&](std::size_t row, std::size_t from, float* irradiance) {
+    if (parts > 1) return from;
+    const CellRow cells{grid.x_mm(0.5), grid.pitch_um * mm_per_um, grid.y_mm(double(row) + 0.5),
+                        static_cast<std::size_t>(grid.columns)};
+    return sample_row(view, cells, from, irradiance);
+  };
+  const auto seen = [&](const SceneMap::Place& centre) {
     const bool inside = centre.column > room && centre.column < scene.columns() - room && centre.row > room &&
                         centre.row < scene.rows() - room;
     return [&, inside](const SceneMap::Place& place) {
       return inside ? radiance_inside(radiance.data(), scene.columns(), place.column, place.row)
                     : radiance_at(radiance, scene, place.column, place.row, surround);
     };
-  });
+  };
+  return averaged(map, grid, parts, seen, quick);
 }
 
 CellPlane ideal_of_panorama(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
                             int parts) {
   const PanoramaBand panorama(scene, band);
   const double middle_column = scene.columns() / 2.0, middle_row = scene.rows() / 2.0;
-  return averaged(map, grid, parts, [&](const SceneMap::Place&) {
+  const auto seen = [&](const SceneMap::Place&) {
     return [&](const SceneMap::Place& place) {
       return panorama.radiance(place.column - middle_column, place.row - middle_row);
     };
-  });
+  };
+  return averaged(map, grid, parts, seen, [](std::size_t, std::size_t from, float*) { return from; });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/light_centre.h>
+#include <petzval/imaging/plane_sampling.h>
 #include <petzval/scene/scene.h>
 
 #include <algorithm>
@@ -62,6 +63,16 @@ class SceneMap {
     }
   };
   Surroundings around(double x_mm, double y_mm) const;
+  /// For sample_row(): a band of a scene seen through this map.
+  PlaneView view_of(const Scene& scene, int band, double room) const {
+    return {steps_.data(),
+            steps_per_square_,
+            last_height_squared_,
+            scene.band(band).data(),
+            double(scene.columns()),
+            double(scene.rows()),
+            room};
+  }
   /// Beyond it every place is dark.
   double last_height_mm() const { return last_height_mm_; }
   /// The most samples of the scene that a millimetre of the image spans, radially or tangentially.
@@ -71,11 +82,7 @@ class SceneMap {
   double middle_column_, middle_row_;
   double last_height_mm_, last_height_squared_, steps_per_square_;
   double finest_samples_per_mm_ = 0;
-  /// At one step, and per mm² from there to the next.
-  struct Step {
-    double samples_per_mm, g_source_sr, samples_slope = 0, g_source_slope = 0;
-  };
-  std::vector<Step> steps_;
+  std::vector<SceneMapStep> steps_;
 };
 
 /// How far a grid of cells sees from the axis [samples of the scene]: to left and right, up and down, to the
