@@ -21,6 +21,9 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
     const ProductPlan& plan = report.product;
     const std::string error = fmt::format("estimated error {:.1e} of {:g}; {} interpolated",
                                           plan.estimated_error, options.product.tolerance, between);
+    if (plan.direct)
+      return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,
+                         plan.tile, error);
     if (plan.transform == 0) return fmt::format("blended sections of {0} x {0} cells, {1}", plan.tile, error);
     return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, transforms of {2} x {2}, {3}",
                        plan.nodes, plan.tile, plan.transform, error);

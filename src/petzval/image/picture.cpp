@@ -94,6 +94,9 @@ void encode_row(std::span<const LinearRgb> pixels, int bits, std::span<std::uint
   }
 }
 
+/// Rows whose memory is kept before that of all is given back.
+constexpr std::size_t rows_kept = 64;
+
 PngLayout layout_of(const SpectralImage& image, const PictureRenderer& renderer, int bits) {
   if (bits != 8 && bits != 16)
     throw InputError(fmt::format("a picture of {} bits; it can have 8 or 16", bits));
@@ -127,6 +130,7 @@ PictureRenderer::PictureRenderer(const SpectralImage& image, const PictureOption
   std::vector<float> levels(image.band_size());
   parallel_for(static_cast<std::size_t>(image.rows()), [&](std::size_t row) {
     level_row(static_cast<int>(row), std::span<float>(levels).subspan(row * columns, columns));
+    if (row % rows_kept == 0) image.release_memory();
   });
   white_level_ = level_for(options, std::move(levels));
 }
@@ -208,6 +212,7 @@ std::string write_picture(const std::string& path, const SpectralImage& image, c
   write_png(path, layout_of(image, renderer, bits), [&](int row, std::span<std::uint16_t> samples) {
     renderer.linear_row(row, pixels);
     encode_row(pixels, bits, samples);
+    if (static_cast<std::size_t>(row) % rows_kept == 0) image.release_memory();
   });
   return renderer.description();
 }

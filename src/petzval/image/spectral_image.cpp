@@ -40,15 +40,15 @@ SpectralImage::SpectralImage(int columns, int rows, std::vector<double> waveleng
   if (wavelengths_nm_.size() > max_values / band_size())
     throw InputError(fmt::format("an image of {} x {} pixels and {} bands is more than {} values", columns,
                                  rows, wavelengths_nm_.size(), max_values));
-  values_.assign(band_size() * wavelengths_nm_.size(), 0.0f);
+  values_ = LargeFloats(band_size() * wavelengths_nm_.size());
 }
 
 std::span<float> SpectralImage::band(int index) {
-  return std::span<float>(values_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+  return values_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
 std::span<const float> SpectralImage::band(int index) const {
-  return std::span<const float>(values_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+  return values_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
 float& SpectralImage::at(int band_index, int row, int column) {
@@ -62,14 +62,19 @@ float SpectralImage::at(int band_index, int row, int column) const {
 }
 
 void SpectralImage::validate() const {
-  const auto bad =
-      std::find_if(values_.begin(), values_.end(), [](float value) { return !std::isfinite(value); });
-  if (bad == values_.end()) return;
-  const auto index = static_cast<std::size_t>(bad - values_.begin());
-  const std::size_t in_band = index % band_size(), columns = static_cast<std::size_t>(columns_);
-  throw InputError(fmt::format("the irradiance at {} nm, row {}, column {} is {}; it must be finite",
-                               wavelengths_nm_[index / band_size()], in_band / columns, in_band % columns,
-                               *bad));
+  const auto columns = static_cast<std::size_t>(columns_);
+  for (int index = 0; index < bands(); ++index) {
+    const std::span<const float> values = band(index);
+    const auto bad =
+        std::find_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); });
+    if (bad != values.end()) {
+      const auto at = static_cast<std::size_t>(bad - values.begin());
+      throw InputError(fmt::format("the irradiance at {} nm, row {}, column {} is {}; it must be finite",
+                                   wavelengths_nm_[static_cast<std::size_t>(index)], at / columns,
+                                   at % columns, *bad));
+    }
+    release_memory();
+  }
 }
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 // The waist of the program: everything above makes a SpectralImage, everything below reads it.
 #pragma once
 
+#include <petzval/base/large_floats.h>
 #include <petzval/colour/spectrum.h>
 
 #include <cstddef>
@@ -53,7 +54,10 @@ class SpectralImage {
   float& at(int band_index, int row, int column);
   float at(int band_index, int row, int column) const;
   /// All planes, one after the other.
-  std::span<const float> values() const { return values_; }
+  std::span<const float> values() const { return values_.all(); }
+  /// Between bands or rows of a large image, whose values are kept in a file (LargeFloats): gives back the
+  /// memory that those seen so far take.
+  void release_memory() const { values_.release_memory(); }
 
   /// \throws InputError at the first value that is NaN or infinite, naming band, row and column. (A transform
   /// may leave −1e-9 where there is no light: negative values are no fault.)
@@ -72,7 +76,7 @@ class SpectralImage {
   std::vector<double> wavelengths_nm_;
   double pitch_um_ = 0;
   PixelAperture aperture_ = PixelAperture::box;
-  std::vector<float> values_;
+  LargeFloats values_;
 };
 
 }  // namespace petzval

@@ -102,6 +102,8 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
 
     const CellPlane pixels = gathered(blurred, taps);
     std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
+    image.release_memory();
+    scene.release_memory();
     says.margin_cells = std::max(says.margin_cells, plan.margin);
     says.least_captured = std::min(says.least_captured, plan.least_captured);
     if (progress) progress((band + 1.0) / scene.bands(), "image");

@@ -3,6 +3,7 @@
 #include <petzval/imaging/image_frame.h>
 
 #include <algorithm>
+#include <span>
 
 namespace petzval {
 
@@ -34,9 +35,14 @@ PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report) {
 }
 
 void note_result(const SpectralImage& image, const ImagingOptions& options, ImagingReport& report) {
-  const auto [darkest, brightest] = std::minmax_element(image.values().begin(), image.values().end());
-  report.darkest = *darkest;
-  report.brightest = *brightest;
+  report.darkest = report.brightest = double(image.band(0)[0]);
+  for (int band = 0; band < image.bands(); ++band) {
+    const std::span<const float> values = image.band(band);
+    const auto [darkest, brightest] = std::minmax_element(values.begin(), values.end());
+    report.darkest = std::min(report.darkest, double(*darkest));
+    report.brightest = std::max(report.brightest, double(*brightest));
+    image.release_memory();
+  }
   constexpr double worth_a_note = 1e-4;  // well above the rounding of the transforms
   if (report.darkest < -worth_a_note * report.brightest)
     report.notes.push_back(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/imaging/node_kernel.h>
 #include <petzval/imaging/product_blur.h>
 
 #include <algorithm>
@@ -144,13 +145,8 @@ ProductBlur::ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const
   batches_ = (tile_lanes() + lanes - 1) / lanes;
   // The last batch reads one node row and one node beyond its lanes.
   nodes_padded_ = (batches_ * lanes + lanes_per_row() + 1 + lanes - 1) / lanes * lanes;
-  const auto tile = static_cast<std::size_t>(plan.tile);
-  weights_.resize(nodes_.size() * tile);
-  for (std::size_t cell = 0; cell < tile; ++cell) {
-    const std::vector<double> weights = lagrange_weights(nodes_, double(cell) / plan.tile);
-    for (std::size_t a = 0; a < nodes_.size(); ++a)
-      weights_[a * tile + cell] = static_cast<float>(weights[a]);
-  }
+  const std::vector<float> weights = cell_weights(nodes_, plan.tile);
+  weights_.assign(weights.begin(), weights.end());
   sets_.resize(psfs.mirror_symmetric() ? 1 : 2);
   for (std::size_t set = 0; set < sets_.size(); ++set) make_kernels(psfs, set == 1, sets_[set]);
 }
@@ -158,16 +154,6 @@ ProductBlur::ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const
 std::size_t ProductBlur::phase_floats() const {
   const auto side = static_cast<std::size_t>(plan_.transform);
   return side * side * 2 * nodes_padded_;
-}
-
-Kernel ProductBlur::kernel_at_node(const PsfField& psfs, double column, double row, bool mirrored) const {
-  const double cell_mm = psfs.cell_um() * 1e-3;
-  const double x_mm = across_.position(column) * cell_mm, y_mm = down_.position(row) * cell_mm;
-  Kernel kernel = psfs.kernel_at(mirrored ? x_mm : -x_mm, y_mm);  // columns run along −x'
-  if (mirrored)
-    for (int i = -radius_; i <= radius_; ++i)
-      for (int j = 1; j <= radius_; ++j) std::swap(kernel.at(i, j), kernel.at(i, -j));
-  return kernel;
 }
 
 void ProductBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const {
@@ -186,8 +172,9 @@ void ProductBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& s
       // Behind the last tile only the node that it shares with the next one is wanted.
       if (down > rows || (down == rows && phase_down > 0) || (across == columns && phase_across > 0))
         continue;
-      const Kernel kernel = kernel_at_node(psfs, plan_.tile * (double(across) + nodes_[phase_across]),
-                                           plan_.tile * (double(down) + nodes_[phase_down]), mirrored);
+      const Kernel kernel =
+          kernel_at_node(psfs, across_, down_, plan_.tile * (double(across) + nodes_[phase_across]),
+                         plan_.tile * (double(down) + nodes_[phase_down]), mirrored);
       for (std::size_t i = 0; i < kernel.weights.size(); ++i)
         kernels[i * lanes + lane] = static_cast<float>(scale * kernel.weights[i]);
     }

@@ -52,7 +52,6 @@ class ProductBlur {
   std::size_t tile_lanes() const { return lanes_per_row() * static_cast<std::size_t>(tiles_down_); }
   std::size_t phase_floats() const;
   void make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const;
-  Kernel kernel_at_node(const PsfField& psfs, double column, double row, bool mirrored) const;
   std::vector<const float*> otfs_of(const KernelSet& set, std::size_t first_lane) const;
 
   ProductPlan plan_;

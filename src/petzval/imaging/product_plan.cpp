@@ -47,13 +47,44 @@ double squared_error(const Kernel& exact, int at, int tile, const std::vector<do
   return sum;
 }
 
+/// Measured on one core of an AVX-512 machine with bench/imaging [ns].
+constexpr double deposit_ns = 2.5;      // per sample of a table's PSF and cell of a kernel
+constexpr double transform_ns = 0.042;  // of a lane, per element and halving of a transform along a line
+
+/// Kernels that a layout needs, and what one costs without its transform.
+double kernel_count(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
+  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(plan.tile)),
+               down = std::ceil(OutwardAxis(grid.rows).count() / double(plan.tile));
+  const double sets = psfs.mirror_symmetric() ? 1 : 2;
+  return sets * ((plan.nodes - 1) * across + 1) * ((plan.nodes - 1) * down + 1);
+}
+double kernel_ns(const PsfField& psfs) {
+  const double size = 2.0 * psfs.radius() + 1;
+  return deposit_ns * (psfs.deposited_samples() + size * size);
+}
+
+/// Gathered sums that might do, and what they would cost.
+ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
+  constexpr double product_ns = 0.016;  // per product
+  constexpr double mix_ns = 0.05;       // per weight of a kernel that goes into a mixture
+  constexpr double add_ns = 0.5;        // per cell that light is added to
+  ProductPlan plan;
+  plan.tile = tile;
+  plan.nodes = nodes;
+  plan.direct = true;
+  const double taps = 2.0 * psfs.radius() + 1, extent = tile + 2.0 * psfs.radius();
+  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(tile));
+  const double per_row_and_tile =
+      extent * (nodes * taps * taps * product_ns + add_ns) + double(nodes) * nodes * taps * taps * mix_ns;
+  plan.filter_ns = 2 * across * grid.rows * per_row_and_tile;
+  plan.kernels_ns = kernel_count(psfs, grid, plan) * kernel_ns(psfs);
+  return plan;
+}
+
 /// A layout that might do, and what it would cost.
 ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int transform, int tile, int nodes) {
-  // Measured on one core of an AVX-512 machine with bench/imaging: nanoseconds of a lane.
-  constexpr double transform_ns = 0.042;  // per element and halving of a transform along a line
-  constexpr double filter_ns = 0.12;      // per element of a spectrum and kernel
-  constexpr double move_ns = 1.0;         // per cell that is read, and per cell that is added to the result
-  constexpr double deposit_ns = 2.5;      // per sample of a table's PSF and cell of a kernel
+  constexpr double filter_ns = 0.12;  // of a lane, per element of a spectrum and kernel
+  constexpr double move_ns = 1.0;     // per cell that is read, and per cell that is added to the result
   ProductPlan plan;
   plan.tile = tile;
   plan.nodes = nodes;
@@ -67,10 +98,8 @@ ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int tran
                           double(nodes) * nodes * transform * transform * filter_ns +
                           2 * move_ns * (double(tile) * tile + extent * extent);
   plan.filter_ns = 2 * batches * lanes * per_pair;
-  const double sets = psfs.mirror_symmetric() ? 1 : 2;
-  const double kernels = sets * ((nodes - 1) * across + 1) * ((nodes - 1) * down + 1);
-  plan.kernels_ns = kernels * (deposit_ns * (psfs.deposited_samples() + double(transform) * transform) +
-                               2.0 * transform * transform * std::log2(transform) * transform_ns);
+  plan.kernels_ns = kernel_count(psfs, grid, plan) *
+                    (kernel_ns(psfs) + 2.0 * transform * transform * std::log2(transform) * transform_ns);
   return plan;
 }
 
@@ -78,25 +107,40 @@ double otf_bytes(const PsfField& psfs, const SensorGeometry& grid, const Product
   const double across = OutwardAxis(grid.columns).count() / double(plan.tile) + 2,
                down = OutwardAxis(grid.rows).count() / double(plan.tile) + 2;
   const double phases = double(plan.nodes - 1) * (plan.nodes - 1), sets = psfs.mirror_symmetric() ? 1 : 2;
+  if (plan.direct) {
+    const double taps = 2.0 * psfs.radius() + 1;
+    return kernel_count(psfs, grid, plan) * taps * taps * 4;
+  }
   return sets * phases * (across * down + double(lane_count())) * plan.transform * plan.transform * 8;
+}
+
+/// Calls use(tile, nodes) for the layouts whose tiles fit into some room.
+template <typename Use>
+void each_layout(int room, const ProductOptions& options, const Use& use) {
+  std::vector<int> tiles;
+  if (options.tile != 0)
+    tiles = {options.tile};
+  else
+    for (int tile = room; tile >= 2; tile = tile * 2 / 3) tiles.push_back(tile);
+  for (const int tile : tiles)
+    for (int nodes = 2; nodes <= most_nodes; ++nodes)
+      if (tile <= room && nodes <= tile + 1 && (options.nodes == 0 || nodes == options.nodes))
+        use(tile, nodes);
 }
 
 std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& grid,
                                     const ProductOptions& options) {
+  constexpr int most_direct_radius = 16;  // far beyond where transforms have won
   std::vector<ProductPlan> plans;
   const int widest = std::max(OutwardAxis(grid.columns).count(), OutwardAxis(grid.rows).count());
-  for (int transform = LaneTransform::smallest; transform <= LaneTransform::largest; transform *= 2) {
-    const int room = std::min(transform - 2 * psfs.radius(), widest);
-    std::vector<int> tiles;
-    if (options.tile != 0)
-      tiles = {options.tile};
-    else
-      for (int tile = room; tile >= 2; tile = tile * 2 / 3) tiles.push_back(tile);
-    for (const int tile : tiles)
-      for (int nodes = 2; nodes <= most_nodes; ++nodes)
-        if (tile <= room && nodes <= tile + 1 && (options.nodes == 0 || nodes == options.nodes))
-          plans.push_back(candidate(psfs, grid, transform, tile, nodes));
-  }
+  if (options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
+    each_layout(std::min(LaneTransform::largest, widest), options,
+                [&](int tile, int nodes) { plans.push_back(direct_candidate(psfs, grid, tile, nodes)); });
+  for (int transform = LaneTransform::smallest; transform <= LaneTransform::largest; transform *= 2)
+    if (!options.direct.value_or(false))
+      each_layout(std::min(transform - 2 * psfs.radius(), widest), options, [&](int tile, int nodes) {
+        plans.push_back(candidate(psfs, grid, transform, tile, nodes));
+      });
   std::erase_if(plans, [&](const ProductPlan& plan) { return otf_bytes(psfs, grid, plan) > most_otf_bytes; });
   std::sort(plans.begin(), plans.end(), [](const ProductPlan& a, const ProductPlan& b) {
     return a.filter_ns + a.kernels_ns < b.filter_ns + b.kernels_ns;
@@ -146,8 +190,9 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
     plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes);
     return plan.estimated_error <= caution * options.tolerance || (options.tile != 0 && options.nodes != 0);
   };
-  if (hint && hint->tile + 2 * psfs.radius() <= hint->transform) {
-    ProductPlan plan = candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
+  if (hint && (hint->direct || hint->tile + 2 * psfs.radius() <= hint->transform)) {
+    ProductPlan plan = hint->direct ? direct_candidate(psfs, grid, hint->tile, hint->nodes)
+                                    : candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
     if (serves(plan)) return plan;
   }
   std::vector<ProductPlan> failed;

@@ -11,9 +11,10 @@ namespace petzval {
 
 /// Tiles, nodes and transforms of a product convolution.
 struct ProductPlan {
-  int tile = 0;       ///< cells along a side
-  int nodes = 2;      ///< along a side of a tile
-  int transform = 0;  ///< cells along a side; tile + 2 · kernel radius fit into it
+  int tile = 0;         ///< cells along a side
+  int nodes = 2;        ///< along a side of a tile
+  bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
+  int transform = 0;    ///< cells along a side; tile + 2 · kernel radius fit into it
   /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
@@ -24,9 +25,10 @@ struct ProductPlan {
 };
 
 struct ProductOptions {
-  double tolerance = 1e-3;  ///< relative L2 error, 1e-6 to 1
-  int nodes = 0;            ///< along a side of a tile, 2 to 6; 0: chosen
-  int tile = 0;             ///< cells along a side; 0: chosen
+  double tolerance = 1e-3;          ///< relative L2 error, 1e-6 to 1
+  int nodes = 0;                    ///< along a side of a tile, 2 to 6; 0: chosen
+  int tile = 0;                     ///< cells along a side; 0: chosen
+  std::optional<bool> direct = {};  ///< gathered or by transforms; absent: as the cost model says
 
   /// \throws InputError saying what would be right.
   void validate() const;

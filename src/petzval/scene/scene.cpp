@@ -62,15 +62,15 @@ Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double h
 
   set_horizontal_angle_deg(horizontal_angle_deg);
   set_distance_m(distance_m);
-  radiance_.resize(band_size() * wavelengths_nm_.size());
+  radiance_ = LargeFloats(band_size() * wavelengths_nm_.size());
 }
 
 std::span<float> Scene::band(int index) {
-  return std::span(radiance_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+  return radiance_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
 std::span<const float> Scene::band(int index) const {
-  return std::span(radiance_).subspan(static_cast<std::size_t>(index) * band_size(), band_size());
+  return radiance_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
 void Scene::make_panorama(PanoramaView view) {
@@ -117,6 +117,7 @@ std::vector<double> Scene::mean_radiance() const {
   for (int index = 0; index < bands(); ++index) {
     double sum = 0;
     for (float value : band(index)) sum += value;
+    release_memory();
     means.push_back(sum / static_cast<double>(band_size()));
   }
   return means;
@@ -144,7 +145,10 @@ void Scene::set_mean_luminance_cd_m2(double luminance) {
 void Scene::scale(double factor) {
   if (!(factor > 0 && std::isfinite(factor)))
     throw InputError(fmt::format("radiance times {}: a positive factor would be right", factor));
-  for (float& value : radiance_) value = static_cast<float>(value * factor);
+  for (int index = 0; index < bands(); ++index) {
+    for (float& value : band(index)) value = static_cast<float>(value * factor);
+    release_memory();
+  }
   if (illuminant) illuminant = illuminant->scaled(factor);
 }
 
@@ -178,7 +182,10 @@ void Scene::validate() const {
     const std::span<const float> values = band(index);
     const auto bad =
         std::find_if(values.begin(), values.end(), [](float v) { return !(v >= 0 && std::isfinite(v)); });
-    if (bad == values.end()) continue;
+    if (bad == values.end()) {
+      release_memory();
+      continue;
+    }
     const std::size_t at = static_cast<std::size_t>(bad - values.begin());
     const std::size_t width = static_cast<std::size_t>(columns_);
     throw InputError(

@@ -2,6 +2,7 @@
 // A planar spectral scene: what the camera is pointed at.
 #pragma once
 
+#include <petzval/base/large_floats.h>
 #include <petzval/colour/spectrum.h>
 
 #include <cstddef>
@@ -56,7 +57,9 @@ class Scene {
   std::span<float> band(int index);
   std::span<const float> band(int index) const;
   /// All bands, one after the other.
-  std::span<const float> values() const { return radiance_; }
+  std::span<const float> values() const { return radiance_.all(); }
+  /// Between bands or rows of a large scene: as SpectralImage::release_memory().
+  void release_memory() const { radiance_.release_memory(); }
 
   /// Makes a panorama of the samples. \throws InputError unless there are twice as many columns as rows, at
   /// infinity, and the view is finite.
@@ -109,7 +112,7 @@ class Scene {
   double horizontal_angle_deg_ = 0;
   std::optional<double> distance_m_;
   std::optional<PanoramaView> view_;  ///< of a panorama
-  std::vector<float> radiance_;
+  LargeFloats radiance_;
 };
 
 }  // namespace petzval

@@ -90,6 +90,9 @@ std::vector<RowWeights> weights_by_row(const SpectralImage& image, const Sensor&
   return rows;
 }
 
+/// Rows whose memory is kept before that of all is given back.
+constexpr std::size_t rows_kept = 64;
+
 void add_up_row(const SpectralImage& image, const RowWeights& weights, std::size_t row,
                 std::span<float> current) {
   const auto columns = static_cast<std::size_t>(image.columns());
@@ -239,6 +242,7 @@ PhotoCurrent photo_current(const SpectralImage& image, const Sensor& sensor,
   parallel_for(static_cast<std::size_t>(image.rows()), [&](std::size_t row) {
     add_up_row(image, weights[row % weights.size()], row,
                std::span(current.e_per_s).subspan(row * columns, columns));
+    if (row % rows_kept == 0) image.release_memory();
   });
   if (electronics.microlens && options.microlens)
     apply_microlens(current, sensor, exit_pupil_mm(image, options));

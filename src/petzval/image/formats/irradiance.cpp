@@ -94,7 +94,8 @@ std::optional<Spectrum> illuminant_of(const SpectralExr& exr, const std::string&
 
 void write_irradiance(const std::string& path, const SpectralImage& image) {
   const std::string extension = extension_of(path);
-  if (extension == ".exr") return write_spectral_exr(path, description_of(image), image.values());
+  if (extension == ".exr")
+    return write_spectral_exr(path, description_of(image), image.values(), [&] { image.release_memory(); });
   if (extension == ".npy") return write_npy(path, image);
   throw InputError(path, "irradiance is written as .exr or .npy");
 }

@@ -234,6 +234,8 @@ void write_npy(const std::string& path, const SpectralImage& image) {
       for (std::size_t column = 0; column < columns; ++column) line[column * bands + band] = source[column];
     }
     file.write(line.data(), line.size() * sizeof(float));
+    constexpr std::size_t rows_kept = 64;
+    if (row % rows_kept == 0) image.release_memory();
   }
   file.commit();
 }

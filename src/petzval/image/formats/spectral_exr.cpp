@@ -154,7 +154,8 @@ Imf::Header header_of(const SpectralExr& exr) {
   return header;
 }
 
-void write(OutputFile& output, const SpectralExr& exr, std::span<const float> values) {
+void write(OutputFile& output, const SpectralExr& exr, std::span<const float> values,
+           const std::function<void()>& after_rows) {
   Imf::Header header = header_of(exr);
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i) {
@@ -175,7 +176,11 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
   try {
     Imf::OutputFile file(stream, header, compression_threads());
     file.setFrameBuffer(buffer);
-    file.writePixels(exr.height);
+    constexpr int rows_at_a_time = 256;  // whole blocks of ZIP, which are 16 rows
+    for (int row = 0; row < exr.height; row += rows_at_a_time) {
+      file.writePixels(std::min(rows_at_a_time, exr.height - row));
+      if (after_rows) after_rows();
+    }
   } catch (...) {
     stream.rethrow();
     throw;
@@ -210,14 +215,15 @@ SpectralExr read_spectral_exr(const std::string& path) {
 }
 
 void write_spectral_exr(const std::string& path, const SpectralExr& exr) {
-  write_spectral_exr(path, exr, exr.values);
+  write_spectral_exr(path, exr, exr.values, {});
 }
 
-void write_spectral_exr(const std::string& path, const SpectralExr& exr, std::span<const float> values) {
+void write_spectral_exr(const std::string& path, const SpectralExr& exr, std::span<const float> values,
+                        const std::function<void()>& after_rows) {
   check(path, exr, values);
   OutputFile output(path);
   try {
-    write(output, exr, values);
+    write(output, exr, values, after_rows);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 #include <petzval/image/formats/spectral_channel.h>
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -61,7 +62,8 @@ SpectralExr read_spectral_exr(const std::string& path);
 /// \throws InputError unless the sizes agree and the wavelengths increase, and as WholeFile; Failure.
 void write_spectral_exr(const std::string& path, const SpectralExr& exr);
 /// The same with the values taken from elsewhere, without a copy; `description.values` is not looked at.
+/// \param after_rows  called now and then between rows, as values are read.
 void write_spectral_exr(const std::string& path, const SpectralExr& description,
-                        std::span<const float> values);
+                        std::span<const float> values, const std::function<void()>& after_rows = {});
 
 }  // namespace petzval

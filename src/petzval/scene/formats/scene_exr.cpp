@@ -87,7 +87,7 @@ void write_scene_exr(const std::string& path, const Scene& scene) {
     exr.depth = scene.depth_m;
     exr.strings[depth_from_attribute] = depth_from_word(scene.depth_from);
   }
-  write_spectral_exr(path, exr, scene.values());
+  write_spectral_exr(path, exr, scene.values(), [&] { scene.release_memory(); });
 }
 
 }  // namespace petzval
