@@ -250,4 +250,28 @@ void layout(benchmark::State& state) {
 }
 BENCHMARK(layout)->ArgsProduct({{16, 32, 64, 128, 256}, {2, 3, 4}})->Unit(benchmark::kMillisecond);
 
+/// PSFs of few pixels at 1e-3: gathered (1) or by transforms (0), filtering alone, and what the model says.
+void small_psfs_768x576(benchmark::State& state) {
+  const ThreadLimit one_thread(1);
+  const double pitch_um = 6.25;
+  const LensDataTable table = wide_table({550}, double(state.range(0)), pitch_um, 3);
+  const PsfField psfs(table, 550, pitch_um);
+  const CellPlane source = texture(grown({768, 576, pitch_um}, psfs.radius()));
+  ProductOptions options;
+  options.direct = state.range(1) != 0;
+  const auto plan = plan_product(psfs, source.grid, options);
+  if (!plan) return state.SkipWithError("no plan");
+  const double start = cpu_seconds();
+  const ProductBlur blur(psfs, source.grid, *plan);
+  state.counters["kernels_ms"] = 1e3 * (cpu_seconds() - start);
+  for (auto _ : state) benchmark::DoNotOptimize(blur.blur(source, psfs.radius()));
+  state.counters["radius"] = psfs.radius();
+  state.counters["nodes"] = plan->nodes;
+  state.counters["tile"] = plan->tile;
+  state.counters["transform"] = plan->transform;
+  state.counters["model_ms"] = plan->filter_ns * 1e-6;
+  state.counters["kernels_model_ms"] = plan->kernels_ns * 1e-6;
+}
+BENCHMARK(small_psfs_768x576)->ArgsProduct({{2, 4, 8, 12, 16, 24}, {0, 1}})->Unit(benchmark::kMillisecond);
+
 }  // namespace

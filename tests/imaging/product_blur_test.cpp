@@ -59,6 +59,10 @@ TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
                                                  {200, 2, 256}})
       EXPECT_LT(relative_l2(blurred(psfs, source, 0, {tile, nodes, transform}), expected), 5e-7)
           << grid.columns << " x " << grid.rows << " in tiles of " << tile << ", " << nodes << " nodes";
+    for (const auto& [tile, nodes] : {std::pair{2, 2}, {8, 2}, {16, 3}, {50, 4}, {200, 2}})
+      EXPECT_LT(relative_l2(blurred(psfs, source, 0, {tile, nodes, 0, true}), expected), 5e-7)
+          << grid.columns << " x " << grid.rows << " gathered in tiles of " << tile << ", " << nodes
+          << " nodes";
   }
 }
 
@@ -70,7 +74,22 @@ TEST_P(ProductAgainstExact, AgreesToRoundingWhenEveryCellIsANode) {
   const PsfField psfs(make_table(comatic_recipe(GetParam())), 550, 25.0);
   for (const SensorGeometry grid : {SensorGeometry{60, 44, 25.0}, {53, 37, 25.0}}) {
     const CellPlane source = random_plane(grid);
-    EXPECT_LT(relative_l2(blurred(psfs, source, 2, {2, 3, 16}), blur_exact(source, psfs, 2)), 5e-7);
+    const CellPlane exact = blur_exact(source, psfs, 2);
+    EXPECT_LT(relative_l2(blurred(psfs, source, 2, {2, 3, 16}), exact), 5e-7);
+    EXPECT_LT(relative_l2(blurred(psfs, source, 2, {2, 3, 0, true}), exact), 5e-7);
+  }
+}
+
+// Two ways to the same sums.
+TEST_P(ProductAgainstExact, GathersWhatTransformsMake) {
+  const PsfField psfs(make_table(comatic_recipe(GetParam())), 550, 12.5);
+  for (const SensorGeometry grid : {SensorGeometry{90, 74, 12.5}, {53, 37, 12.5}}) {
+    const CellPlane source = random_plane(grid);
+    for (const auto& [tile, nodes] : {std::pair{12, 2}, {20, 3}, {14, 5}})
+      EXPECT_LT(relative_l2(blurred(psfs, source, 3, {tile, nodes, 0, true}),
+                            blurred(psfs, source, 3, {tile, nodes, 64})),
+                5e-7)
+          << tile << ", " << nodes;
   }
 }
 

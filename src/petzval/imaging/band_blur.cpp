@@ -12,7 +12,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 void BandBlur::prepare(double wavelength_nm, const SensorGeometry& grid, int margin) {
   product_.reset();  // before the next kernels are made: those of two bands need not be kept at a time
-  direct_.reset();
   sections_.reset();
   margin_ = margin;
   if (options_.method == BlurMethod::none) return;
@@ -24,7 +23,6 @@ void BandBlur::prepare(double wavelength_nm, const SensorGeometry& grid, int mar
 CellPlane BandBlur::operator()(CellPlane source, const ProgressCallback& progress) const {
   if (options_.method == BlurMethod::none) return source;
   if (product_) return product_->blur(source, margin_);
-  if (direct_) return direct_->blur(source, margin_);
   if (sections_) return blur_sections(source, *psfs_, margin_, *sections_, progress);
   return blur_exact(source, *psfs_, margin_, progress);
 }
@@ -41,10 +39,7 @@ void BandBlur::prepare_product(const SensorGeometry& grid) {
   if (report_.product.tile == 0 || plan.estimated_error > report_.product.estimated_error)
     report_.product = plan;
   if (!plan_) return prepare_sections({plan.tile, 0, true});
-  if (plan.direct)
-    direct_.emplace(*psfs_, grid, plan);
-  else
-    product_.emplace(*psfs_, grid, plan);
+  product_.emplace(*psfs_, grid, plan);
   report_.transform_size = std::max(report_.transform_size, plan.transform);
   report_.kernel_seconds += seconds_since(start);
 }

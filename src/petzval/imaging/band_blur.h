@@ -2,7 +2,6 @@
 // The blur of one band after the other, by the method that was asked for.
 #pragma once
 
-#include <petzval/imaging/direct_blur.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/product_blur.h>
 
@@ -41,7 +40,6 @@ class BandBlur {
   std::optional<PsfField> psfs_;
   std::optional<SectionOptions> sections_;
   std::optional<ProductBlur> product_;
-  std::optional<DirectBlur> direct_;
   std::optional<ProductPlan> plan_;  ///< of the last band
 };
 

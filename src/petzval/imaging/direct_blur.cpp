@@ -6,6 +6,7 @@
 #include <petzval/imaging/row_convolution.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace petzval {
 
@@ -97,12 +98,14 @@ void DirectStrip::prepare(const CellPlane& source, const SourceRow& row, bool ri
 
 void DirectStrip::gather(int row, int margin, std::span<float> result) {
   const int columns = static_cast<int>(result.size()), radius = blur_.radius_;
+  std::vector<SourceRow> reach;
+  for (const SourceRow& source : rows_)
+    if (std::abs(row - source.row) <= radius) reach.push_back(source);
   for (const bool right : {false, true})
     for (int tile = 0; tile < blur_.tiles_across_; ++tile) {
       terms_.clear();
-      for (const SourceRow& source : rows_) {
+      for (const SourceRow& source : reach) {
         const int further = source.below ? row - source.row : source.row - row;
-        if (further < -radius || further > radius) continue;
         const std::size_t kernel_row = static_cast<std::size_t>(further + radius) * blur_.taps();
         for (std::size_t b = 0; b < blur_.nodes_.size(); ++b)
           terms_.push_back({light(source.slot, right, tile, b) + before_,

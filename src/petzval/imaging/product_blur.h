@@ -2,14 +2,10 @@
 // Shift-variant blur by product convolution: fast, with an error that the user sets.
 #pragma once
 
-#include <petzval/base/progress.h>
-#include <petzval/imaging/cell_plane.h>
-#include <petzval/imaging/lane_blur.h>
-#include <petzval/imaging/product_layout.h>
-#include <petzval/imaging/product_plan.h>
+#include <petzval/imaging/direct_blur.h>
+#include <petzval/imaging/transform_blur.h>
 
-#include <array>
-#include <vector>
+#include <variant>
 
 namespace petzval {
 
@@ -24,45 +20,31 @@ namespace petzval {
 /// as it is, so that the energy stays exact.
 ///
 /// Tiles lie symmetric about the axis. A kernel serves the place opposite the axis too, and all four mirrored
-/// places if the PSFs are mirror symmetric; pairs of them are real and imaginary part of one transform, and
-/// the lanes of a vector are tiles side by side (lane_blur.h). Product convolution: Nagy & O'Leary 1998 (SIAM
-/// J. Sci. Comput. 19, 1063) with piecewise constant and linear weights; Escande & Weiss 2017 (J. Math.
-/// Imaging Vis. 59, 31).
+/// places if the PSFs are mirror symmetric. Product convolution: Nagy & O'Leary 1998 (SIAM J. Sci. Comput.
+/// 19, 1063) with piecewise constant and linear weights; Escande & Weiss 2017 (J. Math. Imaging Vis. 59, 31).
+///
+/// The sums are made by Fourier transforms or directly, as the plan says.
 class ProductBlur {
  public:
-  /// Makes the transfer functions of all nodes. \param grid  of the source planes.
-  ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan);
+  /// Makes the kernels of all nodes. \param grid  of the source planes.
+  ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan)
+      : by_(plan.direct ? By(std::in_place_type<DirectBlur>, psfs, grid, plan)
+                        : By(std::in_place_type<TransformBlur>, psfs, grid, plan)) {}
 
   /// \param source  light before blur on the grid; nothing comes from outside it.
   /// \param margin  the result is the grid less this many cells on every side. Same bytes for any number of
   /// threads. \throws InputError if the source has another grid.
-  CellPlane blur(const CellPlane& source, int margin) const;
+  CellPlane blur(const CellPlane& source, int margin) const {
+    return std::visit([&](const auto& by) { return by.blur(source, margin); }, by_);
+  }
 
-  const ProductPlan& plan() const { return plan_; }
+  const ProductPlan& plan() const {
+    return std::visit([](const auto& by) -> const ProductPlan& { return by.plan(); }, by_);
+  }
 
  private:
-  friend class ProductTileIo;
-  /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node].
-  struct KernelSet {
-    AlignedVector<float> otfs;
-  };
-  /// Lanes are counted over tiles row by row, with one idle lane at the end of each row, so that the next
-  /// node along either side is always the same number of lanes away.
-  std::size_t lanes_per_row() const { return static_cast<std::size_t>(tiles_across_) + 1; }
-  std::size_t tile_lanes() const { return lanes_per_row() * static_cast<std::size_t>(tiles_down_); }
-  std::size_t phase_floats() const;
-  void make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const;
-  std::vector<const float*> otfs_of(const KernelSet& set, std::size_t first_lane) const;
-
-  ProductPlan plan_;
-  SensorGeometry grid_;
-  OutwardAxis across_, down_;
-  LaneTransform transform_;
-  int radius_, tiles_across_, tiles_down_;
-  std::size_t batches_, nodes_padded_;
-  std::vector<double> nodes_;
-  AlignedVector<float> weights_;  ///< [node][cell along a side]
-  std::vector<KernelSet> sets_;   ///< one if the PSFs are mirror symmetric, else two
+  using By = std::variant<DirectBlur, TransformBlur>;
+  By by_;
 };
 
 }  // namespace petzval

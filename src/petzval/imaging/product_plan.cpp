@@ -17,7 +17,7 @@ namespace {
 constexpr int most_nodes = 6;
 /// Places at which the error of kernels is looked at, and what their mean may miss of the whole grid's: the
 /// estimate must stay below the tolerance by this factor.
-constexpr int places = 64;
+constexpr int places = 64, places_of_hint = 24;
 constexpr double caution = 0.6;
 /// Transfer functions of a band may take this much memory.
 constexpr double most_otf_bytes = 768e6;
@@ -48,8 +48,9 @@ double squared_error(const Kernel& exact, int at, int tile, const std::vector<do
 }
 
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
-constexpr double deposit_ns = 2.5;      // per sample of a table's PSF and cell of a kernel
-constexpr double transform_ns = 0.042;  // of a lane, per element and halving of a transform along a line
+constexpr double kernel_fixed_ns = 3000;  // of a kernel, whatever its size
+constexpr double deposit_ns = 8;          // per sample of a table's PSF and cell of a kernel
+constexpr double transform_ns = 0.042;    // of a lane, per element and halving of a transform along a line
 
 /// Kernels that a layout needs, and what one costs without its transform.
 double kernel_count(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
@@ -60,14 +61,14 @@ double kernel_count(const PsfField& psfs, const SensorGeometry& grid, const Prod
 }
 double kernel_ns(const PsfField& psfs) {
   const double size = 2.0 * psfs.radius() + 1;
-  return deposit_ns * (psfs.deposited_samples() + size * size);
+  return kernel_fixed_ns + deposit_ns * (psfs.deposited_samples() + size * size);
 }
 
 /// Gathered sums that might do, and what they would cost.
 ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
-  constexpr double product_ns = 0.016;  // per product
-  constexpr double mix_ns = 0.05;       // per weight of a kernel that goes into a mixture
-  constexpr double add_ns = 0.5;        // per cell that light is added to
+  constexpr double product_ns = 0.026;  // per product
+  constexpr double mix_ns = 0.1;        // per weight of a kernel that goes into a mixture
+  constexpr double add_ns = 5;          // per cell whose light is prepared and added
   ProductPlan plan;
   plan.tile = tile;
   plan.nodes = nodes;
@@ -161,7 +162,8 @@ void ProductOptions::validate() const {
         fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, LaneTransform::largest));
 }
 
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
+                    int looked_at) {
   const OutwardAxis across(grid.columns), down(grid.rows);
   const std::vector<double> lobatto = lobatto_nodes(nodes);
   const double cell_mm = psfs.cell_um() * 1e-3;
@@ -169,7 +171,7 @@ double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, 
     return psfs.kernel_at(-across.position(column) * cell_mm, down.position(row) * cell_mm);
   };
   double total = 0;
-  for (int place = 1; place <= places; ++place) {
+  for (int place = 1; place <= looked_at; ++place) {
     const int column = static_cast<int>(radical_inverse(place, 2) * across.count());
     const int row = static_cast<int>(radical_inverse(place, 3) * down.count());
     const Kernel exact = kernel(column, row);
@@ -178,22 +180,26 @@ double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, 
     total += (squared_error(exact, column, tile, lobatto, [&](double at) { return kernel(at, row); }) +
               squared_error(exact, row, tile, lobatto, [&](double at) { return kernel(column, at); })) /
              (1 + square);
+    if (total > limit * limit * looked_at) break;
   }
-  return std::sqrt(total / places);
+  return std::sqrt(total / looked_at);
 }
 
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
-  const auto serves = [&](ProductPlan& plan) {
-    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes);
-    return plan.estimated_error <= caution * options.tolerance || (options.tile != 0 && options.nodes != 0);
+  const bool given = options.tile != 0 && options.nodes != 0;
+  const double limit = caution * options.tolerance;
+  const auto serves = [&](ProductPlan& plan, int looked_at) {
+    plan.estimated_error =
+        kernel_error(psfs, grid, plan.tile, plan.nodes, given ? INFINITY : limit, looked_at);
+    return given || plan.estimated_error <= limit;
   };
   if (hint && (hint->direct || hint->tile + 2 * psfs.radius() <= hint->transform)) {
     ProductPlan plan = hint->direct ? direct_candidate(psfs, grid, hint->tile, hint->nodes)
                                     : candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
-    if (serves(plan)) return plan;
+    if (serves(plan, places_of_hint)) return plan;
   }
   std::vector<ProductPlan> failed;
   for (ProductPlan& plan : candidates(psfs, grid, options)) {
@@ -202,7 +208,7 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
       return plan.tile >= other.tile && plan.nodes <= other.nodes;
     });
     if (hopeless) continue;
-    if (serves(plan)) return plan;
+    if (serves(plan, places)) return plan;
     failed.push_back(plan);
   }
   return {};
@@ -213,8 +219,9 @@ ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const
   ProductPlan plan;
   plan.tile = std::max(LaneTransform::largest, psfs.radius());
   while (true) {
-    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes);
-    if (plan.estimated_error <= caution * options.tolerance || plan.tile == 1) return plan;
+    const double limit = caution * options.tolerance;
+    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit);
+    if (plan.estimated_error <= limit || plan.tile == 1) return plan;
     plan.tile /= 2;
   }
 }

@@ -5,6 +5,7 @@
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/sensor/sensor.h>
 
+#include <limits>
 #include <optional>
 
 namespace petzval {
@@ -13,8 +14,8 @@ namespace petzval {
 struct ProductPlan {
   int tile = 0;         ///< cells along a side
   int nodes = 2;        ///< along a side of a tile
-  bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
   int transform = 0;    ///< cells along a side; tile + 2 · kernel radius fit into it
+  bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
   /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
@@ -36,12 +37,14 @@ struct ProductOptions {
 
 /// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
 /// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
-/// kernels differs from it.
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes);
+/// kernels differs from it. \param limit  no more is added up once the error is sure to be above it: then
+/// what is returned is above it, but not the error. \param looked_at  places.
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
+                    double limit = std::numeric_limits<double>::infinity(), int looked_at = 64);
 
 /// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
 /// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the
-/// source. \param hint  what served a neighbouring band: it is kept if it serves.
+/// source. \param hint  what served a neighbouring band: it is kept if it serves at fewer places.
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint = {});

@@ -13,7 +13,8 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t most_steps = 8;
+/// Mixing four of them, more changes an image by less than 1e-5 of itself.
+constexpr std::size_t most_steps = 4;
 
 /// PSFs in an interval, of every one as many.
 std::size_t steps_of(const std::vector<double>& height_mm, const std::vector<SampleLattice>& lattices,

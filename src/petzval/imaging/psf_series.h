@@ -32,7 +32,7 @@ class PsfSeries {
 
   /// \param height_mm  of the fields, increasing, at least one. \param lattices  one an interval (one where
   /// there is but one field). \param step_mm  that need not be gone below. Of each interval as many PSFs are
-  /// kept as 64 MB allow, 8 at most.
+  /// kept as 64 MB allow, 4 at most.
   PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> lattices, double step_mm);
 
   /// \param make  (height [mm], lattice) ↦ MergedPsf. Heights beyond the fields: the first and the last.

@@ -59,7 +59,7 @@ HWY_ATTR void convolve(std::span<const RowTerm> terms, int radius, std::size_t c
 }
 
 HWY_ATTR std::size_t padding() {
-  return 4 * hn::Lanes(Lanes());
+  return hn::Lanes(Lanes());
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/imaging/node_kernel.h>
-#include <petzval/imaging/product_blur.h>
+#include <petzval/imaging/transform_blur.h>
 
 #include <algorithm>
 #include <array>
@@ -56,9 +56,9 @@ struct ResultStrip {
 }  // namespace
 
 /// Moves light between planes and the lanes of one batch.
-class ProductTileIo : public LaneTileIo {
+class TileIo : public LaneTileIo {
  public:
-  ProductTileIo(const ProductBlur& blur, const CellPlane& source, int margin, ResultStrip& result)
+  TileIo(const TransformBlur& blur, const CellPlane& source, int margin, ResultStrip& result)
       : blur_(blur), source_(source), margin_(margin), result_(result), lanes_(lane_count()) {}
 
   void set_place(std::size_t first_lane, const QuadrantPair& pair) {
@@ -80,7 +80,7 @@ class ProductTileIo : public LaneTileIo {
     }
   }
 
-  const ProductBlur& blur_;
+  const TransformBlur& blur_;
   const CellPlane& source_;
   int margin_;
   ResultStrip& result_;
@@ -88,7 +88,7 @@ class ProductTileIo : public LaneTileIo {
   QuadrantPair pair_{};
 };
 
-void ProductTileIo::load_row(int row, float* elements) {
+void TileIo::load_row(int row, float* elements) {
   const int tile = blur_.plan_.tile;
   std::fill_n(elements, static_cast<std::size_t>(tile) * 2 * lanes_, 0.0F);
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
@@ -108,7 +108,7 @@ void ProductTileIo::load_row(int row, float* elements) {
   });
 }
 
-void ProductTileIo::store_row(int row, const float* elements) {
+void TileIo::store_row(int row, const float* elements) {
   const int tile = blur_.plan_.tile, extent = tile + 2 * blur_.radius_;
   const int columns = static_cast<int>(result_.columns), rows = static_cast<int>(result_.slot_of_row.size());
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
@@ -131,7 +131,7 @@ void ProductTileIo::store_row(int row, const float* elements) {
   });
 }
 
-ProductBlur::ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan)
+TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan)
     : plan_(plan),
       grid_(grid),
       across_(grid.columns),
@@ -151,12 +151,12 @@ ProductBlur::ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const
   for (std::size_t set = 0; set < sets_.size(); ++set) make_kernels(psfs, set == 1, sets_[set]);
 }
 
-std::size_t ProductBlur::phase_floats() const {
+std::size_t TransformBlur::phase_floats() const {
   const auto side = static_cast<std::size_t>(plan_.transform);
   return side * side * 2 * nodes_padded_;
 }
 
-void ProductBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const {
+void TransformBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const {
   const std::size_t lanes = lane_count(), phases = nodes_.size() - 1, blocks = nodes_padded_ / lanes;
   const auto size = static_cast<std::size_t>(2 * radius_ + 1);
   const double scale = 1 / (double(plan_.transform) * plan_.transform);  // transforms are not normalised
@@ -184,7 +184,7 @@ void ProductBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& s
   });
 }
 
-std::vector<const float*> ProductBlur::otfs_of(const KernelSet& set, std::size_t first_lane) const {
+std::vector<const float*> TransformBlur::otfs_of(const KernelSet& set, std::size_t first_lane) const {
   const std::size_t phases = nodes_.size() - 1;
   std::vector<const float*> otfs;
   for (std::size_t b = 0; b <= phases; ++b)
@@ -196,7 +196,7 @@ std::vector<const float*> ProductBlur::otfs_of(const KernelSet& set, std::size_t
   return otfs;
 }
 
-CellPlane ProductBlur::blur(const CellPlane& source, int margin) const {
+CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   if (source.grid.columns != grid_.columns || source.grid.rows != grid_.rows)
     throw InputError("the plane to be blurred has another grid than the blur was made for");
   CellPlane result(grown(grid_, -margin));
@@ -212,7 +212,7 @@ CellPlane ProductBlur::blur(const CellPlane& source, int margin) const {
                last_row = static_cast<int>((to * lanes - 1) / lanes_per_row());
     parts[strip].reach(down_, first_row * plan_.tile - radius_, (last_row + 1) * plan_.tile + radius_,
                        margin);
-    ProductTileIo io(*this, source, margin, parts[strip]);
+    TileIo io(*this, source, margin, parts[strip]);
     AlignedVector<float> workspace;
     LaneTiles tiles{plan_.tile, plan_.tile + 2 * radius_, plan_.nodes,  weights_.data(),
                     {},         2 * nodes_padded_,        nodes_padded_};

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The product convolution by Fourier transforms.
+#pragma once
+
+#include <petzval/base/progress.h>
+#include <petzval/imaging/cell_plane.h>
+#include <petzval/imaging/lane_blur.h>
+#include <petzval/imaging/product_layout.h>
+#include <petzval/imaging/product_plan.h>
+
+#include <array>
+#include <vector>
+
+namespace petzval {
+
+/// The sums of ProductBlur by Fourier transforms. Pairs of mirrored places, whose kernels are the same, are
+/// real and imaginary part of one transform, and the lanes of a vector are tiles side by side (lane_blur.h).
+class TransformBlur {
+ public:
+  /// Makes the transfer functions of all nodes. \param grid  of the source planes.
+  TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan);
+
+  /// As ProductBlur::blur().
+  CellPlane blur(const CellPlane& source, int margin) const;
+
+  const ProductPlan& plan() const { return plan_; }
+
+ private:
+  friend class TileIo;
+  /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node].
+  struct KernelSet {
+    AlignedVector<float> otfs;
+  };
+  /// Lanes are counted over tiles row by row, with one idle lane at the end of each row, so that the next
+  /// node along either side is always the same number of lanes away.
+  std::size_t lanes_per_row() const { return static_cast<std::size_t>(tiles_across_) + 1; }
+  std::size_t tile_lanes() const { return lanes_per_row() * static_cast<std::size_t>(tiles_down_); }
+  std::size_t phase_floats() const;
+  void make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const;
+  std::vector<const float*> otfs_of(const KernelSet& set, std::size_t first_lane) const;
+
+  ProductPlan plan_;
+  SensorGeometry grid_;
+  OutwardAxis across_, down_;
+  LaneTransform transform_;
+  int radius_, tiles_across_, tiles_down_;
+  std::size_t batches_, nodes_padded_;
+  std::vector<double> nodes_;
+  AlignedVector<float> weights_;  ///< [node][cell along a side]
+  std::vector<KernelSet> sets_;   ///< one if the PSFs are mirror symmetric, else two
+};
+
+}  // namespace petzval
