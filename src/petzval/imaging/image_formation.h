@@ -57,7 +57,8 @@ struct ImagingReport {
   int margin_cells = 0;     ///< how far light may come in from outside the frame, the most of all bands
   int transform_size = 0;   ///< the largest, of `sections`
   /// Of `product`: what was chosen, for the band whose estimated error is the largest; a plan without a
-  /// transform that is not direct stands for blended sections of `tile` cells, which PSFs beyond its transforms need.
+  /// transform that is not direct stands for blended sections of `tile` cells, which PSFs beyond its
+  /// transforms need.
   ProductPlan product;
   int scene_points_per_cell = 1;      ///< scene samples averaged in a cell: this squared
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
