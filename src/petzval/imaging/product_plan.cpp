@@ -18,7 +18,7 @@ constexpr int most_nodes = 6;
 /// Places at which the error of kernels is looked at, and what their mean may miss of the whole grid's: the
 /// estimate must stay below the tolerance by this factor.
 constexpr int places = 64, places_of_hint = 24;
-constexpr double caution = 0.6;
+constexpr double caution = 0.4;
 /// Transfer functions of a band may take this much memory.
 constexpr double most_otf_bytes = 768e6;
 
