@@ -38,7 +38,7 @@ struct ProductOptions {
 /// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
 /// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
 /// kernels differs from it. \param limit  no more is added up once the error is sure to be above it: then
-/// what is returned is above it, but not the error. \param looked_at  places.
+/// what is returned is above it, but not the error. \param looked_at  places, a multiple of 8.
 double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
                     double limit = std::numeric_limits<double>::infinity(), int looked_at = 64);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/otf_interpolation.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 namespace petzval {
@@ -108,15 +110,16 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
                    PsfInterpolation interpolation, const LightCentres& centres)
     : cell_um_(cell_um), interpolation_(interpolation) {
   constexpr double max_radius = 2000;  // beyond it a single kernel would take minutes and 128 MB
-  for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm)) {
+  for (const auto& part : bracketing_wavelengths(table, wavelength_nm)) {
+    const std::size_t wavelength = part.first;
     Layer layer;
-    layer.weight = weight;
+    layer.weight = part.second;
     for (std::size_t field = 0; field < table.fields.size(); ++field) {
       const std::size_t entry = table.index(field, wavelength);
       const Psf& psf = table.psf.at(entry);
       check(psf, table.wavelengths_nm[wavelength]);
-      const double origin_mm = centres.offset_mm(entry), origin_um = origin_mm * um_per_mm;
-      const Extent extent = extent_of(psf, origin_um);
+      const double origin_mm = centres.offset_mm(entry);
+      const Extent extent = extent_of(psf, origin_mm * um_per_mm);
       const double radius = std::ceil((extent.reach_um + psf.spacing_um) / cell_um);
       if (!(radius <= max_radius))
         throw InputError(
@@ -125,14 +128,24 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
                         extent.reach_um, radius, cell_um, max_radius));
       radius_ = std::max(radius_, static_cast<int>(radius));
       layer.half_side_um.push_back(extent.half_side_um + psf.spacing_um);
-      mirror_symmetric_ = mirror_symmetric_ && is_mirror_symmetric(psf);
       least_captured_ = std::min(least_captured_, psf.captured);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
-      const double height_mm = layer.height_mm.back();
-      layer.psfs.push_back(
-          merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_um, cell_um, height_mm));
     }
-    if (layer.psfs.empty()) throw InputError("the lens data table has no fields");
+    const std::size_t fields = table.fields.size();
+    if (fields == 0) throw InputError("the lens data table has no fields");
+    std::vector<std::optional<MergedPsf>> merged(fields);
+    std::vector<char> symmetric(fields);
+    parallel_for(fields, [&](std::size_t field) {
+      const std::size_t entry = table.index(field, wavelength);
+      const Psf& psf = table.psf[entry];
+      const double height_mm = layer.height_mm[field], origin_um = centres.offset_mm(entry) * um_per_mm;
+      symmetric[field] = is_mirror_symmetric(psf);
+      merged[field] = merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_um, cell_um, height_mm);
+    });
+    for (std::size_t field = 0; field < fields; ++field) {
+      mirror_symmetric_ = mirror_symmetric_ && symmetric[field] != 0;
+      layer.psfs.push_back(std::move(*merged[field]));
+    }
     layer.moments = MomentCurves(layer.height_mm, layer.psfs);
     layers_.push_back(std::move(layer));
   }
