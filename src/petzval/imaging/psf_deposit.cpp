@@ -120,7 +120,8 @@ const MergedPsf& largest(std::span<const WeightedPsf> psfs) {
 /// Adds all samples, each with shadows of 1/parts of its own.
 void add_samples(std::span<const WeightedPsf> psfs, double share, int parts, const Lattice& lattice,
                  Canvas& canvas) {
-  const auto& [first, per_row, per_column] = lattice;
+  // Named for the lambda below: clang 14 does not let it see the parts of a structured binding.
+  const Vector &first = lattice.first, &per_row = lattice.per_row, &per_column = lattice.per_column;
   const auto shadow = [&](std::size_t axis) {
     return Shadow({std::abs(per_row[axis]) / parts, std::abs(per_column[axis]) / parts});
   };
