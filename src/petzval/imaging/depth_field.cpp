@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
+#include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/layer_plan.h>
 
 #include <algorithm>
@@ -51,40 +52,22 @@ double natural_depth_pitch_um(const Scene& scene, const Lens& lens) {
 
 double covering_depth_angle_deg(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
                                 const ImagingOptions& options, const DepthOptions& depth) {
-  const SeenExtent seen =
-      seen_extent(plan_ends(scene, camera, sensor, options, depth), options.cells_of(sensor));
-  const double half_columns = std::max(seen.columns, seen.rows * scene.columns() / scene.rows());
-  constexpr double room = 1 + 1e-6;  // so that rounding does not make the scene too small again
-  const double angle = degrees(2 * std::atan(room * half_columns * scene.tangent_per_sample()));
-  constexpr double widest_deg = 175;
-  if (!(angle < widest_deg))
-    throw InputError(
-        fmt::format("the field of the sensor is {:.1f}° wide: no plane scene covers it; --surround zero "
-                    "or extend and a --scene-angle would do",
-                    angle));
-  return angle;
+  return covering_angle_deg(
+      scene, seen_extent(plan_ends(scene, camera, sensor, options, depth), options.cells_of(sensor)));
 }
 
 SensorGeometry natural_depth_sensor(const Scene& scene, const DepthCamera& camera,
                                     const ImagingOptions& options, const DepthOptions& depth) {
   const double pitch_um = natural_depth_pitch_um(scene, camera.lens);
-  const auto frame_of = [&](int columns) {
-    const double rows = double(columns) * scene.rows() / scene.columns();
-    return SensorGeometry{columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
-  };
-  const std::vector<BandPlan> plans = plan_ends(scene, camera, frame_of(scene.columns()), options, depth);
-  int fits = 0, too_large = scene.columns() + 1;
-  while (too_large - fits > 1) {
-    const int middle = fits + (too_large - fits) / 2;
-    const SeenExtent seen = seen_extent(plans, options.cells_of(frame_of(middle)));
-    (2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows() ? fits : too_large) = middle;
-  }
-  if (fits < 1)
+  const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
+  const auto frame =
+      largest_covered_frame(scene, pitch_um, plan_ends(scene, camera, whole, options, depth), options);
+  if (!frame)
     throw InputError(
         fmt::format("the blur alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: "
                     "a --sensor with --surround extend would do",
                     scene.columns(), scene.rows(), pitch_um));
-  return frame_of(fits);
+  return *frame;
 }
 
 }  // namespace petzval

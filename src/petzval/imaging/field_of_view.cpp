@@ -11,10 +11,7 @@
 
 namespace petzval {
 
-double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                          const ImagingOptions& options) {
-  const SensorGeometry frame = options.cells_of(sensor);
-  const SeenExtent seen = seen_extent(plan_bands(scene, table, frame, options), frame);
+double covering_angle_deg(const Scene& scene, const SeenExtent& seen) {
   const double half_columns = std::max(seen.columns, seen.rows * scene.columns() / scene.rows());
   constexpr double room = 1 + 1e-6;  // so that rounding does not make the scene too small again
   const double angle = degrees(2 * std::atan(room * half_columns * scene.tangent_per_sample()));
@@ -27,6 +24,12 @@ double covering_angle_deg(const Scene& scene, const LensDataTable& table, const 
   return angle;
 }
 
+double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                          const ImagingOptions& options) {
+  const SensorGeometry frame = options.cells_of(sensor);
+  return covering_angle_deg(scene, seen_extent(plan_bands(scene, table, frame, options), frame));
+}
+
 double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
   const double sample_mm = scene.distance_m() ? *scene.distance_m() * mm_per_m * scene.tangent_per_sample() *
                                                     std::abs(lens.magnification)
@@ -37,31 +40,37 @@ double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
   return sample_mm * um_per_mm;
 }
 
+SensorGeometry frame_like(const Scene& scene, int columns, double pitch_um) {
+  const double rows = double(columns) * scene.rows() / scene.columns();
+  return {columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
+}
+
+std::optional<SensorGeometry> largest_covered_frame(const Scene& scene, double pitch_um,
+                                                    const std::vector<BandPlan>& plans,
+                                                    const ImagingOptions& options) {
+  int fits = 0, too_large = scene.columns() + 1;
+  while (too_large - fits > 1) {
+    const int middle = fits + (too_large - fits) / 2;
+    const SeenExtent seen = seen_extent(plans, options.cells_of(frame_like(scene, middle, pitch_um)));
+    (2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows() ? fits : too_large) = middle;
+  }
+  if (fits < 1) return {};
+  return frame_like(scene, fits, pitch_um);
+}
+
 SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, const ImagingOptions& options) {
   if (scene.is_panorama())
     throw InputError("a panorama ends nowhere, and so would its image: a --sensor is needed");
   const double pitch_um = natural_pitch_um(scene, table.first_order);
-  const auto frame_of = [&](int columns) {
-    const double rows = double(columns) * scene.rows() / scene.columns();
-    return SensorGeometry{columns, std::max(1, static_cast<int>(std::lround(rows))), pitch_um};
-  };
-  const std::vector<BandPlan> plans =
-      plan_bands(scene, table, options.cells_of(frame_of(scene.columns())), options);
-  const auto covered = [&](int columns) {
-    const SeenExtent seen = seen_extent(plans, options.cells_of(frame_of(columns)));
-    return 2 * seen.columns <= scene.columns() && 2 * seen.rows <= scene.rows();
-  };
-  int fits = 0, too_large = scene.columns() + 1;
-  while (too_large - fits > 1) {
-    const int middle = fits + (too_large - fits) / 2;
-    (covered(middle) ? fits : too_large) = middle;
-  }
-  if (fits < 1)
+  const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
+  const auto frame = largest_covered_frame(
+      scene, pitch_um, plan_bands(scene, table, options.cells_of(whole), options), options);
+  if (!frame)
     throw InputError(
         fmt::format("the PSF alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: a "
                     "larger --scene-angle or a --sensor would do",
                     scene.columns(), scene.rows(), pitch_um));
-  return frame_of(fits);
+  return *frame;
 }
 
 }  // namespace petzval
