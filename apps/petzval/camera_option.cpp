@@ -57,8 +57,7 @@ void focus_camera(Camera& camera, const std::string& focus, const std::optional<
 }  // namespace
 
 void CameraChoice::add_to(CLI::App& command) {
-  command.add_option("--f-number", f_number, "Stop down to this paraxial f-number")
-      ->check(positive_number());
+  command.add_option("--f-number", f_number, "Stop down to this paraxial f-number")->check(positive_number());
   command.add_option("--focus", focus,
                      "Where the sensor stands: design, infinity, an object distance from the sensor [mm], "
                      "best-spot or best-mtf@CYCLES_PER_MM");
@@ -68,6 +67,13 @@ void CameraChoice::add_to(CLI::App& command) {
       ->check(positive_number());
   command.add_option("--move-lens", move_lens_mm,
                      "Move the whole lens towards the object [mm]; object and sensor stay");
+  blades.add_to(command);
+  command
+      .add_option(
+          "--field-azimuth", field_azimuth_deg,
+          "Of the fields about the axis, from the top of the film anticlockwise as seen from there [deg]: "
+          "what a stop of blades looks like from there")
+      ->check(finite_number());
 }
 
 Lens CameraChoice::used(const Lens& lens, const std::optional<FieldTableRequest>& request,
@@ -78,6 +84,10 @@ Lens CameraChoice::used(const Lens& lens, const std::optional<FieldTableRequest>
   if (f_number) camera.set_f_number(*f_number);
   if (image_distance_mm) camera.set_image_distance_mm(*image_distance_mm);
   if (move_lens_mm) camera.move_lens_mm(*move_lens_mm);
+  StopBlades seen = blades.blades(lens);
+  // Fields lie in the y-z plane: turning them is turning the blades the other way.
+  if (seen.count > 0) seen.rotation_deg -= field_azimuth_deg;
+  camera.set_blades(seen);
   focus_camera(camera, focus, request, shared);
   return camera.lens();
 }

@@ -73,6 +73,10 @@ CLI::Validator number_not_negative() {
   return number_check([](double value) { return value >= 0; }, "a number from 0 on");
 }
 
+CLI::Validator finite_number() {
+  return number_check([](double value) { return std::isfinite(value); }, "a number");
+}
+
 CLI::Validator whole_number() {
   return CLI::Validator(
       [](const std::string& word) {

@@ -59,6 +59,7 @@ struct LensChoice {
 // Checks of options, whose messages say what would be right.
 CLI::Validator positive_number();
 CLI::Validator number_not_negative();
+CLI::Validator finite_number();
 CLI::Validator whole_number();
 
 /// "0,7,14", "0:5:20" (start:step:stop, both ends taken) or both, parted by commas.

@@ -88,6 +88,9 @@ void print_surfaces(const Lens& lens) {
     const double c = surface.curvature_per_mm;
     std::string remark = surface.material.description();
     if (surface.stop) remark += "; stop";
+    if (surface.blades.count > 0)
+      remark +=
+          fmt::format(" of {} blades turned by {:g}°", surface.blades.count, surface.blades.rotation_deg);
     if (surface.conic != 0) remark += fmt::format("; conic {:g}", surface.conic);
     for (const auto& [power, coefficient] : surface.asphere)
       remark += fmt::format("; r^{} {:g}", power, coefficient);

@@ -58,7 +58,8 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
                   camera.lens ? "lens, its origin at the " + choice.camera_origin
                               : fmt::format("perspective, lens radius {}", camera.perspective.lens_radius),
                   choice.sampling);
-  text += fmt::format("blades {} turned by {}\ndiffraction {}\n", choice.blades, choice.blade_rotation_deg,
+  const StopBlades blades = camera.lens ? camera.lens->stop_blades() : StopBlades{};
+  text += fmt::format("blades {} turned by {}\ndiffraction {}\n", blades.count, blades.rotation_deg,
                       choice.diffraction);
   text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
   text += fmt::format("sky {} skip-unsupported {}\n", choice.sky_cd_m2.value_or(0), choice.skip_unsupported);

@@ -42,8 +42,6 @@ render::CameraChoice camera_choice(const RenderChoice& choice, const Shared& sha
     throw InputError(
         fmt::format("--scene-unit {}: the length of a scene's unit in mm is above 0", choice.scene_unit_mm));
   camera.options.scene_units_per_mm = 1 / choice.scene_unit_mm;
-  camera.options.blades = {choice.blades, choice.blade_rotation_deg};
-  camera.options.blades.validate();
   camera.options.diffraction = choice.diffraction;
   camera.options.origin_at_front = choice.camera_origin == "front";
   if (choice.sampling == "rear-disk")
@@ -82,6 +80,12 @@ PreparedScene prepare(const RenderChoice& choice, const std::vector<double>& wav
   prepared.description = read_description(choice.scene, unsupported);
   if (choice.sky_cd_m2) prepared.description.lights.push_back(white_sky(*choice.sky_cd_m2));
   prepared.camera = render::set_up_camera(prepared.description, camera_choice(choice, shared), unsupported);
+  if (prepared.camera.lens) {
+    Lens& lens = *prepared.camera.lens;
+    lens.surfaces[lens.stop_index()].blades = choice.blades.blades(lens);
+  } else if (choice.blades.count || choice.blades.rotation_deg) {
+    throw InputError("blades belong to a lens; --lens names one");
+  }
   if (choice.losses.any()) {
     if (!prepared.camera.lens)
       throw InputError("reflection and absorption belong to a lens; --lens names one");
@@ -112,14 +116,7 @@ void RenderChoice::add_to(CLI::App& command) {
   command.add_option("--film-diagonal", film_diagonal_mm, "Of the film, corner to corner [mm]");
   command.add_option("--aperture-diameter", aperture_diameter_mm, "Of the stop [mm]");
   command.add_option("--f-number", f_number, "Stop down to this paraxial f-number at infinity");
-  command
-      .add_option("--blades", blades,
-                  "Blades of the iris: the stop is a polygon with its corners on the circle; 0: round")
-      ->capture_default_str();
-  command
-      .add_option("--blade-rotation", blade_rotation_deg,
-                  "Of the first corner from the top, anticlockwise as seen from the film [deg]")
-      ->capture_default_str();
+  blades.add_to(command);
   command.add_flag("--diffraction", diffraction,
                    "Bend rays at the stop at random as its edge does: spread without rings, more noise");
   command.add_option("--film-distance", film_distance_mm, "From the last surface to the film [mm]");

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "blade_option.h"
 #include "command.h"
 #include "loss_option.h"
 
@@ -22,8 +23,7 @@ struct RenderChoice {
   bool pinhole = false, absolute_spectra = false, diffraction = false;
   std::string sensor, size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
   std::optional<double> film_diagonal_mm, aperture_diameter_mm, f_number, film_distance_mm, focus_distance_m;
-  int blades = 0;
-  double blade_rotation_deg = 0;
+  BladeChoice blades;
   double scene_unit_mm = 1000;
   int max_depth = 0;  ///< 0: as the scene has it
   std::optional<double> near_distance, far_distance;

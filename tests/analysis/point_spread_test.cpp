@@ -46,7 +46,7 @@ TEST(PointSpread, CentroidIsThatOfTheRays) {
     const ChiefRay chief = *tracer.chief_ray(*tracer.object_field_at_image_height(height));
     const Pencil pencil = Pencil::from_object(lens, chief.object_field);
     double rays = 0, weight = 0;
-    for (const PupilNode& node : half_pupil_nodes(*tracer.object_pupil(chief), 32)) {
+    for (const PupilNode& node : pupil_nodes(*tracer.object_pupil(chief), 32)) {
       const Ray ray = tracer.tracer().trace(*pencil.ray(node.u, node.v), Tracer::Clip::none);
       rays += node.weight * (ray.point_mm[1] - chief.image_height_mm) * (height > 0 ? 1 : -1) * um_per_mm;
       weight += node.weight;

@@ -4,6 +4,7 @@
 import base64
 import csv
 import json
+import math
 import pathlib
 import re
 import unittest
@@ -34,6 +35,29 @@ class LensAnalyses(ProgramTest):
                     self.assertLessEqual(keys | {"field", "wavelength_nm"}, set(row))
                 root = ElementTree.parse(self.folder / "plot.svg").getroot()
                 self.assertTrue(root.tag.endswith("svg"))
+
+    def test_blades_are_part_of_the_lens(self):
+        usual = ["--fields", "0,7", "--wavelengths", "550"]
+        bladed = self.json_of("lens", "spots", "double-gauss", *usual, "--blades", "5", "--blade-rotation", "10")["rows"]
+        self.assert_succeeds("lens", "convert", "double-gauss", "bladed.json", "--set",
+                             'surfaces[5].blades={"count": 5, "rotation_deg": 10}')
+        lens = json.loads((self.folder / "bladed.json").read_text())
+        self.assertEqual(lens["surfaces"][5]["blades"], {"count": 5, "rotation_deg": 10})
+        self.assertEqual(self.json_of("lens", "spots", "bladed.json", *usual)["rows"], bladed)
+        round_stop = self.json_of("lens", "spots", "double-gauss", *usual)["rows"]
+        self.assertEqual(self.json_of("lens", "spots", "bladed.json", "--blades", "0", *usual)["rows"], round_stop)
+        self.assertLess(bladed[0]["rms_radius_um"], round_stop[0]["rms_radius_um"])
+        # What a field at 90 degrees sees is what the first sees with the blades turned back.
+        self.assertEqual(self.json_of("lens", "mtf", "bladed.json", *usual, "--frequencies", "30", "--field-azimuth", "90"),
+                         self.json_of("lens", "mtf", "bladed.json", *usual, "--frequencies", "30", "--blade-rotation", "-80"))
+        share = self.json_of("lens", "vignetting", "bladed.json", *usual)["rows"][0]["open_share"]
+        self.assertAlmostEqual(share, 5 / (2 * math.pi) * math.sin(2 * math.pi / 5), places=6)
+        for command in (["lens", "wavefront"], ["lens", "zernike"], ["optics", "build"]):
+            extra = ["-o", "t.h5"] if command[0] == "optics" else []
+            self.assert_error(self.petzval(*command, "bladed.json", *extra), 2, "5 blades", "blades=null")
+        spots = ["lens", "spots", "double-gauss"]
+        self.assert_error(self.petzval(*spots, "--blade-rotation", "5"), 2, "--blades")
+        self.assert_error(self.petzval(*spots, "--blades", "2"), 2, "3 to 64")
 
     def test_through_focus_and_over_field(self):
         rows = self.json_of("lens", "mtf", "cooke-triplet", "--fields", "0", "--frequencies", "30",

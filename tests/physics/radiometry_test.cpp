@@ -92,7 +92,7 @@ TEST(Radiometry, BlurringSourceGGivesSensorG) {
     const PupilBoundary pupil = *tracer.object_pupil(chief);
     const Pencil pencil = Pencil::from_object(lens, chief.object_field);
     double sum = 0, weight = 0;
-    for (const PupilNode& node : half_pupil_nodes(pupil, 24)) {
+    for (const PupilNode& node : pupil_nodes(pupil, 24)) {
       const Ray ray = tracer.tracer().trace(*pencil.ray(node.u, node.v), Tracer::Clip::none);
       sum += node.weight * (ray.point_mm[1] - chief.image_height_mm);
       weight += node.weight;

@@ -28,7 +28,8 @@ std::vector<Landed> spread_of(const StopBlades& blades, bool diffraction, double
   camera.set_f_number(f_number);
   camera.focus_at_m({});
   LensCameraOptions options;
-  options.blades = blades, options.diffraction = diffraction;
+  camera.set_blades(blades);
+  options.diffraction = diffraction;
   const SensorGeometry pixel{1, 1, 1};
   const WavelengthGroups groups({wavelength_nm * scale});
   const LensCamera lens(camera.lens(), pixel, groups, options);

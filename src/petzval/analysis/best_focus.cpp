@@ -13,10 +13,10 @@ namespace petzval {
 namespace {
 
 /// Weighted sums over the rays of one field and wavelength: places r (from the axis) and slopes s. In x both
-/// have the mean zero, by symmetry.
+/// have the mean zero, by symmetry, unless the stop has blades.
 struct SlopeSums {
   double field = 0, wavelength_nm = 0;
-  double y = 0, slope = 0;                       ///< means
+  double x = 0, y = 0, slope_x = 0, slope = 0;   ///< means
   double r_r = 0, r_slope = 0, slope_slope = 0;  ///< means of products, x and y together
 };
 
@@ -30,13 +30,17 @@ std::optional<SlopeSums> slope_sums(const FieldTracer& tracer, const ChiefRay& c
     const double x = ray.x_mm, y = ray.y_mm + chief.image_height_mm;
     const double slope_x = ray.alpha / gamma, slope_y = ray.beta / gamma;
     total += w;
+    if (!ray.mirrored) sums.x += w * x;
+    if (!ray.mirrored) sums.slope_x += w * slope_x;
     sums.y += w * y;
     sums.slope += w * slope_y;
     sums.r_r += w * (x * x + y * y);
     sums.r_slope += w * (x * slope_x + y * slope_y);
     sums.slope_slope += w * (slope_x * slope_x + slope_y * slope_y);
   }
-  for (double* each : {&sums.y, &sums.slope, &sums.r_r, &sums.r_slope, &sums.slope_slope}) *each /= total;
+  for (double* each :
+       {&sums.x, &sums.y, &sums.slope_x, &sums.slope, &sums.r_r, &sums.r_slope, &sums.slope_slope})
+    *each /= total;
   return sums;
 }
 
@@ -86,15 +90,17 @@ BestFocus best_spot_focus(const Lens& lens, const FieldTableRequest& request,
     SlopeSums all;
     for (std::size_t w = 0; w < wavelengths; ++w) {
       const SlopeSums& one = rows[first + w];
+      all.x += share[w] * one.x;
       all.y += share[w] * one.y;
+      all.slope_x += share[w] * one.slope_x;
       all.slope += share[w] * one.slope;
       all.r_r += share[w] * one.r_r;
       all.r_slope += share[w] * one.r_slope;
       all.slope_slope += share[w] * one.slope_slope;
     }
-    variance += all.r_r - all.y * all.y;
-    covariance += all.r_slope - all.y * all.slope;
-    slope_variance += all.slope_slope - all.slope * all.slope;
+    variance += all.r_r - all.y * all.y - all.x * all.x;
+    covariance += all.r_slope - all.y * all.slope - all.x * all.slope_x;
+    slope_variance += all.slope_slope - all.slope * all.slope - all.slope_x * all.slope_x;
   }
   const double fields = static_cast<double>(request.fields.size());
   BestFocus best;

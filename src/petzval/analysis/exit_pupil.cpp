@@ -48,12 +48,17 @@ std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
 }
 
 std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay& chief) {
-  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, outline_azimuths);
+  const std::optional<PupilBoundary> pupil = tracer.round_object_pupil(chief, outline_azimuths);
   if (!pupil) return {};
   ExitPupil exit(tracer, chief);
   if (!exit.find_outline(*pupil)) return {};
+  if (tracer.tracer().stop_blades().count > 0) {
+    const std::optional<PupilBoundary> bladed = tracer.object_pupil(chief, outline_azimuths);
+    if (!bladed) return {};
+    exit.take_whole_outline(*bladed);
+  }
   // Every fourth azimuth from the second on: mirror symmetric like the whole.
-  exit.boundary_ = {pupil->centre_v, pupil->chief_v, pupil->stretch, {}};
+  exit.boundary_ = {pupil->centre_v, pupil->chief_v, pupil->stretch, {}, {}, {}};
   for (std::size_t i = 0; i < pupil->radius.size() / azimuth_stride; ++i)
     exit.boundary_.radius.push_back(
         0.5 * (pupil->radius[azimuth_stride * i + 1] + pupil->radius[azimuth_stride * i + 2]));
@@ -86,7 +91,7 @@ std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, doubl
     sample.phase_waves += index * more_mm / lambda_mm;
     samples.push_back(sample);
   };
-  for (const PupilNode& node : half_pupil_nodes(boundary_, sample_radii)) add(node.u, node.v);
+  for (const PupilNode& node : pupil_nodes(boundary_, sample_radii)) add(node.u, node.v);
   for (std::size_t i = 0; i < boundary_.radius.size() / 2; ++i)
     add(boundary_.radius[i] * std::sin(boundary_.azimuth(i)),
         boundary_.centre_v + boundary_.radius[i] * std::cos(boundary_.azimuth(i)));
@@ -127,6 +132,13 @@ bool ExitPupil::find_outline(const PupilBoundary& pupil) {
   middle_beta_ = middle->beta;
   return alpha_max_ > 0 && beta_range_.length() > 0 && std::isfinite(u_per_alpha_) &&
          std::isfinite(v_per_beta_);
+}
+
+void ExitPupil::take_whole_outline(const PupilBoundary& pupil) {
+  for (std::size_t i = 0; i < pupil.radius.size(); ++i)
+    if (const std::optional<Probe> rim = probe(pupil.radius[i] * std::sin(pupil.azimuth(i)),
+                                               pupil.centre_v + pupil.radius[i] * std::cos(pupil.azimuth(i))))
+      whole_outline_.push_back({rim->alpha, rim->beta});
 }
 
 ExitPupil::Chord ExitPupil::along_beta(double alpha) const {

@@ -6,6 +6,7 @@
 #include <petzval/analysis/field_tracer.h>
 
 #include <algorithm>
+#include <array>
 #include <complex>
 #include <optional>
 #include <vector>
@@ -27,7 +28,7 @@ struct PupilModel {
 };
 
 /// The light that converges on the chief ray's image point, as a function of the exit direction cosines (α,
-/// β). Mirror symmetric in α.
+/// β). Mirror symmetric in α; blades cut it, see whole_outline().
 class ExitPupil {
  public:
   struct Chord {
@@ -47,6 +48,10 @@ class ExitPupil {
   /// The range of β at this α ≥ 0, and of α at this β; of length zero outside the pupil.
   Chord along_beta(double alpha) const;
   Chord along_alpha(double beta) const;
+
+  /// The outline that the blades of the stop leave, once round in (α, β); empty for a round stop. All else
+  /// here is the pupil of the round stop about it.
+  const std::vector<std::array<double, 2>>& whole_outline() const { return whole_outline_; }
 
   /// A ray of the half pupil α ≥ 0.
   struct Sample {
@@ -68,6 +73,7 @@ class ExitPupil {
   };
   std::optional<Probe> probe(double u, double v) const;
   bool find_outline(const PupilBoundary& pupil);
+  void take_whole_outline(const PupilBoundary& pupil);
 
   const FieldTracer* tracer_;
   ChiefRay chief_;
@@ -75,6 +81,7 @@ class ExitPupil {
   double nudge_ = 0;
   double u_per_alpha_ = 0, v_per_beta_ = 0, middle_v_ = 0, middle_beta_ = 0;  ///< first guess
   std::vector<double> outline_alpha_, outline_beta_;  ///< half of it, α ≥ 0, closed on the axis
+  std::vector<std::array<double, 2>> whole_outline_;
   double alpha_max_ = 0, transverse_mm_ = 0, sphere_radius_mm_ = 0;
   double pupil_position_mm_ = 0;  ///< of the paraxial exit pupil, from the image surface
   PupilBoundary boundary_;        ///< coarse, for samples()

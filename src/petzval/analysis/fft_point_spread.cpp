@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/analysis/fft_point_spread.h>
+#include <petzval/analysis/round_stop.h>
 #include <petzval/analysis/wave_rays.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/base/error.h>
@@ -45,6 +46,7 @@ std::vector<PupilNode> grid_nodes(const PupilBoundary& pupil, double radius, int
 
 std::optional<Psf> fft_point_spread(const FieldTracer& tracer, const ChiefRay& chief, const PsfGrid& grid,
                                     int pupil_samples) {
+  require_round_stop(tracer.lens(), "the plain FFT's model knows round ones");
   if (pupil_samples < least_pupil_samples || pupil_samples > most_pupil_samples || pupil_samples % 2 != 0)
     throw InputError("the pupil of an FFT PSF is sampled by an even number of points, 8 to 1024 across");
   if (grid.samples_per_cell != 1) throw InputError("an FFT PSF has samples, not cells");

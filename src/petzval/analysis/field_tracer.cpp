@@ -46,6 +46,11 @@ std::optional<PupilBoundary> FieldTracer::object_pupil(const ChiefRay& chief, in
   return find_pupil(tracer_, Pencil::from_object(lens_, chief.object_field), chief.v, azimuths, clip_);
 }
 
+std::optional<PupilBoundary> FieldTracer::round_object_pupil(const ChiefRay& chief, int azimuths) const {
+  return find_pupil(tracer_.with_blades({}), Pencil::from_object(lens_, chief.object_field), chief.v,
+                    azimuths, clip_);
+}
+
 std::optional<PupilBoundary> FieldTracer::image_pupil(const ChiefRay& chief, int azimuths) const {
   return find_pupil(tracer_, Pencil::from_image(tracer_, chief.image_height_mm), chief.at_image.direction[1],
                     azimuths, clip_);

@@ -44,7 +44,9 @@ class FieldTracer {
   std::optional<ChiefRay> chief_ray(double object_field);
   /// The vignetted pupil in object space; nothing where no ray passes.
   std::optional<PupilBoundary> object_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
-  /// The same seen from the chief ray's image point.
+  /// The same with a round stop, whatever its blades.
+  std::optional<PupilBoundary> round_object_pupil(const ChiefRay& chief, int azimuths) const;
+  /// object_pupil() seen from the chief ray's image point.
   std::optional<PupilBoundary> image_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
 
   /// Whether image_pupil is all the light that reaches the chief ray's image point: the pupil neither falls

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/bladed_otf.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/base/units.h>
@@ -145,6 +146,9 @@ std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pup
                                  double transverse_mm, MtfDirection direction, double frequency_cpmm) {
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
   const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
+  if (!pupil.whole_outline().empty())
+    return bladed_otf(pupil.whole_outline(), wave, direction, shift,
+                      nodes_for(2 * frequency_cpmm * transverse_mm));
   const Autocorrelation<Wave> pairs(pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm));
   const std::complex<double> whole = Autocorrelation<Wave>(pupil, wave, fewest_nodes).tangential(0);
   return (direction == MtfDirection::tangential ? pairs.tangential(shift) : pairs.sagittal(shift)) /
@@ -261,10 +265,12 @@ std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirecti
   double total = 0;
   for (const PupilRay& ray : rays) {
     total += ray.entrance_measure;
-    // Rays stand for both halves: in x their phases cancel to a cosine.
-    sum += direction == MtfDirection::tangential
-               ? std::polar(ray.entrance_measure, -2 * pi * frequency_cpmm * ray.y_mm)
-               : ray.entrance_measure * std::cos(2 * pi * frequency_cpmm * ray.x_mm);
+    if (direction == MtfDirection::tangential)
+      sum += std::polar(ray.entrance_measure, -2 * pi * frequency_cpmm * ray.y_mm);
+    else if (ray.mirrored)  // with its mirror image the phases cancel to a cosine
+      sum += ray.entrance_measure * std::cos(2 * pi * frequency_cpmm * ray.x_mm);
+    else
+      sum += std::polar(ray.entrance_measure, -2 * pi * frequency_cpmm * ray.x_mm);
   }
   return sum / total;
 }

@@ -21,6 +21,8 @@ constexpr double coarse_cell_lambda_n = 2;
 /// Nodes in any order are summed in windows up to this: their cost goes with the fourth power. Beyond it the
 /// rays of a pupil that is not smooth are counted.
 constexpr double widest_node_window_lambda_n = 64;
+/// A stop with blades has no other way: some seconds a PSF.
+constexpr double widest_bladed_window_lambda_n = 128;
 /// Around the ray spot, and at least in all: the square that holds 99 % of an Airy pattern.
 constexpr double margin_lambda_n = 12;
 constexpr double least_half_width_lambda_n = 18.5;
@@ -55,21 +57,23 @@ Extent extent_of(const SmoothPupil& pupil) {
 std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, scout_azimuths);
   if (!pupil) return {};
-  std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, scout_radial);
-  for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i)  // the rim itself
+  std::vector<PupilNode> nodes = pupil_nodes(*pupil, scout_radial);
+  for (std::size_t i = 0; i < pupil->own(); ++i)  // the rim itself
     nodes.push_back({pupil->radius[i] * std::sin(pupil->azimuth(i)),
                      pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i)), 0});
   Extent extent;
-  double low = 2, high = -2, alpha_width = 0;
+  double low = 2, high = -2, left = 2, right = -2;
   for (const WaveRay& ray : trace_wave_rays(tracer, chief, *pupil, nodes)) {
     if (!ray.passes) continue;
     low = std::min(low, ray.beta);
     high = std::max(high, ray.beta);
-    alpha_width = std::max(alpha_width, 2 * std::abs(ray.alpha));
+    left = std::min(left, pupil->mirrored() ? -std::abs(ray.alpha) : ray.alpha);
+    right = std::max(right, pupil->mirrored() ? std::abs(ray.alpha) : ray.alpha);
     extent.reach_s_mm = std::max(extent.reach_s_mm, std::abs(ray.s_mm));
     extent.low_t_mm = std::min(extent.low_t_mm, ray.t_mm);
     extent.high_t_mm = std::max(extent.high_t_mm, ray.t_mm);
   }
+  const double alpha_width = right - left;
   if (!(high > low) || !(alpha_width > 0)) return {};
   extent.widest = std::max(alpha_width, high - low);
   extent.narrowest = std::min(alpha_width, high - low);
@@ -176,9 +180,11 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
                                       int azimuths) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, azimuths);
   if (!pupil) return {};
-  const std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, radial_nodes);
+  const std::vector<PupilNode> nodes = pupil_nodes(*pupil, radial_nodes);
   const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *pupil, nodes);
   PupilWaves waves;
+  waves.mirrored = pupil->mirrored();
+  const double own = waves.mirrored ? 0.5 : 1;  // its mirror image has the other half of a node's light
   waves.wavelength_nm = tracer.tracer().wavelength_nm();
   waves.image_index = tracer.tracer().image_index();
   for (std::size_t node = 0; node < nodes.size(); ++node) {
@@ -189,8 +195,8 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
     waves.phase_waves.push_back(ray.phase_waves);
     // a dα dβ = T du dv / a.
     const double light = nodes[node].weight * ray.transmittance;
-    waves.amplitude.push_back(ray.amplitude > 0 ? light / ray.amplitude : 0);
-    waves.flux += 2 * light;
+    waves.amplitude.push_back(ray.amplitude > 0 ? own * light / ray.amplitude : 0);
+    waves.flux += light;
   }
   if (waves.size() == 0) return {};
   return waves;
@@ -203,15 +209,16 @@ Psf point_spread(const SmoothPupil& pupil, const PsfOptions& options) {
 }
 
 std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
-  const bool own_nodes = options.radial_nodes > 0 || options.azimuths > 0;
+  const bool bladed = tracer.tracer().stop_blades().count > 0;
+  const bool own_nodes = bladed || options.radial_nodes > 0 || options.azimuths > 0;
   if (const auto pupil = own_nodes ? std::nullopt : fit_pupil(tracer, chief))
     return point_spread(*pupil, options);
   const std::optional<Extent> extent = scout(tracer, chief);
   if (!extent) return {};
   return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
     const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();
-    if (width_mm > 2 * widest_node_window_lambda_n * extent->lambda_n_mm())
-      return traced_spot(tracer, chief, plan.grid());
+    const double widest = bladed ? widest_bladed_window_lambda_n : widest_node_window_lambda_n;
+    if (width_mm > 2 * widest * extent->lambda_n_mm()) return traced_spot(tracer, chief, plan.grid());
     const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths);
     if (!waves) return {};
     return sum_nodes(*waves, plan);

@@ -44,7 +44,7 @@ std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay&
                                       int azimuths);
 
 /// Plan, rays and sum in one: by chords of a smooth pupil (fit_pupil), or by traced nodes where the pupil is
-/// not smooth. Nothing when no ray passes.
+/// not smooth or the stop has blades. Nothing when no ray passes.
 std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief,
                                 const PsfOptions& options = {});
 

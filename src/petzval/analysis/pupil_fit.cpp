@@ -160,6 +160,7 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
 
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits) {
+  if (tracer.tracer().stop_blades().count > 0) return {};  // not mirror symmetric
   const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, outline_azimuths);
   if (!boundary) return {};
   const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary).points();

@@ -18,9 +18,9 @@ struct PupilFitLimits {
 };
 
 /// A few hundred real rays inside the boundary and on it, and polynomials through their phase and amplitude.
-/// \returns nothing when no ray passes, or when the pupil is not that smooth: rays that fail inside the
-/// boundary, an outline that is no function of β, or residuals beyond the limits. Its nodes must be traced
-/// then.
+/// \returns nothing when no ray passes, or when the pupil is not that smooth: blades, rays that fail inside
+/// the boundary, an outline that is no function of β, or residuals beyond the limits. Its nodes must be
+/// traced then.
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits = {});
 

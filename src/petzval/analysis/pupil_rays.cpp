@@ -49,7 +49,7 @@ class Launcher {
                       (y(right) - y(left)) * (x(above) - x(below))) /
              (4 * nudge * nudge);
     };
-    ray.entrance_measure = 2 * node.weight;
+    ray.entrance_measure = node.weight;
     ray.stop_area_mm2 = ray.entrance_measure * area([](const auto& at) { return at.stop_x_mm; },
                                                     [](const auto& at) { return at.stop_y_mm; });
     ray.exit_solid_angle_sr = ray.entrance_measure * area([](const auto& at) { return at.ray.direction[0]; },
@@ -72,18 +72,21 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
   if (!pupil) return rays;
   const Launcher launcher(tracer, chief);
   const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
-  for (const PupilNode& node : half_pupil_nodes(*pupil, sampling.radial_nodes)) {
+  for (const PupilNode& node : pupil_nodes(*pupil, sampling.radial_nodes)) {
     const Tracer::Clearance traced = launcher.trace(node.u, node.v);
     if (!Launcher::arrived(traced)) continue;
     PupilRay ray = launcher.at_image(traced);
+    ray.mirrored = pupil->mirrored();
     if (launcher.weigh(node, nudge, ray)) rays.push_back(ray);
   }
   if (rays.empty()) return rays;
-  for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i) {
+  for (std::size_t i = 0; i < pupil->own(); ++i) {
     const double u = pupil->radius[i] * std::sin(pupil->azimuth(i)),
                  v = pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i));
     const Tracer::Clearance traced = launcher.trace(u, v);
-    if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
+    if (!Launcher::arrived(traced)) continue;
+    rays.push_back(launcher.at_image(traced));
+    rays.back().mirrored = pupil->mirrored();
   }
   return rays;
 }
@@ -104,8 +107,7 @@ class RimByArea {
     const auto next = std::upper_bound(before_.begin() + 1, before_.end() - 1, area);
     const auto i = static_cast<std::size_t>(next - before_.begin()) - 1;
     const double place = static_cast<double>(i) + (area - before_[i]) / (before_[i + 1] - before_[i]);
-    const double even = 2 * pi * place / static_cast<double>(pupil_.radius.size());
-    const double azimuth = std::atan2(pupil_.stretch * std::sin(even), std::cos(even));
+    const double azimuth = azimuth_at(place);
     // Radii stand in the middle of their samples.
     const std::size_t count = pupil_.radius.size();
     const double middle = place - 0.5 + static_cast<double>(count), below = std::floor(middle);
@@ -116,6 +118,16 @@ class RimByArea {
   }
 
  private:
+  double azimuth_at(double place) const {
+    const std::size_t count = pupil_.radius.size();
+    double turn = 2 * pi * place / static_cast<double>(count);
+    if (!pupil_.mirrored()) {  // nodes of a quadrature: their weights are how far each reaches
+      const auto i = std::min(static_cast<std::size_t>(place), count - 1);
+      turn = pupil_.turns[i] + (place - static_cast<double>(i) - 0.5) * pupil_.turn_weights[i];
+    }
+    return std::atan2(pupil_.stretch * std::sin(turn), std::cos(turn));
+  }
+
   const PupilBoundary& pupil_;
   std::vector<double> before_;
 };

@@ -9,8 +9,9 @@
 
 namespace petzval {
 
-/// A ray of the half pupil u ≥ 0 at the image surface. Its three weights are the areas that it stands for,
-/// both halves counted, so that sums over rays are integrals over the pupil; rays on the rim have none.
+/// A ray at the image surface: of the half pupil u ≥ 0, or of the whole of a stop with blades. Its three
+/// weights are the areas that it stands for, its mirror image's counted, so that sums over rays are integrals
+/// over the pupil; rays on the rim have none.
 struct PupilRay {
   double x_mm = 0, y_mm = 0;            ///< on the image surface, from the chief ray's point
   double alpha = 0, beta = 0;           ///< direction cosines along x and y
@@ -19,6 +20,7 @@ struct PupilRay {
   double stop_area_mm2 = 0;             ///< on the real stop surface
   double entrance_measure = 0;     ///< du dv of Pencil, proportional to the light: mm² of the beam, or sr
   double exit_solid_angle_sr = 0;  ///< dα dβ
+  bool mirrored = true;            ///< stands for its mirror image in x, too
 };
 
 struct PupilSampling {

@@ -29,6 +29,19 @@ MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, b
   return path;
 }
 
+/// How far the pupil reaches in the meridional plane, above (+1) or below its centre. Azimuths of a stop with
+/// blades stand where its corners want them, so the rim there is sought.
+double meridional_rim(const FieldTracer& tracer, const Pencil& pencil, const PupilBoundary& pupil, int side) {
+  if (pupil.mirrored()) return side > 0 ? pupil.radius.front() : pupil.radius[pupil.radius.size() / 2];
+  double inside = 0, outside = 1.01 * *std::max_element(pupil.radius.begin(), pupil.radius.end());
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    const double v = pupil.centre_v + side * middle;
+    (pencil.clearance(tracer.tracer(), 0, v, tracer.clip()).worst < 0 ? inside : outside) = middle;
+  }
+  return inside;
+}
+
 }  // namespace
 
 std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_field, int count,
@@ -39,8 +52,8 @@ std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_fi
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(*chief, rim_azimuths);
   if (!pupil) return fan;
   const Pencil pencil = Pencil::from_object(tracer.lens(), object_field);
-  const double top = pupil->radius.front() * inside_rim,
-               bottom = pupil->radius[pupil->radius.size() / 2] * inside_rim;
+  const double top = meridional_rim(tracer, pencil, *pupil, 1) * inside_rim,
+               bottom = meridional_rim(tracer, pencil, *pupil, -1) * inside_rim;
   for (int i = 0; i < count; ++i) {
     const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
     const double v = count == 1 ? chief->v : pupil->centre_v + share * (share > 0 ? top : bottom);
@@ -59,7 +72,7 @@ Lens with_apertures_from_fields(Lens lens) {
     for (const double value : lens.fields.values) {
       const double field = object_field(lens, lens.fields.kind, value);
       const std::optional<ChiefRay> chief = tracer.chief_ray(field);
-      const std::optional<PupilBoundary> pupil = chief ? tracer.object_pupil(*chief, 64) : std::nullopt;
+      const std::optional<PupilBoundary> pupil = chief ? tracer.round_object_pupil(*chief, 64) : std::nullopt;
       if (!pupil)
         throw InputError(fmt::format("{}: no ray passes at field {:g}, so its apertures cannot be solved",
                                      lens.name, value));

@@ -22,21 +22,24 @@ std::optional<SpotRow> spot(const FieldTracer& tracer, const ChiefRay& chief, Ra
   const auto weight_of = [&](const PupilRay& ray) {
     return weight == RayWeight::light ? ray.entrance_measure : ray.stop_area_mm2;
   };
-  double total = 0, centroid = 0, x_sq = 0, y_sq = 0, largest = 0;
+  double total = 0, centroid = 0, centroid_x = 0, x_sq = 0, y_sq = 0, largest = 0;
   for (const PupilRay& ray : rays) {
     total += weight_of(ray);
     centroid += weight_of(ray) * ray.y_mm;
+    if (!ray.mirrored) centroid_x += weight_of(ray) * ray.x_mm;
   }
   centroid /= total;
+  centroid_x /= total;
   for (const PupilRay& ray : rays) {
-    const double y = ray.y_mm - centroid;
-    x_sq += weight_of(ray) * ray.x_mm * ray.x_mm / total;
+    const double x = ray.x_mm - centroid_x, y = ray.y_mm - centroid;
+    x_sq += weight_of(ray) * x * x / total;
     y_sq += weight_of(ray) * y * y / total;
-    largest = std::max(largest, std::hypot(ray.x_mm, y));
+    largest = std::max(largest, std::hypot(x, y));
   }
   SpotRow row;
   row.real_image_height_mm = chief.image_height_mm;
   row.centroid_um = centroid * um_per_mm;
+  row.centroid_x_um = centroid_x * um_per_mm;
   row.rms_x_um = std::sqrt(x_sq) * um_per_mm;
   row.rms_y_um = std::sqrt(y_sq) * um_per_mm;
   row.rms_radius_um = std::hypot(row.rms_x_um, row.rms_y_um);

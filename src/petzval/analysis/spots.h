@@ -18,6 +18,7 @@ struct SpotRow {
   double field = 0, wavelength_nm = 0;
   double real_image_height_mm = 0;    ///< of the chief ray
   double centroid_um = 0;             ///< of the spot, along y from the chief ray
+  double centroid_x_um = 0;           ///< along x; 0 by symmetry, but for blades
   double rms_radius_um = 0;           ///< about the centroid
   double rms_x_um = 0, rms_y_um = 0;  ///< about the centroid
   double max_radius_um = 0;           ///< of the rim and all rays inside it, about the centroid

@@ -27,7 +27,7 @@ void between_cells(double at, int size, const Add& add) {
 std::optional<Psf> traced_spot(const FieldTracer& tracer, const ChiefRay& chief, const PsfGrid& grid) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, azimuths);
   if (!pupil) return {};
-  const std::vector<PupilNode> nodes = half_pupil_nodes(*pupil, radial_nodes);
+  const std::vector<PupilNode> nodes = pupil_nodes(*pupil, radial_nodes);
   const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *pupil, nodes);
   const auto size = static_cast<std::size_t>(grid.size);
   std::vector<double> cells(size * size, 0.0);
@@ -44,9 +44,9 @@ std::optional<Psf> traced_spot(const FieldTracer& tracer, const ChiefRay& chief,
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (!rays[n].passes) continue;
     const double light = nodes[n].weight * rays[n].transmittance;
-    drop(rays[n].s_mm, rays[n].t_mm, light);
-    drop(-rays[n].s_mm, rays[n].t_mm, light);
-    all += 2 * light;
+    all += light;
+    if (pupil->mirrored()) drop(-rays[n].s_mm, rays[n].t_mm, 0.5 * light);
+    drop(rays[n].s_mm, rays[n].t_mm, pupil->mirrored() ? 0.5 * light : light);
   }
   if (!(inside > 0)) return {};
   Psf psf;

@@ -23,7 +23,7 @@ std::optional<VignettingRow> vignetting(const FieldTracer& tracer, const ChiefRa
   for (const PupilRay& ray : rays) row.open_share += ray.stop_area_mm2 / (pi * radius * radius);
   const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
   bool first = true;
-  for (std::size_t i = 0; i < pupil->radius.size() / 2; ++i) {
+  for (std::size_t i = 0; i < pupil->own(); ++i) {
     const double azimuth = pupil->azimuth(i), r = pupil->radius[i];
     const Tracer::Clearance rim = pencil.clearance(tracer.tracer(), r * std::sin(azimuth),
                                                    pupil->centre_v + r * std::cos(azimuth), tracer.clip());

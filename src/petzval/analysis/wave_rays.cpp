@@ -68,14 +68,14 @@ std::vector<WaveRay> trace_wave_rays(const FieldTracer& tracer, const ChiefRay& 
     const double to_foot_mm = -x_mm * rays.l[ray] - y_mm * rays.m[ray];
     WaveRay& wave = waves[node];
     wave.passes = true;
-    wave.alpha = rays.l[ray];
+    wave.alpha = outwards * rays.l[ray];
     wave.beta = outwards * rays.m[ray];
     wave.phase_waves = (rays.opl_mm[ray] + index * to_foot_mm - chief.at_image.opl_mm) / lambda_mm;
     wave.transmittance = transmittance_at(tracer, pencil, nodes[node]);
     // dq = du dv, and dα dβ = |∂(α, β)/∂(u, v)| du dv.
     const double jacobian = exit_jacobian(rays, ray, nudge);
     wave.amplitude = jacobian > 0 ? std::sqrt(wave.transmittance / jacobian) : 0;
-    wave.s_mm = x_mm;
+    wave.s_mm = outwards * x_mm;
     wave.t_mm = outwards * y_mm;
   }
   return waves;

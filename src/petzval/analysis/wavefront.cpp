@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/analysis/field_rows.h>
+#include <petzval/analysis/round_stop.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
@@ -92,6 +93,7 @@ std::optional<WavefrontRow> wavefront(const FieldTracer& tracer, const ChiefRay&
 }
 
 std::vector<WavefrontRow> wavefront_table(const Lens& lens, const FieldTableRequest& request) {
+  require_round_stop(lens, "wavefronts are measured over round ones");
   return field_rows<WavefrontRow>(
       lens, request, [](FieldTracer& tracer, const ChiefRay& chief) { return wavefront(tracer, chief); });
 }

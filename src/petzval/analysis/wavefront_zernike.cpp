@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/analysis/field_rows.h>
+#include <petzval/analysis/round_stop.h>
 #include <petzval/analysis/stop_aim.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/analysis/wavefront_zernike.h>
@@ -35,6 +36,7 @@ struct StopSamples {
 
 std::vector<WavefrontZernikeRow> zernike_table(const Lens& lens, const FieldTableRequest& request,
                                                ZernikeOrder order, int terms) {
+  require_round_stop(lens, "Zernike terms belong to round ones");
   zernike_term(order, terms);  // refuses before the work
   return field_rows<WavefrontZernikeRow>(
       lens, request,
@@ -52,6 +54,7 @@ std::vector<WavefrontZernikeRow> zernike_table(const Lens& lens, const FieldTabl
 }
 
 std::vector<WavefrontMap> wavefront_maps(const Lens& lens, const FieldTableRequest& request, int size) {
+  require_round_stop(lens, "wavefronts are mapped over round ones");
   if (size < 3 || size > 1025)
     throw InputError(fmt::format("a wavefront map of {0} x {0} samples; 3 to 1025 would be right", size));
   return field_rows<WavefrontMap>(

@@ -207,4 +207,9 @@ void Camera::set_f_number(double f_number) {
   use(lens_.object_distance_mm, lens_.surfaces.back().thickness_mm);
 }
 
+void Camera::set_blades(const StopBlades& blades) {
+  blades.validate();
+  for (Lens* lens : {&prescription_, &lens_}) lens->surfaces[lens->stop_index()].blades = blades;
+}
+
 }  // namespace petzval

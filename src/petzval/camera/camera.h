@@ -52,6 +52,8 @@ class Camera {
 
   /// Stops down to a paraxial f-number at infinity. \throws InputError if it is below what the lens opens to.
   void set_f_number(double f_number);
+  /// Blades of the stop, or none. \throws InputError as StopBlades::validate().
+  void set_blades(const StopBlades& blades);
 
  private:
   void use(std::optional<double> object_distance_mm, double last_thickness_mm);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/glass/material.h>
+#include <petzval/lens/stop_blades.h>
 
 #include <cstddef>
 #include <map>
@@ -19,6 +20,7 @@ struct Surface {
   double thickness_mm = 0;      ///< to the next vertex; the last one reaches the image surface
   Material material;            ///< fills the gap behind the surface
   bool stop = false;
+  StopBlades blades;                       ///< of the stop, inside its radius; none: round
   std::optional<double> semi_diameter_mm;  ///< clear semi-aperture; absent = unbounded
   double conic = 0;                        ///< k
   std::map<int, double> asphere;           ///< power p of r → a_p [mm^(1−p)]
@@ -59,6 +61,8 @@ struct Lens {
 
   /// Index of the stop surface. A valid lens has exactly one.
   std::size_t stop_index() const;
+  /// Of the stop surface.
+  const StopBlades& stop_blades() const { return surfaces[stop_index()].blades; }
   /// From vertex 1 to the image surface.
   double total_track_mm() const;
   /// \throws InputError saying which entry is wrong and what would be right: no surfaces, no stop or two,

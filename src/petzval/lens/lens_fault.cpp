@@ -25,6 +25,14 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
     return LensFault{at("semi_diameter_mm"),
                      "must be positive, in mm; leave it out for an unbounded surface"};
   if (!std::isfinite(surface.conic)) return LensFault{at("conic"), "must be a finite number"};
+  const StopBlades& blades = surface.blades;
+  if (blades.count != 0 && !surface.stop)
+    return LensFault{at("blades"), "must stand at the stop; other apertures are round"};
+  if (blades.count != 0 && (blades.count < 3 || blades.count > StopBlades::most))
+    return LensFault{at("blades.count"),
+                     fmt::format("must be 3 to {}, or 0 for a round stop", StopBlades::most)};
+  if (!std::isfinite(blades.rotation_deg))
+    return LensFault{at("blades.rotation_deg"), "must be a finite number of degrees"};
   for (const auto& [power, coefficient] : surface.asphere) {
     if (power < lowest_asphere_power || power > highest_asphere_power)
       return LensFault{fmt::format("{}.asphere.{}", path, power),

@@ -4,6 +4,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/analysis/pupil_fit.h>
+#include <petzval/analysis/round_stop.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
@@ -205,6 +206,10 @@ void TableOptions::validate() const {
 
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
                                     const ProgressCallback& progress) {
+  // On a sensor a polygon stands still, while the PSFs of a table turn with the azimuth of the field.
+  require_round_stop(lens,
+                     "a table by field height turns with the field, which polygons do not; `lens psf "
+                     "--field-azimuth` and `render` have blades");
   const TableOptions options = completed(lens, asked);
   LensDataTable table;
   table.lens_name = lens.name;

@@ -175,13 +175,15 @@ void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
     const auto [z, y] = scene.profiles[i].back();
     const double neighbour =
         std::max(scene.profiles[i == 0 ? 0 : i - 1].back()[1], scene.profiles[i + 1].back()[1]);
-    const double x = view.x(z), inner = y, outer = std::max(1.3 * y, neighbour);
-    for (const double side : {1.0, -1.0})
+    const double x = view.x(z), outer = std::max(1.3 * y, neighbour);
+    for (const double side : {1.0, -1.0}) {
+      const double inner = y * scene.lens.surfaces[i].blades.reach(0, side);
       xml.leaf("path", {{"class", "pz-line"},
                         {"stroke-width", 2.4},
                         {"d", fmt::format("M{0} {2}V{3}M{1} {3}h{4}", svg_number(x), svg_number(x - foot_px),
                                           svg_number(view.y(side * outer)), svg_number(view.y(side * inner)),
                                           svg_number(2 * foot_px))}});
+    }
   }
 }
 

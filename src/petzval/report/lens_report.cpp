@@ -97,6 +97,9 @@ Table prescription(const Lens& lens) {
     const double c = surface.curvature_per_mm;
     std::vector<std::string> remarks;
     if (surface.stop) remarks.push_back("stop");
+    if (surface.blades.count > 0)
+      remarks.push_back(
+          fmt::format("{} blades turned by {:g}°", surface.blades.count, surface.blades.rotation_deg));
     if (surface.conic != 0) remarks.push_back(fmt::format("conic {:g}", surface.conic));
     for (const auto& [power, coefficient] : surface.asphere)
       remarks.push_back(fmt::format("r^{} {:g}", power, coefficient));

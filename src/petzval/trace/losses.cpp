@@ -162,14 +162,14 @@ double transmitted_area(const Tracer& tracer, const Pencil& pencil, const PupilB
                         const LensTransmittance& transmittance, int radial_nodes) {
   double sum = 0;
   std::vector<Intersection> path;
-  for (const PupilNode& node : half_pupil_nodes(pupil, radial_nodes)) {
+  for (const PupilNode& node : pupil_nodes(pupil, radial_nodes)) {
     const std::optional<Ray> launched = pencil.ray(node.u, node.v);
     if (!launched) continue;
     path.clear();
     const Ray traced = pencil.backward() ? tracer.trace_backward(*launched, Tracer::Clip::none, &path)
                                          : tracer.trace(*launched, Tracer::Clip::none, &path);
     if (traced.status == RayStatus::ok)
-      sum += 2 * node.weight * transmittance.along(*launched, path, pencil.backward());
+      sum += node.weight * transmittance.along(*launched, path, pencil.backward());
   }
   return sum;
 }

@@ -4,6 +4,7 @@
 #include <petzval/numeric/quadrature.h>
 #include <petzval/trace/clearance_batch.h>
 #include <petzval/trace/pupil.h>
+#include <petzval/trace/stop_corners.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ constexpr double comfortable_clearance = -0.5;
 constexpr double growth = 1.3;
 constexpr int most_rounds = 400;
 /// For the first look, which finds the stretch.
-constexpr std::size_t first_azimuths = 16;
+constexpr int first_azimuths = 16;
 constexpr double widest_stretch = 100;
 
 class PupilSearch {
@@ -162,15 +163,16 @@ double even_azimuth(std::size_t i, std::size_t count) {
 }  // namespace
 
 double PupilBoundary::azimuth(std::size_t i) const {
-  const double even = even_azimuth(i, radius.size());
+  const double even = mirrored() ? even_azimuth(i, radius.size()) : turns[i];
   const double azimuth = std::atan2(stretch * std::sin(even), std::cos(even));
   return azimuth < 0 ? azimuth + 2 * pi : azimuth;
 }
 
 double PupilBoundary::azimuth_weight(std::size_t i) const {
-  const double even = even_azimuth(i, radius.size());
+  const double even = mirrored() ? even_azimuth(i, radius.size()) : turns[i];
+  const double step = mirrored() ? 2 * pi / static_cast<double>(radius.size()) : turn_weights[i];
   const double sine = stretch * std::sin(even), cosine = std::cos(even);
-  return stretch / (sine * sine + cosine * cosine) * 2 * pi / static_cast<double>(radius.size());
+  return stretch / (sine * sine + cosine * cosine) * step;
 }
 
 double PupilBoundary::area() const {
@@ -185,20 +187,22 @@ namespace {
 void find_radii(std::size_t azimuths, double worst_at_centre, double guess, ClearanceBatch& clearances,
                 PupilBoundary& boundary) {
   boundary.radius.resize(azimuths);
-  std::vector<Bracket> brackets(azimuths / 2);
+  std::vector<Bracket> brackets(boundary.own());
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     const double azimuth = boundary.azimuth(i);
     brackets[i] = {std::sin(azimuth), std::cos(azimuth), 0, guess, worst_at_centre, 0};
   }
   close_in(brackets, boundary.centre_v, clearances);
-  for (std::size_t i = 0; i < brackets.size(); ++i)
-    boundary.radius[i] = boundary.radius[azimuths - 1 - i] = brackets[i].inside;
+  for (std::size_t i = 0; i < brackets.size(); ++i) {
+    boundary.radius[i] = brackets[i].inside;
+    if (boundary.mirrored()) boundary.radius[azimuths - 1 - i] = brackets[i].inside;
+  }
 }
 
 /// Width along u over height along v of a boundary.
 double stretch_of(const PupilBoundary& boundary) {
   double width = 0, high = -1e300, low = 1e300;
-  for (std::size_t i = 0; i < boundary.radius.size() / 2; ++i) {
+  for (std::size_t i = 0; i < boundary.own(); ++i) {
     const double azimuth = boundary.azimuth(i);
     width = std::max(width, 2 * boundary.radius[i] * std::sin(azimuth));
     high = std::max(high, boundary.radius[i] * std::cos(azimuth));
@@ -206,6 +210,31 @@ double stretch_of(const PupilBoundary& boundary) {
   }
   const double stretch = width / (high - low);
   return std::isfinite(stretch) ? std::clamp(stretch, 1 / widest_stretch, widest_stretch) : 1;
+}
+
+/// From corner to corner of the polygon, in Gauss-Legendre nodes. Corners that no ray of the pencil reaches
+/// part nothing.
+void set_turns(const Tracer& tracer, const Pencil& pencil, double scale, int azimuths,
+               PupilBoundary& boundary) {
+  std::vector<double> corners;
+  for (const auto& [u, v] : aim_at_corners(tracer, pencil, boundary.chief_v, scale)) {
+    const double turn = std::atan2(u / boundary.stretch, v - boundary.centre_v);
+    corners.push_back(turn < 0 ? turn + 2 * pi : turn);
+  }
+  std::sort(corners.begin(), corners.end());
+  if (corners.empty()) corners.push_back(0);
+  corners.push_back(corners.front() + 2 * pi);
+  constexpr int fewest_nodes = 6;
+  const int panels = static_cast<int>(corners.size()) - 1;
+  for (int panel = 0; panel < panels; ++panel) {
+    const auto p = static_cast<std::size_t>(panel);
+    // Long panels, where corners were not found, get their share.
+    const double share = (corners[p + 1] - corners[p]) / (2 * pi);
+    const int nodes = std::max(fewest_nodes, static_cast<int>(std::ceil(azimuths * share)));
+    const QuadratureRule rule = gauss_legendre(nodes, corners[p], corners[p + 1]);
+    boundary.turns.insert(boundary.turns.end(), rule.nodes.begin(), rule.nodes.end());
+    boundary.turn_weights.insert(boundary.turn_weights.end(), rule.weights.begin(), rule.weights.end());
+  }
 }
 
 }  // namespace
@@ -223,26 +252,30 @@ std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& penc
   boundary.centre_v = *centre;
   boundary.chief_v = chief_v;
   const double worst_at_centre = search.worst(0, *centre);
-  find_radii(first_azimuths, worst_at_centre, scale, clearances, boundary);
+  const bool bladed = tracer.stop_blades().count > 0 && clip != Tracer::Clip::none;
+  if (bladed) set_turns(tracer, pencil, scale, first_azimuths, boundary);
+  find_radii(bladed ? boundary.turns.size() : first_azimuths, worst_at_centre, scale, clearances, boundary);
   boundary.stretch = stretch_of(boundary);
+  boundary.turns.clear(), boundary.turn_weights.clear();
   const double guess = *std::max_element(boundary.radius.begin(), boundary.radius.end());
-  find_radii(static_cast<std::size_t>(azimuths), worst_at_centre, guess > 0 ? guess : scale, clearances,
-             boundary);
+  if (bladed) set_turns(tracer, pencil, scale, azimuths, boundary);
+  find_radii(bladed ? boundary.turns.size() : static_cast<std::size_t>(azimuths), worst_at_centre,
+             guess > 0 ? guess : scale, clearances, boundary);
   return boundary;
 }
 
-std::vector<PupilNode> half_pupil_nodes(const PupilBoundary& boundary, int radial_nodes) {
+std::vector<PupilNode> pupil_nodes(const PupilBoundary& boundary, int radial_nodes) {
   const QuadratureRule radial = gauss_legendre(radial_nodes);
-  const std::size_t azimuths = boundary.radius.size();
+  const double stands_for = boundary.mirrored() ? 2 : 1;
   std::vector<PupilNode> nodes;
-  nodes.reserve(azimuths / 2 * radial.nodes.size());
-  for (std::size_t i = 0; i < azimuths / 2; ++i) {
+  nodes.reserve(boundary.own() * radial.nodes.size());
+  for (std::size_t i = 0; i < boundary.own(); ++i) {
     const double rim = boundary.radius[i], azimuth = boundary.azimuth(i);
     const double step = boundary.azimuth_weight(i);
     for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
       const double r = rim * radial.nodes[k];
       nodes.push_back({r * std::sin(azimuth), boundary.centre_v + r * std::cos(azimuth),
-                       r * rim * radial.weights[k] * step});
+                       stands_for * (r * rim * radial.weights[k] * step)});
     }
   }
   return nodes;

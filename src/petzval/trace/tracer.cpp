@@ -111,6 +111,10 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     z += surface.thickness_mm;
   }
   image_z_mm_ = z;
+  if (std::isfinite(stop_radius_mm)) {
+    blades_ = lens.stop_blades();
+    blade_normals_ = blades_.normals();
+  }
 }
 
 double Tracer::clip_radius_sq(std::size_t surface, Clip clip) const {

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <petzval/lens/lens.h>
+#include <petzval/lens/stop_blades.h>
 #include <petzval/trace/ray_batch.h>
-#include <petzval/trace/stop_blades.h>
 
 #include <array>
 #include <cstddef>
@@ -39,14 +39,15 @@ class Tracer {
  public:
   enum class Clip { apertures, stop_only, none };
 
-  /// Clips at the lens's own stop radius, stop_radius_mm(lens).
+  /// Clips at the lens's own stop radius, stop_radius_mm(lens), and at the blades of its stop.
   /// \throws InputError if an index is not known at the wavelength, or as stop_radius_mm.
   Tracer(const Lens& lens, double wavelength_nm);
-  /// Clips at a stop radius that the caller gives (infinity: the stop is no aperture).
+  /// Clips at a stop radius that the caller gives (infinity: the stop is no aperture, whatever its blades).
   Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm);
 
-  /// The same with an iris of blades at the stop: light that would pass the round stop and not the polygon is
-  /// vignetted. \throws InputError as StopBlades::validate(), and for blades of a stop without a radius.
+  /// The same with other blades at the stop, or a round one: light that would pass the round stop and not the
+  /// polygon is vignetted. \throws InputError as StopBlades::validate(), and for blades of a stop without a
+  /// radius.
   Tracer with_blades(const StopBlades& blades) const;
   const StopBlades& stop_blades() const { return blades_; }
 

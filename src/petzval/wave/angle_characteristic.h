@@ -10,12 +10,13 @@
 namespace petzval {
 
 /// The light that converges on one image point, as plane waves: one node per traced ray, on the half of the
-/// pupil with α ≥ 0; the other half is its mirror image (α → −α).
+/// pupil with α ≥ 0 where the other half is its mirror image (α → −α), else all over the pupil.
 struct PupilWaves {
   std::vector<double> alpha, beta;  ///< exit direction cosines along s and t of Psf
   std::vector<double> phase_waves;  ///< φ: optical path to the foot of the perpendicular from the chief-ray
                                     ///< image point, minus the chief ray's, over λ
   std::vector<double> amplitude;    ///< quadrature weight dα dβ times amplitude a = √(T dq/(dα dβ))
+  bool mirrored = true;             ///< nodes stand for their mirror images, too
   double wavelength_nm = 0;
   double image_index = 1;
   /// ∬ T dq over the whole pupil: what λ⁻² times the integral of |U|² over the plane must come to (Parseval).

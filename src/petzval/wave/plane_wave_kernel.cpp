@@ -86,16 +86,20 @@ HWY_ATTR void multiply_block(const float* row_re, const float* row_im, const flo
 }
 
 /// `rows` and `columns` are multiples of 2 and 3; the turns are padded to whole blocks with zero amplitude.
-HWY_ATTR void sum_blocks(const WaveTurns& turns, int rows, int columns, double* field_re, double* field_im) {
+HWY_ATTR void sum_blocks(const WaveTurns& turns, WaveColumns kind, int rows, int columns, double* field_re,
+                         double* field_im) {
   const std::size_t row_values = static_cast<std::size_t>(rows) * block_nodes;
   std::vector<float> row_re(row_values), row_im(row_values);
   std::vector<float> column(static_cast<std::size_t>(columns) * block_nodes);
-  const std::vector<double> one(block_nodes, 1.0), zero(block_nodes, 0.0);
+  // Columns of real parts: Re(z) is the cosine, Re(−i z) the sine.
+  const bool sines = kind == WaveColumns::sines;
+  const std::vector<double> start_re(block_nodes, sines ? 0.0 : 1.0),
+      start_im(block_nodes, sines ? -1.0 : 0.0);
   for (std::size_t start = 0; start < turns.start_re.size(); start += block_nodes) {
     fill_powers(&turns.start_re[start], &turns.start_im[start], &turns.row_re[start], &turns.row_im[start],
                 rows, 1.0, row_re.data(), row_im.data());
-    fill_powers(one.data(), zero.data(), &turns.column_re[start], &turns.column_im[start], columns, 2.0,
-                column.data(), nullptr);
+    fill_powers(start_re.data(), start_im.data(), &turns.column_re[start], &turns.column_im[start], columns,
+                2.0, column.data(), nullptr);
     multiply_block(row_re.data(), row_im.data(), column.data(), rows, columns, field_re, field_im);
   }
 }
@@ -113,15 +117,15 @@ void WaveTurns::resize(std::size_t count) {
     column->resize(count, 0.0);
 }
 
-void sum_wave_turns(const WaveTurns& turns, int rows, int columns, std::vector<double>& field_re,
-                    std::vector<double>& field_im) {
+void sum_wave_turns(const WaveTurns& turns, WaveColumns kind, int rows, int columns,
+                    std::vector<double>& field_re, std::vector<double>& field_im) {
   constexpr std::size_t block = 256;  // as block_nodes of every target
   WaveTurns padded = turns;
   padded.resize((turns.start_re.size() + block - 1) / block * block);
   const int padded_rows = (rows + 1) / 2 * 2, padded_columns = (columns + 2) / 3 * 3;
   const std::size_t size = static_cast<std::size_t>(padded_rows) * static_cast<std::size_t>(padded_columns);
   std::vector<double> re(size, 0.0), im(size, 0.0);
-  HWY_DYNAMIC_DISPATCH(sum_blocks)(padded, padded_rows, padded_columns, re.data(), im.data());
+  HWY_DYNAMIC_DISPATCH(sum_blocks)(padded, kind, padded_rows, padded_columns, re.data(), im.data());
   const auto wanted = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   field_re.resize(wanted);
   field_im.resize(wanted);

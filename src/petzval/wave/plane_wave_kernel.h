@@ -16,10 +16,12 @@ struct WaveTurns {
   void resize(std::size_t count);
 };
 
-/// field[i·columns + c] = Σ_j start_j · row_j^i · 2 Re(column_j^c), i < rows, c < columns: a rows × nodes
-/// matrix of complex numbers times a nodes × columns matrix of real ones, both made on the way, in single
-/// precision with rotations in double. Error about 1e-7 of the largest value.
-void sum_wave_turns(const WaveTurns& turns, int rows, int columns, std::vector<double>& field_re,
-                    std::vector<double>& field_im);
+enum class WaveColumns { cosines, sines };
+
+/// field[i·columns + c] = Σ_j start_j · row_j^i · 2 Re(column_j^c), or Im for sines, i < rows, c < columns: a
+/// rows × nodes matrix of complex numbers times a nodes × columns matrix of real ones, both made on the way,
+/// in single precision with rotations in double. Error about 1e-7 of the largest value.
+void sum_wave_turns(const WaveTurns& turns, WaveColumns kind, int rows, int columns,
+                    std::vector<double>& field_re, std::vector<double>& field_im);
 
 }  // namespace petzval

@@ -7,6 +7,7 @@
 #include <petzval/lens/lens_fault.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace petzval {
@@ -76,8 +77,21 @@ void read_asphere(const JsonEntry& entry, Surface& surface) {
   }
 }
 
+StopBlades read_blades(const JsonEntry& entry) {
+  entry.allow_only({"count", "rotation_deg"});
+  const JsonEntry count = entry.at("count");
+  const double number = count.number("a number of blades");
+  if (!(std::abs(number) <= StopBlades::most) || number != std::floor(number))
+    count.fail(fmt::format("must be a whole number, 3 to {}, or 0 for a round stop", StopBlades::most));
+  StopBlades blades{static_cast<int>(number), 0};
+  if (const auto rotation = entry.find("rotation_deg"))
+    blades.rotation_deg = rotation->number("an angle in degrees");
+  return blades;
+}
+
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
-  entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "stop"});
+  entry.allow_only(
+      {"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "stop", "blades"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
@@ -87,6 +101,8 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
   if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
   if (const auto asphere = entry.find("asphere")) read_asphere(*asphere, surface);
   if (const auto stop = entry.find("stop")) surface.stop = stop->truth();
+  if (const auto blades = entry.find("blades"); blades && !blades->is_null())
+    surface.blades = read_blades(*blades);
   return surface;
 }
 

@@ -47,6 +47,9 @@ std::string surface_text(const Surface& surface) {
   const std::string glass = std::visit(GlassText{}, surface.material.kind());
   if (!glass.empty()) text += ", \"glass\": " + glass;
   if (surface.stop) text += ", \"stop\": true";
+  if (surface.blades.count != 0)
+    text += fmt::format(R"(, "blades": {{"count": {}, "rotation_deg": {}}})", surface.blades.count,
+                        number_text(surface.blades.rotation_deg));
   if (surface.semi_diameter_mm) text += ", \"semi_diameter_mm\": " + number_text(*surface.semi_diameter_mm);
   if (surface.conic != 0) text += ", \"conic\": " + number_text(surface.conic);
   if (!surface.asphere.empty()) {

@@ -46,6 +46,8 @@ LensRow row_of(const Lens& lens, std::size_t i, const RowRefusal& refuse) {
   const double index = single_index(lens, i, refuse), before = i == 0 ? 1 : single_index(lens, i - 1, refuse);
   const bool flat = surface.curvature_per_mm == 0;
   if (surface.conic != 0 || !surface.asphere.empty()) refuse(i, "conics and aspheres");
+  if (surface.blades.count != 0)
+    refuse(i, "a stop of blades; set surfaces[" + std::to_string(i) + "].blades=null first");
   if (!surface.semi_diameter_mm) refuse(i, "a surface without a clear aperture; set semi_diameter_mm first");
   if (surface.stop && !(flat && index == 1 && before == 1)) refuse(i, "a stop that is not flat and in air");
   if (!surface.stop && flat) refuse(i, "a flat surface: radius 0 is the stop");

@@ -106,6 +106,9 @@ std::string asphere_text(const Surface& surface, std::size_t i) {
 
 std::string surface_text(const Lens& lens, std::size_t i, std::string& private_glasses) {
   const Surface& surface = lens.surfaces[i];
+  if (surface.blades.count != 0)
+    throw InputError(fmt::format(
+        "surfaces[{0}]: Petzval writes no blades into a .seq file; set surfaces[{0}].blades=null first", i));
   std::string text =
       fmt::format("S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
                   std::visit(GlassText{i, private_glasses}, surface.material.kind()));

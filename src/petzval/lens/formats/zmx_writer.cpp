@@ -111,6 +111,9 @@ std::string shape_text(const Surface& surface) {
 
 std::string surface_text(const Lens& lens, std::size_t i) {
   const Surface& surface = lens.surfaces[i];
+  if (surface.blades.count != 0)
+    throw InputError(fmt::format(
+        "surfaces[{0}]: Petzval writes no blades into a .zmx file; set surfaces[{0}].blades=null first", i));
   std::string text = fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface));
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));

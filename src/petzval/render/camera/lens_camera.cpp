@@ -39,16 +39,17 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   const std::vector<double>& nm = groups.wavelengths_nm();
   disperses_ = any_dispersion(lens, nm);
   for (std::size_t i = 0; i < (disperses_ ? nm.size() : 1); ++i)
-    tracers_.emplace_back(lens, nm[i], stop_radius);
+    tracers_.push_back(Tracer(lens, nm[i], stop_radius).with_blades({}));
 
+  const StopBlades& blades = lens.stop_blades();
   for (const Tracer& tracer : tracers_) {
-    const Tracer bladed = tracer.with_blades(options.blades);
+    const Tracer bladed = tracer.with_blades(blades);
     to_scene_.push_back(kernel_path<double>(bladed, true, Tracer::Clip::apertures));
     if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
   if (options.diffraction)
     for (std::size_t i = 0; i < nm.size(); ++i)
-      diffraction_.emplace_back(tracers_[disperses_ ? i : 0].with_blades(options.blades), nm[i]);
+      diffraction_.emplace_back(tracers_[disperses_ ? i : 0].with_blades(blades), nm[i]);
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
     ExitPupilRegions regions = find_regions(lens);
     if (options.losses.any()) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);

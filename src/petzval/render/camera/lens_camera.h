@@ -23,7 +23,6 @@ struct LensCameraOptions {
   /// picture, more noise.
   enum class Sampling { exit_pupil, rear_disk };
   Sampling sampling = Sampling::exit_pupil;
-  StopBlades blades;  ///< make the stop a polygon
   double scene_units_per_mm = 1e-3;
   Losses losses;  ///< reflection and absorption in the lens; none unless set
   /// How far outside of the film's frame light may be asked for: half of what a low-pass filter parts

@@ -21,6 +21,9 @@ struct StopBlades {
   std::vector<std::array<double, 2>> normals() const;
   /// Distance of the edges from the middle over the radius of the stop: cos(π/count).
   double apothem() const;
+  /// How far the polygon reaches in a direction (unit, in lens space) over the radius of the stop; 1 without
+  /// blades.
+  double reach(double x, double y) const;
   /// Area over that of the round stop: count/(2π) · sin(2π/count).
   double area_share() const;
 };

@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/trace/stop_blades.h>
+#include <petzval/lens/stop_blades.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace petzval {
@@ -28,6 +29,13 @@ std::vector<std::array<double, 2>> StopBlades::normals() const {
 
 double StopBlades::apothem() const {
   return count > 0 ? std::cos(pi / count) : 1;
+}
+
+double StopBlades::reach(double x, double y) const {
+  double nearest = 1;
+  for (const auto& [nx, ny] : normals())
+    if (const double towards = nx * x + ny * y; towards > 0) nearest = std::min(nearest, apothem() / towards);
+  return nearest;
 }
 
 double StopBlades::area_share() const {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
+#include <petzval/trace/stop_corners.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace petzval {
+
+namespace {
+
+/// Of the stop's radius. Panels of a quadrature end here: an error of this share costs its square.
+constexpr double aim_tolerance = 1e-9;
+/// Neighbouring rays, as a share of the pupil.
+constexpr double nudge_per_scale = 1e-6;
+constexpr int most_steps = 30;
+
+using Point = std::array<double, 2>;
+
+std::optional<Point> at_stop(const Tracer& tracer, const Pencil& pencil, const Point& label) {
+  const Tracer::Clearance traced = pencil.clearance(tracer, label[0], label[1], Tracer::Clip::none);
+  if (!traced.reached_stop || !std::isfinite(traced.stop_x_mm)) return {};
+  return Point{traced.stop_x_mm, traced.stop_y_mm};
+}
+
+std::optional<Point> aim(const Tracer& tracer, const Pencil& pencil, const Point& wanted, Point label,
+                         double scale) {
+  const double nudge = nudge_per_scale * scale;
+  for (int step = 0; step < most_steps; ++step) {
+    const auto here = at_stop(tracer, pencil, label);
+    const auto right = at_stop(tracer, pencil, {label[0] + nudge, label[1]});
+    const auto above = at_stop(tracer, pencil, {label[0], label[1] + nudge});
+    if (!here || !right || !above) return {};
+    const double miss_x = wanted[0] - (*here)[0], miss_y = wanted[1] - (*here)[1];
+    if (std::hypot(miss_x, miss_y) < aim_tolerance * tracer.stop_radius_mm()) return label;
+    const double xu = ((*right)[0] - (*here)[0]) / nudge, yu = ((*right)[1] - (*here)[1]) / nudge;
+    const double xv = ((*above)[0] - (*here)[0]) / nudge, yv = ((*above)[1] - (*here)[1]) / nudge;
+    const double area = xu * yv - xv * yu;
+    const double du = (miss_x * yv - miss_y * xv) / area, dv = (miss_y * xu - miss_x * yu) / area;
+    if (!std::isfinite(du) || !std::isfinite(dv)) return {};
+    // No step is longer than half the pupil: far out the rays may fail.
+    const double shorter = std::min(1.0, 0.5 * scale / std::hypot(du, dv));
+    label = {label[0] + shorter * du, label[1] + shorter * dv};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<Point> aim_at_corners(const Tracer& tracer, const Pencil& pencil, double chief_v, double scale) {
+  std::vector<Point> labels;
+  const StopBlades& blades = tracer.stop_blades();
+  for (int i = 0; i < blades.count; ++i) {
+    const double turn = radians(90 + blades.rotation_deg) + 2 * pi * i / blades.count;
+    const Point corner{tracer.stop_radius_mm() * std::cos(turn), tracer.stop_radius_mm() * std::sin(turn)};
+    if (const auto label = aim(tracer, pencil, corner, {0, chief_v}, scale)) labels.push_back(*label);
+  }
+  return labels;
+}
+
+}  // namespace petzval
