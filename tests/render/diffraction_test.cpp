@@ -6,6 +6,7 @@
 #include <petzval/camera/camera.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/numeric/quadrature.h>
 #include <petzval/numeric/sobol.h>
 #include <petzval/render/camera/lens_camera.h>
 
@@ -80,21 +81,76 @@ double airy_contrast(double s) {
   return 2 / pi * (std::acos(s) - s * std::sqrt(1 - s * s));
 }
 
-TEST(StopDiffraction, SpreadsLightAboutAsAiryDoes) {
+/// The law of Freniere, Gregory and Hassler (1999) by itself, without a lens or random numbers: a ray that
+/// crosses a round stop of radius 1 at the distance d from its edge is bent by a normal distribution of
+/// standard deviation λ/(4π d), which is 1/(2π d) in units of λN. Mean over the stop of `value`(σ across, σ
+/// along).
+template <class Value>
+double by_law(const Value& value) {
+  constexpr int nodes = 600;
+  const QuadratureRule rule = gauss_legendre(nodes);
+  double sum = 0;
+  for (int i = 0; i < nodes; ++i) {
+    // Crowded towards the edge, where bends change fastest.
+    const auto k = static_cast<std::size_t>(i);
+    const double q = rule.nodes[k], rho = 1 - q * q * q, d_rho = 3 * q * q * rule.weights[k];
+    const double across = 1 - rho, along = std::sqrt(1 - rho * rho);
+    sum += 2 * rho * d_rho * value(1 / (2 * pi * across), 1 / (2 * pi * along));
+  }
+  return sum;
+}
+
+double within_by_law(double radius) {
+  const QuadratureRule rule = gauss_legendre(64);
+  return by_law([&](double across, double along) {
+    // Strips of the narrower distribution, and how much of the wider one each holds.
+    const double reach = std::min(radius, 9 * along);
+    double share = 0;
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      const double b = reach * rule.nodes[i];
+      share += 2 * reach * rule.weights[i] * std::exp(-b * b / (2 * along * along)) /
+               (along * std::sqrt(2 * pi)) * std::erf(std::sqrt((radius * radius - b * b) / 2) / across);
+    }
+    return share;
+  });
+}
+
+double contrast_by_law(double per_unit) {
+  constexpr int azimuths = 64;
+  return by_law([&](double across, double along) {
+    double sum = 0;
+    for (int i = 0; i < azimuths; ++i) {
+      const double c = std::cos(2 * pi * (i + 0.5) / azimuths), s = std::sin(2 * pi * (i + 0.5) / azimuths);
+      const double k = 2 * pi * per_unit;
+      sum += std::exp(-0.5 * k * k * (across * across * c * c + along * along * s * s)) / azimuths;
+    }
+    return sum;
+  });
+}
+
+/// Through a lens and at random it is the law that it should be.
+TEST(StopDiffraction, FollowsTheLaw) {
   const std::vector<Landed> landed = spread_of({}, true);
   // The lens itself is sharp to a twentieth of λN, so that what is seen is diffraction.
   EXPECT_GT(within(spread_of({}, false), 0.05), 0.999);
-  // A model without phases. Measured: 0.11 more light within λN/4, where the disc is flat and bends of rays
-  // through the middle are not; 0.07 less at λN, for the tail is a quarter too strong (0.254/r against
-  // 0.203/r).
-  for (const double radius : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0})
-    EXPECT_NEAR(within(landed, radius), airy_within(radius), 0.12) << radius;
-  for (const double radius : {3.0, 5.0, 10.0})
-    EXPECT_NEAR((1 - within(landed, radius)) / (1 - airy_within(radius)), 1.27, 0.05) << radius;
-  // For want of phases it knows no highest frequency either: contrast is right to 0.05 up to half of it, and
-  // falls too slowly beyond.
-  for (int i = 1; i < 10; ++i)
-    EXPECT_NEAR(contrast(landed, 0.1 * i), airy_contrast(0.1 * i), i <= 5 ? 0.05 : 0.18) << i;
+  // Three standard errors of 65,536 directions at random: 3 √(¼/65536) = 0.006.
+  for (const double radius : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0})
+    EXPECT_NEAR(within(landed, radius), within_by_law(radius), 0.006) << radius;
+  for (int i = 1; i < 10; ++i) EXPECT_NEAR(contrast(landed, 0.1 * i), contrast_by_law(0.1 * i), 0.006) << i;
+}
+
+/// How far the law is from the Airy disc can be said without a measurement. Far out, only rays beside the
+/// edge count: their share is 2 ∫ erfc(√2 π d r) dd = √2/(π^1.5 r), Airy's (Rayleigh) 2/(π² r): √(π/2) = 1.25
+/// times as much.
+TEST(StopDiffraction, TheLawIsSoFarFromTheAiryDisc) {
+  // The next term of both is smaller by 1/r² or so.
+  EXPECT_NEAR((1 - within_by_law(30)) * 30, std::sqrt(2) / std::pow(pi, 1.5), 0.002);
+  EXPECT_NEAR((1 - airy_within(30)) * 30, 2 / (pi * pi), 0.005);
+  // What docs/RENDERING.md says of the MTF, and that it knows no highest frequency.
+  for (int i = 1; i <= 5; ++i) EXPECT_NEAR(contrast_by_law(0.1 * i), airy_contrast(0.1 * i), 0.05) << i;
+  EXPECT_GT(contrast_by_law(0.8), 0.2);
+  EXPECT_LT(airy_contrast(0.8), 0.11);
+  EXPECT_GT(contrast_by_law(1.1), 0.05);
 }
 
 TEST(StopDiffraction, GrowsWithTheWavelengthAndLosesNoLight) {
