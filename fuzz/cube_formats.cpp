@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cube_formats.h"
 
+#include <petzval/image/formats/depth_exr.h>
 #include <petzval/image/photograph.h>
 #include <petzval/scene/formats/envi.h>
 #include <petzval/scene/formats/iset_mat.h>
@@ -8,6 +9,7 @@
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <cmath>
+#include <optional>
 
 #include "memory_file.h"
 #include "require.h"
@@ -82,8 +84,19 @@ bool try_scene_mat(std::string_view bytes) {
   return accepted([&] { require_light(read_iset_mat(file.path(), 20)); });
 }
 
+bool try_scene_mat_hdf5(std::string_view bytes) {
+  const NamedFile file(bytes);
+  return accepted([&] { require_light(read_iset_mat(file.path(), 20)); });
+}
+
 bool try_scene_exr(std::string_view bytes) {
   const MemoryFile file(bytes);
+  accepted([&] {
+    if (const std::optional<DepthPlane> depth = read_depth_exr(file.path()))
+      require(depth->values.size() ==
+                  static_cast<std::size_t>(depth->columns) * static_cast<std::size_t>(depth->rows),
+              "depths of another size");
+  });
   return accepted([&] {
     SpectralCube cube = read_scene_exr(file.path());
     const CubeOptions options = answers_for(cube);

@@ -13,6 +13,7 @@ bool try_envi(std::string_view bytes);
 /// A JSON text, a line "DATA", and a .npy file.
 bool try_npy(std::string_view bytes);
 bool try_scene_mat(std::string_view bytes);
+bool try_scene_mat_hdf5(std::string_view bytes);
 bool try_scene_exr(std::string_view bytes);
 
 /// Is refused in one line, or becomes finite linear light.

@@ -5,6 +5,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <filesystem>
+
 #include "require.h"
 
 namespace petzval::fuzz {
@@ -21,6 +24,19 @@ MemoryFile::~MemoryFile() {
 
 std::string MemoryFile::path() const {
   return fmt::format("/proc/self/fd/{}", descriptor_);
+}
+
+NamedFile::NamedFile(std::string_view bytes)
+    : path_((std::filesystem::temp_directory_path() / "petzval-fuzz-XXXXXX").string()) {
+  const int descriptor = mkstemp(path_.data());
+  require(
+      descriptor >= 0 && write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()),
+      "a file that cannot be written");
+  close(descriptor);
+}
+
+NamedFile::~NamedFile() {
+  unlink(path_.c_str());
 }
 
 }  // namespace petzval::fuzz

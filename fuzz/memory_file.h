@@ -21,4 +21,17 @@ class MemoryFile {
   int descriptor_;
 };
 
+/// A file with a name, for libraries that ask where a link leads (HDF5).
+class NamedFile {
+ public:
+  explicit NamedFile(std::string_view bytes);
+  ~NamedFile();
+  NamedFile(const NamedFile&) = delete;
+  NamedFile& operator=(const NamedFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace petzval::fuzz

@@ -17,13 +17,17 @@ using petzval::fuzz::Format;
 
 class Mutator {
  public:
-  Mutator(const Format& format, std::vector<std::string> seeds) : format_(format), seeds_(std::move(seeds)) {}
+  Mutator(const Format& format, std::vector<std::string> seeds) : format_(format), seeds_(std::move(seeds)) {
+    // HDF5 files are no smaller than ten kilobytes.
+    for (const std::string& seed : seeds_) shortest_ = std::min(shortest_, seed.size());
+    largest_ = std::max(largest_, 2 * shortest_);
+  }
 
   std::string operator()() {
     std::string bytes = seeds_[below(seeds_.size())];
-    constexpr std::size_t most_changes = 5, largest = 4096;
+    constexpr std::size_t most_changes = 5;
     for (std::size_t changes = below(most_changes + 1); changes > 0; --changes) change(bytes);
-    if (bytes.size() > largest) bytes.resize(largest);
+    if (bytes.size() > largest_) bytes.resize(largest_);
     return bytes;
   }
 
@@ -80,6 +84,7 @@ class Mutator {
 
   const Format& format_;
   std::vector<std::string> seeds_;
+  std::size_t shortest_ = std::size_t{1} << 20, largest_ = 4096;
   std::mt19937_64 bits_{1};
 };
 

@@ -38,16 +38,27 @@ void there_and_back(const LensDataTable& table) {
 
 }  // namespace
 
-bool try_iset_mat_table(std::string_view bytes) {
-  const MemoryFile file(bytes);
+namespace {
+
+bool try_iset_mat_file(const std::string& path) {
   std::optional<LensDataTable> table;
   const bool good = accepted([&] {
     RayTraceReading reading;
     reading.g_axis_sr = 0.1;
-    table = table_of(read_iset_mat_table(file.path()).data, reading).table;
+    table = table_of(read_iset_mat_table(path).data, reading).table;
   });
   if (good) there_and_back(*table);
   return good;
+}
+
+}  // namespace
+
+bool try_iset_mat_table(std::string_view bytes) {
+  return try_iset_mat_file(MemoryFile(bytes).path());
+}
+
+bool try_iset_mat_hdf5_table(std::string_view bytes) {
+  return try_iset_mat_file(NamedFile(bytes).path());
 }
 
 bool try_isetparms(std::string_view bytes) {

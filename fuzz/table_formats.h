@@ -9,6 +9,7 @@ namespace petzval::fuzz {
 /// ISET's structure is refused in one line, or makes a valid table that goes to ISET's terms and back the
 /// same.
 bool try_iset_mat_table(std::string_view bytes);
+bool try_iset_mat_hdf5_table(std::string_view bytes);
 
 /// Parameters are refused in one line, or come back the same when written.
 bool try_isetparms(std::string_view bytes);

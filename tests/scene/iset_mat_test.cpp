@@ -155,7 +155,7 @@ TEST_F(IsetMat, ImpossibleRadianceIsNamedWithItsPlace) {
   }
 }
 
-TEST_F(IsetMat, NewerAndOlderVersionsAreRefusedWithTheWayOut) {
+TEST_F(IsetMat, EmptyAndOlderVersionsAreRefusedWithTheWayOut) {
   const auto refused = [&](const std::string& bytes) {
     try {
       read_iset_mat(scratch_.with("version.mat", bytes));
@@ -167,7 +167,7 @@ TEST_F(IsetMat, NewerAndOlderVersionsAreRefusedWithTheWayOut) {
   std::string header = "MATLAB 7.3 MAT-file";
   header.resize(512, ' ');
   header.replace(124, 4, std::string("\0\2IM", 4));
-  EXPECT_TRUE(refused(header)) << "version 7.3";
+  EXPECT_TRUE(refused(header)) << "version 7.3 without HDF5";
   EXPECT_TRUE(refused(std::string("\0\0\0\0\1\0\0\0\1\0\0\0\0\0\0\0\2\0\0\0x\0", 22))) << "version 4";
   EXPECT_TRUE(refused("")) << "nothing";
 }

@@ -1,32 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
 #include <petzval/base/large_floats.h>
+#include <petzval/base/nameless_file.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <string>
 #include <utility>
 
 namespace petzval {
-
-namespace {
-
-/// Of a file without a name; −1 where none can be had.
-int nameless_file() {
-  const char* chosen = std::getenv("TMPDIR");
-  std::string path = chosen != nullptr && *chosen != '\0' ? chosen : "/var/tmp";
-  const int file = open(path.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file >= 0) return file;
-  // File systems without O_TMPFILE.
-  path += "/petzval-XXXXXX";
-  const int named = mkstemp(path.data());
-  if (named >= 0) unlink(path.c_str());
-  return named;
-}
-
-}  // namespace
 
 LargeFloats::LargeFloats(std::size_t count, std::size_t limit) {
   if (count <= limit || !map_file(count)) values_.assign(count, 0.0F);
@@ -45,14 +26,13 @@ LargeFloats::~LargeFloats() {
 }
 
 bool LargeFloats::map_file(std::size_t count) {
-  const int file = nameless_file();
-  if (file < 0) return false;
+  const NamelessFile file;
+  if (!file) return false;
   const std::size_t bytes = count * sizeof(float);
   // Room is taken at once: a full disk must show here, not when a page is written back.
   void* memory = MAP_FAILED;
-  if (posix_fallocate(file, 0, static_cast<off_t>(bytes)) == 0)
-    memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-  close(file);
+  if (posix_fallocate(file.descriptor(), 0, static_cast<off_t>(bytes)) == 0)
+    memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.descriptor(), 0);
   if (memory == MAP_FAILED) return false;
   mapped_ = static_cast<float*>(memory);
   count_ = count;

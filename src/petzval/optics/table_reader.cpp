@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
-#include <petzval/optics/hdf5_handle.h>
+#include <petzval/scene/formats/hdf5_handle.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_layout.h>
 #include <petzval/optics/table_seal.h>

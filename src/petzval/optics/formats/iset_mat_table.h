@@ -23,7 +23,7 @@ struct RayTraceFile {
   std::vector<std::string> notes;  ///< how the PSFs were taken to lie, where that was a guess
 };
 
-/// Reads a MAT file of version 5 or 7 with a variable `optics` or `oi` (the structures of ISETCam) or
+/// Reads a MAT file of version 5, 7 or 7.3 with a variable `optics` or `oi` (the structures of ISETCam) or
 /// `rayTrace`: lensFile, program, referenceWavelength, objectDistance [mm], mag, fNumber,
 /// effectiveFocalLength [mm], effectiveFNumber, fov [degrees], geometry and relIllum {fieldHeight [mm],
 /// wavelength [nm], function[height × wave]}, psf {function[row, column, height, wave], fieldHeight,

@@ -11,7 +11,7 @@
 
 namespace petzval {
 
-/// Reads an ISET scene from a MAT file of version 5 or 7. Taken over are
+/// Reads an ISET scene from a MAT file of version 5, 7 or 7.3. Taken over are
 ///   data.photons    rows × columns × bands, photons/(s·m²·sr·nm): single or double as they are, uint8,
 ///   uint16 and
 ///                   uint32 rescaled linearly from 0 … 2^bitDepth − 1 to data.dmin … data.dmax

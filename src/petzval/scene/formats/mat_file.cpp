@@ -5,6 +5,8 @@
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/scene/formats/mat_file.h>
+#include <petzval/scene/formats/mat_hdf5_apart.h>
+#include <petzval/scene/formats/mat_records.h>
 #include <petzval/scene/formats/mat_structure.h>
 
 #include <mutex>
@@ -146,21 +148,39 @@ void MatFile::Free::operator()(matvar_t* variable) const {
 
 MatFile::MatFile(const std::string& path, const std::vector<std::string>& variables)
     : path_(path), names_(variables) {
+  if (is_mat_hdf5(path))
+    read_hdf5();
+  else
+    read_matio();
+}
+
+void MatFile::read_matio() {
   {
-    const std::string bytes = read_whole_file(path);
-    check_mat_structure(std::as_bytes(std::span(bytes)), path);
+    const std::string bytes = read_whole_file(path_);
+    check_mat_structure(std::as_bytes(std::span(bytes)), path_);
   }
   const std::lock_guard lock(matio_mutex);
   matio_message.clear();
   Mat_LogInitFunc("petzval", keep_matio_message);
-  const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path_.c_str(), MAT_ACC_RDONLY));
   for (const std::string& name : names_) {
     if (!file) break;
     Mat_Rewind(file.get());
     if (matvar_t* const variable = Mat_VarRead(file.get(), name.c_str())) variables_[name].reset(variable);
   }
   if (!matio_message.empty())
-    throw InputError(path, fmt::format("is damaged: matio says \"{}\"", matio_message));
+    throw InputError(path_, fmt::format("is damaged: matio says \"{}\"", matio_message));
+}
+
+void MatFile::read_hdf5() {
+  const MappedRecords mapped = mat_hdf5_records(path_, names_);
+  records_ = mapped.memory;
+  for (std::span<std::byte> rest = mapped.records; !rest.empty();) {
+    std::unique_ptr<matvar_t, Free> variable(variable_of_records(rest));
+    if (!variable) throw InputError(path_, "is damaged: its variables cannot be read");
+    std::string name = variable->name;
+    variables_[std::move(name)] = std::move(variable);
+  }
 }
 
 std::optional<MatValue> MatFile::find(const std::string& variable) const {

@@ -60,7 +60,9 @@ class MatValue {
   const std::string* file_;
 };
 
-/// The variables of a MAT file of version 5 or 7, read after check_mat_structure has seen all of it.
+/// The variables of a MAT file: of version 5 or 7, read by matio after check_mat_structure has seen all of
+/// it; of version 7.3, read through HDF5 in a process of its own (write_mat_hdf5_records), their numbers kept
+/// in a file without a name that is mapped into memory.
 class MatFile {
  public:
   /// Reads those of these variables that are there. \throws InputError for a damaged file.
@@ -75,11 +77,15 @@ class MatFile {
   const std::string& path() const { return path_; }
 
  private:
+  void read_matio();
+  void read_hdf5();
+
   struct Free {
     void operator()(matvar_t* variable) const;
   };
   std::string path_;
   std::vector<std::string> names_;
+  std::shared_ptr<void> records_;  ///< of version 7.3: where the numbers of the variables lie
   std::map<std::string, std::unique_ptr<matvar_t, Free>> variables_;
 };
 

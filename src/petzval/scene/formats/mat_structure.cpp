@@ -245,7 +245,6 @@ void check_mat_structure(std::span<const std::byte> bytes, const std::string& fi
   if (order != "IM" && order != "MI") throw InputError(file, "is damaged: its header names no byte order");
   const bool swapped = (order == "IM") != (std::endian::native == std::endian::little);
   const int version = std::to_integer<int>(bytes[order == "IM" ? 125 : 124]);
-  if (version == 2) throw InputError(file, "is a MAT file of version 7.3; save it with MATLAB's save -v7");
   if (version != 1) throw InputError(file, fmt::format("is a MAT file of unknown version {}", version));
 
   Walker walker(bytes.subspan(header_size), swapped, file);
