@@ -40,6 +40,15 @@ TEST(BundledLenses, FocalLengthsAreThoseOfTheBook) {
     expect_relative(first_order(read_lens(name).lens).efl_mm, focal_length_mm, 0.02);
 }
 
+/// What another program's paraxial trace of the patent's example 1 gives (LensVisualizer: EFL, and BFD behind
+/// the last surface, with the filter), to the digits that it prints.
+TEST(BundledLenses, Fisheye220IsThePatents) {
+  const FirstOrder data = first_order(read_lens("us-3524697").lens);
+  EXPECT_NEAR(data.efl_mm, 10.004615486, 5e-9);
+  EXPECT_NEAR(data.bfl_mm, 17.860390, 5e-7);
+  EXPECT_NEAR(data.petzval_radius_mm, 1 / 0.0066325, 150 * 1e-4);
+}
+
 /// The patent claims a reduction of 1/4 with a flat field, and its designer put the image at the paraxial
 /// focus.
 TEST(BundledLenses, ProjectionLensReducesFourTimes) {
