@@ -15,7 +15,9 @@
 #include <petzval/scene/formats/scene_exr.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 namespace petzval::app {
 
@@ -36,8 +38,23 @@ void list_scenes(const Shared& shared) {
     fmt::print("{:<24}{}\n", row["name"].get<std::string>(), row["description"].get<std::string>());
 }
 
+struct RadianceRange {
+  float least = std::numeric_limits<float>::infinity(), greatest = 0;
+};
+
+RadianceRange radiance_range(const Scene& scene) {
+  RadianceRange range;
+  for (int index = 0; index < scene.bands(); ++index) {
+    const std::span<const float> band = scene.band(index);
+    const auto [least, greatest] = std::minmax_element(band.begin(), band.end());
+    range = {std::min(range.least, *least), std::max(range.greatest, *greatest)};
+    scene.release_memory();
+  }
+  return range;
+}
+
 ordered_json facts(const Scene& scene) {
-  const auto [least, greatest] = std::minmax_element(scene.values().begin(), scene.values().end());
+  const RadianceRange range = radiance_range(scene);
   ordered_json json;
   json["name"] = scene.name;
   json["columns"] = scene.columns();
@@ -49,8 +66,8 @@ ordered_json facts(const Scene& scene) {
   json["diagonal_angle_deg"] = scene.diagonal_angle_deg();
   json["distance_m"] = scene.distance_m() ? ordered_json(*scene.distance_m()) : ordered_json(nullptr);
   json["mean_luminance_cd_m2"] = scene.mean_luminance_cd_m2();
-  json["min_radiance"] = *least;
-  json["max_radiance"] = *greatest;
+  json["min_radiance"] = range.least;
+  json["max_radiance"] = range.greatest;
   json["mean_radiance"] = scene.mean_radiance();
   json["radiance_unit"] = "W.m^-2.sr^-1.nm^-1";
   json["has_illuminant"] = scene.illuminant.has_value();

@@ -95,7 +95,7 @@ TEST(Irradiance, IsNotConfusedWithAnythingElse) {
   exr.strings["pixelAperture"] = "round";
   EXPECT_NE(message_for(exr).find("pixelAperture"), std::string::npos);
   exr = good;
-  exr.values[5] = INFINITY;
+  exr.values.all()[5] = INFINITY;
   EXPECT_NE(message_for(exr).find("row 1, column 1"), std::string::npos);
 }
 

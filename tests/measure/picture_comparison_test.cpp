@@ -15,7 +15,7 @@ ComparablePicture picture_of(int columns, int rows, std::size_t bands, std::vect
   picture.columns = columns;
   picture.rows = rows;
   picture.bands = bands;
-  picture.values = std::move(values);
+  picture.values = LargeFloats(std::move(values));
   return picture;
 }
 

@@ -45,7 +45,7 @@ SpectralExr reflectances() {
   exr.width = 2, exr.height = 1;
   exr.kind = SpectralExr::Kind::reflective;
   exr.wavelengths_nm = {500, 550, 600};
-  exr.values = {0.5f, 1, 0.5f, 1, 0.25f, 1};
+  exr.values = LargeFloats(std::vector<float>{0.5f, 1, 0.5f, 1, 0.25f, 1});
   return exr;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -18,6 +19,8 @@ class LargeFloats {
   LargeFloats() = default;
   /// All zero. \param limit  to keep in memory.
   explicit LargeFloats(std::size_t count, std::size_t limit = most_in_memory);
+  /// These, in memory however many.
+  explicit LargeFloats(std::vector<float> values) : values_(std::move(values)) {}
   LargeFloats(const LargeFloats& other);
   LargeFloats(LargeFloats&& other) noexcept { swap(other); }
   LargeFloats& operator=(LargeFloats other) noexcept {

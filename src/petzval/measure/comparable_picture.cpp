@@ -45,7 +45,10 @@ ComparablePicture read_array(const std::string& path) {
   picture.columns = static_cast<int>(array.shape[1]);
   picture.bands = array.shape.size() == 3 ? array.shape[2] : 1;
   picture.interleaved = true;
-  picture.values = std::move(array.values);
+  if (auto* single = std::get_if<std::vector<float>>(&array.values))
+    picture.values = LargeFloats(std::move(*single));
+  else
+    picture.values = std::move(std::get<std::vector<double>>(array.values));
   return picture;
 }
 

@@ -2,6 +2,8 @@
 // What files of different formats have in common when pictures are compared.
 #pragma once
 
+#include <petzval/base/large_floats.h>
+
 #include <cstddef>
 #include <string>
 #include <variant>
@@ -19,14 +21,14 @@ struct ComparablePicture {
   double pitch_um = 0;                 ///< 0 if the file does not say
   bool display = false;                ///< a PNG: values are code values over full scale
   /// Plane after plane, or, if `interleaved`, pixel after pixel.
-  std::variant<std::vector<float>, std::vector<double>> values;
+  std::variant<LargeFloats, std::vector<double>> values;
   bool interleaved = false;
 
   std::size_t pixels() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   double at(std::size_t band, std::size_t pixel) const {
     const std::size_t index = interleaved ? pixel * bands + band : band * pixels() + pixel;
-    const auto* floats = std::get_if<std::vector<float>>(&values);
-    return floats != nullptr ? double((*floats)[index]) : std::get<std::vector<double>>(values)[index];
+    const auto* floats = std::get_if<LargeFloats>(&values);
+    return floats != nullptr ? double(floats->all()[index]) : std::get<std::vector<double>>(values)[index];
   }
 };
 

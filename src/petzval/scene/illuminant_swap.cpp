@@ -48,6 +48,7 @@ void swap_illuminant(Scene& scene, const Spectrum& illuminant) {
                       bands[i]));
     const double factor = old[i] > 0 ? level * fresh[i] / old[i] : 0;
     for (float& value : band) value = static_cast<float>(value * factor);
+    scene.release_memory();
   }
   scene.illuminant = illuminant.scaled(level);
 }

@@ -37,6 +37,17 @@ void check_distance(std::optional<double> distance_m) {
         fmt::format("a scene at {} m; a positive distance or none (infinity) would be right", *distance_m));
 }
 
+/// Weighted sums of bands, of the samples from `first` on.
+template <typename Terms>
+void sum_terms(const Scene& scene, const Terms& terms, std::size_t first, std::span<float> out) {
+  std::vector<double> sums(out.size(), 0.0);
+  for (const auto& [from, weight] : terms) {
+    const std::span<const float> values = scene.band(static_cast<int>(from)).subspan(first, out.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += weight * static_cast<double>(values[i]);
+  }
+  std::transform(sums.begin(), sums.end(), out.begin(), [](double sum) { return static_cast<float>(sum); });
+}
+
 double gib(double values) {
   return values * sizeof(float) / (1024.0 * 1024 * 1024);
 }
@@ -49,7 +60,7 @@ std::vector<double> default_bands_nm() {
   return wavelengths;
 }
 
-Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+Scene::Scene(Empty, int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
              std::optional<double> distance_m)
     : columns_(columns), rows_(rows), wavelengths_nm_(std::move(wavelengths_nm)) {
   if (columns < 1 || rows < 1)
@@ -62,7 +73,21 @@ Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double h
 
   set_horizontal_angle_deg(horizontal_angle_deg);
   set_distance_m(distance_m);
+}
+
+Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+             std::optional<double> distance_m)
+    : Scene(Empty{}, columns, rows, std::move(wavelengths_nm), horizontal_angle_deg, distance_m) {
   radiance_ = LargeFloats(band_size() * wavelengths_nm_.size());
+}
+
+Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+             std::optional<double> distance_m, LargeFloats radiance)
+    : Scene(Empty{}, columns, rows, std::move(wavelengths_nm), horizontal_angle_deg, distance_m) {
+  if (radiance.size() != band_size() * wavelengths_nm_.size())
+    throw InputError(fmt::format("{} values for {} x {} samples in {} bands", radiance.size(), columns, rows,
+                                 wavelengths_nm_.size()));
+  radiance_ = std::move(radiance);
 }
 
 std::span<float> Scene::band(int index) {
@@ -145,10 +170,9 @@ void Scene::set_mean_luminance_cd_m2(double luminance) {
 void Scene::scale(double factor) {
   if (!(factor > 0 && std::isfinite(factor)))
     throw InputError(fmt::format("radiance times {}: a positive factor would be right", factor));
-  for (int index = 0; index < bands(); ++index) {
-    for (float& value : band(index)) value = static_cast<float>(value * factor);
-    release_memory();
-  }
+  for_each_band([factor](std::size_t, std::span<float> values) {
+    for (float& value : values) value = static_cast<float>(value * factor);
+  });
   if (illuminant) illuminant = illuminant->scaled(factor);
 }
 
@@ -167,12 +191,12 @@ Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
   result.depth_from = depth_from;
   parallel_for(resampling.bands(), [&](std::size_t index) {
     const std::span<float> out = result.band(static_cast<int>(index));
-    std::vector<double> sums(out.size(), 0.0);
-    for (const auto& [from, weight] : resampling.terms(index)) {
-      const std::span<const float> values = band(static_cast<int>(from));
-      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += weight * static_cast<double>(values[i]);
-    }
-    std::transform(sums.begin(), sums.end(), out.begin(), [](double sum) { return static_cast<float>(sum); });
+    constexpr std::size_t block = 1 << 16;
+    for (std::size_t first = 0; first < out.size(); first += block)
+      sum_terms(*this, resampling.terms(index), first,
+                out.subspan(first, std::min(block, out.size() - first)));
+    release_memory();
+    result.release_memory();
   });
   return result;
 }

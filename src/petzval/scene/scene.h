@@ -46,6 +46,9 @@ class Scene {
   /// values, an angle outside (0, 180) or a distance that is not positive.
   Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
         std::optional<double> distance_m);
+  /// Of this radiance, a plane a wavelength. \throws InputError as above, and for another number of values.
+  Scene(int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+        std::optional<double> distance_m, LargeFloats radiance);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -104,7 +107,19 @@ class Scene {
   std::vector<float> depth_m;
   DepthFrom depth_from = DepthFrom::sensor;
 
+  /// Calls work(band, its radiance) for every band, one after the other, and gives the memory of each back.
+  template <typename Work>
+  void for_each_band(const Work& work) {
+    for (int index = 0; index < bands(); ++index) {
+      work(static_cast<std::size_t>(index), band(index));
+      release_memory();
+    }
+  }
+
  private:
+  struct Empty {};
+  Scene(Empty, int columns, int rows, std::vector<double> wavelengths_nm, double horizontal_angle_deg,
+        std::optional<double> distance_m);
   void validate_depth() const;
 
   int columns_ = 0, rows_ = 0;

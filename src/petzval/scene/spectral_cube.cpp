@@ -32,7 +32,7 @@ double angle_of(const SpectralCube& cube, const CubeOptions& options) {
 }
 
 std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& options, SceneQuantity quantity) {
-  const std::size_t planes = cube.values.size() / cube.band_size();
+  const std::size_t planes = cube.planes();
   if (quantity == SceneQuantity::temperature) {
     if (planes != 1)
       throw InputError(fmt::format("is a map of temperatures with {} bands; one would be right", planes));
@@ -58,23 +58,27 @@ void light(Scene& scene, const std::optional<Spectrum>& illuminant) {
   if (!illuminant)
     throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
   bool any = false;
-  for (int index = 0; index < scene.bands(); ++index) {
-    const double factor = illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(index)]);
+  scene.for_each_band([&](std::size_t index, std::span<float> band) {
+    const double factor = illuminant->at(scene.wavelengths_nm()[index]);
     any = any || factor > 0;
-    for (float& value : scene.band(index)) value = static_cast<float>(value * factor);
-  }
+    for (float& value : band) value = static_cast<float>(value * factor);
+  });
   if (!any) throw InputError("the illuminant has no light in the bands of the scene");
   scene.illuminant = illuminant;
   if (scene.mean_luminance_cd_m2() > 0) scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
 }
 
-void scale(std::vector<float>& values, const CubeOptions& options) {
+void scale(SpectralCube& cube, const CubeOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale)))
     throw InputError(fmt::format("a scale of {}; a positive one would be right", options.scale));
-  if (options.scale != 1)
-    for (float& value : values) value = static_cast<float>(value * options.scale);
-  if (options.negative_is_zero)
-    for (float& value : values) value = value < 0 ? 0.0f : value;  // NaN stays, to be refused
+  if (options.scale == 1 && !options.negative_is_zero) return;
+  for (std::size_t index = 0; index < cube.planes(); ++index) {
+    if (options.scale != 1)
+      for (float& value : cube.plane(index)) value = static_cast<float>(value * options.scale);
+    if (options.negative_is_zero)
+      for (float& value : cube.plane(index)) value = value < 0 ? 0.0f : value;  // NaN stays, to be refused
+    cube.values.release_memory();
+  }
 }
 
 }  // namespace
@@ -90,32 +94,32 @@ SceneQuantity parse_scene_quantity(const std::string& word) {
 
 Scene scene_of(SpectralCube cube, const CubeOptions& options) {
   const SceneQuantity quantity = quantity_of(cube, options);
-  Scene scene(cube.columns, cube.rows, bands_of(cube, options, quantity), angle_of(cube, options),
-              cube.distance_m);
+  const bool warm = quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature;
+  std::vector<double> bands = bands_of(cube, options, quantity);
+  const double angle = angle_of(cube, options);
+  scale(cube, options);
+  Scene scene =
+      quantity == SceneQuantity::temperature
+          ? Scene(cube.columns, cube.rows, std::move(bands), angle, cube.distance_m)
+          : Scene(cube.columns, cube.rows, std::move(bands), angle, cube.distance_m, std::move(cube.values));
   scene.name = cube.name;
   scene.illuminant = cube.illuminant;
   scene.depth_m = std::move(cube.depth_m);
   scene.depth_from = cube.depth_from;
   if (cube.panorama) scene.make_panorama(*cube.panorama);
-  if (options.illuminant && (quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature))
+  if (options.illuminant && warm)
     throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
-  scale(cube.values, options);
   if (quantity == SceneQuantity::temperature) {
-    warm_temperatures(scene, cube.values, options.thermal);
+    warm_temperatures(scene, cube.values.all(), options.thermal);
     return scene;
   }
-  for (int index = 0; index < scene.bands(); ++index)
-    std::copy_n(
-        cube.values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(index) * cube.band_size()),
-        cube.band_size(), scene.band(index).begin());
   scene.validate();
   const std::string& unit = options.radiance_unit.empty() ? cube.radiance_unit : options.radiance_unit;
-  if (quantity == SceneQuantity::radiance && !unit.empty()) {
-    const double factor = radiance_scale(unit);
-    if (factor != 1)
-      for (int index = 0; index < scene.bands(); ++index)
-        for (float& value : scene.band(index)) value = static_cast<float>(value * factor);
-  }
+  const double factor = quantity == SceneQuantity::radiance && !unit.empty() ? radiance_scale(unit) : 1;
+  if (factor != 1)
+    scene.for_each_band([factor](std::size_t, std::span<float> band) {
+      for (float& value : band) value = static_cast<float>(value * factor);
+    });
   if (quantity == SceneQuantity::reflectance) light(scene, options.illuminant);
   if (quantity == SceneQuantity::radiance && options.illuminant) swap_illuminant(scene, *options.illuminant);
   if (quantity == SceneQuantity::emissivity) warm_emissivities(scene, options.thermal);

@@ -6,6 +6,7 @@
 #include <petzval/scene/thermal.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,7 @@ SceneQuantity parse_scene_quantity(const std::string& word);
 struct SpectralCube {
   int columns = 0, rows = 0;
   std::vector<double> wavelengths_nm;  ///< strictly increasing; empty: not said
-  std::vector<float> values;           ///< a plane a wavelength, rows from the top
+  LargeFloats values;                  ///< a plane a wavelength, rows from the top
   std::optional<SceneQuantity> quantity;
   std::string radiance_unit;  ///< as radiance_scale() takes it; empty: W·m⁻²·sr⁻¹·nm⁻¹
   std::optional<double> horizontal_angle_deg, distance_m;
@@ -36,6 +37,8 @@ struct SpectralCube {
   std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
 
   std::size_t band_size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t planes() const { return values.size() / band_size(); }
+  std::span<float> plane(std::size_t index) { return values.all().subspan(index * band_size(), band_size()); }
 };
 
 /// What the user says about a file that leaves things open.

@@ -57,6 +57,7 @@ void warm_emissivities(Scene& scene, const ThermalOptions& options) {
     const double own = blackbody_radiance(nm, *options.temperature_k);
     const double mirrored = options.background_k ? blackbody_radiance(nm, *options.background_k) : 0;
     for (float& value : band) value = static_cast<float>(value * own + (1 - double{value}) * mirrored);
+    scene.release_memory();
   }
 }
 
@@ -70,6 +71,7 @@ void warm_temperatures(Scene& scene, std::span<const float> temperatures_k, cons
     for (std::size_t i = 0; i < band.size(); ++i)
       band[i] = static_cast<float>(
           thermal_radiance(nm, temperatures_k[i], options.emissivity, options.background_k));
+    scene.release_memory();
   });
 }
 

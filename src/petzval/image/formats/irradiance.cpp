@@ -127,6 +127,8 @@ SpectralImage read_irradiance(const std::string& path) {
   for (int band = 0; band < image.bands(); ++band) {
     const std::span<const float> plane = exr.plane(static_cast<std::size_t>(band));
     std::copy(plane.begin(), plane.end(), image.band(band).begin());
+    exr.values.release_memory();
+    image.release_memory();
   }
   image.provenance = exr.strings[provenance_attribute];
   image.lens = lens_of(exr, path);

@@ -3,7 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/text_lines.h>
-#include <petzval/image/formats/exr_header.h>
+#include <petzval/image/formats/exr_input.h>
 #include <petzval/image/formats/exr_stream.h>
 #include <petzval/image/formats/output_file.h>
 #include <petzval/image/formats/spectral_exr.h>
@@ -21,7 +21,6 @@
 #include <ImfThreading.h>
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 namespace petzval {
 
@@ -29,6 +28,7 @@ namespace {
 
 constexpr const char* version_attribute = "spectralLayoutVersion";
 constexpr const char* units_attribute = "emissiveUnits";
+constexpr int rows_at_a_time = 256;    // whole blocks of ZIP, which are 16 rows
 constexpr double same_band_nm = 1e-6;  // closer bands are one band written in two units
 
 struct Band {
@@ -50,7 +50,7 @@ std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr::Kind& 
     else if (parsed->stokes == 0)
       (parsed->kind == SpectralExr::Kind::emissive ? light : reflectance)
           .push_back({parsed->wavelength_nm, channel.name()});
-    if (parsed && (channel.channel().xSampling != 1 || channel.channel().ySampling != 1))
+    if (parsed && !is_whole(channel.channel()))
       throw InputError(
           path, fmt::format("channel {} is subsampled; every pixel needs a value", quotable(channel.name())));
   }
@@ -86,19 +86,20 @@ void take_attributes(const Imf::Header& header, SpectralExr& exr) {
 }
 
 void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralExr& exr) {
-  const Imath::Box2i window = file.header().dataWindow();
+  const ExrWindow window(file.header());
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < bands.size(); ++i)
-    buffer.insert(bands[i].channel, Imf::Slice::Make(Imf::FLOAT, exr.plane(i).data(), window, sizeof(float),
-                                                     sizeof(float) * static_cast<std::size_t>(exr.width)));
+    buffer.insert(bands[i].channel, window.plane(exr.plane(i).data()));
   if (const Imf::Channel* channel = file.header().channels().findChannel(exr_depth_channel);
-      channel != nullptr && channel->xSampling == 1 && channel->ySampling == 1) {
+      channel != nullptr && is_whole(*channel)) {
     exr.depth.resize(exr.band_size());
-    buffer.insert(exr_depth_channel, Imf::Slice::Make(Imf::FLOAT, exr.depth.data(), window, sizeof(float),
-                                                      sizeof(float) * static_cast<std::size_t>(exr.width)));
+    buffer.insert(exr_depth_channel, window.plane(exr.depth.data()));
   }
   file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
+  for (int row = window.box.min.y; row <= window.box.max.y; row += rows_at_a_time) {
+    file.readPixels(row, std::min(row + rows_at_a_time - 1, window.box.max.y));
+    exr.values.release_memory();
+  }
 }
 
 /// Threads for compression beside our own; 0 works in ours alone. The bytes do not depend on it.
@@ -113,13 +114,13 @@ SpectralExr read(const std::string& path) {
   SpectralExr exr;
   const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
   for (const Band& band : bands) exr.wavelengths_nm.push_back(band.wavelength_nm);
-  const Imath::Box2i window = file.header().dataWindow();
-  exr.width = window.max.x - window.min.x + 1;
-  exr.height = window.max.y - window.min.y + 1;
+  const ExrWindow window(file.header());
+  exr.width = window.columns;
+  exr.height = window.rows;
   if (bands.size() > SpectralImage::max_values / exr.band_size())
     throw InputError(path, fmt::format("{} x {} pixels in {} bands are more than can be held", exr.width,
                                        exr.height, bands.size()));
-  exr.values.resize(exr.band_size() * bands.size());
+  exr.values = LargeFloats(exr.band_size() * bands.size());
   take_attributes(file.header(), exr);
   read_pixels(file, bands, exr);
   return exr;
@@ -176,7 +177,6 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
   try {
     Imf::OutputFile file(stream, header, compression_threads());
     file.setFrameBuffer(buffer);
-    constexpr int rows_at_a_time = 256;  // whole blocks of ZIP, which are 16 rows
     for (int row = 0; row < exr.height; row += rows_at_a_time) {
       file.writePixels(std::min(rows_at_a_time, exr.height - row));
       if (after_rows) after_rows();
@@ -191,31 +191,25 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
 }  // namespace
 
 void SpectralExr::validate(const std::string& file) const {
-  const auto bad =
-      std::find_if(values.begin(), values.end(), [](float value) { return !std::isfinite(value); });
-  if (bad == values.end()) return;
-  const auto index = static_cast<std::size_t>(bad - values.begin());
-  const std::size_t in_band = index % band_size(), columns = static_cast<std::size_t>(width);
-  throw InputError(
-      file, fmt::format("the value at {} nm, row {}, column {} is {}; it must be finite",
-                        wavelengths_nm[index / band_size()], in_band / columns, in_band % columns, *bad));
-}
-
-SpectralExr read_spectral_exr(const std::string& path) {
-  check_exr_header(path);
-  try {
-    return read(path);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw Failure(path + ": not enough memory to read it");
-  } catch (const std::exception& error) {
-    throw InputError(path, fmt::format("is damaged: {}", quotable(error.what())));
+  for (std::size_t index = 0; index < wavelengths_nm.size(); ++index) {
+    const std::span<const float> values_of_band = plane(index);
+    const auto bad = std::find_if(values_of_band.begin(), values_of_band.end(),
+                                  [](float value) { return !std::isfinite(value); });
+    values.release_memory();
+    if (bad == values_of_band.end()) continue;
+    const auto at = static_cast<std::size_t>(bad - values_of_band.begin());
+    const auto columns = static_cast<std::size_t>(width);
+    throw InputError(file, fmt::format("the value at {} nm, row {}, column {} is {}; it must be finite",
+                                       wavelengths_nm[index], at / columns, at % columns, *bad));
   }
 }
 
+SpectralExr read_spectral_exr(const std::string& path) {
+  return reading_exr(path, read);
+}
+
 void write_spectral_exr(const std::string& path, const SpectralExr& exr) {
-  write_spectral_exr(path, exr, exr.values, {});
+  write_spectral_exr(path, exr, exr.values.all(), {});
 }
 
 void write_spectral_exr(const std::string& path, const SpectralExr& exr, std::span<const float> values,

@@ -2,6 +2,7 @@
 // Spectral OpenEXR files.
 #pragma once
 
+#include <petzval/base/large_floats.h>
 #include <petzval/image/formats/spectral_channel.h>
 
 #include <cstddef>
@@ -25,7 +26,7 @@ inline constexpr const char* exr_depth_channel = "Z";
 ///     exr.width = 640, exr.height = 480;
 ///     exr.wavelengths_nm = {450, 550, 650};
 ///     exr.units = spectral_radiance_units;
-///     exr.values.resize(exr.band_size() * exr.wavelengths_nm.size());
+///     exr.values = LargeFloats(exr.band_size() * exr.wavelengths_nm.size());
 ///     write_spectral_exr("scene.exr", exr);
 struct SpectralExr {
   using Kind = SpectralChannel::Kind;
@@ -33,18 +34,16 @@ struct SpectralExr {
   int width = 0, height = 0;
   Kind kind = Kind::emissive;
   std::vector<double> wavelengths_nm;  ///< strictly increasing
-  std::string units;          ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
-  std::vector<float> values;  ///< a plane a wavelength, rows from the top
-  std::vector<float> depth;   ///< of the channel Z [as the file has it], a plane; empty: none
+  std::string units;         ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
+  LargeFloats values;        ///< a plane a wavelength, rows from the top
+  std::vector<float> depth;  ///< of the channel Z [as the file has it], a plane; empty: none
   std::map<std::string, std::string> strings;  ///< other attributes of the file that are text
   std::map<std::string, double> numbers;       ///< other attributes that are one number
 
   std::size_t band_size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
-  std::span<float> plane(std::size_t band) {
-    return std::span<float>(values).subspan(band * band_size(), band_size());
-  }
+  std::span<float> plane(std::size_t band) { return values.all().subspan(band * band_size(), band_size()); }
   std::span<const float> plane(std::size_t band) const {
-    return std::span<const float>(values).subspan(band * band_size(), band_size());
+    return values.all().subspan(band * band_size(), band_size());
   }
   /// \throws InputError at the first value that is NaN or infinite, naming wavelength, row and column.
   /// \param file  for the message.

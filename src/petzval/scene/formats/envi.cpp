@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/scene/formats/envi.h>
 #include <petzval/scene/formats/envi_header.h>
+#include <petzval/scene/formats/envi_planes.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <numeric>
+#include <fstream>
+#include <span>
 
 namespace petzval {
 
@@ -56,62 +55,6 @@ std::string data_of(const fs::path& header) {
                    fmt::format("has no data beside it; {}.img or the like would be right", stem.string()));
 }
 
-double value_at(const char* bytes, int data_type) {
-  const auto as = [bytes](auto value) {
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-  };
-  switch (data_type) {
-    case 1:
-      return as(std::uint8_t{});
-    case 2:
-      return as(std::int16_t{});
-    case 3:
-      return as(std::int32_t{});
-    case 4:
-      return as(float{});
-    case 5:
-      return as(double{});
-    case 12:
-      return as(std::uint16_t{});
-    case 13:
-      return as(std::uint32_t{});
-    case 14:
-      return as(std::int64_t{});
-    default:
-      return as(std::uint64_t{});
-  }
-}
-
-/// Where a number lies, in numbers from the start.
-std::size_t index_of(const EnviHeader& header, std::size_t row, std::size_t column, std::size_t band) {
-  const auto columns = static_cast<std::size_t>(header.columns), rows = static_cast<std::size_t>(header.rows);
-  const auto bands = static_cast<std::size_t>(header.bands);
-  switch (header.interleave) {
-    case EnviInterleave::bil:
-      return (row * bands + band) * columns + column;
-    case EnviInterleave::bip:
-      return (row * columns + column) * bands + band;
-    default:
-      return (band * rows + row) * columns + column;
-  }
-}
-
-/// Numbers of a band as they are meant: what they are multiplied with and what is added.
-struct Calibration {
-  double gain = 1, offset = 0;
-};
-
-Calibration calibration(const EnviHeader& header, std::size_t band) {
-  const auto of = [band](const std::vector<double>& values, double otherwise) {
-    return values.empty() ? otherwise : values[band];
-  };
-  if (header.reflectance_scale) return {1 / *header.reflectance_scale, 0};
-  if (!header.reflectance_gains.empty() || !header.reflectance_offsets.empty())
-    return {of(header.reflectance_gains, 1), of(header.reflectance_offsets, 0)};
-  return {of(header.gains, 1), of(header.offsets, 0)};
-}
-
 /// Bands to keep, by wavelength.
 std::vector<std::size_t> order_of(const EnviHeader& header, const std::string& file) {
   std::vector<std::size_t> order;
@@ -145,21 +88,6 @@ void check_size(const EnviHeader& header, std::uint64_t there, const std::string
                                  header.offset, needed, header_file, size));
 }
 
-void take_band(const EnviHeader& header, std::string_view data, std::size_t band, std::span<float> plane) {
-  const std::size_t size = header.value_bytes(), columns = static_cast<std::size_t>(header.columns);
-  const Calibration meant = calibration(header, band);
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    std::array<char, 8> bytes{};
-    const char* const from = data.data() + index_of(header, i / columns, i % columns, band) * size;
-    std::copy_n(from, size, bytes.begin());
-    if (header.big_endian) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    const double number = value_at(bytes.data(), header.data_type);
-    plane[i] = header.ignored && number == *header.ignored
-                   ? 0.0f
-                   : static_cast<float>(meant.gain * number + meant.offset);
-  }
-}
-
 void say_what_it_is(const EnviHeader& header, SpectralCube& cube) {
   const bool reflectance =
       header.reflectance_scale || !header.reflectance_gains.empty() || !header.reflectance_offsets.empty();
@@ -177,32 +105,44 @@ bool is_envi_path(const std::string& path) {
   return is_header(path) || !header_of(path).empty();
 }
 
-SpectralCube decode_envi(std::string_view header_text, std::string_view data, const std::string& header_file,
-                         const std::string& data_file) {
-  const EnviHeader header = parse_envi_header(header_text, header_file);
-  check_size(header, data.size(), header_file, data_file);
-  data.remove_prefix(header.offset);
+namespace {
+
+SpectralCube cube_of(const EnviHeader& header, const std::string& header_file, const EnviBytes& bytes) {
   const std::vector<std::size_t> order = order_of(header, header_file);
   SpectralCube cube;
   cube.columns = header.columns, cube.rows = header.rows;
-  cube.values.resize(order.size() * cube.band_size());
-  parallel_for(order.size(), [&](std::size_t i) {
-    take_band(header, data, order[i], std::span(cube.values).subspan(i * cube.band_size(), cube.band_size()));
-  });
+  cube.values = LargeFloats(order.size() * cube.band_size());
+  read_envi_planes(header, order, bytes, cube);
   if (!header.wavelengths_nm.empty())
     for (const std::size_t band : order) cube.wavelengths_nm.push_back(header.wavelengths_nm[band]);
   say_what_it_is(header, cube);
   return cube;
 }
 
+}  // namespace
+
+SpectralCube decode_envi(std::string_view header_text, std::string_view data, const std::string& header_file,
+                         const std::string& data_file) {
+  const EnviHeader header = parse_envi_header(header_text, header_file);
+  check_size(header, data.size(), header_file, data_file);
+  return cube_of(header, header_file, [data](std::uint64_t from, std::span<char> out) {
+    std::copy_n(data.begin() + static_cast<std::ptrdiff_t>(from), out.size(), out.begin());
+  });
+}
+
 SpectralCube read_envi(const std::string& path) {
   const std::string header_file = is_header(path) ? path : header_of(path);
   const std::string data_file = is_header(path) ? data_of(path) : path;
-  const std::string header_text = read_whole_file(header_file);
-  // Looked at twice, so that a file is not read for nothing.
-  const EnviHeader header = parse_envi_header(header_text, header_file);
+  const EnviHeader header = parse_envi_header(read_whole_file(header_file), header_file);
+  std::ifstream data(data_file, std::ios::binary);
+  if (!data) throw InputError(data_file, "cannot be read");
   check_size(header, fs::file_size(data_file), header_file, data_file);
-  return decode_envi(header_text, read_whole_file(data_file, most_data_bytes), header_file, data_file);
+  return cube_of(header, header_file, [&](std::uint64_t from, std::span<char> out) {
+    data.seekg(static_cast<std::streamoff>(from));
+    data.read(out.data(), static_cast<std::streamsize>(out.size()));
+    if (data.gcount() != static_cast<std::streamsize>(out.size()))
+      throw InputError(data_file, "became shorter while it was read");
+  });
 }
 
 }  // namespace petzval

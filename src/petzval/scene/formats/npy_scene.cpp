@@ -3,14 +3,15 @@
 #include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npy_file.h>
 #include <petzval/scene/formats/name_file.h>
 #include <petzval/scene/formats/npy_scene.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <variant>
+#include <span>
 
 namespace petzval {
 
@@ -35,14 +36,22 @@ std::vector<double> numbers_of(const nlohmann::json& value, const std::string& k
   return numbers;
 }
 
-/// From (rows, columns, bands) to planes.
-template <typename Value>
-void take_planes(const std::vector<Value>& values, std::size_t bands, SpectralCube& cube) {
-  cube.values.resize(values.size());
+/// From (rows, columns, bands) to planes, some rows at a time.
+void take_planes(const NpyFile& file, std::size_t bands, SpectralCube& cube) {
+  cube.values = LargeFloats(file.size());
   const std::size_t pixels = cube.band_size();
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-    for (std::size_t band = 0; band < bands; ++band)
-      cube.values[band * pixels + pixel] = static_cast<float>(values[pixel * bands + band]);
+  const std::size_t block = std::max<std::size_t>(1, (std::size_t{1} << 22) / bands);
+  std::vector<float> values;
+  for (std::size_t first = 0; first < pixels; first += block) {
+    const std::size_t count = std::min(block, pixels - first);
+    values.resize(count * bands);
+    file.read(first * bands, std::span(values));
+    for (std::size_t band = 0; band < bands; ++band) {
+      const std::span<float> plane = cube.plane(band).subspan(first, count);
+      for (std::size_t i = 0; i < count; ++i) plane[i] = values[i * bands + band];
+    }
+    cube.values.release_memory();
+  }
 }
 
 }  // namespace
@@ -68,7 +77,10 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
     } else if (key == "scale") {
       const double scale = number_of(value, key, file);
       if (!(scale > 0)) throw InputError(file, "scale must be positive");
-      for (float& each : cube.values) each = static_cast<float>(each * scale);
+      for (std::size_t index = 0; index < cube.planes(); ++index) {
+        for (float& each : cube.plane(index)) each = static_cast<float>(each * scale);
+        cube.values.release_memory();
+      }
     } else {
       throw InputError(file,
                        fmt::format("has the unknown key '{}'; quantity, unit, wavelengths_nm, angle_deg, "
@@ -79,19 +91,26 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
 }
 
 SpectralCube read_npy_scene(const std::string& path) {
-  const NpyArray array = read_npy(path);
-  if (array.shape.size() != 2 && array.shape.size() != 3)
+  const NpyFile array(path);
+  const std::vector<std::size_t>& shape = array.shape();
+  if (shape.size() != 2 && shape.size() != 3)
     throw InputError(
         path, fmt::format("has {} dimensions; (rows, columns, bands) or (rows, columns) would be right",
-                          array.shape.size()));
+                          shape.size()));
   constexpr std::size_t most = std::numeric_limits<int>::max();
-  const std::size_t bands = array.shape.size() == 3 ? array.shape[2] : 1;
-  if (array.shape[0] < 1 || array.shape[1] < 1 || bands < 1 || array.shape[0] > most || array.shape[1] > most)
+  const std::size_t bands = shape.size() == 3 ? shape[2] : 1;
+  if (shape[0] < 1 || shape[1] < 1 || bands < 1 || shape[0] > most || shape[1] > most)
     throw InputError(path, fmt::format("is an array of {} x {} x {}; at least one of each would be right",
-                                       array.shape[0], array.shape[1], bands));
+                                       shape[0], shape[1], bands));
+  constexpr double gib = 1024.0 * 1024 * 1024;
+  if (array.size() > Scene::max_values)
+    throw InputError(
+        path, fmt::format("{} x {} samples in {} bands would take {:.1f} GiB; up to {} values fit", shape[1],
+                          shape[0], bands, static_cast<double>(array.size()) * sizeof(float) / gib,
+                          Scene::max_values));
   SpectralCube cube;
-  cube.rows = static_cast<int>(array.shape[0]), cube.columns = static_cast<int>(array.shape[1]);
-  std::visit([&](const auto& values) { take_planes(values, bands, cube); }, array.values);
+  cube.rows = static_cast<int>(shape[0]), cube.columns = static_cast<int>(shape[1]);
+  take_planes(array, bands, cube);
   const fs::path beside = fs::path(path).replace_extension(".json");
   std::error_code ignored;
   if (fs::is_regular_file(beside, ignored))

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NumPy's array files, read piece by piece.
+#pragma once
+
+#include <cstddef>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace petzval {
+
+inline constexpr std::string_view npy_magic{"\x93NUMPY", 6};
+inline constexpr std::size_t npy_max_dimensions = 32;  ///< NumPy's own limit
+
+/// An open .npy file of float32, float64 or whole numbers of 8 to 32 bits, of either byte order, in C order,
+/// whose header and size are right.
+class NpyFile {
+ public:
+  /// \throws InputError as read_npy().
+  explicit NpyFile(const std::string& path);
+
+  const std::vector<std::size_t>& shape() const { return shape_; }
+  /// Of all values.
+  std::size_t size() const { return size_; }
+  /// Whether single precision does not hold all numbers of this type.
+  bool needs_double() const;
+
+  /// The values from `first` on, which must be there. Not from two threads at once. \throws InputError for a
+  /// file that has become shorter.
+  void read(std::size_t first, std::span<float> values) const;
+  void read(std::size_t first, std::span<double> values) const;
+
+ private:
+  template <class Value>
+  void read_values(std::size_t first, std::span<Value> values) const;
+
+  std::string path_;
+  mutable std::ifstream file_;
+  mutable std::vector<char> buffer_;
+  std::vector<std::size_t> shape_;
+  std::string kind_;  ///< "f4", "u2" ...
+  std::size_t value_bytes_ = 0, start_ = 0, size_ = 0;
+  bool big_endian_ = false;
+};
+
+}  // namespace petzval
