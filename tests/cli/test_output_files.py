@@ -4,8 +4,10 @@
 import os
 import resource
 import shutil
+import signal
 import stat
 import subprocess
+import time
 import unittest
 
 from petzval_cli import PROGRAM, ProgramTest
@@ -93,6 +95,26 @@ class OutputFiles(ProgramTest):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), before)
         self.assert_succeeds(*wall)
         self.assertLess((self.folder / "small.png").stat().st_size, 1024, "or the test above proves nothing")
+
+    def test_a_killed_run_leaves_what_was_there(self):
+        """Killed at twelve moments from before its work to after it: the outputs are old or new, both whole."""
+        ask = ["image", "wall", "--scene-size", "400x300", *IMAGE[2:], "-o", "out.npy", "-o", "out.png"]
+        started = time.monotonic()
+        self.assert_succeeds(*ask)
+        took = time.monotonic() - started
+        fresh = [(self.folder / name).read_bytes() for name in ("out.npy", "out.png")]
+        kills = 0
+        for moment in range(12):
+            for name in ("out.npy", "out.png"):
+                (self.folder / name).write_bytes(b"old")
+            running = subprocess.Popen([PROGRAM, *map(str, ask)], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            time.sleep(took * (moment + 1) / 12)
+            running.kill()
+            kills += running.wait() == -signal.SIGKILL
+            for name, whole in zip(("out.npy", "out.png"), fresh):
+                self.assertIn((self.folder / name).read_bytes(), (b"old", whole))
+        self.assertGreater(kills, 3, "it ended too soon to tell")
 
     def test_a_demo_that_fails_leaves_no_folder(self):
         self.assert_refused("demo", "-o", "pictures", code=1, preexec_fn=one_kilobyte_at_most)

@@ -125,6 +125,30 @@ TEST(IdealIrradiance, AveragesScenesThatAreFinerThanCells) {
   EXPECT_NEAR(sum_of(image) / double(image.values.size()), 0.25, 0.25 * 2e-3);
 }
 
+TEST(IdealIrradiance, DrawsStraightLinesBetweenSamplesWhereTheImageGrows) {
+  // A sample covers a dozen cells: each has the light of its middle, unblurred.
+  Scene scene(40, 30, {550}, 40, std::nullopt);
+  for (std::size_t i = 0; i < scene.band_size(); ++i) scene.band(0)[i] = static_cast<float>(i * i % 17);
+  const auto sample = [&](int column, int row) {
+    return double(scene.band(0)[static_cast<std::size_t>(row * scene.columns() + column)]);
+  };
+  const SensorGeometry grid{300, 200, 10};
+  const SceneMap map = map_of(make_table({}), scene, grid);
+  ASSERT_LT(map.finest_samples_per_mm() * 0.010, 0.1);
+  const CellPlane image = ideal_irradiance(scene, 0, map, grid, 1, Surround::error);
+  for (int row = 0; row < grid.rows; row += 7)
+    for (int column = 0; column < grid.columns; column += 11) {
+      const SceneMap::Place place = map.place(-0.010 * (column + 0.5 - 150), 0.010 * (row + 0.5 - 100));
+      const double x = place.column - 0.5, y = place.row - 0.5;
+      const int left = static_cast<int>(x), top = static_cast<int>(y);
+      const double upper = std::lerp(sample(left, top), sample(left + 1, top), x - left);
+      const double lower = std::lerp(sample(left, top + 1), sample(left + 1, top + 1), x - left);
+      // The map is a thousandth of a sample off, and neighbours differ by up to 16.
+      EXPECT_NEAR(image.values[static_cast<std::size_t>(row * grid.columns + column)],
+                  0.25 * std::lerp(upper, lower, y - top), 0.25 * 16 * 2e-3);
+    }
+}
+
 TEST(IdealIrradiance, ShowsTheSurroundThatIsAskedFor) {
   Scene scene(20, 20, {550}, 10, std::nullopt);
   std::fill(scene.band(0).begin(), scene.band(0).end(), 4.0F);
