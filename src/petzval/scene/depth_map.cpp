@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/image/formats/depth_exr.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/scene/depth_map.h>
@@ -60,7 +61,7 @@ DepthFrom parse_depth_from(const std::string& word) {
   throw InputError(fmt::format(
       "depths from '{}': sensor (along the axis, from the sensor plane), pupil (along the axis, from the "
       "entrance pupil) or range (along the line of sight, from the entrance pupil) would be right",
-      word));
+      quotable(word)));
 }
 
 const char* depth_from_word(DepthFrom from) {
