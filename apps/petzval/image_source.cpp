@@ -11,6 +11,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "image_depth.h"
 
@@ -91,7 +94,8 @@ SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeo
   if (choice.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
   if (deep) {
     options.max_image_height_mm = depth_image_height_mm(scene, lens, sensor);
-    return {std::move(scene), facts_alone(lens), DepthCamera{lens, options}};
+    return {std::move(scene), facts_alone(lens),
+            DepthCamera{lens, options, std::make_shared<std::map<std::string, LensDataTable>>()}};
   }
   options.max_image_height_mm = image_height_mm(scene, lens, sensor);
   return {std::move(scene), build_lens_data_table(lens, options, progress), {}};

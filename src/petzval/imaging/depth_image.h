@@ -6,6 +6,9 @@
 #include <petzval/imaging/image_formation.h>
 #include <petzval/optics/build.h>
 
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace petzval {
@@ -14,6 +17,9 @@ namespace petzval {
 struct DepthCamera {
   Lens lens;
   TableOptions table;  ///< wavelengths, and the image height that it must reach
+  /// If there is such a place: where tables that were made to fit scene and frame to each other wait for the
+  /// image, which takes them.
+  std::shared_ptr<std::map<std::string, LensDataTable>> made = nullptr;
 };
 
 struct DepthReport {

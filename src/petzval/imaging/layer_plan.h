@@ -10,10 +10,14 @@
 
 namespace petzval {
 
-/// The lens's table for an object at the distance of a layer; the sensor stays where it is. \param pixel_um
-/// that PSFs need not be much finer than.
+/// The lens's table for an object at the distance of a layer; the sensor stays where it is. With several
+/// layers it has no more wavelengths than one in 5 %, between which bands lie. \param pixel_um  that PSFs
+/// need not be much finer than.
 LensDataTable layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
                           double pixel_um, const ProgressCallback& progress = {});
+/// Lets the next layer_table() of this layer have this table, if the camera has a place for it.
+void keep_layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
+                      double pixel_um, LensDataTable table);
 
 /// plan_bands() of a layer.
 std::vector<BandPlan> plan_layer(const Scene& scene, const LayerScene& layer, const LensDataTable& table,
