@@ -2,7 +2,10 @@
 """petzval render and petzval focus: pictures of three-dimensional scenes, and what they refuse."""
 
 import pathlib
+import re
+import resource
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -69,6 +72,38 @@ class Render(ProgramTest):
                 self.assert_refused("render", "s.pbrt", *options, "-o", "x.npy", words=[part])
         self.assert_refused("render", "s.pbrt", "-o", "x.jpg", words=[".exr"])
         self.assert_refused("render", "s2.pbrt", "-o", "x.npy", words=["s2.pbrt"])
+
+    def test_a_lens_that_passes_no_light_says_so(self):
+        for more in ([], ["--sampling", "exit-pupil"]):
+            self.assert_refused("render", "s.pbrt", *LENS, "--aperture-diameter", "1e-9", *more, "-o", "x.npy",
+                                words=["no light reaches the film", "stop"])
+
+    def test_two_million_triangles_are_ready_in_five_seconds(self):
+        """Processor time of the whole run, from the file to the search tree and a picture of one pixel."""
+        side = 1000
+        row = [struct.pack("<3f", 2 * j / side - 1, 0, 0)[:4] for j in range(side + 1)]
+        vertices = b"".join(x + struct.pack("<2f", 2 * i / side - 1, 3 + 1e-3 * (i % 2))
+                            for i in range(side + 1) for x in row)
+        face = struct.Struct("<B3IB3I")
+        faces = b"".join(face.pack(3, k + 1, k, k + side + 1, 3, k + 1, k + side + 2, k + side + 1)
+                         for i in range(side) for k in range(i * (side + 1), i * (side + 1) + side))
+        header = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
+                  "property float z\nelement face %d\nproperty list uchar uint vertex_indices\nend_header\n")
+        (self.folder / "sheet.ply").write_bytes((header % ((side + 1) ** 2, 2 * side * side)).encode() + vertices + faces)
+        (self.folder / "big.pbrt").write_text('Camera "perspective" "float fov" 20\nWorldBegin\nLightSource "infinite"\n'
+                                              'Shape "plymesh" "string filename" "sheet.ply"\n')
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.assert_succeeds("render", "big.pbrt", "--pinhole", "--size", "1x1", "--spp", "1", "--quiet", "-o", "one.npy")
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.assertLess(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 5)
+
+    def test_nine_of_ten_camera_rays_pass(self):
+        # Films as large as what the lens images: the fisheye's circle, 78 degrees from the axis, is 27 mm wide.
+        for lens, diagonal in (("dgauss-50mm", 43), ("wide-22mm", 43), ("telephoto-250mm", 43), ("fisheye-10mm", 24)):
+            said = self.assert_succeeds("render", "spheres", "--lens", lens, "--film-diagonal", diagonal, "--focus-distance",
+                                        "2", "--size", "40x30", "--spp", "16", "-o", "p.npy")
+            with self.subTest(lens=lens):
+                self.assertGreater(float(re.search(r"([\d.]+) % of \d+ camera rays pass", said)[1]), 90)
 
     def test_lists_what_is_not_supported(self):
         (self.folder / "s.pbrt").write_text('WorldBegin\nMaterial "hair"\nShape "loopsubdiv"\n')

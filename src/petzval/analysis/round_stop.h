@@ -17,4 +17,10 @@ inline void require_round_stop(const Lens& lens, const char* what) {
       lens.name, lens.stop_blades().count, what, lens.stop_index()));
 }
 
+/// The lens without its blades.
+inline Lens with_round_stop(Lens lens) {
+  lens.surfaces[lens.stop_index()].blades = {};
+  return lens;
+}
+
 }  // namespace petzval

@@ -132,7 +132,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     const SurfacePoint point =
         surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
     add_emitted(path, *hit, point, group);
-    const TexturePoint texture_point{point.position, point.u, point.v};
+    const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
     const Material& material =
         world_.materials[static_cast<std::size_t>(geometry.material)].kind == Material::Kind::mix
             ? material_at(world_.materials, geometry.material, texture_point, group, sample.next1())

@@ -16,9 +16,9 @@ bool is_mesh(const ShapeDescription& shape) {
 /// Puts the pieces of a world together.
 class WorldBuilder {
  public:
-  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, Unsupported& unsupported,
-               World& world)
-      : scene_(scene), options_(options), unsupported_(unsupported), world_(world) {}
+  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, const TextureLibrary& textures,
+               Unsupported& unsupported, World& world)
+      : scene_(scene), options_(options), textures_(textures), unsupported_(unsupported), world_(world) {}
 
   GeometryRange add(const std::vector<ShapeDescription>& shapes) {
     const std::size_t first = world_.geometries.size();
@@ -33,6 +33,10 @@ class WorldBuilder {
     Geometry geometry;
     if (is_mesh(description)) {
       geometry.shape = read_triangle_mesh(description, unsupported_);
+      if (FloatTexture texture = textures_.float_parameter(parameters, "alpha"))
+        geometry.opacity = Opacity{std::move(texture), {}};
+      const double cutoff = parameters.number("alphacutoff", -1);
+      if (geometry.opacity && cutoff >= 0) geometry.opacity->cutoff = cutoff;
     } else if (type == "sphere" || type == "disk" || type == "cylinder") {
       geometry.shape = read_quadric(description, unsupported_);
     } else if (type == "curve") {
@@ -42,6 +46,8 @@ class WorldBuilder {
     }
     unsupported_.report_unused(parameters, fmt::format("Shape \"{}\"", type));
     geometry.material = description.material;
+    geometry.is_interface =
+        world_.materials[static_cast<std::size_t>(description.material)].kind == Material::Kind::none;
     geometry.reversed = description.reverse_orientation;
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
     if (description.area_light >= 0) light_up(description, geometry);
@@ -61,6 +67,8 @@ class WorldBuilder {
   void light_up(const ShapeDescription& description, Geometry& geometry) {
     if (std::holds_alternative<CurveSegments>(geometry.shape))
       return unsupported_.report(description.entity.location(), "a curve that shines");
+    if (geometry.opacity)
+      return unsupported_.report(description.entity.location(), "a transparent surface that shines");
     const Entity& entity = scene_.area_lights[static_cast<std::size_t>(description.area_light)];
     double area = 0;
     for (std::size_t i = 0; i < geometry.primitives(); ++i) area += geometry.primitive_area(i);
@@ -76,6 +84,7 @@ class WorldBuilder {
 
   const SceneDescription& scene_;
   const WorldOptions& options_;
+  const TextureLibrary& textures_;
   Unsupported& unsupported_;
   World& world_;
 };
@@ -87,7 +96,7 @@ std::unique_ptr<const World> build_world(const SceneDescription& scene, const Wa
   auto world = std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, nullptr});
   const TextureLibrary textures(scene, world->groups, unsupported);
   world->materials = make_materials(scene, textures, unsupported);
-  WorldBuilder builder(scene, options, unsupported, *world);
+  WorldBuilder builder(scene, options, textures, unsupported, *world);
   const GeometryRange standing = builder.add(scene.shapes);
   std::vector<GeometryRange> objects;
   for (const auto& shapes : scene.objects) objects.push_back(builder.add(shapes));

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ray_fan.h>
+#include <petzval/analysis/round_stop.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
@@ -200,12 +201,16 @@ class LensSections {
   }
   void wavefronts() {
     section("Wavefront", "wavefront");
-    const std::vector<WavefrontMap> maps = wavefront_maps(lens_, at_reference(request_, lens_), map_samples);
+    if (lens_.stop_blades().count > 0)
+      page_.add(
+          html::paragraph("Wavefronts and Zernike terms are those of the round stop about the blades."));
+    const std::vector<WavefrontMap> maps =
+        wavefront_maps(with_round_stop(lens_), at_reference(request_, lens_), map_samples);
     page_.add(figure_with_data(plot_grid_svg(wavefront_map_plots(kind_, maps), 3, ""),
                                "Wavefront over the stop at the reference wavelength, dark to light on one "
                                "scale; grey: no light.",
                                "wavefront_maps.csv", tabulate(kind_, maps)));
-    const std::vector<WavefrontRow> rows = wavefront_table(lens_, request_);
+    const std::vector<WavefrontRow> rows = wavefront_table(with_round_stop(lens_), request_);
     page_.add(html::table(tabulate(kind_, rows)));
     page_.add(html::download("wavefront.csv", "text/csv", to_csv(tabulate(kind_, rows)), "table (CSV)"));
   }
@@ -324,8 +329,8 @@ class LensSections {
   }
   void zernikes() {
     section("Zernike coefficients", "Zernike");
-    const auto rows =
-        zernike_table(lens_, at_reference(request_, lens_), ZernikeOrder::fringe, largest_fringe_index);
+    const auto rows = zernike_table(with_round_stop(lens_), at_reference(request_, lens_),
+                                    ZernikeOrder::fringe, largest_fringe_index);
     Table table{{{"term", "", 0}, {"name"}}, {}};
     for (const WavefrontZernikeRow& row : rows)
       table.columns.push_back({field_text(kind_, row.field), "waves", 4});
@@ -372,7 +377,7 @@ void add_comparison(html::Page& page, const std::vector<ReportLens>& lenses,
     const FieldTableRequest reference = at_reference(each.request, each.lens);
     double spot = 0, wavefront = 0, mtf = 1, distortion = 0, illumination = 1, angle = 0;
     for (const SpotRow& row : spot_table(each.lens, each.request)) spot = std::max(spot, row.rms_radius_um);
-    for (const WavefrontRow& row : wavefront_table(each.lens, each.request))
+    for (const WavefrontRow& row : wavefront_table(with_round_stop(each.lens), each.request))
       wavefront = std::max(wavefront, row.rms_without_tilt_waves);
     MtfOptions one;
     one.frequencies_cpmm = {frequency};

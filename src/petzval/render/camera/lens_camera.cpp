@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/render/camera/lens_camera.h>
+#include <petzval/render/camera/light_probe.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,14 @@ bool any_dispersion(const Lens& lens, const std::vector<double>& wavelengths_nm)
     for (const double nm : wavelengths_nm)
       if (surface.material.index(nm) != surface.material.index(wavelengths_nm.front())) return true;
   return false;
+}
+
+InputError no_light(const Lens& lens, double corner_mm) {
+  return InputError(
+      fmt::format("{}: no light reaches the film, {:.4g} mm behind the lens and {:.4g} mm from corner to "
+                  "corner, through a stop "
+                  "{:.4g} mm wide; another film distance or a wider stop would be right",
+                  lens.name, lens.surfaces.back().thickness_mm, 2 * corner_mm, 2 * stop_radius_mm(lens)));
 }
 
 }  // namespace
@@ -63,6 +72,8 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
       throw InputError(fmt::format(
           "{}: the last surface has no aperture to aim at; --sampling exit-pupil needs none", lens.name));
     rear_radius_mm_ = *last.semi_diameter_mm;
+  } else if (!any_light_passes(*this, film_, groups.count())) {
+    throw no_light(lens, film_.half_diagonal_mm());
   }
 }
 
@@ -77,10 +88,7 @@ ExitPupilRegions LensCamera::find_regions(const Lens& lens) const {
   constexpr int probes = 64;
   for (int i = 0; i <= probes; ++i)
     if (regions.area_sr(0, corner_mm * i / probes) > 0) return regions;
-  throw InputError(
-      fmt::format("{}: no light reaches the film, {:.4g} mm behind the lens and {:.4g} mm from corner to "
-                  "corner; another film distance or a wider stop would be right",
-                  lens.name, lens.surfaces.back().thickness_mm, 2 * corner_mm));
+  throw no_light(lens, corner_mm);
 }
 
 std::size_t LensCamera::band(int group, int lane) const {

@@ -78,13 +78,14 @@ void check_factors(const GltfFile& file, const std::string& path, const std::vec
 
 }  // namespace
 
-GltfSurface GltfMaterials::surface(int index, const std::string& path) {
+GltfSurface GltfMaterials::surface(int index, bool tinted, const std::string& path) {
   if (index >= 0) file_.entry(file_.model.materials, index, "materials", path + ".material");
-  const auto found = read_.find(index);
-  return found != read_.end() ? found->second : read_.emplace(index, read(index)).first->second;
+  const std::pair key(index, tinted);
+  const auto found = read_.find(key);
+  return found != read_.end() ? found->second : read_.emplace(key, read(index, tinted)).first->second;
 }
 
-GltfSurface GltfMaterials::read(int index) {
+GltfSurface GltfMaterials::read(int index, bool tinted) {
   static const tinygltf::Material none;
   const tinygltf::Material& material =
       index < 0 ? none : file_.model.materials[static_cast<std::size_t>(index)];
@@ -96,10 +97,13 @@ GltfSurface GltfMaterials::read(int index) {
   reading.index_of_refraction = reading.ior.number("ior", 1.5, 1, 3.99);
   reading.specular_factor = reading.specular.number("specularFactor", 1, 0, 1);
   read_textures(reading);
-  check_alpha(reading);
+  // A picture takes the colours of vertices; without one, a picture of one colour does.
+  if (tinted && reading.colour.empty())
+    reading.colour = textures_.add_flat(reading.base_factor(), file_.at(reading.path));
 
   const double metallic = reading.pbr().metallicFactor;
   GltfSurface surface;
+  read_alpha(reading, surface);
   surface.uv_set = reading.uv_set();
   surface.area_light = add_emission(reading);
   if (metallic == 0) {
@@ -144,16 +148,21 @@ void GltfMaterials::read_textures(Reading& reading) {
                                          file_.at(reading.metal_and_roughness.path));
 }
 
-/// Transparency that is none, as many exporters write it, is no fault.
-void GltfMaterials::check_alpha(const Reading& reading) {
+void GltfMaterials::read_alpha(const Reading& reading, GltfSurface& surface) {
   const std::string& mode = reading.material.alphaMode;
   if (mode == "OPAQUE" || mode.empty()) return;
   if (mode != "MASK" && mode != "BLEND")
     throw scene_error(file_.at(reading.path + ".alphaMode"), "OPAQUE, MASK or BLEND would be right");
-  const double alpha =
-      reading.pbr().baseColorFactor[3] * (reading.base ? textures_.least_alpha(reading.base) : 1);
-  if (alpha < (mode == "MASK" ? reading.material.alphaCutoff : 1))
-    unsupported_.report(file_.at(reading.path + ".alphaMode"), "transparency by alpha");
+  surface.see_through = true;
+  surface.opacity = reading.pbr().baseColorFactor[3];
+  if (mode == "MASK") {
+    surface.cutoff = reading.material.alphaCutoff;
+    if (!(*surface.cutoff >= 0))
+      throw scene_error(file_.at(reading.path + ".alphaCutoff"), "0 or more would be right");
+  }
+  // Pictures without transparency, as many exporters write them, cost nothing.
+  if (reading.base && textures_.least_alpha(reading.base) < 1)
+    surface.opacity_texture = textures_.add_opacity(reading.base, surface.opacity);
 }
 
 int GltfMaterials::add(Entity entity) {

@@ -8,9 +8,13 @@ namespace petzval::render {
 
 /// What a primitive is made of.
 struct GltfSurface {
-  int material = 0;     ///< into SceneDescription::materials
-  int area_light = -1;  ///< into SceneDescription::area_lights; −1: does not shine
-  int uv_set = -1;      ///< that its textures use; −1: it has none
+  int material = 0;          ///< into SceneDescription::materials
+  int area_light = -1;       ///< into SceneDescription::area_lights; −1: does not shine
+  int uv_set = -1;           ///< that its textures use; −1: it has none
+  bool see_through = false;  ///< its opacity, times that of the vertices, counts
+  double opacity = 1;
+  std::string opacity_texture{};  ///< its name, the factor in it; empty: the factor alone
+  std::optional<double> cutoff{};
 };
 
 /// Adds materials to the description of a scene, each once.
@@ -19,21 +23,23 @@ struct GltfSurface {
 /// the rest a coateddiffuse of its index of refraction, whose base looks like the base colour through its
 /// coating; both with facets of alpha = roughness² (glTF 2.0, appendix B). What light the coating lets in,
 /// the base colour's share of it comes out again, as B.3.5 has it. KHR_materials_transmission puts glass in
-/// the place of the base: a thin sheet, or with KHR_materials_volume a body.
+/// the place of the base: a thin sheet, or with KHR_materials_volume a body. Opacity is a matter of the shape
+/// (Geometry::opacity).
 class GltfMaterials {
  public:
   GltfMaterials(const GltfFile& file, SceneDescription& scene, Unsupported& unsupported)
       : file_(file), scene_(scene), unsupported_(unsupported), textures_(file, scene, unsupported) {}
 
-  /// \param index  −1: glTF's default material. \param path  of the primitive. \throws InputError.
-  GltfSurface surface(int index, const std::string& path);
+  /// \param index  −1: glTF's default material. \param tinted  vertices have colours, which multiply its own.
+  /// \param path  of the primitive. \throws InputError.
+  GltfSurface surface(int index, bool tinted, const std::string& path);
 
  private:
   struct Reading;
-  GltfSurface read(int index);
+  GltfSurface read(int index, bool tinted);
   void read_textures(Reading& reading);
   void report_rest(const Reading& reading);
-  void check_alpha(const Reading& reading);
+  void read_alpha(const Reading& reading, GltfSurface& surface);
   int add_body(const Reading& reading);
   int add_opaque(const Reading& reading);
   int add_glass(const Reading& reading);
@@ -45,7 +51,7 @@ class GltfMaterials {
   SceneDescription& scene_;
   Unsupported& unsupported_;
   GltfTextures textures_;
-  std::map<int, GltfSurface> read_;
+  std::map<std::pair<int, bool>, GltfSurface> read_;  ///< by index, and whether tinted
 };
 
 }  // namespace petzval::render

@@ -4,6 +4,8 @@
 #include <petzval/render/gltf/gltf_extensions.h>
 #include <petzval/render/gltf/gltf_mesh.h>
 
+#include <algorithm>
+
 namespace petzval::render {
 
 namespace {
@@ -49,14 +51,27 @@ void report_attributes(const GltfFile& file, const tinygltf::Primitive& primitiv
                        Unsupported& unsupported) {
   for (const auto& [name, accessor] : primitive.attributes) {
     // Tangents serve normal maps, which are reported; other sets of coordinates may serve nothing.
-    const bool known = name == "POSITION" || name == "NORMAL" || name == "TANGENT" ||
+    const bool known = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" ||
                        name.rfind("TEXCOORD_", 0) == 0 || name.rfind("_", 0) == 0;
     if (!known)
-      unsupported.report(file.at(fmt::format("{}.attributes.{}", path, name)),
-                         name.rfind("COLOR_", 0) == 0 ? "a colour for every vertex" : "this attribute");
+      unsupported.report(
+          file.at(fmt::format("{}.attributes.{}", path, name)),
+          name.rfind("COLOR_", 0) == 0 ? "a second colour for every vertex" : "this attribute");
   }
   if (!primitive.targets.empty()) unsupported.report(file.at(path + ".targets"), "a morph target");
   report_gltf_extensions(file, primitive.extensions, path, {}, unsupported);
+}
+
+/// COLOR_0, three or four numbers from 0 to 1 a vertex.
+std::vector<std::array<float, 4>> read_colours(const GltfFile& file, int index, const std::string& path) {
+  const tinygltf::Accessor& accessor = file.entry(file.model.accessors, index, "accessors", path);
+  const bool four = accessor.type == TINYGLTF_TYPE_VEC4;
+  const GltfNumbers numbers = read_accessor(file, index, four ? 4 : 3, path);
+  std::vector<std::array<float, 4>> colours(numbers.count, {1, 1, 1, 1});
+  for (std::size_t i = 0; i < numbers.count; ++i)
+    for (std::size_t c = 0; c < numbers.components; ++c)
+      colours[i][c] = static_cast<float>(std::clamp(numbers.values[i * numbers.components + c], 0.0, 1.0));
+  return colours;
 }
 
 }  // namespace
@@ -82,6 +97,8 @@ std::shared_ptr<const TriangleMesh> read_gltf_triangles(const GltfFile& file,
   auto mesh = std::make_shared<TriangleMesh>();
   mesh->positions = read_accessor(file, position, 3, path + ".attributes.POSITION").tuples<3>();
   if (normal >= 0) mesh->normals = read_accessor(file, normal, 3, path + ".attributes.NORMAL").tuples<3>();
+  if (const int colour = attribute("COLOR_0"); colour >= 0)
+    mesh->colours = read_colours(file, colour, path + ".attributes.COLOR_0");
   if (uv >= 0) mesh->uvs = read_accessor(file, uv, 2, path + ".attributes." + uv_name).tuples<2>();
   for (auto& each : mesh->uvs) each[1] = 1 - each[1];
   mesh->triangles =

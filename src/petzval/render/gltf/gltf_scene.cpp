@@ -8,6 +8,7 @@
 #include <petzval/render/gltf/gltf_materials.h>
 #include <petzval/render/gltf/gltf_mesh.h>
 #include <petzval/render/gltf/gltf_scene.h>
+#include <petzval/render/pbrt/entity_maker.h>
 
 #include <algorithm>
 #include <limits>
@@ -72,9 +73,10 @@ class MeshPlacer {
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
       const tinygltf::Primitive& primitive = mesh.primitives[i];
       const std::string path = fmt::format("meshes[{}].primitives[{}]", index, i);
-      const GltfSurface surface = materials_.surface(primitive.material, path);
+      const bool tinted = primitive.attributes.count("COLOR_0") > 0;
+      const GltfSurface surface = materials_.surface(primitive.material, tinted, path);
       ShapeDescription shape;
-      shape.entity = {"mesh", Parameters(file_.at(path))};
+      shape.entity = mesh_entity(surface, tinted, path);
       shape.material = surface.material, shape.area_light = surface.area_light;
       shape.mesh = read_gltf_triangles(file_, primitive, path, std::max(surface.uv_set, 0), unsupported_);
       if (!shape.mesh) continue;
@@ -84,6 +86,17 @@ class MeshPlacer {
             fmt::format("its material has a texture; TEXCOORD_{} would be right", surface.uv_set));
       shapes_[static_cast<std::size_t>(index)].push_back(std::move(shape));
     }
+  }
+
+  Entity mesh_entity(const GltfSurface& surface, bool tinted, const std::string& path) const {
+    EntityMaker entity("mesh", file_.at(path));
+    if (!surface.see_through) return entity.made();
+    if (!surface.opacity_texture.empty())
+      entity.texture("alpha", surface.opacity_texture);
+    else if (tinted || surface.opacity < std::max(1.0, surface.cutoff.value_or(1)))
+      entity.number("alpha", surface.opacity);
+    if (surface.cutoff) entity.number("alphacutoff", *surface.cutoff);
+    return entity.made();
   }
 
   void place(const GltfNode& node) {

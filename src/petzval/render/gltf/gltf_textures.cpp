@@ -148,6 +148,27 @@ std::string GltfTextures::add_channel(const GltfTexture& texture, std::size_t ch
   return add(texture, "float", std::move(picture));
 }
 
+std::string GltfTextures::add_flat(const std::array<double, 3>& colour, const Location& at) {
+  TextureDescription description;
+  description.name = fmt::format("textures {}", scene_.textures.size());
+  description.value_type = "spectrum";
+  PictureFile picture{1, 1, 3, {}};
+  for (const double each : colour) picture.values.push_back(static_cast<float>(each));
+  description.picture = std::make_shared<const PictureFile>(std::move(picture));
+  description.entity = EntityMaker("imagemap", at).made();
+  scene_.textures.push_back(description);
+  return description.name;
+}
+
+std::string GltfTextures::add_opacity(const GltfTexture& texture, double factor) {
+  const Decoded& from = decoded(texture);
+  PictureFile picture{from.width, from.height, 1, {}};
+  picture.values.reserve(from.pixels());
+  for (std::size_t i = 0; i < from.pixels(); ++i)
+    picture.values.push_back(static_cast<float>(factor * from.opacity(i)));
+  return add(texture, "float", std::move(picture));
+}
+
 std::string GltfTextures::add_square(const std::string& texture, const Location& at) {
   TextureDescription description;
   description.name = fmt::format("textures {}", scene_.textures.size());
@@ -169,11 +190,9 @@ std::array<double, 3> GltfTextures::mean_colour(const GltfTexture& texture) {
 
 double GltfTextures::least_alpha(const GltfTexture& texture) {
   const Decoded& from = decoded(texture);
-  if (from.channels == 1 || from.channels == 3) return 1;
-  int least = from.white;
-  for (std::size_t i = 0; i < from.pixels(); ++i)
-    least = std::min<int>(least, from.samples[(i + 1) * from.channels - 1]);
-  return static_cast<double>(least) / from.white;
+  double least = 1;
+  for (std::size_t i = 0; i < from.pixels(); ++i) least = std::min(least, from.opacity(i));
+  return least;
 }
 
 }  // namespace petzval::render

@@ -32,6 +32,11 @@ class GltfTextures {
                         const std::string& path);
   /// sRGB colours times a factor, as a spectrum texture. \return its name.
   std::string add_colour(const GltfTexture& texture, const std::array<double, 3>& factor);
+  /// The same colour everywhere, as a picture that takes the colours of vertices. \return its name.
+  std::string add_flat(const std::array<double, 3>& colour, const Location& at);
+  /// Opacity as it stands, 1 where the picture has none, times a factor, as a float texture. \return its
+  /// name.
+  std::string add_opacity(const GltfTexture& texture, double factor);
   /// One channel (0 red … 2 blue) as it stands, times a factor, as a float texture. \return its name.
   std::string add_channel(const GltfTexture& texture, std::size_t channel, double factor);
   /// The square of a float texture. \return its name.
@@ -54,6 +59,10 @@ class GltfTextures {
     /// Of a colour (0 red … 2 blue) in a pixel; grey has one.
     std::uint16_t sample(std::size_t pixel, std::size_t colour) const {
       return samples[pixel * channels + (channels < 3 ? 0 : colour)];
+    }
+    double opacity(std::size_t pixel) const {
+      const bool has = channels == 2 || channels == 4;
+      return has ? static_cast<double>(samples[(pixel + 1) * channels - 1]) / white : 1;
     }
     /// Linear light of every sample.
     std::vector<double> linear() const;

@@ -41,6 +41,12 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
     point.v += b[i] * uv[i][1];
   }
   point.along_u = triangle_along_u(p, uv);
+  if (!mesh.colours.empty()) {
+    point.tint = {0, 0, 0};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        point.tint[c] += b[i] * static_cast<double>(mesh.colours[index[i]][c]);
+  }
   if (mesh.normals.empty()) {
     if (geometry.reversed != geometry.swaps_handedness) point.normal = -point.normal;
     point.shading_normal = point.normal;
@@ -96,6 +102,24 @@ SurfacePoint curve_point(const Geometry& geometry, const CurveSegments& curve, c
 }
 
 }  // namespace
+
+double opacity_at(const Geometry& geometry, std::size_t triangle, double b1, double b2) {
+  const auto& mesh = std::get<TriangleMesh>(geometry.shape);
+  const auto& index = mesh.triangles[triangle];
+  const std::array<Vector3, 3> p = mesh.corners(triangle);
+  const std::array<double, 3> b{1 - b1 - b2, b1, b2};
+  TexturePoint point;
+  double of_vertices = mesh.colours.empty() ? 1 : 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<double, 2> uv = uv_of(mesh, index[i], i);
+    point.world = point.world + b[i] * p[i];
+    point.u += b[i] * uv[0], point.v += b[i] * uv[1];
+    if (!mesh.colours.empty()) of_vertices += b[i] * static_cast<double>(mesh.colours[index[i]][3]);
+  }
+  const double opacity = geometry.opacity->texture->at(point, 0) * of_vertices;
+  if (geometry.opacity->cutoff) return opacity >= *geometry.opacity->cutoff ? 1 : 0;
+  return std::clamp(opacity, 0.0, 1.0);
+}
 
 std::size_t Geometry::primitives() const {
   if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) return mesh->triangles.size();

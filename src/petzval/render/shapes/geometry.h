@@ -5,16 +5,26 @@
 #include <petzval/render/shapes/curve_segments.h>
 #include <petzval/render/shapes/quadric.h>
 #include <petzval/render/shapes/triangle_mesh.h>
+#include <petzval/render/textures/texture.h>
 
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
 namespace petzval::render {
 
+/// How much of a surface is there: rays meet it with this probability, and else go on.
+struct Opacity {
+  FloatTexture texture;
+  std::optional<double> cutoff;  ///< from here on all of it is, below nothing
+};
+
 /// One shape of a scene.
 struct Geometry {
   std::variant<TriangleMesh, Quadric, CurveSegments> shape;
+  std::optional<Opacity> opacity;  ///< of a mesh; times that of its vertices
+  bool is_interface = false;       ///< its material is none: light passes it as it is
   int material = 0;
   bool reversed = false;          ///< ReverseOrientation
   bool swaps_handedness = false;  ///< its transformation is a mirror image
@@ -39,7 +49,8 @@ struct SurfacePoint {
   Vector3 shading_normal;  ///< of its interpolated normals, on the same side
   Vector3 along_u;
   double u = 0, v = 0;
-  double clearance = 0;  ///< how far rays must get away before they may meet the surface again
+  std::array<double, 3> tint{1, 1, 1};  ///< colour of the vertices
+  double clearance = 0;                 ///< how far rays must get away before they may meet the surface again
 
   /// Where a ray to `direction` begins so that it does not meet the point's own surface again, for all that
   /// Embree computes in single precision.
@@ -49,6 +60,9 @@ struct SurfacePoint {
 /// The point of a hit. \param place  world from the object for a hit on a placed object, else null.
 SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 origin, Vector3 direction,
                            const Transform* place);
+
+/// 0 to 1, at a place on a triangle of a mesh with opacity.
+double opacity_at(const Geometry& geometry, std::size_t triangle, double b1, double b2);
 
 /// A point of a primitive, for lights, with its density per area.
 struct SurfaceSample {

@@ -2,8 +2,10 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/numeric/sobol.h>
 #include <petzval/render/shapes/intersector.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +55,31 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* arguments) {
   auto& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
   if (quadric_hit(arguments->geometryUserPtr, ray)) ray.tfar = -std::numeric_limits<float>::infinity();
 }
+
+/// A number in [0, 1) that belongs to a ray and the place where it meets a surface, and to no other: whether
+/// it meets what is there in part only. The same for any order of rays and any number of threads.
+double lot_of(const RTCRay& ray, const RTCHit& hit) {
+  std::uint32_t bits = hashed(hit.primID, hit.geomID);
+  for (const float each : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z, hit.u, hit.v})
+    bits = hashed(bits, std::bit_cast<std::uint32_t>(each));
+  return bits * 0x1p-32;
+}
+
+void keep_opaque(const RTCFilterFunctionNArguments* arguments) {
+  if (arguments->N != 1 || !arguments->valid[0]) return;
+  const auto& hit = *reinterpret_cast<const RTCHit*>(arguments->hit);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(arguments->ray);
+  const auto& geometry = *static_cast<const Geometry*>(arguments->geometryUserPtr);
+  const double opacity =
+      opacity_at(geometry, hit.primID, static_cast<double>(hit.u), static_cast<double>(hit.v));
+  if (opacity < 1 && lot_of(ray, hit) >= opacity) arguments->valid[0] = 0;
+}
+
+void keep_nothing(const RTCFilterFunctionNArguments* arguments) {
+  for (unsigned i = 0; i < arguments->N; ++i) arguments->valid[i] = 0;
+}
+
+void occlude_nothing(const RTCOccludedFunctionNArguments*) {}
 
 RTCRay ray_of(Vector3 origin, Vector3 direction, double limit) {
   RTCRay ray{};
@@ -135,8 +162,16 @@ struct Intersector::Impl {
       rtcSetGeometryBoundsFunction(
           handle, [](const RTCBoundsFunctionArguments* arguments) { quadric_bounds(arguments); }, nullptr);
       rtcSetGeometryIntersectFunction(handle, intersect_quadric);
-      rtcSetGeometryOccludedFunction(handle, occlude_quadric);
+      rtcSetGeometryOccludedFunction(handle, geometry.is_interface ? occlude_nothing : occlude_quadric);
     }
+    if (geometry.opacity) {
+      rtcSetGeometryUserData(handle, const_cast<Geometry*>(&geometry));
+      rtcSetGeometryIntersectFilterFunction(handle, keep_opaque);
+      rtcSetGeometryOccludedFilterFunction(handle, keep_opaque);
+    }
+    // What is no boundary casts no shadow.
+    if (geometry.is_interface && !std::holds_alternative<Quadric>(geometry.shape))
+      rtcSetGeometryOccludedFilterFunction(handle, keep_nothing);
     rtcCommitGeometry(handle);
     rtcAttachGeometryByID(to, handle, id);
     rtcReleaseGeometry(handle);

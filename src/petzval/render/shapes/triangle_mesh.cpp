@@ -179,12 +179,13 @@ void TriangleMesh::validate() const {
   finite(positions, "vertex");
   finite(normals, "normal");
   finite(uvs, "texture coordinate");
-  if ((!normals.empty() && normals.size() != positions.size()) ||
-      (!uvs.empty() && uvs.size() != positions.size()))
-    throw InputError(
-        fmt::format("the mesh has {} vertices, {} normals and {} texture coordinates; one or none a vertex "
-                    "would be right",
-                    positions.size(), normals.size(), uvs.size()));
+  finite(colours, "colour");
+  const auto fits = [&](const auto& list) { return list.empty() || list.size() == positions.size(); };
+  if (!fits(normals) || !fits(uvs) || !fits(colours))
+    throw InputError(fmt::format(
+        "the mesh has {} vertices, {} normals, {} texture coordinates and {} colours; one or none "
+        "a vertex would be right",
+        positions.size(), normals.size(), uvs.size(), colours.size()));
   for (const auto& triangle : triangles)
     for (const std::uint32_t index : triangle)
       if (index >= positions.size())

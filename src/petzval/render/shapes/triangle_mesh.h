@@ -11,11 +11,12 @@
 namespace petzval::render {
 
 /// Triangles in the space of the world (or of the object that is placed). Every vertex may have a normal and
-/// texture coordinates; else their lists are empty.
+/// texture coordinates and a colour; else their lists are empty.
 struct TriangleMesh {
   using Vertex = std::array<float, 3>;
   std::vector<Vertex> positions, normals;
   std::vector<std::array<float, 2>> uvs;
+  std::vector<std::array<float, 4>> colours;  ///< linear RGB, which multiplies textures, and opacity; 0 to 1
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   Vector3 position(std::uint32_t vertex) const;

@@ -86,7 +86,8 @@ double FloatPicture::at(const TexturePoint& point, int) const {
 
 Lanes SpectrumPicture::at(const TexturePoint& point, int group) const {
   const std::array<double, 3> rgb = colour_at(picture_, options_, point);
-  const SigmoidReflectance reflectance = (*table_)({rgb[0], rgb[1], rgb[2]});
+  const auto& tint = point.tint;
+  const SigmoidReflectance reflectance = (*table_)({rgb[0] * tint[0], rgb[1] * tint[1], rgb[2] * tint[2]});
   Lanes result;
   for (int i = 0; i < lane_count; ++i)
     result[i] = static_cast<float>(reflectance.at(groups_.wavelength_nm(group, i)));

@@ -5,6 +5,7 @@
 #include <petzval/render/spectra/lanes.h>
 #include <petzval/render/transform.h>
 
+#include <array>
 #include <memory>
 
 namespace petzval::render {
@@ -13,6 +14,7 @@ namespace petzval::render {
 struct TexturePoint {
   Vector3 world;
   double u = 0, v = 0;
+  std::array<double, 3> tint{1, 1, 1};  ///< of the vertices: colours of pictures are multiplied by it
 };
 
 /// A quantity over a surface: Value is double, or Lanes for the wavelengths of `group`.
