@@ -55,6 +55,8 @@ class LensAnalyses(ProgramTest):
         for command in (["lens", "wavefront"], ["lens", "zernike"], ["optics", "build"]):
             extra = ["-o", "t.h5"] if command[0] == "optics" else []
             self.assert_error(self.petzval(*command, "bladed.json", *extra), 2, "5 blades", "blades=null")
+        self.assert_refused("image", "checkerboard:8", "--scene-angle", "10", "--lens", "bladed.json", "-o", "x.png",
+                            words=["5 blades", "render"])
         spots = ["lens", "spots", "double-gauss"]
         self.assert_error(self.petzval(*spots, "--blade-rotation", "5"), 2, "--blades")
         self.assert_error(self.petzval(*spots, "--blades", "2"), 2, "3 to 64")

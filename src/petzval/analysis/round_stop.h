@@ -12,9 +12,9 @@ namespace petzval {
 /// right.
 inline void require_round_stop(const Lens& lens, const char* what) {
   if (lens.stop_blades().count == 0) return;
-  throw InputError(fmt::format(
-      "{}: its stop has {} blades, and {}; set surfaces[{}].blades=null for the round stop",
-      lens.name, lens.stop_blades().count, what, lens.stop_index()));
+  throw InputError(
+      fmt::format("{}: its stop has {} blades, and {}; set surfaces[{}].blades=null for the round stop",
+                  lens.name, lens.stop_blades().count, what, lens.stop_index()));
 }
 
 /// The lens without its blades.
