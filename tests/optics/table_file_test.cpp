@@ -252,6 +252,27 @@ TEST_F(ForeignTableTest, IsRefusedForWhatIsWrong) {
   });  // no chunk ever written
 }
 
+TEST_F(ForeignTableTest, DoesNoHarmWhenDamaged) {
+  EXPECT_EQ(altered([](hid_t) {}), "");
+  const std::string whole = read_whole_file(path("foreign.h5"));
+  for (std::size_t length = 0; length < whole.size(); length += whole.size() / 25) {
+    write_whole_file(path("cut.h5"), whole.substr(0, length));
+    EXPECT_NE(complaint(path("cut.h5"), TableOrigin::elsewhere), "") << length;
+  }
+  // Every sixteenth byte of all ones: whether it is a size, an address or a number, it is refused in one
+  // line, or a table comes out.
+  int refused = 0;
+  for (std::size_t at = 512; at < whole.size(); at += std::max<std::size_t>(16, whole.size() / 150)) {
+    std::string damaged = whole;
+    damaged[at] = '\xff';
+    write_whole_file(path("damaged.h5"), damaged);
+    const std::string said = complaint(path("damaged.h5"), TableOrigin::elsewhere);
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+    refused += !said.empty();
+  }
+  EXPECT_GT(refused, 5);
+}
+
 TEST_F(ForeignTableTest, IsRefusedBeforeMemoryIsTaken) {
   const std::string huge = altered([](hid_t f) {
     replace_dataset(f, "psf", {3, 2, 1'000'000, 1'000'000}, true);

@@ -37,7 +37,7 @@ void write_table(const LensDataTable& table, const std::string& path);
 
 enum class TableOrigin {
   petzval,   ///< begins with the checksum, or is refused
-  elsewhere  ///< no checksum is asked for: HDF5 itself must be trusted with the file
+  elsewhere  ///< no checksum is asked for: a process of its own reads it, which a damaged file may crash
 };
 
 /// Reads a table and checks everything: layout, sizes (before any memory is taken for them), axes, values.

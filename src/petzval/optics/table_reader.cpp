@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <petzval/base/child_process.h>
 #include <petzval/base/error.h>
-#include <petzval/scene/formats/hdf5_handle.h>
+#include <petzval/base/scratch_folder.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_layout.h>
 #include <petzval/optics/table_seal.h>
+#include <petzval/scene/formats/hdf5_handle.h>
 
 #include <cmath>
 #include <limits>
@@ -205,10 +207,7 @@ void read_psfs(const TableFile& file, LensDataTable& table) {
   }
 }
 
-}  // namespace
-
-LensDataTable read_table(const std::string& path, TableOrigin origin) {
-  if (origin == TableOrigin::petzval) check_table_seal(path);
+LensDataTable read_unsealed(const std::string& path) {
   const Hdf5Silence silence;
   const TableFile file(path);
   LensDataTable table;
@@ -226,6 +225,24 @@ LensDataTable read_table(const std::string& path, TableOrigin origin) {
     file.refuse(error.what());
   }
   return table;
+}
+
+/// A table that may crash HDF5: a process of its own reads it and writes it with a seal.
+LensDataTable read_apart(const std::string& path) {
+  const ScratchFolder folder;
+  const std::string sealed = folder.path() + "/sealed.h5";
+  const ChildEnd end = run_in_child([&] { write_table(read_unsealed(path), sealed); });
+  if (end == ChildEnd::crashed) throw InputError(path, "is damaged: the HDF5 library crashes on it");
+  if (end == ChildEnd::endless) throw InputError(path, "is damaged: the HDF5 library finds no end");
+  return read_table(sealed);
+}
+
+}  // namespace
+
+LensDataTable read_table(const std::string& path, TableOrigin origin) {
+  if (origin == TableOrigin::elsewhere) return read_apart(path);
+  check_table_seal(path);
+  return read_unsealed(path);
 }
 
 }  // namespace petzval

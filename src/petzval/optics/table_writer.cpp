@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/scene/formats/hdf5_handle.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_layout.h>
 #include <petzval/optics/table_seal.h>
+#include <petzval/scene/formats/hdf5_handle.h>
 
 #include <algorithm>
 #include <cmath>
