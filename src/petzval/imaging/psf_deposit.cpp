@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/imaging/axis_deposit.h>
 #include <petzval/imaging/psf_deposit.h>
-#include <petzval/numeric/fft.h>
+#include <petzval/imaging/sample_scatter.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace petzval {
@@ -12,141 +12,6 @@ namespace petzval {
 namespace {
 
 using Vector = std::array<double, 2>;  ///< picture column, row [cells]
-
-/// The cells of a kernel with one more all around, so that a sample on the rim needs no test, and one for
-/// rounding. What begins in a cell is kept in its four parts until the end: here, right, below, right below.
-struct Canvas {
-  int width;
-  AlignedVector<double> parts;
-  explicit Canvas(int radius) : width(2 * radius + 4), parts(static_cast<std::size_t>(4 * width * width)) {}
-  double* cell(int row, int column) { return parts.data() + 4 * (row * width + column); }
-  double sum(int row, int column) {
-    return cell(row, column)[0] + cell(row, column - 1)[1] + cell(row - 1, column)[2] +
-           cell(row - 1, column - 1)[3];
-  }
-};
-
-/// The shadow of a sample on one axis of cells of side 1. Between samples light is linear: each is a pyramid
-/// over twice the spacing, turned with the lattice; its shadow is that of two boxes of one side and two of
-/// the other, one after the other, and no longer than a cell.
-class Shadow {
- public:
-  explicit Shadow(const Vector& sides)
-      : inside_(1 - 2 * (sides[0] + sides[1])), entries_per_length_(entries / (1 - inside_)) {
-    double here = 0;
-    for (int i = 0; i < entries; ++i) {
-      const double next = share_within(double(i + 1) / entries_per_length_, sides);
-      pieces_[static_cast<std::size_t>(i)] = {here, next - here};
-      here = next;
-    }
-    pieces_[entries] = {here, 0};
-  }
-
-  /// The share of a shadow that reaches beyond the cell in which it begins, `at` of the cell from its start.
-  double beyond(double at) const {
-    const double over = std::max(0.0, (at - inside_) * entries_per_length_);
-    const int i = static_cast<int>(over);
-    const Piece& piece = pieces_[static_cast<std::size_t>(i)];
-    return piece.value + (over - i) * piece.rise;
-  }
-
- private:
-  struct Piece {
-    double value, rise;
-  };
-  static constexpr int entries = 64;  // evenly over the shadow, so that mirrored ones have mirrored shares
-  /// The share within `length` of one end: the integral of a spline with knots i·a + j·b.
-  static double share_within(double length, const Vector& sides) {
-    const double a = std::max(sides[0], sides[1]), b = std::min(sides[0], sides[1]);
-    constexpr std::array<double, 3> binomial{1, -2, 1};
-    const bool two_boxes = b < 1e-4 * a;
-    double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < (two_boxes ? 1 : 3); ++j) {
-        const double left = std::max(0.0, length - double(i) * a - double(j) * b), square = left * left;
-        sum += binomial[i] * binomial[j] * (two_boxes ? square : square * square);
-      }
-    return two_boxes ? sum / (2 * a * a) : sum / (24 * a * a * b * b);
-  }
-
-  double inside_;  ///< as far as a shadow may begin and lie within the cell
-  double entries_per_length_;
-  std::array<Piece, entries + 1> pieces_{};  ///< one more for rounding
-};
-
-/// How samples lie on the cells.
-struct Lattice {
-  Vector first;                ///< where the shadows of the first sample begin
-  Vector per_row, per_column;  ///< from sample to sample
-};
-
-/// The samples of a row whose shadow begins within [0, end) on both axes.
-std::array<std::size_t, 2> samples_inside(const Vector& first, const Vector& step, double end,
-                                          std::size_t count) {
-  double from = 0, to = double(count);
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (step[axis] == 0) {
-      if (!(first[axis] >= 0 && first[axis] < end)) return {0, 0};
-      continue;
-    }
-    const double at_zero = -first[axis] / step[axis], at_end = (end - first[axis]) / step[axis];
-    from = std::max(from, std::min(at_zero, at_end));
-    to = std::min(to, std::max(at_zero, at_end));
-  }
-  if (!(from < to)) return {0, 0};
-  return {static_cast<std::size_t>(std::ceil(from)), static_cast<std::size_t>(std::ceil(to))};
-}
-
-/// Of PSFs of one spacing about one origin, by their weights: the samples [from, to) of a row of the largest.
-void mix_row(std::span<const WeightedPsf> psfs, std::size_t size, std::size_t row, std::size_t from,
-             std::size_t to, std::vector<double>& values) {
-  std::fill(values.begin() + std::ptrdiff_t(from), values.begin() + std::ptrdiff_t(to), 0.0);
-  for (const WeightedPsf& part : psfs) {
-    const auto part_size = static_cast<std::size_t>(part.psf->size());
-    const std::size_t before = (size - part_size) / 2;
-    if (row < before || row >= before + part_size) continue;
-    const double *samples = part.psf->row(row - before), weight = part.weight;
-    const std::size_t end = std::min(to, before + part_size);
-    for (std::size_t j = std::max(from, before); j < end; ++j) values[j] += weight * samples[j - before];
-  }
-}
-
-const MergedPsf& largest(std::span<const WeightedPsf> psfs) {
-  return *std::max_element(psfs.begin(), psfs.end(), [](const WeightedPsf& a, const WeightedPsf& b) {
-            return a.psf->size() < b.psf->size();
-          })->psf;
-}
-
-/// Adds all samples, each with shadows of 1/parts of its own.
-void add_samples(std::span<const WeightedPsf> psfs, double share, int parts, const Lattice& lattice,
-                 Canvas& canvas) {
-  // Named for the lambda below: clang 14 does not let it see the parts of a structured binding.
-  const Vector &first = lattice.first, &per_row = lattice.per_row, &per_column = lattice.per_column;
-  const auto shadow = [&](std::size_t axis) {
-    return Shadow({std::abs(per_row[axis]) / parts, std::abs(per_column[axis]) / parts});
-  };
-  const Shadow across = shadow(0), down = shadow(1);
-  const auto size = static_cast<std::size_t>(largest(psfs).size());
-  std::vector<double> values(size);
-  const double end = canvas.width - 2;  // a shadow that begins before it may reach one cell on
-  for (std::size_t i = 0; i < size; ++i) {
-    const Vector start{first[0] + double(i) * per_row[0], first[1] + double(i) * per_row[1]};
-    const auto [from, to] = samples_inside(start, per_column, end, size);
-    mix_row(psfs, size, i, from, std::max(from, to), values);
-    for (std::size_t j = from; j < to; ++j) {
-      const double u = start[0] + double(j) * per_column[0], v = start[1] + double(j) * per_column[1];
-      const int column = static_cast<int>(u), row = static_cast<int>(v);
-      const double value = share * values[j];
-      const double right = across.beyond(u - column), below = down.beyond(v - row);
-      const double lower = value * below, upper = value - lower;
-      double* cell = canvas.cell(row, column);
-      cell[0] += upper - upper * right;
-      cell[1] += upper * right;
-      cell[2] += lower - lower * right;
-      cell[3] += lower * right;
-    }
-  }
-}
 
 /// What every weight of a kernel keeps and hands to the cells about it.
 struct Shares {
@@ -189,20 +54,25 @@ Shares without_negative(Shares shares) {
 
 /// Every weight hands shares to the eight about it; at the rim it keeps them.
 Kernel handed_on(const Kernel& kernel, const Shares& shares) {
-  const int radius = kernel.radius;
-  Kernel result(radius);
-  std::array<double, 9> share{};
+  const int radius = kernel.radius, size = kernel.size(), side = size + 2;
+  // With one cell more all around, whose light then goes to the rim.
+  std::vector<double> wide(static_cast<std::size_t>(side * side));
   for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j) share[static_cast<std::size_t>(3 * i + j + 4)] = shares.at(i, j);
-  for (int row = -radius; row <= radius; ++row)
-    for (int column = -radius; column <= radius; ++column) {
-      const double weight = kernel.at(row, column);
-      if (weight == 0) continue;
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-          result.at(std::clamp(row + i, -radius, radius), std::clamp(column + j, -radius, radius)) +=
-              weight * share[static_cast<std::size_t>(3 * i + j + 4)];
+    for (int j = -1; j <= 1; ++j) {
+      const double share = shares.at(i, j);
+      if (share == 0) continue;
+      for (int row = 0; row < size; ++row) {
+        const double* from = kernel.weights.data() + row * size;
+        double* to = wide.data() + (row + 1 + i) * side + 1 + j;
+        for (int column = 0; column < size; ++column) to[column] += share * from[column];
+      }
     }
+  Kernel result(radius);
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column)
+      result.at(std::clamp(row - 1 - radius, -radius, radius),
+                std::clamp(column - 1 - radius, -radius, radius)) +=
+          wide[static_cast<std::size_t>(row * side + column)];
   return result;
 }
 
@@ -218,16 +88,21 @@ double Kernel::sum() const {
 Moments Kernel::moments() const {
   Moments sums;
   double total = 0;
-  for (int row = -radius; row <= radius; ++row)
+  for (int row = -radius; row <= radius; ++row) {
+    double light = 0, first = 0, second = 0;
     for (int column = -radius; column <= radius; ++column) {
       const double weight = at(row, column);
-      total += weight;
-      sums.mean[0] += column * weight;
-      sums.mean[1] += row * weight;
-      sums.uu += column * column * weight;
-      sums.uv += column * row * weight;
-      sums.vv += row * row * weight;
+      light += weight;
+      first += column * weight;
+      second += column * column * weight;
     }
+    total += light;
+    sums.mean[0] += first;
+    sums.mean[1] += row * light;
+    sums.uu += second;
+    sums.uv += row * first;
+    sums.vv += row * row * light;
+  }
   return {{sums.mean[0] / total, sums.mean[1] / total}, sums.uu / total, sums.uv / total, sums.vv / total};
 }
 
@@ -287,21 +162,26 @@ MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged, const LightMo
   first_um_ = -before * spacing_um_;
   const auto size = static_cast<std::size_t>(size_), step = static_cast<std::size_t>(merged);
   const auto samples = static_cast<std::size_t>(psf.size), skipped = static_cast<std::size_t>(shift);
-  samples_.assign(size * size, 0.0);
+  samples_.resize(size * size);
+  std::vector<double> sums(size);
   for (std::size_t i = 0; i < samples; ++i) {
-    double* row = samples_.data() + (i + skipped) / step * size;
     const float* values = psf.values.data() + i * samples;
+    float* row = samples_.data() + (i + skipped) / step * size;
     if (merged == 1) {
-      for (std::size_t j = 0; j < samples; ++j) row[j] = double(values[j]);
+      std::copy_n(values, samples, row);
       continue;
     }
     std::size_t block = skipped / step, left = step - skipped % step;
     for (std::size_t j = 0; j < samples; ++j) {
-      row[block] += double(values[j]);
+      sums[block] += double(values[j]);
       if (--left == 0) {
         ++block;
         left = step;
       }
+    }
+    if ((i + skipped) % step + 1 == step || i + 1 == samples) {
+      std::transform(sums.begin(), sums.end(), row, [](double sum) { return static_cast<float>(sum); });
+      std::fill(sums.begin(), sums.end(), 0.0);
     }
   }
 }
@@ -311,46 +191,54 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
   light_.sum = fine.sum();
   // Rows run along t, columns along −s.
   for (int row = -fine.radius; row <= fine.radius; ++row)
-    for (int column = fine.radius; column >= -fine.radius; --column) samples_.push_back(fine.at(row, column));
+    for (int column = fine.radius; column >= -fine.radius; --column) samples_.push_back(static_cast<float>(fine.at(row, column)));
 }
 
 namespace {
 
-/// \param psfs  of one spacing about one origin, of odd sizes where these differ. \param stretch  of the
-/// lattice about {s, t} = `centre` [µm]. \param any_angle  whether the kernels of other directions must go on
-/// from this one without a jump.
-void deposit_mixture(std::span<const WeightedPsf> psfs, const Vector& stretch, const Vector& centre,
-                     const Vector& direction, double cell_um, bool any_angle, Kernel& kernel) {
+const MergedPsf& largest(std::span<const WeightedPsf> psfs) {
+  return *std::max_element(psfs.begin(), psfs.end(), [](const WeightedPsf& a, const WeightedPsf& b) {
+            return a.psf->size() < b.psf->size();
+          })->psf;
+}
+
+/// How the lattice of a PSF, stretched, lies on cells. The origin of the PSF is that of the places.
+SampleLattice2 lattice_on_cells(const MergedPsf& psf, const Placement& placement, const Vector& centre_um,
+                                const Vector& direction, double cell_um) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
-  const MergedPsf& whole = largest(psfs);
-  const double spacing = whole.spacing_um() / cell_um;
-  const double s_first = whole.first_um(), t_first = s_first - whole.origin_um();
-  const double s = (centre[0] + stretch[0] * (s_first - centre[0])) / cell_um;
-  const double t = (centre[1] + stretch[1] * (t_first - centre[1])) / cell_um;
-  const Vector per_row{spacing * stretch[1] * e_t[0], spacing * stretch[1] * e_t[1]};
-  const Vector per_column{spacing * stretch[0] * e_s[0], spacing * stretch[0] * e_s[1]};
+  const Vector& stretch = placement.stretch;
+  const double spacing = psf.spacing_um() / cell_um;
+  const double s_first = psf.first_um(), t_first = s_first - psf.origin_um();
+  const double s = (centre_um[0] + stretch[0] * (s_first - centre_um[0])) / cell_um;
+  const double t = (centre_um[1] + stretch[1] * (t_first - centre_um[1])) / cell_um;
+  const auto along = [](double length, const Vector& e) { return Vector{length * e[0], length * e[1]}; };
+  return {{s * e_s[0] + t * e_t[0], s * e_s[1] + t * e_t[1]},
+          along(spacing * stretch[1], e_t),
+          along(spacing * stretch[0], e_s)};
+}
 
-  // Samples with shadows longer than a cell are cut into parts with shorter ones; into as many at any angle,
-  // lest kernels jump where one more is needed.
-  const double longest =
-      2 * (any_angle ? std::numbers::sqrt2 : 1) * spacing * std::max(stretch[0], stretch[1]);
-  const int parts = std::max(1, static_cast<int>(std::ceil(longest - 1e-9)));
-  const Vector shadow{2 * (std::abs(per_row[0]) + std::abs(per_column[0])),
-                      2 * (std::abs(per_row[1]) + std::abs(per_column[1]))};
-  const double share = 1 / (double(parts) * parts), middle = kernel.radius + 1.5;
-  Canvas canvas(kernel.radius);
+/// \param lattice  that of the largest, from the middle of the kernel.
+void scatter(std::span<const WeightedPsf> psfs, const SampleLattice2& lattice, Kernel& kernel) {
+  // Blobs wider than a cell are cut into parts that are not; into as many at any angle, lest kernels jump
+  // where one more is needed.
+  const auto length = [](const Vector& step) { return std::hypot(step[0], step[1]); };
+  const double longest = std::max(length(lattice.per_row), length(lattice.per_column));
+  const int parts = std::max(1, static_cast<int>(std::ceil(2 * blob_radius(longest, longest) - 1e-9)));
+  std::vector<SampleSquare> squares;
+  for (const WeightedPsf& part : psfs)
+    squares.push_back({part.psf->row(0), static_cast<std::size_t>(part.psf->size()),
+                       static_cast<float>(part.weight / (double(parts) * parts))});
+  const int radius = kernel.radius;
+  Canvas canvas(2 * radius + 4);
   for (int a = 0; a < parts; ++a)
     for (int b = 0; b < parts; ++b) {
       const double i = (a + 0.5) / parts - 0.5, j = (b + 0.5) / parts - 0.5;
-      const auto corner = [&](std::size_t axis) {
-        return middle + s * e_s[axis] + t * e_t[axis] + i * per_row[axis] + j * per_column[axis] -
-               shadow[axis] / (2 * parts);
-      };
-      add_samples(psfs, share, parts, {{corner(0), corner(1)}, per_row, per_column}, canvas);
+      SampleLattice2 moved = lattice;
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        moved.first[axis] += radius + 1.5 + i * lattice.per_row[axis] + j * lattice.per_column[axis];
+      scatter_samples(squares, moved, canvas);
     }
-
-  const int radius = kernel.radius;
   for (int row = -radius; row <= radius; ++row)
     for (int column = -radius; column <= radius; ++column)
       kernel.at(row, column) += canvas.sum(row + radius + 1, column + radius + 1);
@@ -361,9 +249,14 @@ void deposit_mixture(std::span<const WeightedPsf> psfs, const Vector& stretch, c
 void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
              double cell_um, Kernel& kernel) {
   const Moments& moments = psf.moments();
-  const std::array<WeightedPsf, 1> alone{{{&psf, placement.weight}}};
-  deposit_mixture(alone, placement.stretch, {moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()},
-                  direction, cell_um, direction[0] != 0 && direction[1] != 0, kernel);
+  const Vector centre_um{moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()};
+  const SampleLattice2 lattice = lattice_on_cells(psf, placement, centre_um, direction, cell_um);
+  const SampleSquare square{psf.row(0), static_cast<std::size_t>(psf.size()),
+                            static_cast<float>(placement.weight)};
+  if (direction[0] == 0)
+    deposit_along_axes(square, lattice, kernel);
+  else
+    scatter(std::array{WeightedPsf{&psf, placement.weight}}, lattice, kernel);
 }
 
 void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
@@ -373,9 +266,9 @@ void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& dir
     const auto other = std::find_if(psfs.begin(), psfs.end(), [&](const WeightedPsf& part) {
       return part.psf->spacing_um() != first.spacing_um();
     });
-    const auto alike = static_cast<std::size_t>(other - psfs.begin());
-    deposit_mixture(psfs.first(alike), {1, 1}, {0, 0}, direction, cell_um, true, kernel);
-    psfs = psfs.subspan(alike);
+    const auto alike = psfs.first(static_cast<std::size_t>(other - psfs.begin()));
+    scatter(alike, lattice_on_cells(largest(alike), {}, {0, 0}, direction, cell_um), kernel);
+    psfs = psfs.subspan(alike.size());
   }
 }
 

@@ -77,7 +77,7 @@ class MergedPsf {
   const Moments& moments() const { return light_.sums; }
   const LightMoments& light() const { return light_; }
   /// The samples of a row.
-  const double* row(std::size_t index) const {
+  const float* row(std::size_t index) const {
     return samples_.data() + index * static_cast<std::size_t>(size_);
   }
 
@@ -85,7 +85,7 @@ class MergedPsf {
   int size_;
   double spacing_um_, origin_um_, first_um_;
   LightMoments light_;
-  std::vector<double> samples_;  ///< row-major
+  std::vector<float> samples_;  ///< row-major
 };
 
 /// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.

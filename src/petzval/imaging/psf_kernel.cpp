@@ -92,9 +92,7 @@ double needed_spacing_um(const LightMoments& light, double cell_um, double heigh
   const Moments& moments = light.sums;
   const double s = moments.mean[0] / light.sum, t = moments.mean[1] / light.sum;
   const double variance = std::min(moments.uu / light.sum - s * s, moments.vv / light.sum - t * t);
-  const double parts = getenv("PA")                                      ? atof(getenv("PA"))
-                       : height_mm * um_per_mm < turning_cells * cell_um ? 8
-                                                                         : 4;
+  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
   return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
 }
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Light of a turned lattice of samples falls on the cells of a picture, on whatever SIMD the machine has.
+#pragma once
+
+#include <petzval/numeric/fft.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace petzval {
+
+/// Samples of one PSF of a mixture.
+struct SampleSquare {
+  const float* samples;  ///< size × size, row-major
+  std::size_t size;
+  float weight;
+};
+
+/// How samples lie on the cells, which have sides of 1: {column, row}.
+struct SampleLattice2 {
+  std::array<double, 2> first;                ///< the first sample of the first row
+  std::array<double, 2> per_row, per_column;  ///< from sample to sample
+};
+
+/// Cells, each with the four parts of the light of blobs that begin in it until the end: what stays here, what
+/// goes right, below, right below. So a blob is one addition of a short vector.
+class Canvas {
+ public:
+  /// Cells count from 0 to `width` − 1 along either side.
+  explicit Canvas(int width)
+      : width_(width), parts_(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(width)) {}
+  int width() const { return width_; }
+  float* cells() { return parts_.data(); }
+  /// The light of a cell that is not the first of a row or column.
+  double sum(int row, int column) const {
+    return double(cell(row, column)[0]) + double(cell(row, column - 1)[1]) +
+           double(cell(row - 1, column)[2]) + double(cell(row - 1, column - 1)[3]);
+  }
+
+ private:
+  const float* cell(int row, int column) const { return parts_.data() + 4 * (row * width_ + column); }
+
+  int width_;
+  AlignedVector<float> parts_;
+};
+
+/// The radius of the blob of a sample on one axis [cells]. \param steps  from sample to sample along rows and
+/// columns, as far as they go along the axis.
+double blob_radius(double step_of_rows, double step_of_columns);
+
+/// Adds Σ weight · samples to a canvas, squares of odd sizes about one middle, the lattice that of the
+/// largest. On either axis the light of a sample lies under (1 − (x/R)²)², R the blob_radius(), at most half a
+/// cell: along the lattice the spectrum of that is zero at the lattice's own frequency, so that smooth light
+/// stays smooth; at any angle it is small there. What falls beside the canvas is left out.
+void scatter_samples(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas);
+
+/// sums[i] += weight · row[i], i < count.
+void add_scaled(const float* row, float weight, std::size_t count, float* sums);
+
+}  // namespace petzval
