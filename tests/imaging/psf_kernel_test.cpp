@@ -155,8 +155,9 @@ TEST(PsfKernel, SumsToOneWhateverTheCells) {
   for (const double degrees : {0.0, 45.0, 77.0}) {
     Kernel kernel(psfs.radius());
     add(table.psf[2], 1, {std::cos(radians(degrees)), std::sin(radians(degrees))}, 0.7, kernel);
+    // To the rounding of what cells add up as floats.
     EXPECT_NEAR(kernel.sum(), std::accumulate(table.psf[2].values.begin(), table.psf[2].values.end(), 0.0),
-                1e-12);
+                1e-7);
   }
 }
 

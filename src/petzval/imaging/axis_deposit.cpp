@@ -74,11 +74,9 @@ void deposit_along_axes(const SampleSquare& psf, const SampleLattice2& lattice, 
   const auto shares = [&](std::size_t axis, double step) {
     return line_shares(psf.size, lattice.first[axis] + start, step, cells);
   };
-  const std::vector<float> rows =
-      gathered(psf.samples, psf.size, shares(1, lattice.per_row[1]), cells);
+  const std::vector<float> rows = gathered(psf.samples, psf.size, shares(1, lattice.per_row[1]), cells);
   const std::vector<float> turned = transposed(rows, cells + 3, psf.size);
-  const std::vector<float> sums =
-      gathered(turned.data(), cells + 3, shares(0, lattice.per_column[0]), cells);
+  const std::vector<float> sums = gathered(turned.data(), cells + 3, shares(0, lattice.per_column[0]), cells);
   for (std::size_t row = 0; row < cells; ++row)
     for (std::size_t column = 0; column < cells; ++column)
       kernel.weights[row * cells + column] +=

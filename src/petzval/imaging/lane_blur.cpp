@@ -151,30 +151,58 @@ HWY_ATTR HWY_INLINE void pad(float* data, int from, int size) {
             0.0F);
 }
 
-HWY_ATTR void transform_kernels(const LaneTransform& transform, const float* kernels, int size, float* otfs,
-                                std::size_t stride, std::size_t imaginary) {
+/// Elements of a line, a stride apart.
+HWY_ATTR HWY_INLINE void copy_line(const float* from, int count, float* line) {
+  std::copy_n(from, static_cast<std::size_t>(count) * element_floats(), line);
+}
+
+/// Of two real kernels a and b, whose transforms come as those of a + ib at k and at −k.
+HWY_ATTR HWY_INLINE void separate(const Complex& plus, const Complex& minus, Complex& a, Complex& b) {
+  const Vector half = hn::Set(Lanes(), 0.5F);
+  a = {hn::Mul(half, hn::Add(plus.re, minus.re)), hn::Mul(half, hn::Sub(plus.im, minus.im))};
+  b = {hn::Mul(half, hn::Add(plus.im, minus.im)), hn::Mul(half, hn::Sub(minus.re, plus.re))};
+}
+
+HWY_ATTR void transform_kernels(const LaneTransform& transform, const std::array<const float*, 2>& kernels,
+                                int size, const std::array<float*, 2>& otfs, std::size_t stride,
+                                std::size_t imaginary) {
   const Lanes d;
   const std::size_t lanes = hn::Lanes(d), element = 2 * lanes;
   const int n = transform.size();
   const auto side = static_cast<std::size_t>(n), rows = static_cast<std::size_t>(size);
-  AlignedVector<float> line(side * element), turned(side * rows * element);  // [frequency along x][row]
+  const std::size_t turned_row = (rows + 1) * element;  // as in blur_tiles()
+  AlignedVector<float> work(2 * side * element + side * turned_row);
+  float *line = work.data(), *other = line + side * element;
+  float* turned = other + side * element;  // [frequency along x][row]
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < rows; ++column)
-      store({hn::Load(d, kernels + (row * rows + column) * lanes), hn::Zero(d)}, &line[column * element]);
-    pad(line.data(), size, n);
-    forward(line.data(), n, transform.twiddles());
+    for (std::size_t column = 0; column < rows; ++column) {
+      const std::size_t at = (row * rows + column) * lanes;
+      store({hn::Load(d, kernels[0] + at), hn::Load(d, kernels[1] + at)}, line + column * element);
+    }
+    pad(line, size, n);
+    forward(line, n, transform.twiddles());
     for (std::size_t k = 0; k < side; ++k)
-      store(load(&line[k * element]), &turned[(k * rows + row) * element]);
+      store(load(line + k * element), turned + k * turned_row + row * element);
   }
-  for (std::size_t k = 0; k < side; ++k) {
-    std::copy_n(&turned[k * rows * element], rows * element, line.data());
-    pad(line.data(), size, n);
-    forward(line.data(), n, transform.twiddles());
-    for (std::size_t l = 0; l < side; ++l) {
-      const Complex value = load(&line[l * element]);
-      float* at = otfs + (k * side + l) * stride;
-      hn::StoreU(value.re, d, at);
-      hn::StoreU(value.im, d, at + imaginary);
+  const auto column_of = [&](int k, float* out) {
+    copy_line(turned + static_cast<std::size_t>(k) * turned_row, size, out);
+    pad(out, size, n);
+    forward(out, n, transform.twiddles());
+  };
+  std::size_t at = 0;
+  for (const LaneTransform::ColumnPair& columns : transform.columns()) {
+    column_of(columns.kept, line);
+    if (columns.mirrored != columns.kept) column_of(columns.mirrored, other);
+    const float* minus = columns.mirrored != columns.kept ? other : line;
+    for (std::size_t k = 0; k < side; ++k, at += stride) {
+      Complex a, b;
+      separate(load(line + k * element),
+               load(minus + static_cast<std::size_t>(transform.mirrored()[k]) * element), a, b);
+      hn::StoreU(a.re, d, otfs[0] + at);
+      hn::StoreU(a.im, d, otfs[0] + at + imaginary);
+      if (otfs[1] == nullptr) continue;
+      hn::StoreU(b.re, d, otfs[1] + at);
+      hn::StoreU(b.im, d, otfs[1] + at + imaginary);
     }
   }
 }
@@ -201,46 +229,109 @@ HWY_ATTR HWY_INLINE void weigh(const float* elements, const float* weights, int 
   }
 }
 
-HWY_ATTR void blur_tiles(const LaneTransform& transform, const LaneTiles& tiles, LaneTileIo& io,
-                         AlignedVector<float>& workspace) {
+/// The same for the column that holds −k where the transfer functions kept are those at k.
+HWY_ATTR HWY_INLINE void filter_mirrored(const float* spectrum, const float* otf, const LaneTiles& tiles,
+                                         const std::vector<int>& mirrored, bool first, float* sums) {
+  const Lanes d;
+  const std::size_t element = element_floats();
+  for (const int partner : mirrored) {
+    const float* at = otf + static_cast<std::size_t>(partner) * tiles.otf_stride;
+    const Complex h{hn::LoadU(d, at), hn::LoadU(d, at + tiles.otf_imaginary)};
+    const Complex product = multiply_conjugate(load(spectrum), h);
+    store(first ? product : add(load(sums), product), sums);
+    spectrum += element;
+    sums += element;
+  }
+}
+
+/// What the tiles of one set become on the way.
+struct Workspace {
+  std::size_t turned_row, turned_node, result_row;  ///< floats from one to the next
+  float* turned;                                    ///< [node along x][frequency along x][row]
+  float* result;                                    ///< [row][frequency along x]
+  float *line, *sums;
+};
+
+HWY_ATTR void transform_rows(const LaneTransform& transform, const LaneTiles& tiles, LaneTileIo& io,
+                             std::size_t set, const Workspace& work) {
   const std::size_t element = element_floats();
   const int n = transform.size();
-  const auto side = static_cast<std::size_t>(n), tile = static_cast<std::size_t>(tiles.tile),
-             extent = static_cast<std::size_t>(tiles.extent), nodes = static_cast<std::size_t>(tiles.nodes);
-  // One element more than a row: strides of a power of two would all meet in the same few cache sets.
-  const std::size_t turned_row = (tile + 1) * element, row_floats = (side + 1) * element;
-  const std::size_t turned_floats = nodes * side * turned_row;
-  workspace.resize(turned_floats + extent * row_floats + 2 * side * element + tile * element);
-  float* turned = workspace.data();  // [node along x][frequency along x][row]
-  float* result = turned + turned_floats;
-  float *line = result + extent * row_floats, *sums = line + side * element, *raw = sums + side * element;
-
-  for (std::size_t row = 0; row < tile; ++row) {
-    io.load_row(static_cast<int>(row), raw);
-    for (std::size_t a = 0; a < nodes; ++a) {
-      weigh(raw, tiles.weights + a * tile, tiles.tile, line);
-      pad(line, tiles.tile, n);
-      forward(line, n, transform.twiddles());
-      for (std::size_t k = 0; k < side; ++k)
-        store(load(line + k * element), turned + (a * side + k) * turned_row + row * element);
+  for (int row = 0; row < tiles.tile; ++row) {
+    io.load_row(set, row, work.sums);
+    for (int a = 0; a < tiles.nodes; ++a) {
+      weigh(work.sums, tiles.weights + a * tiles.tile, tiles.tile, work.line);
+      pad(work.line, tiles.tile, n);
+      forward(work.line, n, transform.twiddles());
+      float* turned = work.turned + static_cast<std::size_t>(a) * work.turned_node +
+                      static_cast<std::size_t>(row) * element;
+      for (int k = 0; k < n; ++k, turned += work.turned_row)
+        store(load(work.line + static_cast<std::size_t>(k) * element), turned);
     }
   }
-  for (std::size_t k = 0; k < side; ++k) {
-    for (std::size_t a = 0; a < nodes; ++a)
-      for (std::size_t b = 0; b < nodes; ++b) {
-        weigh(turned + (a * side + k) * turned_row, tiles.weights + b * tile, tiles.tile, line);
-        pad(line, tiles.tile, n);
-        forward(line, n, transform.twiddles());
-        filter(line, tiles.otfs[b * nodes + a] + k * side * tiles.otf_stride, tiles, n, a + b == 0, sums);
-      }
-    inverse(sums, n, transform.twiddles());
-    for (std::size_t row = 0; row < extent; ++row)
-      store(load(sums + row * element), result + row * row_floats + k * element);
+}
+
+HWY_ATTR void filter_column(const LaneTransform& transform, const LaneTiles& tiles, int column,
+                            std::size_t kept, bool mirrored, const Workspace& work) {
+  const std::size_t element = element_floats();
+  const int n = transform.size();
+  const auto k = static_cast<std::size_t>(column), nodes = static_cast<std::size_t>(tiles.nodes);
+  for (std::size_t a = 0; a < nodes; ++a)
+    for (std::size_t b = 0; b < nodes; ++b) {
+      weigh(work.turned + a * work.turned_node + k * work.turned_row,
+            tiles.weights + b * static_cast<std::size_t>(tiles.tile), tiles.tile, work.line);
+      pad(work.line, tiles.tile, n);
+      forward(work.line, n, transform.twiddles());
+      const float* otf = tiles.otfs[b * nodes + a] + kept * static_cast<std::size_t>(n) * tiles.otf_stride;
+      if (mirrored)
+        filter_mirrored(work.line, otf, tiles, transform.mirrored(), a + b == 0, work.sums);
+      else
+        filter(work.line, otf, tiles, n, a + b == 0, work.sums);
+    }
+  inverse(work.sums, n, transform.twiddles());
+  float* result = work.result + k * element;
+  for (int row = 0; row < tiles.extent; ++row, result += work.result_row)
+    store(load(work.sums + static_cast<std::size_t>(row) * element), result);
+}
+
+HWY_ATTR void blur_tiles(const LaneTransform& transform, const LaneTiles& tiles, LaneTileIo& io,
+                         AlignedVector<float>& memory) {
+  const std::size_t element = element_floats();
+  const int n = transform.size();
+  const auto side = static_cast<std::size_t>(n), extent = static_cast<std::size_t>(tiles.extent);
+  // One element more than a row: strides of a power of two would all meet in the same few cache sets.
+  Workspace work{};
+  work.turned_row = (static_cast<std::size_t>(tiles.tile) + 1) * element;
+  work.turned_node = side * work.turned_row;
+  work.result_row = (side + 1) * element;
+  const std::size_t turned_floats = static_cast<std::size_t>(tiles.nodes) * work.turned_node,
+                    set_floats = turned_floats + extent * work.result_row;
+  memory.resize(io.sets() * set_floats + 2 * side * element);
+  work.line = memory.data() + io.sets() * set_floats;
+  work.sums = work.line + side * element;
+  const auto select = [&](std::size_t set) {
+    work.turned = memory.data() + set * set_floats;
+    work.result = work.turned + turned_floats;
+  };
+  for (std::size_t set = 0; set < io.sets(); ++set) {
+    select(set);
+    transform_rows(transform, tiles, io, set, work);
   }
-  for (std::size_t row = 0; row < extent; ++row) {
-    float* elements = result + row * row_floats;
-    inverse(elements, n, transform.twiddles());
-    io.store_row(static_cast<int>(row), elements);
+  // Sets take turns at every column, while its transfer functions are at hand.
+  for (std::size_t kept = 0; kept < transform.columns().size(); ++kept)
+    for (std::size_t set = 0; set < io.sets(); ++set) {
+      const LaneTransform::ColumnPair& columns = transform.columns()[kept];
+      select(set);
+      filter_column(transform, tiles, columns.kept, kept, false, work);
+      if (columns.mirrored != columns.kept)
+        filter_column(transform, tiles, columns.mirrored, kept, true, work);
+    }
+  for (std::size_t set = 0; set < io.sets(); ++set) {
+    select(set);
+    for (std::size_t row = 0; row < extent; ++row) {
+      float* elements = work.result + row * work.result_row;
+      inverse(elements, n, transform.twiddles());
+      io.store_row(set, static_cast<int>(row), elements);
+    }
   }
 }
 
@@ -262,7 +353,18 @@ std::size_t lane_count() {
   return HWY_DYNAMIC_DISPATCH(width)();
 }
 
-LaneTransform::LaneTransform(int size) : size_(size) {
+namespace {
+
+/// Where decimation in frequency puts a frequency.
+int place_of(int frequency, int size) {
+  if (size == 1) return 0;
+  const int radix = size == 2 ? 2 : 4;
+  return frequency % radix * (size / radix) + place_of(frequency / radix, size / radix);
+}
+
+}  // namespace
+
+LaneTransform::LaneTransform(int size) : size_(size), mirrored_(static_cast<std::size_t>(size)) {
   for (int length = size; length >= 4; length /= 4)
     for (int j = 0; j < length / 4; ++j)
       for (int power = 1; power <= 3; ++power) {
@@ -270,10 +372,16 @@ LaneTransform::LaneTransform(int size) : size_(size) {
         twiddles_.push_back(static_cast<float>(std::cos(angle)));
         twiddles_.push_back(static_cast<float>(std::sin(angle)));
       }
+  for (int k = 0; k < size; ++k)
+    mirrored_[static_cast<std::size_t>(place_of(k, size))] = place_of((size - k) % size, size);
+  for (int place = 0; place < size; ++place)
+    if (const int mirrored = mirrored_[static_cast<std::size_t>(place)]; place <= mirrored)
+      columns_.push_back({place, mirrored});
 }
 
-void transform_lane_kernels(const LaneTransform& transform, const float* kernels, int size, float* otfs,
-                            std::size_t stride, std::size_t imaginary) {
+void transform_lane_kernels(const LaneTransform& transform, const std::array<const float*, 2>& kernels,
+                            int size, const std::array<float*, 2>& otfs, std::size_t stride,
+                            std::size_t imaginary) {
   HWY_DYNAMIC_DISPATCH(transform_kernels)(transform, kernels, size, otfs, stride, imaginary);
 }
 

@@ -4,6 +4,7 @@
 
 #include <petzval/numeric/fft.h>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,31 +19,46 @@ std::size_t lane_count();
 class LaneTransform {
  public:
   static constexpr int smallest = 16, largest = 256;
+  /// Two columns of a plane of frequencies, which hold the frequencies k and −k along the rows; where these
+  /// are the same, twice the same column.
+  struct ColumnPair {
+    int kept, mirrored;
+  };
   /// \param size  of a side: a power of two from `smallest` to `largest`.
   explicit LaneTransform(int size);
   int size() const { return size_; }
   const float* twiddles() const { return twiddles_.data(); }
+  /// Where −k is, for the k at each place.
+  const std::vector<int>& mirrored() const { return mirrored_; }
+  /// All columns. The transfer functions of real kernels need be kept for one of each pair.
+  const std::vector<ColumnPair>& columns() const { return columns_; }
 
  private:
   int size_;
   AlignedVector<float> twiddles_;
+  std::vector<int> mirrored_;
+  std::vector<ColumnPair> columns_;
 };
 
-/// Transfer functions of lane_count() kernels. \param kernels  size × size elements, real parts only.
-/// \param otfs  where element k of the first lane goes: real part at k · stride, imaginary part `imaginary`
-/// floats behind it. The lanes lie side by side.
-void transform_lane_kernels(const LaneTransform& transform, const float* kernels, int size, float* otfs,
-                            std::size_t stride, std::size_t imaginary);
+/// Transfer functions of twice lane_count() kernels. \param kernels  two times size × size elements, real
+/// parts only. \param otfs  where element k of the kept column c goes, of the first lane: real part at (c ·
+/// size + k) · stride, imaginary part `imaginary` floats behind it. The lanes lie side by side. Null where
+/// the second kernels are not wanted.
+void transform_lane_kernels(const LaneTransform& transform, const std::array<const float*, 2>& kernels,
+                            int size, const std::array<float*, 2>& otfs, std::size_t stride,
+                            std::size_t imaginary);
 
-/// Where the light of lane_count() pairs of tiles comes from and goes to. A pair is the real and the
-/// imaginary part of one complex tile: two places that share all their kernels.
+/// Where the light of pairs of tiles comes from and goes to, lane_count() pairs at once. A pair is the real
+/// and the imaginary part of one complex tile: two places that share all their kernels. Several such sets of
+/// pairs, which share kernels too, are blurred together.
 class LaneTileIo {
  public:
   virtual ~LaneTileIo() = default;
+  virtual std::size_t sets() const = 0;
   /// Fills the elements of a row of the tiles.
-  virtual void load_row(int row, float* elements) = 0;
+  virtual void load_row(std::size_t set, int row, float* elements) = 0;
   /// Takes the elements of a row of the blurred tiles, which begin one kernel radius before them.
-  virtual void store_row(int row, const float* elements) = 0;
+  virtual void store_row(std::size_t set, int row, const float* elements) = 0;
 };
 
 /// Tiles whose every cell has its own mixture of nodes × nodes kernels.
@@ -55,8 +71,7 @@ struct LaneTiles {
   std::size_t otf_stride = 0, otf_imaginary = 0;  ///< as transform_lane_kernels()
 };
 
-/// Blurs lane_count() pairs of tiles: Σ_ab kernel_ab ∗ (weight_a weight_b · tile). Workspace is kept between
-/// calls.
+/// Blurs pairs of tiles: Σ_ab kernel_ab ∗ (weight_a weight_b · tile). Workspace is kept between calls.
 void blur_lane_tiles(const LaneTransform& transform, const LaneTiles& tiles, LaneTileIo& io,
                      AlignedVector<float>& workspace);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/node_kernel.h>
 
-#include <cstddef>
+#include <algorithm>
 #include <utility>
 
 namespace petzval {
@@ -16,6 +17,66 @@ Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const Out
     for (int i = -kernel.radius; i <= kernel.radius; ++i)
       for (int j = 1; j <= kernel.radius; ++j) std::swap(kernel.at(i, j), kernel.at(i, -j));
   return kernel;
+}
+
+NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
+                         std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down,
+                         bool mirrored)
+    : psfs_(psfs),
+      across_(across),
+      down_(down),
+      places_(std::move(places)),
+      nodes_across_(nodes_across),
+      nodes_down_(nodes_down),
+      mirrored_(mirrored),
+      diagonal_(psfs.mirror_symmetric() && across.position(0) == down.position(0)) {
+  constexpr double most_bytes = 256e6;
+  const auto size = static_cast<std::size_t>(2 * psfs.radius() + 1), weights = size * size;
+  if (!diagonal_ || double(count()) * double(weights) * sizeof(float) > most_bytes) return;
+  weights_.resize(count() * weights);
+  parallel_for(nodes_across_ * nodes_down_, [&](std::size_t node) {
+    const std::size_t i = node % nodes_across_, j = node / nodes_across_;
+    if (j > i && j < nodes_across_ && i < nodes_down_) return;  // made as (j, i)
+    const Kernel kernel = made(i, j);
+    std::copy(kernel.weights.begin(), kernel.weights.end(), weights_.data() + index(i, j) * weights);
+  });
+}
+
+std::size_t NodeKernels::count() const {
+  const std::size_t square = std::min(nodes_across_, nodes_down_),
+                    rest = std::max(nodes_across_, nodes_down_) - square;
+  return square * (square + 1) / 2 + rest * square;
+}
+
+std::size_t NodeKernels::index(std::size_t node_across, std::size_t node_down) const {
+  // Rows of a triangle, and behind its square the rows of the rest.
+  const std::size_t square = std::min(nodes_across_, nodes_down_);
+  const std::size_t far = std::max(node_across, node_down), near = std::min(node_across, node_down);
+  return far < square ? far * (far + 1) / 2 + near
+                      : square * (square + 1) / 2 + (far - square) * square + near;
+}
+
+Kernel NodeKernels::made(std::size_t node_across, std::size_t node_down) const {
+  return kernel_at_node(psfs_, across_, down_, places_[node_across], places_[node_down], mirrored_);
+}
+
+void NodeKernels::lay(std::size_t node_across, std::size_t node_down, double scale, float* out,
+                      std::size_t step) const {
+  if (weights_.empty()) {
+    for (const double weight : made(node_across, node_down).weights) {
+      *out = static_cast<float>(scale * weight);
+      out += step;
+    }
+    return;
+  }
+  const auto size = static_cast<std::size_t>(2 * psfs_.radius() + 1);
+  const float* weights = weights_.data() + index(node_across, node_down) * size * size;
+  const bool transposed = node_down > node_across && node_down < nodes_across_ && node_across < nodes_down_;
+  const std::size_t per_row = transposed ? 1 : size, per_column = transposed ? size : 1;
+  const auto factor = static_cast<float>(scale);
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column < size; ++column, out += step)
+      *out = factor * weights[row * per_row + column * per_column];
 }
 
 std::vector<float> cell_weights(const std::vector<double>& nodes, int tile) {

@@ -5,6 +5,7 @@
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/psf_kernel.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace petzval {
@@ -13,6 +14,30 @@ namespace petzval {
 /// in the quadrants left of the axis and below it, and right and above, where PSFs are not mirror symmetric.
 Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,
                       double row, bool mirrored);
+
+/// The kernels at nodes that lie at the same places along both axes, one of which may go on farther. Where
+/// the places of PSFs are mirror symmetric about the diagonal too, a kernel and its transpose are made once.
+class NodeKernels {
+ public:
+  /// \param places  of nodes, increasing [cells]. \param nodes_across, nodes_down  so many of them.
+  NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
+              std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down, bool mirrored);
+  /// Writes scale · weights to `out`, `step` floats apart. From any thread.
+  void lay(std::size_t node_across, std::size_t node_down, double scale, float* out, std::size_t step) const;
+
+ private:
+  Kernel made(std::size_t node_across, std::size_t node_down) const;
+  std::size_t count() const;
+  /// Of a node, or of its mirror image.
+  std::size_t index(std::size_t node_across, std::size_t node_down) const;
+
+  const PsfField& psfs_;
+  OutwardAxis across_, down_;
+  std::vector<double> places_;
+  std::size_t nodes_across_, nodes_down_;
+  bool mirrored_, diagonal_;
+  std::vector<float> weights_;  ///< empty where there is no symmetry to gain by
+};
 
 /// The Lagrange polynomials of the nodes at the cells along a side of a tile: [node][cell].
 std::vector<float> cell_weights(const std::vector<double>& nodes, int tile);

@@ -191,7 +191,8 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
   light_.sum = fine.sum();
   // Rows run along t, columns along −s.
   for (int row = -fine.radius; row <= fine.radius; ++row)
-    for (int column = fine.radius; column >= -fine.radius; --column) samples_.push_back(static_cast<float>(fine.at(row, column)));
+    for (int column = fine.radius; column >= -fine.radius; --column)
+      samples_.push_back(static_cast<float>(fine.at(row, column)));
 }
 
 namespace {
@@ -224,7 +225,7 @@ void scatter(std::span<const WeightedPsf> psfs, const SampleLattice2& lattice, K
   // where one more is needed.
   const auto length = [](const Vector& step) { return std::hypot(step[0], step[1]); };
   const double longest = std::max(length(lattice.per_row), length(lattice.per_column));
-  const int parts = std::max(1, static_cast<int>(std::ceil(2 * blob_radius(longest, longest) - 1e-9)));
+  const int parts = std::max(1, static_cast<int>(std::ceil(2 * blob_radius(longest) - 1e-9)));
   std::vector<SampleSquare> squares;
   for (const WeightedPsf& part : psfs)
     squares.push_back({part.psf->row(0), static_cast<std::size_t>(part.psf->size()),

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -84,15 +85,15 @@ Psf within_circle(const Psf& psf) {
   return round;
 }
 
-/// How fine samples must be at a height [µm]: a quarter of a cell, an eighth near the axis, where PSFs turn
-/// from cell to cell; and no coarser than the PSF's own half width.
+/// How fine samples must be at a height [µm]: about a sixth of a cell (a step of the ladder of spacings), an
+/// eighth near the axis, where PSFs turn from cell to cell; and no coarser than the PSF's own half width.
 /// \param light  of the PSF.
 double needed_spacing_um(const LightMoments& light, double cell_um, double height_mm) {
   constexpr double turning_cells = 24;
   const Moments& moments = light.sums;
   const double s = moments.mean[0] / light.sum, t = moments.mean[1] / light.sum;
   const double variance = std::min(moments.uu / light.sum - s * s, moments.vv / light.sum - t * t);
-  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4;
+  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4 * std::numbers::sqrt2;
   return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
 }
 

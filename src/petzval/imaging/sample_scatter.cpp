@@ -56,48 +56,76 @@ struct Blobs {
 
 /// What does not change from row to row.
 struct Geometry {
-  float column_step[2];
-  float inverse_radius[2];
-  float end;  ///< blobs half a cell before it reach no farther than the last cell
+  std::array<double, 2> column_step;
+  std::array<float, 2> inverse_radius;
   std::int32_t width;
 };
 
-/// The share of a blob that lies in the second of the two cells that it may reach. \param at  half a cell
-/// before its middle. \param cell  the first of the two, in which that lies.
-HWY_ATTR HWY_INLINE Vector share_beyond(Vector at, Vector cell, Vector inverse_radius) {
-  const Lanes d;
-  // From the border between the two to the middle of the blob [radii].
-  const Vector x = hn::Mul(hn::Sub(hn::Sub(at, cell), hn::Set(d, 0.5F)), inverse_radius);
-  const Vector t = hn::Max(hn::Min(x, hn::Set(d, 1.0F)), hn::Set(d, -1.0F));
-  const Vector square = hn::Mul(t, t);
-  const Vector slope = hn::MulAdd(hn::MulAdd(square, hn::Set(d, 0.1875F), hn::Set(d, -0.625F)), square,
-                                  hn::Set(d, 0.9375F));
-  return hn::MulAdd(t, slope, hn::Set(d, 0.5F));
+/// Half a cell before the first sample of a vector: the cell, and how far in it.
+struct Start {
+  std::array<std::int32_t, 2> cell;
+  std::array<float, 2> within;
+};
+
+/// \param row  half a cell before the first sample of a row. \param from  the first sample of the vector.
+HWY_INLINE Start start_of(const std::array<double, 2>& row, const Geometry& geometry, std::size_t from) {
+  Start start{};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double far = 1e6;  // beside any canvas
+    const double at = std::clamp(row[axis] + double(from) * geometry.column_step[axis], -far, far);
+    start.cell[axis] = static_cast<std::int32_t>(std::floor(at));
+    start.within[axis] = static_cast<float>(at - start.cell[axis]);
+  }
+  return start;
 }
 
-/// \param start  half a cell before the first sample of the row.
-HWY_ATTR HWY_INLINE void make_blobs(const Geometry& geometry, const float* start, std::size_t from,
-                                    const float* values, Blobs& blobs) {
+/// The share of a blob that lies in the second of the two cells that it may reach. \param within  how far
+/// half a cell before its middle lies in the first.
+HWY_ATTR HWY_INLINE Vector share_beyond(Vector within, float inverse_radius) {
   const Lanes d;
-  const Integers i;
-  const Vector j = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<float>(from)));
-  Vector u = hn::MulAdd(j, hn::Set(d, geometry.column_step[0]), hn::Set(d, start[0]));
-  Vector v = hn::MulAdd(j, hn::Set(d, geometry.column_step[1]), hn::Set(d, start[1]));
-  const Vector zero = hn::Zero(d), end = hn::Set(d, geometry.end);
-  const auto inside =
-      hn::And(hn::And(hn::Ge(u, zero), hn::Lt(u, end)), hn::And(hn::Ge(v, zero), hn::Lt(v, end)));
-  const Vector value = hn::IfThenElseZero(inside, hn::Load(d, values + from));
-  u = hn::IfThenElseZero(inside, u);
-  v = hn::IfThenElseZero(inside, v);
-  const auto column = hn::ConvertTo(i, u), row = hn::ConvertTo(i, v);
-  const Vector right = share_beyond(u, hn::ConvertTo(d, column), hn::Set(d, geometry.inverse_radius[0]));
-  const Vector below = share_beyond(v, hn::ConvertTo(d, row), hn::Set(d, geometry.inverse_radius[1]));
+  const auto set = [&](float value) { return hn::Set(d, value); };
+  // From the border between the two to the middle of the blob [radii].
+  const Vector x = hn::Mul(hn::Sub(within, set(0.5F)), set(inverse_radius));
+  const Vector t = hn::Max(hn::Min(x, set(1.0F)), set(-1.0F)), square = hn::Mul(t, t);
+  constexpr float scale = 315.0F / 256;
+  Vector slope = hn::MulAdd(square, set(scale / 9), set(-4 * scale / 7));
+  slope = hn::MulAdd(slope, square, set(6 * scale / 5));
+  slope = hn::MulAdd(slope, square, set(-4 * scale / 3));
+  slope = hn::MulAdd(slope, square, set(scale));
+  return hn::MulAdd(t, slope, set(0.5F));
+}
+
+/// Along one axis: how far samples lie in their cells, and these.
+struct Places {
+  Vector within;
+  hn::Vec<Integers> cell;
+};
+HWY_ATTR HWY_INLINE Places places(const Start& start, const Geometry& geometry, std::size_t axis) {
+  const Lanes d;
+  const Vector step = hn::Set(d, static_cast<float>(geometry.column_step[axis]));
+  const Vector at = hn::MulAdd(hn::Iota(d, 0), step, hn::Set(d, start.within[axis]));
+  const Vector whole = hn::Floor(at);
+  return {hn::Sub(at, whole),
+          hn::Add(hn::ConvertTo(Integers(), whole), hn::Set(Integers(), start.cell[axis]))};
+}
+
+HWY_ATTR HWY_INLINE void make_blobs(const Geometry& geometry, const Start& start, const float* values,
+                                    Blobs& blobs) {
+  const Lanes d;
+  const Integers integers;
+  const Places across = places(start, geometry, 0), down = places(start, geometry, 1);
+  const auto before = hn::Set(integers, -1), end = hn::Set(integers, geometry.width - 1);
+  const auto inside = hn::And(hn::And(hn::Gt(across.cell, before), hn::Lt(across.cell, end)),
+                              hn::And(hn::Gt(down.cell, before), hn::Lt(down.cell, end)));
+  const Vector value = hn::IfThenElseZero(hn::RebindMask(d, inside), hn::Load(d, values));
+  const Vector right = share_beyond(across.within, geometry.inverse_radius[0]);
+  const Vector below = share_beyond(down.within, geometry.inverse_radius[1]);
   const Vector lower = hn::Mul(value, below), upper = hn::Sub(value, lower);
   const Vector upper_right = hn::Mul(upper, right), lower_right = hn::Mul(lower, right);
   hn::StoreInterleaved4(hn::Sub(upper, upper_right), upper_right, hn::Sub(lower, lower_right), lower_right, d,
                         blobs.parts.data());
-  const auto cell = hn::Add(hn::Mul(row, hn::Set(i, geometry.width)), column);
-  hn::Store(hn::ShiftLeft<2>(cell), i, blobs.cell.data());
+  const auto cell = hn::Add(hn::Mul(down.cell, hn::Set(integers, geometry.width)), across.cell);
+  hn::Store(hn::IfThenElseZero(inside, hn::ShiftLeft<2>(cell)), integers, blobs.cell.data());
 }
 
 HWY_ATTR HWY_INLINE void add_four(const float* parts, float* cell) {
@@ -113,33 +141,30 @@ HWY_ATTR void scatter(std::span<const SampleSquare> squares, const SampleLattice
   const std::size_t padded = (size + lanes - 1) / lanes * lanes;
   AlignedVector<float> values(strands * padded);
   Geometry geometry{};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    geometry.column_step[axis] = static_cast<float>(lattice.per_column[axis]);
-    const double radius = blob_radius(lattice.per_row[axis], lattice.per_column[axis]);
-    geometry.inverse_radius[axis] = static_cast<float>(1 / std::max(radius, 1e-6));
-  }
+  geometry.column_step = lattice.per_column;
   geometry.width = canvas.width();
-  geometry.end = static_cast<float>(canvas.width() - 1);
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    geometry.inverse_radius[axis] = static_cast<float>(
+        1 / std::max(1e-6, blob_radius(std::hypot(lattice.per_row[axis], lattice.per_column[axis]))));
   std::array<Blobs, strands> blobs;
   float* cells = canvas.cells();
   const std::size_t turns = (size + strands - 1) / strands;
   for (std::size_t turn = 0; turn < turns; ++turn) {
-    std::array<std::array<float, 2>, strands> start{};
+    std::array<std::array<double, 2>, strands> row_start{};
     std::size_t active = 0;
     for (; active < strands && turn + active * turns < size; ++active) {
       const std::size_t row = turn + active * turns;
       for (std::size_t axis = 0; axis < 2; ++axis)
-        start[active][axis] =
-            static_cast<float>(lattice.first[axis] + double(row) * lattice.per_row[axis] - 0.5);
+        row_start[active][axis] = lattice.first[axis] + double(row) * lattice.per_row[axis] - 0.5;
       mix_row(squares, size, row, padded, values.data() + active * padded);
     }
     for (std::size_t from = 0; from < size; from += lanes) {
       for (std::size_t strand = 0; strand < active; ++strand)
-        make_blobs(geometry, start[strand].data(), from, values.data() + strand * padded, blobs[strand]);
+        make_blobs(geometry, start_of(row_start[strand], geometry, from),
+                   values.data() + strand * padded + from, blobs[strand]);
       for (std::size_t lane = 0; lane < lanes; ++lane)
-        for (std::size_t strand = 0; strand < active; ++strand) {
+        for (std::size_t strand = 0; strand < active; ++strand)
           add_four(blobs[strand].parts.data() + 4 * lane, cells + blobs[strand].cell[lane]);
-        }
     }
   }
 }
@@ -157,12 +182,6 @@ namespace petzval {
 
 HWY_EXPORT(scatter);
 HWY_EXPORT(add_scaled);
-
-double blob_radius(double step_of_rows, double step_of_columns) {
-  // The first zero of the spectrum of (1 − (x/R)²)² lies at 2πR = 5.7635.
-  constexpr double radii_per_step = 5.7634592 / (2 * 3.14159265358979);
-  return radii_per_step * std::hypot(step_of_rows, step_of_columns);
-}
 
 void scatter_samples(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas) {
   HWY_DYNAMIC_DISPATCH(scatter)(squares, lattice, canvas);

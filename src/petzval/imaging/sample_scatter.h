@@ -23,8 +23,8 @@ struct SampleLattice2 {
   std::array<double, 2> per_row, per_column;  ///< from sample to sample
 };
 
-/// Cells, each with the four parts of the light of blobs that begin in it until the end: what stays here, what
-/// goes right, below, right below. So a blob is one addition of a short vector.
+/// Cells, each with the four parts of the light of blobs that begin in it until the end: what stays here,
+/// what goes right, below, right below. So a blob is one addition of a short vector.
 class Canvas {
  public:
   /// Cells count from 0 to `width` − 1 along either side.
@@ -45,14 +45,17 @@ class Canvas {
   AlignedVector<float> parts_;
 };
 
-/// The radius of the blob of a sample on one axis [cells]. \param steps  from sample to sample along rows and
-/// columns, as far as they go along the axis.
-double blob_radius(double step_of_rows, double step_of_columns);
+/// The radius of the blob of light that a sample becomes. \param step  from sample to sample. Smooth light
+/// stays smooth: the spectrum of the blob is small at the lattice's own frequency and beyond.
+inline double blob_radius(double step) {
+  return 1.5 * step;
+}
 
 /// Adds Σ weight · samples to a canvas, squares of odd sizes about one middle, the lattice that of the
-/// largest. On either axis the light of a sample lies under (1 − (x/R)²)², R the blob_radius(), at most half a
-/// cell: along the lattice the spectrum of that is zero at the lattice's own frequency, so that smooth light
-/// stays smooth; at any angle it is small there. What falls beside the canvas is left out.
+/// largest. On either axis the light of a sample lies under (1 − (x/R)²)⁴, R the blob_radius() of √(a² + b²),
+/// a and b the steps along rows and columns as far as they go along that axis: for square lattices the same
+/// at any angle. At most half a cell: samples farther apart are not smooth. What falls beside the canvas is
+/// left out.
 void scatter_samples(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas);
 
 /// sums[i] += weight · row[i], i < count.

@@ -61,12 +61,13 @@ class TileIo : public LaneTileIo {
   TileIo(const TransformBlur& blur, const CellPlane& source, int margin, ResultStrip& result)
       : blur_(blur), source_(source), margin_(margin), result_(result), lanes_(lane_count()) {}
 
-  void set_place(std::size_t first_lane, const QuadrantPair& pair) {
+  void set_place(std::size_t first_lane, const std::vector<QuadrantPair>& pairs) {
     first_lane_ = first_lane;
-    pair_ = pair;
+    pairs_ = pairs;
   }
-  void load_row(int row, float* elements) override;
-  void store_row(int row, const float* elements) override;
+  std::size_t sets() const override { return pairs_.size(); }
+  void load_row(std::size_t set, int row, float* elements) override;
+  void store_row(std::size_t set, int row, const float* elements) override;
 
  private:
   /// Calls use(tile row, tile column, lane) for the lanes that hold tiles.
@@ -85,10 +86,10 @@ class TileIo : public LaneTileIo {
   int margin_;
   ResultStrip& result_;
   std::size_t lanes_, first_lane_ = 0;
-  QuadrantPair pair_{};
+  std::vector<QuadrantPair> pairs_;
 };
 
-void TileIo::load_row(int row, float* elements) {
+void TileIo::load_row(std::size_t set, int row, float* elements) {
   const int tile = blur_.plan_.tile;
   std::fill_n(elements, static_cast<std::size_t>(tile) * 2 * lanes_, 0.0F);
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
@@ -96,7 +97,7 @@ void TileIo::load_row(int row, float* elements) {
     if (outward_row >= blur_.down_.count()) return;
     const int count = std::min(tile, blur_.across_.count() - first);
     for (std::size_t part = 0; part < 2; ++part) {
-      const Quadrant& quadrant = pair_[part];
+      const Quadrant& quadrant = pairs_[set][part];
       const float* in = source_.row(static_cast<std::size_t>(blur_.down_.cell(outward_row, quadrant.below))) +
                         blur_.across_.cell(first, quadrant.right);
       const std::ptrdiff_t step = quadrant.right ? 1 : -1;
@@ -108,13 +109,13 @@ void TileIo::load_row(int row, float* elements) {
   });
 }
 
-void TileIo::store_row(int row, const float* elements) {
+void TileIo::store_row(std::size_t set, int row, const float* elements) {
   const int tile = blur_.plan_.tile, extent = tile + 2 * blur_.radius_;
   const int columns = static_cast<int>(result_.columns), rows = static_cast<int>(result_.slot_of_row.size());
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
     const int outward_row = tile_row * tile + row - blur_.radius_, first = tile_column * tile - blur_.radius_;
     for (std::size_t part = 0; part < 2; ++part) {
-      const Quadrant& quadrant = pair_[part];
+      const Quadrant& quadrant = pairs_[set][part];
       const int result_row = blur_.down_.cell(outward_row, quadrant.below) - margin_;
       if (result_row < 0 || result_row >= rows) continue;
       const int base = blur_.across_.cell(first, quadrant.right) - margin_;
@@ -131,7 +132,8 @@ void TileIo::store_row(int row, const float* elements) {
   });
 }
 
-TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan)
+TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan,
+                             KernelSets memory)
     : plan_(plan),
       grid_(grid),
       across_(grid.columns),
@@ -140,7 +142,8 @@ TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, c
       radius_(psfs.radius()),
       tiles_across_((across_.count() + plan.tile - 1) / plan.tile),
       tiles_down_((down_.count() + plan.tile - 1) / plan.tile),
-      nodes_(lobatto_nodes(plan.nodes)) {
+      nodes_(lobatto_nodes(plan.nodes)),
+      sets_(std::move(memory)) {
   const std::size_t lanes = lane_count();
   batches_ = (tile_lanes() + lanes - 1) / lanes;
   // The last batch reads one node row and one node beyond its lanes.
@@ -152,34 +155,37 @@ TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, c
 }
 
 std::size_t TransformBlur::phase_floats() const {
-  const auto side = static_cast<std::size_t>(plan_.transform);
-  return side * side * 2 * nodes_padded_;
+  return transform_.columns().size() * static_cast<std::size_t>(plan_.transform) * 2 * nodes_padded_;
 }
 
 void TransformBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const {
   const std::size_t lanes = lane_count(), phases = nodes_.size() - 1, blocks = nodes_padded_ / lanes;
-  const auto size = static_cast<std::size_t>(2 * radius_ + 1);
+  const auto rows = static_cast<std::size_t>(tiles_down_), columns = static_cast<std::size_t>(tiles_across_);
+  std::vector<double> places;
+  for (std::size_t node = 0; node <= phases * std::max(rows, columns); ++node)
+    places.push_back(plan_.tile * (double(node / phases) + nodes_[node % phases]));
+  const NodeKernels kernels(psfs, across_, down_, places, phases * columns + 1, phases * rows + 1, mirrored);
+
+  const auto size = static_cast<std::size_t>(2 * radius_ + 1), block_floats = size * size * lanes;
   const double scale = 1 / (double(plan_.transform) * plan_.transform);  // transforms are not normalised
-  set.otfs.resize(phases * phases * phase_floats());
-  parallel_for(phases * phases * blocks, [&](std::size_t task) {
-    const std::size_t phase = task / blocks, first = task % blocks * lanes;
+  set.resize(phases * phases * phase_floats());
+  const std::size_t pairs = (blocks + 1) / 2;
+  parallel_for(phases * phases * pairs, [&](std::size_t task) {
+    const std::size_t phase = task / pairs, first = task % pairs * 2 * lanes;
     const std::size_t phase_down = phase / phases, phase_across = phase % phases;
-    AlignedVector<float> kernels(size * size * lanes, 0.0F);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
+    AlignedVector<float> weights(2 * block_floats, 0.0F);
+    for (std::size_t lane = 0; lane < 2 * lanes; ++lane) {
       const std::size_t down = (first + lane) / lanes_per_row(), across = (first + lane) % lanes_per_row();
-      const auto rows = static_cast<std::size_t>(tiles_down_),
-                 columns = static_cast<std::size_t>(tiles_across_);
       // Behind the last tile only the node that it shares with the next one is wanted.
       if (down > rows || (down == rows && phase_down > 0) || (across == columns && phase_across > 0))
         continue;
-      const Kernel kernel =
-          kernel_at_node(psfs, across_, down_, plan_.tile * (double(across) + nodes_[phase_across]),
-                         plan_.tile * (double(down) + nodes_[phase_down]), mirrored);
-      for (std::size_t i = 0; i < kernel.weights.size(); ++i)
-        kernels[i * lanes + lane] = static_cast<float>(scale * kernel.weights[i]);
+      kernels.lay(phases * across + phase_across, phases * down + phase_down, scale,
+                  weights.data() + lane / lanes * block_floats + lane % lanes, lanes);
     }
-    transform_lane_kernels(transform_, kernels.data(), static_cast<int>(size),
-                           set.otfs.data() + phase * phase_floats() + first, 2 * nodes_padded_,
+    float* otfs = set.data() + phase * phase_floats() + first;
+    const bool both = first + lanes < nodes_padded_;
+    transform_lane_kernels(transform_, {weights.data(), weights.data() + block_floats},
+                           static_cast<int>(size), {otfs, both ? otfs + lanes : nullptr}, 2 * nodes_padded_,
                            nodes_padded_);
   });
 }
@@ -191,7 +197,7 @@ std::vector<const float*> TransformBlur::otfs_of(const KernelSet& set, std::size
     for (std::size_t a = 0; a <= phases; ++a) {
       const std::size_t phase = (b % phases) * phases + a % phases;
       const std::size_t beyond = (b == phases ? lanes_per_row() : 0) + (a == phases ? 1 : 0);
-      otfs.push_back(set.otfs.data() + phase * phase_floats() + first_lane + beyond);
+      otfs.push_back(set.data() + phase * phase_floats() + first_lane + beyond);
     }
   return otfs;
 }
@@ -219,10 +225,8 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
     for (std::size_t batch = from; batch < to; ++batch)
       for (std::size_t set = 0; set < sets_.size(); ++set) {
         tiles.otfs = otfs_of(sets_[set], batch * lanes);
-        for (const QuadrantPair& pair : pairs_of(set, sets_.size() == 1)) {
-          io.set_place(batch * lanes, pair);
-          blur_lane_tiles(transform_, tiles, io, workspace);
-        }
+        io.set_place(batch * lanes, pairs_of(set, sets_.size() == 1));
+        blur_lane_tiles(transform_, tiles, io, workspace);
       }
   });
   parallel_for(result.rows(), [&](std::size_t row) {

@@ -8,7 +8,8 @@
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/product_plan.h>
 
-#include <array>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -17,8 +18,17 @@ namespace petzval {
 /// real and imaginary part of one transform, and the lanes of a vector are tiles side by side (lane_blur.h).
 class TransformBlur {
  public:
-  /// Makes the transfer functions of all nodes. \param grid  of the source planes.
-  TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan);
+  /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node], of
+  /// each pair of columns of frequencies one.
+  using KernelSet = AlignedVector<float>;
+  /// One if the PSFs are mirror symmetric, else two.
+  using KernelSets = std::vector<KernelSet>;
+
+  /// Makes the transfer functions of all nodes. \param grid  of the source planes. \param memory  of another
+  /// blur that is no longer needed, to be used again.
+  TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan,
+                KernelSets memory = {});
+  KernelSets take_memory() && { return std::move(sets_); }
 
   /// As ProductBlur::blur().
   CellPlane blur(const CellPlane& source, int margin) const;
@@ -27,10 +37,6 @@ class TransformBlur {
 
  private:
   friend class TileIo;
-  /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node].
-  struct KernelSet {
-    AlignedVector<float> otfs;
-  };
   /// Lanes are counted over tiles row by row, with one idle lane at the end of each row, so that the next
   /// node along either side is always the same number of lanes away.
   std::size_t lanes_per_row() const { return static_cast<std::size_t>(tiles_across_) + 1; }
@@ -47,7 +53,7 @@ class TransformBlur {
   std::size_t batches_, nodes_padded_;
   std::vector<double> nodes_;
   AlignedVector<float> weights_;  ///< [node][cell along a side]
-  std::vector<KernelSet> sets_;   ///< one if the PSFs are mirror symmetric, else two
+  KernelSets sets_;
 };
 
 }  // namespace petzval
