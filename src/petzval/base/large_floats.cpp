@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/base/large_floats.h>
-#include <petzval/base/nameless_file.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
 #include <utility>
 
 namespace petzval {
@@ -26,7 +31,7 @@ LargeFloats::~LargeFloats() {
 }
 
 bool LargeFloats::map_file(std::size_t count) {
-  const NamelessFile file;
+  NamelessFile file;
   if (!file) return false;
   const std::size_t bytes = count * sizeof(float);
   // Room is taken at once: a full disk must show here, not when a page is written back.
@@ -36,7 +41,23 @@ bool LargeFloats::map_file(std::size_t count) {
   if (memory == MAP_FAILED) return false;
   mapped_ = static_cast<float*>(memory);
   count_ = count;
+  file_ = std::move(file);
   return true;
+}
+
+void LargeFloats::store(std::size_t first, std::span<const float> values) {
+  if (mapped_ == nullptr) {
+    std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(first));
+    return;
+  }
+  const std::span<const std::byte> bytes = std::as_bytes(values);
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = pwrite(file_->descriptor(), bytes.data() + done, bytes.size() - done,
+                                   static_cast<off_t>(first * sizeof(float) + done));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw Failure(fmt::format("a nameless file cannot be written: {}", std::strerror(errno)));
+    done += static_cast<std::size_t>(written);
+  }
 }
 
 void LargeFloats::release_memory() const {
@@ -47,6 +68,7 @@ void LargeFloats::swap(LargeFloats& other) noexcept {
   values_.swap(other.values_);
   std::swap(mapped_, other.mapped_);
   std::swap(count_, other.count_);
+  file_.swap(other.file_);
 }
 
 }  // namespace petzval

@@ -2,7 +2,10 @@
 // Many floats: in memory, or beyond half a gigabyte in a nameless file that the system pages in as needed.
 #pragma once
 
+#include <petzval/base/nameless_file.h>
+
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,6 +37,10 @@ class LargeFloats {
   std::span<float> all() { return {mapped_ != nullptr ? mapped_ : values_.data(), size()}; }
   std::span<const float> all() const { return {mapped_ != nullptr ? mapped_ : values_.data(), size()}; }
 
+  /// Puts values in their place, those from `first` on. Into a file without touching its memory: cheaper than
+  /// through all(). \throws Failure if they cannot be written.
+  void store(std::size_t first, std::span<const float> values);
+
   /// Gives back the memory of what is kept in a file; the next look fetches it again. Values stay, spans
   /// too, and other threads may read meanwhile.
   void release_memory() const;
@@ -45,6 +52,7 @@ class LargeFloats {
   std::vector<float> values_;
   float* mapped_ = nullptr;
   std::size_t count_ = 0;
+  std::optional<NamelessFile> file_;  ///< that is mapped
 };
 
 }  // namespace petzval

@@ -51,6 +51,13 @@ std::span<const float> SpectralImage::band(int index) const {
   return values_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
+void SpectralImage::store_band(int index, std::span<const float> plane) {
+  if (index < 0 || index >= bands() || plane.size() != band_size())
+    throw InputError(fmt::format("{} values for band {} of an image of {} bands of {}", plane.size(), index,
+                                 bands(), band_size()));
+  values_.store(static_cast<std::size_t>(index) * band_size(), plane);
+}
+
 float& SpectralImage::at(int band_index, int row, int column) {
   return band(band_index)[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                           static_cast<std::size_t>(column)];

@@ -51,6 +51,9 @@ class SpectralImage {
   /// One plane, row-major, [W·m⁻²·nm⁻¹].
   std::span<float> band(int index);
   std::span<const float> band(int index) const;
+  /// Puts a plane in its place, without the memory that band() takes of a large image.
+  /// \throws InputError if it has another size.
+  void store_band(int index, std::span<const float> plane);
   float& at(int band_index, int row, int column);
   float at(int band_index, int row, int column) const;
   /// All planes, one after the other.

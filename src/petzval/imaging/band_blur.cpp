@@ -3,6 +3,7 @@
 #include <petzval/imaging/exact_blur.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace petzval {
 
@@ -11,7 +12,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 void BandBlur::prepare(double wavelength_nm, const SensorGeometry& grid, int margin) {
-  product_.reset();  // before the next kernels are made: those of two bands need not be kept at a time
+  // The next kernels go where the last ones were: those of two bands need not be kept at a time.
+  if (product_) memory_ = std::move(*product_).take_memory();
+  product_.reset();
   sections_.reset();
   margin_ = margin;
   if (options_.method == BlurMethod::none) return;
@@ -39,7 +42,7 @@ void BandBlur::prepare_product(const SensorGeometry& grid) {
   if (report_.product.tile == 0 || plan.estimated_error > report_.product.estimated_error)
     report_.product = plan;
   if (!plan_) return prepare_sections({plan.tile, 0, true});
-  product_.emplace(*psfs_, grid, plan);
+  product_.emplace(*psfs_, grid, plan, std::move(memory_));
   report_.transform_size = std::max(report_.transform_size, plan.transform);
   report_.kernel_seconds += seconds_since(start);
 }

@@ -41,6 +41,7 @@ class BandBlur {
   std::optional<SectionOptions> sections_;
   std::optional<ProductBlur> product_;
   std::optional<ProductPlan> plan_;  ///< of the last band
+  TransformBlur::KernelSets memory_;
 };
 
 /// Since a start [s].

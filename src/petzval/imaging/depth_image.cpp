@@ -153,12 +153,11 @@ SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, co
   const PixelTaps taps = image_taps(options, says.image);
   std::vector<CellPlane> planes = imaging.planes();
   for (int band = 0; band < scene.bands(); ++band) {
-    const CellPlane pixels = gathered(planes[static_cast<std::size_t>(band)], taps);
+    put_band(gathered(planes[static_cast<std::size_t>(band)], taps), band, image, says.image);
     planes[static_cast<std::size_t>(band)] = {};
-    std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
   }
   image.lens = lens_facts(camera.lens.name, first_order(camera.lens));
-  note_result(image, options, says.image);
+  note_result(options, says.image);
   return image;
 }
 

@@ -100,16 +100,14 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     const CellPlane blurred = blur(std::move(ideal), within_band);
     says.blur_seconds += seconds_since(start_of_blur);
 
-    const CellPlane pixels = gathered(blurred, taps);
-    std::copy(pixels.values.begin(), pixels.values.end(), image.band(band).begin());
-    image.release_memory();
+    put_band(gathered(blurred, taps), band, image, says);
     scene.release_memory();
     says.margin_cells = std::max(says.margin_cells, plan.margin);
     says.least_captured = std::min(says.least_captured, plan.least_captured);
     if (progress) progress((band + 1.0) / scene.bands(), "image");
   }
   image.lens = lens_facts(table.lens_name, table.first_order);
-  note_result(image, options, says);
+  note_result(options, says);
   return image;
 }
 

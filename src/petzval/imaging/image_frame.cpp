@@ -3,7 +3,6 @@
 #include <petzval/imaging/image_frame.h>
 
 #include <algorithm>
-#include <span>
 
 namespace petzval {
 
@@ -34,15 +33,16 @@ PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report) {
   return taps;
 }
 
-void note_result(const SpectralImage& image, const ImagingOptions& options, ImagingReport& report) {
-  report.darkest = report.brightest = double(image.band(0)[0]);
-  for (int band = 0; band < image.bands(); ++band) {
-    const std::span<const float> values = image.band(band);
-    const auto [darkest, brightest] = std::minmax_element(values.begin(), values.end());
-    report.darkest = std::min(report.darkest, double(*darkest));
-    report.brightest = std::max(report.brightest, double(*brightest));
-    image.release_memory();
-  }
+void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report) {
+  const auto [low, high] = std::minmax_element(pixels.values.begin(), pixels.values.end());
+  const double darkest = double(*low), brightest = double(*high);
+  report.darkest = band == 0 ? darkest : std::min(report.darkest, darkest);
+  report.brightest = band == 0 ? brightest : std::max(report.brightest, brightest);
+  image.store_band(band, pixels.values);
+  image.release_memory();
+}
+
+void note_result(const ImagingOptions& options, ImagingReport& report) {
   constexpr double worth_a_note = 1e-4;  // well above the rounding of the transforms
   if (report.darkest < -worth_a_note * report.brightest)
     report.notes.push_back(

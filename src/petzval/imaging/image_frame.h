@@ -14,7 +14,11 @@ SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, cons
 /// \param report  knows already how many points of the scene a cell sees.
 PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report);
 
-/// Adds to the report what is seen of the finished image.
-void note_result(const SpectralImage& image, const ImagingOptions& options, ImagingReport& report);
+/// Puts the pixels of a band into the image, and how dark and how bright they are into the report. Bands come
+/// in order.
+void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report);
+
+/// Adds to the report what a user should know of the image whose bands were put.
+void note_result(const ImagingOptions& options, ImagingReport& report);
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <petzval/imaging/direct_blur.h>
 #include <petzval/imaging/transform_blur.h>
 
+#include <utility>
 #include <variant>
 
 namespace petzval {
@@ -27,9 +28,15 @@ namespace petzval {
 class ProductBlur {
  public:
   /// Makes the kernels of all nodes. \param grid  of the source planes.
-  ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan)
+  /// \param memory  of another blur, to be used again.
+  ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan,
+              TransformBlur::KernelSets memory = {})
       : by_(plan.direct ? By(std::in_place_type<DirectBlur>, psfs, grid, plan)
-                        : By(std::in_place_type<TransformBlur>, psfs, grid, plan)) {}
+                        : By(std::in_place_type<TransformBlur>, psfs, grid, plan, std::move(memory))) {}
+  TransformBlur::KernelSets take_memory() && {
+    auto* by_transforms = std::get_if<TransformBlur>(&by_);
+    return by_transforms != nullptr ? std::move(*by_transforms).take_memory() : TransformBlur::KernelSets();
+  }
 
   /// \param source  light before blur on the grid; nothing comes from outside it.
   /// \param margin  the result is the grid less this many cells on every side. Same bytes for any number of
