@@ -1,211 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/lane_blur.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/imaging/lane_blur.cpp"
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include <petzval/imaging/lane_fft-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Lanes = hn::CappedTag<float, 16>;
-using Vector = hn::Vec<Lanes>;
-
-/// Floats of an element: one vector of real parts, one of imaginary parts.
-HWY_ATTR HWY_INLINE std::size_t element_floats() {
-  return 2 * hn::Lanes(Lanes());
-}
-
-struct Complex {
-  Vector re, im;
-};
-
-HWY_ATTR HWY_INLINE Complex load(const float* at) {
-  const Lanes d;
-  return {hn::Load(d, at), hn::Load(d, at + hn::Lanes(d))};
-}
-HWY_ATTR HWY_INLINE void store(const Complex& value, float* at) {
-  const Lanes d;
-  hn::Store(value.re, d, at);
-  hn::Store(value.im, d, at + hn::Lanes(d));
-}
-HWY_ATTR HWY_INLINE Complex add(const Complex& a, const Complex& b) {
-  return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)};
-}
-HWY_ATTR HWY_INLINE Complex subtract(const Complex& a, const Complex& b) {
-  return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)};
-}
-/// (a − b)·i.
-HWY_ATTR HWY_INLINE Complex turned_difference(const Complex& a, const Complex& b) {
-  return {hn::Sub(b.im, a.im), hn::Sub(a.re, b.re)};
-}
-HWY_ATTR HWY_INLINE Complex multiply(const Complex& a, const Complex& b) {
-  return {hn::NegMulAdd(a.im, b.im, hn::Mul(a.re, b.re)), hn::MulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
-}
-/// a times the conjugate of b.
-HWY_ATTR HWY_INLINE Complex multiply_conjugate(const Complex& a, const Complex& b) {
-  return {hn::MulAdd(a.im, b.im, hn::Mul(a.re, b.re)), hn::NegMulAdd(a.re, b.im, hn::Mul(a.im, b.re))};
-}
-HWY_ATTR HWY_INLINE Complex broadcast(const float* twiddle) {
-  const Lanes d;
-  return {hn::Set(d, twiddle[0]), hn::Set(d, twiddle[1])};
-}
-
-/// Decimation in frequency: four elements a quarter of a block apart, and the twiddles behind them.
-template <bool twiddled>
-HWY_ATTR HWY_INLINE void butterfly_forward(float* at, std::size_t quarter, const Complex& w1,
-                                           const Complex& w2, const Complex& w3) {
-  const Complex x0 = load(at), x1 = load(at + quarter), x2 = load(at + 2 * quarter),
-                x3 = load(at + 3 * quarter);
-  const Complex t0 = add(x0, x2), t1 = subtract(x0, x2), t2 = add(x1, x3), t3 = turned_difference(x1, x3);
-  const Complex y1 = subtract(t1, t3), y2 = subtract(t0, t2), y3 = add(t1, t3);
-  store(add(t0, t2), at);
-  store(twiddled ? multiply(y1, w1) : y1, at + quarter);
-  store(twiddled ? multiply(y2, w2) : y2, at + 2 * quarter);
-  store(twiddled ? multiply(y3, w3) : y3, at + 3 * quarter);
-}
-
-/// Its inverse, times four.
-template <bool twiddled>
-HWY_ATTR HWY_INLINE void butterfly_inverse(float* at, std::size_t quarter, const Complex& w1,
-                                           const Complex& w2, const Complex& w3) {
-  const Complex y0 = load(at);
-  Complex y1 = load(at + quarter), y2 = load(at + 2 * quarter), y3 = load(at + 3 * quarter);
-  if (twiddled) {
-    y1 = multiply_conjugate(y1, w1);
-    y2 = multiply_conjugate(y2, w2);
-    y3 = multiply_conjugate(y3, w3);
-  }
-  const Complex t0 = add(y0, y2), t1 = subtract(y0, y2), t2 = add(y1, y3), t3 = turned_difference(y1, y3);
-  store(add(t0, t2), at);
-  store(add(t1, t3), at + quarter);
-  store(subtract(t0, t2), at + 2 * quarter);
-  store(subtract(t1, t3), at + 3 * quarter);
-}
-
-template <bool forward>
-HWY_ATTR HWY_INLINE void stage(float* data, int size, int length, const float* twiddles) {
-  const std::size_t element = element_floats();
-  const auto quarter = static_cast<std::size_t>(length / 4) * element,
-             block = static_cast<std::size_t>(length) * element,
-             end = static_cast<std::size_t>(size) * element;
-  const Complex one{hn::Zero(Lanes()), hn::Zero(Lanes())};
-  for (std::size_t at = 0; at < end; at += block)
-    if constexpr (forward)
-      butterfly_forward<false>(data + at, quarter, one, one, one);
-    else
-      butterfly_inverse<false>(data + at, quarter, one, one, one);
-  for (int j = 1; j < length / 4; ++j) {
-    const float* w = twiddles + static_cast<std::size_t>(j) * 6;
-    const Complex w1 = broadcast(w), w2 = broadcast(w + 2), w3 = broadcast(w + 4);
-    for (std::size_t at = static_cast<std::size_t>(j) * element; at < end; at += block)
-      if constexpr (forward)
-        butterfly_forward<true>(data + at, quarter, w1, w2, w3);
-      else
-        butterfly_inverse<true>(data + at, quarter, w1, w2, w3);
-  }
-}
-
-HWY_ATTR HWY_INLINE void pairs(float* data, int size) {
-  const std::size_t element = element_floats();
-  for (int i = 0; i < size; i += 2, data += 2 * element) {
-    const Complex a = load(data), b = load(data + element);
-    store(add(a, b), data);
-    store(subtract(a, b), data + element);
-  }
-}
-
-HWY_ATTR void forward(float* data, int size, const float* twiddles) {
-  int length = size;
-  for (; length >= 4; length /= 4) {
-    stage<true>(data, size, length, twiddles);
-    twiddles += static_cast<std::size_t>(length / 4) * 6;
-  }
-  if (length == 2) pairs(data, size);
-}
-
-HWY_ATTR void inverse(float* data, int size, const float* twiddles) {
-  std::array<const float*, 8> at{};
-  int stages = 0, length = size;
-  for (; length >= 4; length /= 4) {
-    at[static_cast<std::size_t>(stages++)] = twiddles;
-    twiddles += static_cast<std::size_t>(length / 4) * 6;
-  }
-  if (length == 2) pairs(data, size);
-  for (length = length == 2 ? 8 : 4; stages > 0; length *= 4)
-    stage<false>(data, size, length, at[static_cast<std::size_t>(--stages)]);
-}
-
-/// Elements [from, size) become zero.
-HWY_ATTR HWY_INLINE void pad(float* data, int from, int size) {
-  const std::size_t element = element_floats();
-  std::fill(data + static_cast<std::size_t>(from) * element, data + static_cast<std::size_t>(size) * element,
-            0.0F);
-}
-
-/// Elements of a line, a stride apart.
-HWY_ATTR HWY_INLINE void copy_line(const float* from, int count, float* line) {
-  std::copy_n(from, static_cast<std::size_t>(count) * element_floats(), line);
-}
-
-/// Of two real kernels a and b, whose transforms come as those of a + ib at k and at −k.
-HWY_ATTR HWY_INLINE void separate(const Complex& plus, const Complex& minus, Complex& a, Complex& b) {
-  const Vector half = hn::Set(Lanes(), 0.5F);
-  a = {hn::Mul(half, hn::Add(plus.re, minus.re)), hn::Mul(half, hn::Sub(plus.im, minus.im))};
-  b = {hn::Mul(half, hn::Add(plus.im, minus.im)), hn::Mul(half, hn::Sub(minus.re, plus.re))};
-}
-
-HWY_ATTR void transform_kernels(const LaneTransform& transform, const std::array<const float*, 2>& kernels,
-                                int size, const std::array<float*, 2>& otfs, std::size_t stride,
-                                std::size_t imaginary) {
-  const Lanes d;
-  const std::size_t lanes = hn::Lanes(d), element = 2 * lanes;
-  const int n = transform.size();
-  const auto side = static_cast<std::size_t>(n), rows = static_cast<std::size_t>(size);
-  const std::size_t turned_row = (rows + 1) * element;  // as in blur_tiles()
-  AlignedVector<float> work(2 * side * element + side * turned_row);
-  float *line = work.data(), *other = line + side * element;
-  float* turned = other + side * element;  // [frequency along x][row]
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < rows; ++column) {
-      const std::size_t at = (row * rows + column) * lanes;
-      store({hn::Load(d, kernels[0] + at), hn::Load(d, kernels[1] + at)}, line + column * element);
-    }
-    pad(line, size, n);
-    forward(line, n, transform.twiddles());
-    for (std::size_t k = 0; k < side; ++k)
-      store(load(line + k * element), turned + k * turned_row + row * element);
-  }
-  const auto column_of = [&](int k, float* out) {
-    copy_line(turned + static_cast<std::size_t>(k) * turned_row, size, out);
-    pad(out, size, n);
-    forward(out, n, transform.twiddles());
-  };
-  std::size_t at = 0;
-  for (const LaneTransform::ColumnPair& columns : transform.columns()) {
-    column_of(columns.kept, line);
-    if (columns.mirrored != columns.kept) column_of(columns.mirrored, other);
-    const float* minus = columns.mirrored != columns.kept ? other : line;
-    for (std::size_t k = 0; k < side; ++k, at += stride) {
-      Complex a, b;
-      separate(load(line + k * element),
-               load(minus + static_cast<std::size_t>(transform.mirrored()[k]) * element), a, b);
-      hn::StoreU(a.re, d, otfs[0] + at);
-      hn::StoreU(a.im, d, otfs[0] + at + imaginary);
-      if (otfs[1] == nullptr) continue;
-      hn::StoreU(b.re, d, otfs[1] + at);
-      hn::StoreU(b.im, d, otfs[1] + at + imaginary);
-    }
-  }
-}
+namespace {
 
 /// sums += otf · spectrum, or sums = otf · spectrum.
 HWY_ATTR HWY_INLINE void filter(const float* spectrum, const float* otf, const LaneTiles& tiles, int size,
@@ -339,6 +145,7 @@ HWY_ATTR std::size_t width() {
   return hn::Lanes(Lanes());
 }
 
+}  // namespace
 }  // namespace petzval::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -346,7 +153,6 @@ HWY_AFTER_NAMESPACE();
 namespace petzval {
 
 HWY_EXPORT(width);
-HWY_EXPORT(transform_kernels);
 HWY_EXPORT(blur_tiles);
 
 std::size_t lane_count() {
@@ -377,12 +183,6 @@ LaneTransform::LaneTransform(int size) : size_(size), mirrored_(static_cast<std:
   for (int place = 0; place < size; ++place)
     if (const int mirrored = mirrored_[static_cast<std::size_t>(place)]; place <= mirrored)
       columns_.push_back({place, mirrored});
-}
-
-void transform_lane_kernels(const LaneTransform& transform, const std::array<const float*, 2>& kernels,
-                            int size, const std::array<float*, 2>& otfs, std::size_t stride,
-                            std::size_t imaginary) {
-  HWY_DYNAMIC_DISPATCH(transform_kernels)(transform, kernels, size, otfs, stride, imaginary);
 }
 
 void blur_lane_tiles(const LaneTransform& transform, const LaneTiles& tiles, LaneTileIo& io,
