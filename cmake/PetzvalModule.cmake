@@ -23,6 +23,25 @@ function(petzval_precompile_headers target)
   endif()
 endfunction()
 
+# petzval_unity(TARGET sources...): compiles the sources of a target several at once. Not those that Highway reads once for
+# every instruction set, by their own names, and not those with Eigen's solvers, which take as long as the others together.
+function(petzval_unity target)
+  if(NOT PETZVAL_UNITY_BUILD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # gcc takes every included file for a header, in which a class must not be made of types of this file alone.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
+  foreach(source IN LISTS ARGN)
+    file(STRINGS ${source} alone REGEX "define HWY_TARGET_INCLUDE|include <Eigen/Dense>")
+    if(alone)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
+  endforeach()
+endfunction()
+
 function(petzval_module name)
   cmake_parse_arguments(ARG "" "" "USES;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/petzval/${name}/*.cpp)
@@ -33,6 +52,7 @@ function(petzval_module name)
   add_library(petzval_${name}_objects OBJECT ${sources})
   target_include_directories(petzval_${name}_objects PUBLIC ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(petzval_${name}_objects PUBLIC ${ARG_LIBRARIES})
+  petzval_unity(petzval_${name}_objects ${sources})
   petzval_warnings(petzval_${name}_objects)
 
   add_library(petzval_${name} STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:petzval_${name}_objects>)

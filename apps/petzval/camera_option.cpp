@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <petzval/analysis/best_focus.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/units.h>
 #include <petzval/camera/camera.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace petzval::app {
@@ -15,12 +15,9 @@ namespace petzval::app {
 namespace {
 
 /// A whole text as a positive number.
-std::optional<double> positive_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value > 0) || !std::isfinite(value))
-    return {};
-  return value;
+std::optional<double> positive_value(std::string_view text) {
+  const std::optional<double> value = parse_number(text);
+  return value && *value > 0 ? value : std::nullopt;
 }
 
 constexpr std::string_view by_mtf = "best-mtf@";
@@ -29,7 +26,7 @@ void focus_camera(Camera& camera, const std::string& focus, const std::optional<
                   const Shared& shared) {
   if (focus == "design") return;
   if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
-  if (const std::optional<double> distance_mm = positive_number(focus))
+  if (const std::optional<double> distance_mm = positive_value(focus))
     return camera.focus_at_m(*distance_mm / mm_per_m);
   const FieldTableRequest fields = request.value_or(FieldTableRequest::of(camera.lens()));
   BestFocus best;
@@ -38,7 +35,7 @@ void focus_camera(Camera& camera, const std::string& focus, const std::optional<
     note(shared, fmt::format("--focus best-spot moves the sensor by {:+.5f} mm; RMS spot {:.3f} to {:.3f} um",
                              best.shift_mm, best.before, best.after));
   } else if (focus.starts_with(by_mtf)) {
-    const std::optional<double> frequency = positive_number(std::string_view(focus).substr(by_mtf.size()));
+    const std::optional<double> frequency = positive_value(std::string_view(focus).substr(by_mtf.size()));
     if (!frequency)
       throw InputError(
           fmt::format("--focus {}: give a frequency in cycles/mm, for example best-mtf@40", focus));

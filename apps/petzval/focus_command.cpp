@@ -11,13 +11,13 @@ namespace petzval::app {
 
 namespace {
 
-struct FocusCommand {
+struct SceneFocusCommand {
   RenderChoice choice;
   FocusChoice focus;
   std::string plot;
 };
 
-nlohmann::ordered_json to_json(const FocusRun& run, const FocusCommand& command) {
+nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& command) {
   const FocusResult& result = run.result;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const FocusEvaluation& each : result.evaluations)
@@ -29,7 +29,7 @@ nlohmann::ordered_json to_json(const FocusRun& run, const FocusCommand& command)
           {"at_the_end", result.at_the_end},  {"rows", rows}};
 }
 
-void focus(const FocusCommand& command, const Shared& shared) {
+void focus(const SceneFocusCommand& command, const Shared& shared) {
   if (!command.plot.empty()) require_extension(command.plot, {".svg"}, "a plot");
   const PreparedScene scene = prepare_scene(command.choice, focus_wavelengths_nm(), shared);
   const FocusRun run = autofocus(scene, command.focus, shared);
@@ -42,7 +42,7 @@ void focus(const FocusCommand& command, const Shared& shared) {
 }  // namespace
 
 void add_focus_command(CLI::App& app, Shared& shared) {
-  auto options = std::make_shared<FocusCommand>();
+  auto options = std::make_shared<SceneFocusCommand>();
   CLI::App* command =
       add_command(app, shared, "focus", "Find the film distance at which a scene is sharpest",
                   "petzval focus spheres --lens dgauss-50mm --size 120x90 --zone 0.3,0.5,0.4,0.7 --plot "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval glass list | show | find
 #include "command.h"
+#include "field_option.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,10 +56,6 @@ std::string summary_line(const Glass& glass) {
 
 std::string summary_heading() {
   return fmt::format("{:<28} {:>9} {:>7} {:>8} {:>8}  {}", "name", "nd", "Vd", "from_nm", "to_nm", "status");
-}
-
-void print_json(const json& value) {
-  fmt::print("{}\n", value.dump(2));
 }
 
 // --- list

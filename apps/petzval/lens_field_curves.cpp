@@ -13,11 +13,11 @@ namespace petzval::app {
 namespace {
 
 /// Fields of a curve in a plot.
-constexpr int smooth = 41;
+constexpr int smooth_fields = 41;
 
 /// The same request at so many fields that curves are smooth.
 FieldTableRequest dense(FieldTableRequest request) {
-  request.fields = even_fields(request.fields, smooth);
+  request.fields = even_fields(request.fields, smooth_fields);
   return request;
 }
 
@@ -69,7 +69,7 @@ void colour(const AnalysisCommand& options, const Shared& shared) {
   const Lens lens = options.prepare(shared);
   const FieldTableRequest request = options.fields.request(lens);
   if (!options.plot.empty()) {
-    const std::vector<double> zones = even_fields({1.0}, smooth);
+    const std::vector<double> zones = even_fields({1.0}, smooth_fields);
     Plot axial = longitudinal_plot(axial_focus_table(lens, request.wavelengths_nm, zones, request.clip));
     Plot lateral = lateral_colour_plot(request.field_kind, lateral_colour_table(lens, dense(request)));
     write_whole_file(options.plot, plot_grid_svg({axial, lateral}, 2, lens.name + ": colour"));

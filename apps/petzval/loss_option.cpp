@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/whole_file.h>
 
 #include <charconv>
@@ -16,13 +17,6 @@ namespace petzval::app {
 namespace {
 
 constexpr const char* table_form = "wavelength_nm,air_glass or wavelength_nm,surfaces[0],surfaces[3]…";
-
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
@@ -46,7 +40,7 @@ CoatingReflectance& column(Losses& losses, const std::string& name, const std::s
   throw InputError(file, line, fmt::format("a column '{}'; the header must be {}", name, table_form));
 }
 
-void read_table(const std::string& file, Losses& losses) {
+void read_coating(const std::string& file, Losses& losses) {
   std::istringstream in(read_whole_file(file));
   std::vector<std::string> header;
   std::string text;
@@ -65,7 +59,7 @@ void read_table(const std::string& file, Losses& losses) {
     if (cells.size() != header.size())
       throw InputError(file, line, fmt::format("{} values under {} columns", cells.size(), header.size()));
     for (std::size_t c = 1; c < header.size(); ++c) {
-      const std::optional<double> wavelength = number(cells[0]), reflectance = number(cells[c]);
+      const std::optional<double> wavelength = parse_number(cells[0]), reflectance = parse_number(cells[c]);
       if (!wavelength || !reflectance || *reflectance < 0 || *reflectance > 1)
         throw InputError(
             file, line,
@@ -96,10 +90,10 @@ Losses LossChoice::losses(const Lens& lens, const Shared& shared) const {
   Losses losses;
   losses.fresnel = fresnel;
   losses.absorption = absorption;
-  if (const std::optional<double> reflectance = number(coating))
+  if (const std::optional<double> reflectance = parse_number(coating))
     losses.air_glass = CoatingReflectance::constant(*reflectance);
   else if (!coating.empty())
-    read_table(coating, losses);
+    read_coating(coating, losses);
   losses.validate(lens);
   if (absorption) {
     std::set<std::string> clear;

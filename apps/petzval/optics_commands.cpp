@@ -38,7 +38,7 @@ struct BuildCommand {
   int field_count = TableOptions{}.field_count;
 };
 
-struct InfoCommand {
+struct TableInfoCommand {
   std::string path;
   std::string fit = "monotone";
 };
@@ -275,7 +275,7 @@ void print_fit(const LensDataTable& table, const RadialProfiles& profiles, const
   }
 }
 
-void info(const InfoCommand& command, const Shared& shared) {
+void info(const TableInfoCommand& command, const Shared& shared) {
   const RadialFit fit = RadialFit::parse(command.fit);
   const LensDataTable table = read_table(command.path);
   const RadialProfiles profiles(table, fit);
@@ -323,7 +323,7 @@ void add_build(CLI::App& optics, Shared& shared) {
 }
 
 void add_info(CLI::App& optics, Shared& shared) {
-  auto options = std::make_shared<InfoCommand>();
+  auto options = std::make_shared<TableInfoCommand>();
   CLI::App* command = add_command(optics, shared, "info", "Show a lens data table and how well curves fit it",
                                   "petzval optics info edmund.h5 --fit 6", true,
                                   [options, &shared] { info(*options, shared); });

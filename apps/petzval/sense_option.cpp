@@ -4,24 +4,17 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/sensor/exposure.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace petzval::app {
 
 namespace {
-
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
 
 double exposure_s(const SenseChoice& choice, const SpectralImage& image, const PhotoCurrent& current,
                   double saturation_e) {
@@ -32,7 +25,7 @@ double exposure_s(const SenseChoice& choice, const SpectralImage& image, const P
     return metered_exposure_s(current, saturation_e, metering);
   }
   const bool by_ev = choice.exposure.starts_with("ev:");
-  const auto value = number(std::string_view(choice.exposure).substr(by_ev ? 3 : 0));
+  const auto value = parse_number(std::string_view(choice.exposure).substr(by_ev ? 3 : 0));
   if (!value || (!by_ev && *value < 0))
     throw InputError(fmt::format(
         "--exposure {}: auto, seconds (0.01) or an exposure value (ev:12) would be right", choice.exposure));

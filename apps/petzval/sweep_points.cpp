@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -13,13 +13,6 @@ namespace petzval::app {
 namespace {
 
 constexpr double most_points = 10000;
-
-std::optional<double> number(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -34,7 +27,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 std::optional<std::vector<std::string>> range(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   if (parts.size() != 3) return {};
-  const auto from = number(parts[0]), to = number(parts[1]), step = number(parts[2]);
+  const auto from = parse_number(parts[0]), to = parse_number(parts[1]), step = parse_number(parts[2]);
   if (!from || !to || !step || *step == 0 || (*to - *from) / *step < 0) return {};
   constexpr double rounding = 1e-9;
   const double count = std::floor((*to - *from) / *step + rounding) + 1;

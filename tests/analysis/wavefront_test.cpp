@@ -37,7 +37,7 @@ TEST_P(GoldenWavefronts, HaveConverged) {
 INSTANTIATE_TEST_SUITE_P(Lenses, GoldenWavefronts, golden_lenses());
 
 /// A plano-hyperbolic lens of f/20, perfect on the axis, with its image surface moved.
-Lens defocused_lens(double defocus_mm) {
+Lens perfect_lens(double defocus_mm) {
   Lens lens;
   Surface front, back;
   front.thickness_mm = 2;
@@ -54,7 +54,7 @@ Lens defocused_lens(double defocus_mm) {
 }
 
 WavefrontRow defocused(double defocus_mm) {
-  const Lens lens = defocused_lens(defocus_mm);
+  const Lens lens = perfect_lens(defocus_mm);
   return wavefront_table(lens, FieldTableRequest::of(lens)).front();
 }
 
@@ -83,7 +83,7 @@ TEST(Wavefront, SignSaysWhetherItRunsAhead) {
   // All rays reach the focus with the same path. A sensor δ behind it: the chief ray goes on by δ, a ray at
   // angle U by δ cos U to the foot of the perpendicular, so W = +δ (1 − cos U)/λ at the rim.
   for (const double defocus_mm : {0.2, -0.2}) {
-    const Lens lens = defocused_lens(defocus_mm);
+    const Lens lens = perfect_lens(defocus_mm);
     FieldTracer tracer(lens, 550);
     const ChiefRay chief = *tracer.chief_ray(0);
     const std::vector<PupilRay> rays = pupil_rays(tracer, chief);

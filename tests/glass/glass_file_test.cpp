@@ -32,7 +32,7 @@ constexpr const char* agf =
     "CD 1.34533359E+00 9.97743871E-03 2.09073176E-01 4.70450767E-02 9.37357162E-01 1.11886764E+02 0 0\n"
     "LD 0.32 2.5\n";
 
-const GlassCatalogue& bundled() {
+const GlassCatalogue& bundled_glasses() {
   return GlassCatalogue::bundled();
 }
 
@@ -66,7 +66,7 @@ TEST(AgfReader, ReadsGlassesAsTheBundledCatalogueHasThem) {
   ASSERT_EQ(file.glasses.size(), 2u);
   EXPECT_TRUE(file.notes.empty());
   for (const Glass& glass : file.glasses) {
-    const auto known = bundled().find("SCHOTT:" + glass.name);
+    const auto known = bundled_glasses().find("SCHOTT:" + glass.name);
     for (const double nm : {365.0, 486.1327, 587.5618, 1014.0, 2325.0})
       EXPECT_NEAR(glass.index(nm), known->index(nm), 1e-15)
           << glass.name;  // the same constants, one rounding
@@ -195,7 +195,7 @@ std::string with_data(const std::string& data) {
 
 TEST(GlassYaml, ReadsTheFileOfAGlass) {
   const Glass glass = read_yaml(yaml);
-  const auto known = bundled().find("SCHOTT:N-BK7");
+  const auto known = bundled_glasses().find("SCHOTT:N-BK7");
   for (const double nm : {300.0, 587.5618, 2500.0}) EXPECT_EQ(glass.index(nm), known->index(nm));
   EXPECT_DOUBLE_EQ(glass.extinction(450), 1.5e-8);
   EXPECT_EQ(glass.stated_vd, 64.17);
@@ -295,16 +295,16 @@ TEST(OwnGlasses, AreFoundBeforeTheBundledOnes) {
   Glass other = mine;
   other.catalogue = "OWN";
   other.name = "BRAND-NEW";
-  const GlassCatalogue both = bundled().with({mine, other});
+  const GlassCatalogue both = bundled_glasses().with({mine, other});
   EXPECT_EQ(both.find("SCHOTT:N-BK7")->index(500), 1.7);
   EXPECT_EQ(both.find("n-bk7", {"SCHOTT"})->index(500), 1.7);
   EXPECT_EQ(both.find("BRAND-NEW")->full_name(), "OWN:BRAND-NEW");
-  EXPECT_EQ(both.find("SCHOTT:F2")->index(500), bundled().find("SCHOTT:F2")->index(500));
-  EXPECT_NE(bundled().find("SCHOTT:N-BK7")->index(500), 1.7);  // the shared catalogue is as it was
-  EXPECT_EQ(both.size(), bundled().size() + 1);                // one hides another
+  EXPECT_EQ(both.find("SCHOTT:F2")->index(500), bundled_glasses().find("SCHOTT:F2")->index(500));
+  EXPECT_NE(bundled_glasses().find("SCHOTT:N-BK7")->index(500), 1.7);  // the shared catalogue is as it was
+  EXPECT_EQ(both.size(), bundled_glasses().size() + 1);                // one hides another
   EXPECT_TRUE(both.contains("OWN:brand-new"));
   EXPECT_EQ(both.names_spelled("BRANDNEW"), std::vector<std::string>{"OWN:BRAND-NEW"});
-  EXPECT_EQ(both.names_spelled("NBK7").size(), bundled().names_spelled("NBK7").size());
+  EXPECT_EQ(both.names_spelled("NBK7").size(), bundled_glasses().names_spelled("NBK7").size());
   expect_mentions(error_of([&] { both.find("BRAND-NEWER"); }), {"OWN:BRAND-NEW"});
 }
 

@@ -23,7 +23,7 @@ std::shared_ptr<const Glass> flat_glass() {
   return std::make_shared<const Glass>(glass);
 }
 
-std::string message_of(const std::function<void()>& action) {
+std::string refusal_of(const std::function<void()>& action) {
   try {
     action();
   } catch (const InputError& error) {
@@ -79,7 +79,7 @@ TEST(Glass, SaysWhereItsIndexIsValid) {
   const auto glass = flat_glass();
   EXPECT_EQ(glass->index(400), 1.625);
   EXPECT_EQ(glass->index(700), 1.625);
-  EXPECT_EQ(message_of([&] { glass->index(365.01); }),
+  EXPECT_EQ(refusal_of([&] { glass->index(365.01); }),
             "the index of MAKER:Flat-1 is not known at 365.01 nm; it is valid from 400 to 700 nm");
   EXPECT_THROW(glass->index(700.001), InputError);
 }

@@ -22,7 +22,7 @@
 namespace petzval {
 namespace {
 
-SpectralExr example(int width = 7, int height = 5) {
+SpectralExr example_cube(int width = 7, int height = 5) {
   SpectralExr exr;
   exr.width = width, exr.height = height;
   exr.wavelengths_nm = {450, 587.56, 1050};  // by name, "S0.1050,0nm" comes first
@@ -34,7 +34,7 @@ SpectralExr example(int width = 7, int height = 5) {
   return exr;
 }
 
-std::string message_of(const std::string& path) {
+std::string exr_message(const std::string& path) {
   try {
     read_spectral_exr(path);
   } catch (const InputError& error) {
@@ -46,7 +46,7 @@ std::string message_of(const std::string& path) {
 TEST(SpectralExr, RoundTripsExactly) {
   const test::Scratch scratch;
   for (const auto kind : {SpectralExr::Kind::emissive, SpectralExr::Kind::reflective}) {
-    SpectralExr exr = example();
+    SpectralExr exr = example_cube();
     exr.kind = kind;
     if (kind == SpectralExr::Kind::reflective) exr.units = "";
     write_spectral_exr(scratch.path("a.exr"), exr);
@@ -64,7 +64,7 @@ TEST(SpectralExr, RoundTripsExactly) {
 
 TEST(SpectralExr, HasTheNamesOfFichetPacanowskiWilkie2021) {
   const test::Scratch scratch;
-  const SpectralExr exr = example();
+  const SpectralExr exr = example_cube();
   write_spectral_exr(scratch.path("a.exr"), exr);
   Imf::InputFile file(scratch.path("a.exr").c_str());
   const auto text = [&](const char* name) {
@@ -82,8 +82,8 @@ TEST(SpectralExr, HasTheNamesOfFichetPacanowskiWilkie2021) {
 
 TEST(SpectralExr, SameBytesTwiceAndNoTimeInThem) {
   const test::Scratch scratch;
-  write_spectral_exr(scratch.path("a.exr"), example());
-  write_spectral_exr(scratch.path("b.exr"), example());
+  write_spectral_exr(scratch.path("a.exr"), example_cube());
+  write_spectral_exr(scratch.path("b.exr"), example_cube());
   const std::string bytes = read_whole_file(scratch.path("a.exr"));
   EXPECT_EQ(bytes, read_whole_file(scratch.path("b.exr")));
   EXPECT_EQ(bytes.find("capDate"), std::string::npos);
@@ -185,31 +185,31 @@ TEST(SpectralExr, ReadsTiles) {
 
 TEST(SpectralExr, RefusesABandThatIsThereTwice) {
   const test::Scratch scratch;
-  const std::string message = message_of(foreign(scratch, {{"S0.550,0nm"}, {"S0.0,55um"}, {"S0.600,0nm"}}));
+  const std::string message = exr_message(foreign(scratch, {{"S0.550,0nm"}, {"S0.0,55um"}, {"S0.600,0nm"}}));
   EXPECT_NE(message.find("550 nm twice"), std::string::npos) << message;
 }
 
 TEST(SpectralExr, SaysWhatIsInAFileThatIsNotSpectral) {
   const test::Scratch scratch;
-  const std::string message = message_of(foreign(scratch, {{"R"}, {"G"}, {"B"}}));
+  const std::string message = exr_message(foreign(scratch, {{"R"}, {"G"}, {"B"}}));
   EXPECT_NE(message.find("B, G, R"), std::string::npos) << message;
-  EXPECT_NE(message_of(foreign(scratch, {{"S1.550,0nm"}})).find("polarised"), std::string::npos);
+  EXPECT_NE(exr_message(foreign(scratch, {{"S1.550,0nm"}})).find("polarised"), std::string::npos);
 }
 
 // ---- hostile
 
 TEST(SpectralExr, MissingFilesFoldersAndOtherFormatsAreRefused) {
   const test::Scratch scratch;
-  EXPECT_NE(message_of(scratch.path("none.exr")).find("cannot be read"), std::string::npos);
-  EXPECT_NE(message_of(scratch.path("")).find("folder"), std::string::npos);
-  EXPECT_NE(message_of(scratch.with("text.exr", "not a picture at all")).find("not an OpenEXR"),
+  EXPECT_NE(exr_message(scratch.path("none.exr")).find("cannot be read"), std::string::npos);
+  EXPECT_NE(exr_message(scratch.path("")).find("folder"), std::string::npos);
+  EXPECT_NE(exr_message(scratch.with("text.exr", "not a picture at all")).find("not an OpenEXR"),
             std::string::npos);
-  EXPECT_NE(message_of(scratch.with("empty.exr", "")).find("not an OpenEXR"), std::string::npos);
+  EXPECT_NE(exr_message(scratch.with("empty.exr", "")).find("not an OpenEXR"), std::string::npos);
 }
 
 TEST(SpectralExr, DamagedFilesDoNoHarm) {
   const test::Scratch scratch;
-  write_spectral_exr(scratch.path("a.exr"), example());
+  write_spectral_exr(scratch.path("a.exr"), example_cube());
   const std::string bytes = read_whole_file(scratch.path("a.exr"));
   test::refuses_truncations(scratch, bytes, read_spectral_exr);
   test::survives_flips(scratch, bytes, 500, read_spectral_exr);
@@ -217,32 +217,32 @@ TEST(SpectralExr, DamagedFilesDoNoHarm) {
 
 TEST(SpectralExr, RefusesASizeThatTheFileCannotHold) {
   const test::Scratch scratch;
-  write_spectral_exr(scratch.path("a.exr"), example());
+  write_spectral_exr(scratch.path("a.exr"), example_cube());
   std::string bytes = read_whole_file(scratch.path("a.exr"));
   const std::size_t at =
       bytes.find("dataWindow") + std::strlen("dataWindow") + 1 + std::strlen("box2i") + 1 + 4;
   const std::int32_t window[] = {0, 0, 99999, 99999};
   std::memcpy(bytes.data() + at, window, sizeof window);
-  const std::string message = message_of(scratch.with("b.exr", bytes));
+  const std::string message = exr_message(scratch.with("b.exr", bytes));
   EXPECT_NE(message.find("10000000000 pixels"), std::string::npos) << message;
 }
 
 /// OpenEXR reads a float of four bytes whatever size the file states, and would take the rest for attributes.
 TEST(SpectralExr, RefusesAttributesWhoseSizeIsNotTheirTypes) {
   const test::Scratch scratch;
-  write_spectral_exr(scratch.path("a.exr"), example());
+  write_spectral_exr(scratch.path("a.exr"), example_cube());
   std::string bytes = read_whole_file(scratch.path("a.exr"));
   const std::string attribute("pixelAspectRatio\0float\0", 23);
   const std::size_t size_at = bytes.find(attribute) + attribute.size();
   ASSERT_EQ(bytes[size_at], 4);
   bytes[size_at] = 12;
   bytes.insert(size_at + 8, std::string("x\0y\0\xFF\xFF\xFF\x70", 8));
-  EXPECT_NE(message_of(scratch.with("b.exr", bytes)).find("damaged"), std::string::npos);
+  EXPECT_NE(exr_message(scratch.with("b.exr", bytes)).find("damaged"), std::string::npos);
 }
 
 TEST(SpectralExr, NanIsReadAndReportedByValidate) {
   const test::Scratch scratch;
-  SpectralExr exr = example();
+  SpectralExr exr = example_cube();
   exr.plane(1)[2 * 7 + 3] = std::nanf("");
   write_spectral_exr(scratch.path("a.exr"), exr);
   const SpectralExr back = read_spectral_exr(scratch.path("a.exr"));
@@ -254,25 +254,25 @@ TEST(SpectralExr, NanIsReadAndReportedByValidate) {
               std::string::npos)
         << error.what();
   }
-  EXPECT_NO_THROW(example().validate("a.exr"));
+  EXPECT_NO_THROW(example_cube().validate("a.exr"));
 }
 
 TEST(SpectralExr, RefusesToWriteWhatIsNoImage) {
   const test::Scratch scratch;
-  SpectralExr exr = example();
+  SpectralExr exr = example_cube();
   exr.values = LargeFloats(exr.values.size() - 1);
   EXPECT_THROW(write_spectral_exr(scratch.path("a.exr"), exr), InputError);
-  exr = example();
+  exr = example_cube();
   exr.wavelengths_nm = {450, 450, 500};
   EXPECT_THROW(write_spectral_exr(scratch.path("a.exr"), exr), InputError);
   EXPECT_THROW(write_spectral_exr(scratch.path("a.exr"), SpectralExr{}), InputError);
-  EXPECT_THROW(write_spectral_exr(scratch.path("no/folder.exr"), example()), InputError);
+  EXPECT_THROW(write_spectral_exr(scratch.path("no/folder.exr"), example_cube()), InputError);
   EXPECT_TRUE(scratch.is_empty());
 }
 
 TEST(SpectralExr, AFullDiskIsAFailureAndLeavesNothing) {
   const test::Scratch scratch;
-  const SpectralExr exr = example(64, 64);
+  const SpectralExr exr = example_cube(64, 64);
   write_spectral_exr(scratch.path("whole.exr"), exr);
   const auto size = static_cast<rlim_t>(std::filesystem::file_size(scratch.path("whole.exr")));
   std::filesystem::remove(scratch.path("whole.exr"));

@@ -77,7 +77,7 @@ double worst_difference(const SpectralImage& a, const SpectralImage& b) {
   return worst / peak;
 }
 
-double relative_l2(const SpectralImage& a, const SpectralImage& b) {
+double relative_distance(const SpectralImage& a, const SpectralImage& b) {
   double error = 0, size = 0;
   for (std::size_t i = 0; i < a.values().size(); ++i) {
     error += std::pow(double(a.values()[i]) - double(b.values()[i]), 2);
@@ -133,7 +133,7 @@ TEST(DepthImage, WithoutDefocusIsTheSameWhateverTheDepths) {
   const SpectralImage deep = form_depth_image(scene, camera, frame, edges_go_on(), {5});
   // The blur differs by a hundredth of a pixel, the distortion by less; what is left are the tolerance
   // of the blur and what guesses weigh (LayerScene::guess_weight / 20).
-  EXPECT_LT(relative_l2(deep, plane), 2e-3);
+  EXPECT_LT(relative_distance(deep, plane), 2e-3);
 }
 
 /// Second moments of a spot about its centre of gravity along x [µm²].
@@ -251,7 +251,7 @@ TEST(DepthImage, OfAPlaneThatRecedesHasNoSeams) {
   const SpectralImage many = with(49);
   DepthReport report;
   const SpectralImage usual = form_depth_image(scene, camera, frame, edges_go_on(), {}, {}, &report);
-  const double coarse = relative_l2(with(4), many), fine = relative_l2(usual, many);
+  const double coarse = relative_distance(with(4), many), fine = relative_distance(usual, many);
   std::printf("%zu layers against 49: %.4f; 4: %.4f\n", report.layers.size(), fine, coarse);
   // Halfway between two layers a pixel of blur apart, the mixture of both has a variance 1/64 of a pixel²
   // larger than the blur that it stands for: from waves of 4.5 pixels that takes up to

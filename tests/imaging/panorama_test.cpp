@@ -57,11 +57,11 @@ ImagingOptions unblurred() {
   return options;
 }
 
-constexpr SensorGeometry frame{300, 300, 40};  // ±6 mm: 115°
+constexpr SensorGeometry panorama_frame{300, 300, 40};  // ±6 mm: 115°
 
 Centroid image_of(const Scene& scene) {
-  const SpectralImage image = form_image(scene, wide_table(), frame, unblurred());
-  CellPlane plane(frame);
+  const SpectralImage image = form_image(scene, wide_table(), panorama_frame, unblurred());
+  CellPlane plane(panorama_frame);
   std::copy(image.values().begin(), image.values().end(), plane.values.begin());
   return centroid(plane);
 }
@@ -100,10 +100,10 @@ TEST(Panorama, EvenRadianceIsAnEvenWall) {
   for (const BlurMethod method : {BlurMethod::none, BlurMethod::product}) {
     ImagingOptions options;
     options.method = method;
-    const SpectralImage image = form_image(scene, table, frame, options);
-    for (int row = 0; row < frame.rows; ++row)
-      for (int column = 0; column < frame.columns; ++column) {
-        const double height = std::hypot(frame.x_mm(column + 0.5), frame.y_mm(row + 0.5));
+    const SpectralImage image = form_image(scene, table, panorama_frame, options);
+    for (int row = 0; row < panorama_frame.rows; ++row)
+      for (int column = 0; column < panorama_frame.columns; ++column) {
+        const double height = std::hypot(panorama_frame.x_mm(column + 0.5), panorama_frame.y_mm(row + 0.5));
         if (height > table.real_image_height_mm.back() - 0.2) continue;  // the last field's light fades here
         ASSERT_NEAR(image.at(0, row, column), 2 * 0.25, 0.5 * 1e-3) << row << ' ' << column;
       }
@@ -117,12 +117,12 @@ TEST(Panorama, NothingAliasesWhereSamplesCrowd) {
     Scene scene(4000, 2000, {550}, 90, std::nullopt);
     for (std::size_t i = 0; i < scene.band_size(); ++i) scene.band(0)[i] = i % 2 == 0 ? 2.0F : 0.0F;
     scene.make_panorama({0, pitch});
-    const SpectralImage image = form_image(scene, wide_table(), frame, unblurred());
+    const SpectralImage image = form_image(scene, wide_table(), panorama_frame, unblurred());
     // A pixel covers 8.5 samples of the equator along the radius, 4.5 and more across it: that is no whole
     // number of stripes, and what is left over is a part of one.
-    for (int row = 0; row < frame.rows; ++row)
-      for (int column = 0; column < frame.columns; ++column) {
-        if (std::hypot(frame.x_mm(column + 0.5), frame.y_mm(row + 0.5)) > 5.5)
+    for (int row = 0; row < panorama_frame.rows; ++row)
+      for (int column = 0; column < panorama_frame.columns; ++column) {
+        if (std::hypot(panorama_frame.x_mm(column + 0.5), panorama_frame.y_mm(row + 0.5)) > 5.5)
           continue;  // the last field ends
         ASSERT_NEAR(image.at(0, row, column), 0.25, 0.25 / 4.5) << row << ' ' << column;
       }

@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double pitch_um = 6.25;
+constexpr double grid_um = 6.25;
 
 CellPlane blurred(const PsfField& psfs, const CellPlane& source, int margin, const ProductPlan& plan) {
   return ProductBlur(psfs, source.grid, plan).blur(source, margin);
@@ -45,9 +45,9 @@ TEST(LobattoNodes, ReachBothEndsAndTheirPolynomialsSumToOne) {
 TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
   TableRecipe recipe;
   recipe.psf = [](double, double) { return Psf{1, 0.01, {1.0F}, 1.0}; };  // a point at any azimuth
-  const PsfField psfs(make_table(recipe), 550, pitch_um);
+  const PsfField psfs(make_table(recipe), 550, grid_um);
   for (const SensorGeometry grid :
-       {SensorGeometry{96, 64, pitch_um}, {77, 51, pitch_um}, {5, 90, pitch_um}, {1, 1, pitch_um}}) {
+       {SensorGeometry{96, 64, grid_um}, {77, 51, grid_um}, {5, 90, grid_um}, {1, 1, grid_um}}) {
     const CellPlane source = random_plane(grid);
     const CellPlane expected = blur_exact(source, psfs, 0);
     for (const auto& [tile, nodes, transform] : {std::tuple{8, 2, 16},
@@ -113,8 +113,8 @@ TableRecipe strong_recipe(double lean) {
 
 TEST(ProductBlur, KeepsTheToleranceAskedFor) {
   for (const double lean : {0.0, 0.6}) {
-    const PsfField psfs(make_table(strong_recipe(lean)), 550, pitch_um);
-    for (const CellPlane& source : {texture({120, 91, pitch_um}), tilted_checkerboard({120, 91, pitch_um})}) {
+    const PsfField psfs(make_table(strong_recipe(lean)), 550, grid_um);
+    for (const CellPlane& source : {texture({120, 91, grid_um}), tilted_checkerboard({120, 91, grid_um})}) {
       const CellPlane exact = blur_exact(source, psfs, 0);
       for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
         const auto plan = plan_product(psfs, source.grid, {tolerance});
@@ -132,8 +132,8 @@ TEST(ProductBlur, KeepsTheToleranceAskedFor) {
 // Kernels go on without a jump from tile to tile, and so does the error: the difference image steps as much
 // across the borders of tiles as within them.
 TEST(ProductBlur, HasNoSeams) {
-  const PsfField psfs(make_table(strong_recipe(0.6)), 550, pitch_um);
-  const CellPlane source = texture({200, 120, pitch_um});
+  const PsfField psfs(make_table(strong_recipe(0.6)), 550, grid_um);
+  const CellPlane source = texture({200, 120, grid_um});
   const CellPlane exact = blur_exact(source, psfs, 0);
   constexpr int tile = 10;
   const CellPlane image = blurred(psfs, source, 0, {tile, 2, 32});
@@ -155,8 +155,8 @@ TEST(ProductBlur, HasNoSeams) {
 }
 
 TEST(ProductBlur, KeepsTheEnergyOfLightThatStaysInside) {
-  const PsfField psfs(make_table(strong_recipe(0.6)), 550, pitch_um);
-  CellPlane source = texture({100, 75, pitch_um});
+  const PsfField psfs(make_table(strong_recipe(0.6)), 550, grid_um);
+  CellPlane source = texture({100, 75, grid_um});
   const auto radius = static_cast<std::size_t>(psfs.radius());
   for (std::size_t row = 0; row < source.rows(); ++row)
     for (std::size_t column = 0; column < source.columns(); ++column)
@@ -169,8 +169,8 @@ TEST(ProductBlur, KeepsTheEnergyOfLightThatStaysInside) {
 }
 
 TEST(ProductBlur, GivesTheSameBytesForAnyNumberOfThreads) {
-  const PsfField psfs(make_table(comatic_recipe(0.6)), 550, pitch_um);
-  const CellPlane source = random_plane({411, 260, pitch_um});
+  const PsfField psfs(make_table(comatic_recipe(0.6)), 550, grid_um);
+  const CellPlane source = random_plane({411, 260, grid_um});
   const auto with_threads = [&](int threads) {
     const ThreadLimit limit(threads);
     return blurred(psfs, source, 3, {12, 3, 32}).values;

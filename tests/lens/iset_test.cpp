@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing;
 
-constexpr const char* example = R"({
+constexpr const char* iset_example = R"({
   "description": " made for this test ", "name": "pair",
   "surfaces": [
     {"ior": 1.5, "radius": 60, "semi_aperture": 10, "thickness": 6},
@@ -22,12 +22,12 @@ constexpr const char* example = R"({
   "metadata": {"focalLength": 100, "fNumber": 4, "filmdistance": 20}
 })";
 
-std::string complaint(const std::string& before, const std::string& after) {
-  return error_of([&] { read_text("bad.json", with_change(example, before, after)); });
+std::string iset_complaint(const std::string& before, const std::string& after) {
+  return error_of([&] { read_text("bad.json", with_change(iset_example, before, after)); });
 }
 
 TEST(IsetReader, IsToldByItsContents) {
-  const LensFile file = read_text("lens.json", example);
+  const LensFile file = read_text("lens.json", iset_example);
   const Lens& lens = file.lens;
   EXPECT_EQ(lens.name, "pair");
   EXPECT_EQ(lens.source, "made for this test");
@@ -45,23 +45,23 @@ TEST(IsetReader, IsToldByItsContents) {
 TEST(IsetReader, IsTheSameLensAsItsTwinInRows) {
   const Lens rows =
       read_text("twin.dat", "60 6 1.5 20\n-60 3 1 20\n0 5 0 15\n500 1.5 1.7 16\n-1e5 0 1 16\n").lens;
-  expect_same_optics(read_text("lens.json", example).lens, rows);
+  expect_same_optics(read_text("lens.json", iset_example).lens, rows);
 }
 
 TEST(IsetReader, NamesLineAndPath) {
-  expect_mentions(complaint("\"ior\": 1.7", "\"ior\": 0.7"),
+  expect_mentions(iset_complaint("\"ior\": 1.7", "\"ior\": 0.7"),
                   {"bad.json:7: surfaces[3].ior must be at least 1"});
-  expect_mentions(complaint("\"radius\": 500", "\"radius\": \"500\""),
+  expect_mentions(iset_complaint("\"radius\": 500", "\"radius\": \"500\""),
                   {"bad.json:7: surfaces[3].radius must be"});
-  expect_mentions(complaint("\"radius\": 500, ", ""), {"bad.json:7: surfaces[3] has no \"radius\""});
-  expect_mentions(complaint("\"radius\": 500", "\"conic_constant\": 1, \"radius\": 500"),
+  expect_mentions(iset_complaint("\"radius\": 500, ", ""), {"bad.json:7: surfaces[3] has no \"radius\""});
+  expect_mentions(iset_complaint("\"radius\": 500", "\"conic_constant\": 1, \"radius\": 500"),
                   {"surfaces[3].conic_constant"});
-  expect_mentions(complaint("\"radius\": 500", "\"radius\": 0"),
+  expect_mentions(iset_complaint("\"radius\": 500", "\"radius\": 0"),
                   {"bad.json:7: surfaces[3] is a second stop"});
-  expect_mentions(complaint("\"ior\": 0, \"radius\": 0", "\"ior\": 1, \"radius\": 9"), {"no stop"});
-  expect_mentions(complaint("\"semi_aperture\": 7.5", "\"semi_aperture\": -1"),
+  expect_mentions(iset_complaint("\"ior\": 0, \"radius\": 0", "\"ior\": 1, \"radius\": 9"), {"no stop"});
+  expect_mentions(iset_complaint("\"semi_aperture\": 7.5", "\"semi_aperture\": -1"),
                   {"surfaces[2].semi_diameter_mm must be positive"});
-  expect_mentions(complaint("\"metadata\"", "\"meta\""), {"bad.json:10: meta is not a key"});
+  expect_mentions(iset_complaint("\"metadata\"", "\"meta\""), {"bad.json:10: meta is not a key"});
 }
 
 TEST(IsetWriter, ReadsBackTheSame) {

@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-constexpr const char* example = R"({
+constexpr const char* native_example = R"({
   "format": "petzval-lens/1", "name": "example", "source": "this test",
   "object_distance_mm": null,
   "aperture": {"f_number": 1.8},
@@ -31,16 +31,16 @@ constexpr const char* example = R"({
 })";
 
 /// The example with its first `before` changed to `after`.
-std::string changed(const std::string& before, const std::string& after) {
-  return with_change(example, before, after);
+std::string native_changed(const std::string& before, const std::string& after) {
+  return with_change(native_example, before, after);
 }
 
-std::string complaint(const std::string& text) {
+std::string native_complaint(const std::string& text) {
   return error_of([&] { lens_from_json(text, "file.json"); });
 }
 
 TEST(NativeReader, ReadsEveryEntry) {
-  const Lens lens = lens_from_json(example, "file.json");
+  const Lens lens = lens_from_json(native_example, "file.json");
   EXPECT_EQ(lens.name, "example");
   EXPECT_EQ(lens.source, "this test");
   EXPECT_FALSE(lens.object_distance_mm);
@@ -92,70 +92,84 @@ TEST(NativeReader, StopsMayHaveBlades) {
 }
 
 TEST(NativeReader, NamesFileLineAndPath) {
-  expect_mentions(complaint(changed("\"conic\"", "\"conik\"")), {"file.json:9: surfaces[0].conik ", "conic"});
-  expect_mentions(complaint(changed("4.5, \"stop\"", "\"4.5\", \"stop\"")),
+  expect_mentions(native_complaint(native_changed("\"conic\"", "\"conik\"")),
+                  {"file.json:9: surfaces[0].conik ", "conic"});
+  expect_mentions(native_complaint(native_changed("4.5, \"stop\"", "\"4.5\", \"stop\"")),
                   {"file.json:10: surfaces[1].thickness_mm must be a distance in mm, not a text"});
-  expect_mentions(complaint(changed("-20, \"thickness_mm\": 2, ", "-20, ")),
+  expect_mentions(native_complaint(native_changed("-20, \"thickness_mm\": 2, ", "-20, ")),
                   {"file.json:11: surfaces[2] has no \"thickness_mm\""});
-  expect_mentions(complaint(changed("N-BAF10", "N-BAF11")), {"file.json:8: surfaces[0].glass", "N-BAF10"});
-  expect_mentions(complaint(changed("1.2e-6", "null")), {"file.json:9: surfaces[0].asphere.4 must be"});
-  expect_mentions(complaint(changed("\"4\": 1", "\"four\": 1")), {"file.json:9: surfaces[0].asphere.four"});
-  expect_mentions(complaint(changed("\"4\": 1", "\"0\": 1")),
+  expect_mentions(native_complaint(native_changed("N-BAF10", "N-BAF11")),
+                  {"file.json:8: surfaces[0].glass", "N-BAF10"});
+  expect_mentions(native_complaint(native_changed("1.2e-6", "null")),
+                  {"file.json:9: surfaces[0].asphere.4 must be"});
+  expect_mentions(native_complaint(native_changed("\"4\": 1", "\"four\": 1")),
+                  {"file.json:9: surfaces[0].asphere.four"});
+  expect_mentions(native_complaint(native_changed("\"4\": 1", "\"0\": 1")),
                   {"surfaces[0].asphere.0 is not a power", "1 to 40"});
-  expect_mentions(complaint(changed("12.6", "-12.6")),
+  expect_mentions(native_complaint(native_changed("12.6", "-12.6")),
                   {"file.json:8: surfaces[0].semi_diameter_mm must be positive"});
-  expect_mentions(complaint(changed("29.475", "0")), {"file.json:8: surfaces[0].radius_mm", "null"});
-  expect_mentions(complaint(changed("\"f_number\": 1.8", "\"f_number\": -1")),
+  expect_mentions(native_complaint(native_changed("29.475", "0")),
+                  {"file.json:8: surfaces[0].radius_mm", "null"});
+  expect_mentions(native_complaint(native_changed("\"f_number\": 1.8", "\"f_number\": -1")),
                   {"file.json:4: aperture must be a positive number"});
-  expect_mentions(complaint(changed("\"f_number\": 1.8", "\"f_stop\": 1")),
+  expect_mentions(native_complaint(native_changed("\"f_number\": 1.8", "\"f_stop\": 1")),
                   {"file.json:4: aperture.f_stop", "image_na"});
-  expect_mentions(complaint(changed("\"f_number\": 1.8", "\"f_number\": 1, \"image_na\": 1")),
+  expect_mentions(native_complaint(native_changed("\"f_number\": 1.8", "\"f_number\": 1, \"image_na\": 1")),
                   {"exactly one"});
-  expect_mentions(complaint(changed("\"angle_deg\"", "\"angle\"")),
+  expect_mentions(native_complaint(native_changed("\"angle_deg\"", "\"angle\"")),
                   {"file.json:5: fields.type", "angle_deg"});
-  expect_mentions(complaint(changed("[0, 14, 20]", "[0, 14, true]")),
+  expect_mentions(native_complaint(native_changed("[0, 14, 20]", "[0, 14, true]")),
                   {"file.json:5: fields.values[2] must be"});
-  expect_mentions(complaint(changed("[0, 14, 20]", "[0, 14, 190]")),
+  expect_mentions(native_complaint(native_changed("[0, 14, 20]", "[0, 14, 190]")),
                   {"fields.values[2] must be an angle below 180"});
-  expect_mentions(complaint(changed("/1\"", "/2\"")), {"file.json:2: format must be \"petzval-lens/1\""});
-  expect_mentions(complaint(changed("\"stop\": true, ", "")), {"file.json:7: surfaces has no stop"});
-  expect_mentions(complaint(changed("\"radius_mm\": -20", "\"stop\": true, \"radius_mm\": -20")),
-                  {"file.json:11: surfaces[2].stop", "surfaces[1]"});
-  expect_mentions(complaint(changed("\"index\": 1.7", "\"index\": 0.7")),
+  expect_mentions(native_complaint(native_changed("/1\"", "/2\"")),
+                  {"file.json:2: format must be \"petzval-lens/1\""});
+  expect_mentions(native_complaint(native_changed("\"stop\": true, ", "")),
+                  {"file.json:7: surfaces has no stop"});
+  expect_mentions(
+      native_complaint(native_changed("\"radius_mm\": -20", "\"stop\": true, \"radius_mm\": -20")),
+      {"file.json:11: surfaces[2].stop", "surfaces[1]"});
+  expect_mentions(native_complaint(native_changed("\"index\": 1.7", "\"index\": 0.7")),
                   {"file.json:12: surfaces[3].glass"});
-  expect_mentions(complaint(changed("\"index\": 1.7", "\"index\": 1.7, \"nd\": 1.7")),
+  expect_mentions(native_complaint(native_changed("\"index\": 1.7", "\"index\": 1.7, \"nd\": 1.7")),
                   {"surfaces[3].glass.nd"});
-  expect_mentions(complaint(changed("\"vd\": 50", "\"v\": 50")), {"surfaces[2].glass.v "});
-  expect_mentions(complaint(changed("486.13\": 1.6", "blue\": 1.6")), {"surfaces[4].glass.index_table.blue"});
-  expect_mentions(complaint(changed("null,\n", "-5,\n")),
+  expect_mentions(native_complaint(native_changed("\"vd\": 50", "\"v\": 50")), {"surfaces[2].glass.v "});
+  expect_mentions(native_complaint(native_changed("486.13\": 1.6", "blue\": 1.6")),
+                  {"surfaces[4].glass.index_table.blue"});
+  expect_mentions(native_complaint(native_changed("null,\n", "-5,\n")),
                   {"file.json:3: object_distance_mm must be positive"});
-  expect_mentions(complaint(changed(", \"reference_wavelength_nm\": 587.56", "")),
+  expect_mentions(native_complaint(native_changed(", \"reference_wavelength_nm\": 587.56", "")),
                   {"no \"reference_wavelength_nm\""});
-  expect_mentions(complaint(changed("587.56,", "-587.56,")), {"file.json:6: wavelengths_nm[1] must be"});
+  expect_mentions(native_complaint(native_changed("587.56,", "-587.56,")),
+                  {"file.json:6: wavelengths_nm[1] must be"});
 }
 
 TEST(NativeReader, NamesTheLineOfBrokenJson) {
-  expect_mentions(complaint(changed("\"fields\": {", "\"fields\": ")), {"file.json:5: is not JSON"});
-  expect_mentions(complaint(changed("8.55", "1e999")), {"file.json:10: is not JSON", "1e999"});
-  expect_mentions(complaint(changed("8.55", "NaN")), {"file.json:10: is not JSON"});
-  expect_mentions(complaint(changed("\"name\": \"example\"", "\"name\": \"a\", \"name\": \"b\"")),
-                  {"file.json:2: name is there twice"});
+  expect_mentions(native_complaint(native_changed("\"fields\": {", "\"fields\": ")),
+                  {"file.json:5: is not JSON"});
+  expect_mentions(native_complaint(native_changed("8.55", "1e999")), {"file.json:10: is not JSON", "1e999"});
+  expect_mentions(native_complaint(native_changed("8.55", "NaN")), {"file.json:10: is not JSON"});
+  expect_mentions(
+      native_complaint(native_changed("\"name\": \"example\"", "\"name\": \"a\", \"name\": \"b\"")),
+      {"file.json:2: name is there twice"});
 }
 
 TEST(NativeReader, ReferenceOfASingleWavelengthIsPlain) {
-  const std::string text = changed("[486.13, 587.56, 656.27], \"reference_wavelength_nm\": 587.56", "[500]");
+  const std::string text =
+      native_changed("[486.13, 587.56, 656.27], \"reference_wavelength_nm\": 587.56", "[500]");
   EXPECT_EQ(lens_from_json(text, "file.json").reference_wavelength_nm, 500);
 }
 
 TEST(NativeReader, SubstitutesOnlyWhatItIsTold) {
   LensReadOptions options;
   options.substitutions = {{"schott:n-baf10", "CDGM:H-LAK10"}};
-  EXPECT_EQ(lens_from_json(example, "file.json", options).surfaces[0].material.description(), "CDGM:H-LAK10");
+  EXPECT_EQ(lens_from_json(native_example, "file.json", options).surfaces[0].material.description(),
+            "CDGM:H-LAK10");
   options.substitutions = {{"SCHOTT:N-BAF10", "1.61025/56.71"}};
-  const Lens model = lens_from_json(example, "file.json", options);
+  const Lens model = lens_from_json(native_example, "file.json", options);
   EXPECT_EQ(std::get<Material::Model>(model.surfaces[0].material.kind()).nd, 1.61025);
   options.substitutions = {{"N-BAF10", "CDGM:H-LAK10"}};
-  expect_mentions(error_of([&] { lens_from_json(example, "file.json", options); }),
+  expect_mentions(error_of([&] { lens_from_json(native_example, "file.json", options); }),
                   {"file.json:", "--substitute N-BAF10", "no such glass", "SCHOTT:N-BAF10"});
 }
 
@@ -172,14 +186,14 @@ TEST(NativeWriter, EveryNumberSurvives) {
 }
 
 TEST(NativeWriter, OneSurfaceALine) {
-  const std::string text = lens_to_json(lens_from_json(example, "file.json"));
+  const std::string text = lens_to_json(lens_from_json(native_example, "file.json"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10 + 6 + 2);
   expect_mentions(text, {"{\"radius_mm\": 29.475, \"thickness_mm\": 3.76, \"glass\": \"SCHOTT:N-BAF10\"",
                          "\"asphere\": {\"4\": 1.2e-06, \"6\": -3e-09}"});
 }
 
 TEST(NativeWriter, RefusesWhatIsNoLens) {
-  Lens lens = lens_from_json(example, "file.json");
+  Lens lens = lens_from_json(native_example, "file.json");
   lens.surfaces[2].thickness_mm = std::nan("");
   expect_mentions(error_of([&] { lens_to_json(lens); }), {"surfaces[2].thickness_mm"});
 }

@@ -21,7 +21,7 @@ constexpr const char* doublet =
     "500 1.5 1.7 16\n"
     "-500\t0\t1\t16";
 
-std::string complaint(std::string_view text) {
+std::string pbrt_complaint(std::string_view text) {
   return error_of([&] { read_text("bad.dat", text); });
 }
 
@@ -63,16 +63,16 @@ TEST(PbrtReader, PassesOverAStatedFocalLength) {
 }
 
 TEST(PbrtReader, NamesTheLine) {
-  expect_mentions(complaint("1 2 1.5 4\n0 1 0 3\n5 6 1\n"), {"bad.dat:3: a row has 4 numbers", "not 3"});
-  expect_mentions(complaint("1 2 1.5 4 5\n"), {"bad.dat:1: ", "not 5"});
-  expect_mentions(complaint("1 2 x 4\n"), {"bad.dat:1: \"x\" is not a number"});
-  expect_mentions(complaint("1 nan 1 4\n"), {"bad.dat:1: \"nan\""});
-  expect_mentions(complaint("1 2 0 4\n"), {"bad.dat:1: the index 0 is below 1"});
-  expect_mentions(complaint("1 2 1.5 -4\n"), {"bad.dat:1: the aperture diameter -4 must be positive"});
-  expect_mentions(complaint("0 1 0 3\n5 6 1 3\n0 1 0 3\n"), {"bad.dat:3: a second stop", "line 1"});
-  expect_mentions(complaint("1 2 1.5 4\n"), {"no stop"});
-  expect_mentions(complaint("# nothing\n"), {"holds no lens"});
-  expect_mentions(complaint("0 1 0 3\n5 0 1 3\n"), {"no focus"});
+  expect_mentions(pbrt_complaint("1 2 1.5 4\n0 1 0 3\n5 6 1\n"), {"bad.dat:3: a row has 4 numbers", "not 3"});
+  expect_mentions(pbrt_complaint("1 2 1.5 4 5\n"), {"bad.dat:1: ", "not 5"});
+  expect_mentions(pbrt_complaint("1 2 x 4\n"), {"bad.dat:1: \"x\" is not a number"});
+  expect_mentions(pbrt_complaint("1 nan 1 4\n"), {"bad.dat:1: \"nan\""});
+  expect_mentions(pbrt_complaint("1 2 0 4\n"), {"bad.dat:1: the index 0 is below 1"});
+  expect_mentions(pbrt_complaint("1 2 1.5 -4\n"), {"bad.dat:1: the aperture diameter -4 must be positive"});
+  expect_mentions(pbrt_complaint("0 1 0 3\n5 6 1 3\n0 1 0 3\n"), {"bad.dat:3: a second stop", "line 1"});
+  expect_mentions(pbrt_complaint("1 2 1.5 4\n"), {"no stop"});
+  expect_mentions(pbrt_complaint("# nothing\n"), {"holds no lens"});
+  expect_mentions(pbrt_complaint("0 1 0 3\n5 0 1 3\n"), {"no focus"});
 }
 
 TEST(PbrtWriter, ReadsBackTheSame) {

@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-constexpr const char* example =
+constexpr const char* seq_example =
     "RDM;LEN   \"VERSION: 11.2\"\n"
     "TITLE 'a made-up lens; with ! signs'   ! and a comment\n"
     "epd 5.0; dim m\n"
@@ -45,16 +45,16 @@ constexpr const char* example =
     "SI    0.0 0.25\n"
     "GO\n";
 
-std::string changed(const std::string& before, const std::string& after) {
-  return with_change(example, before, after);
+std::string seq_changed(const std::string& before, const std::string& after) {
+  return with_change(seq_example, before, after);
 }
 
-LensFile read(const std::string& text, const LensReadOptions& options = {}) {
+LensFile read_seq_text(const std::string& text, const LensReadOptions& options = {}) {
   return read_text("lens.seq", text, options);
 }
 
-std::string complaint(const std::string& before, const std::string& after) {
-  return error_of([&] { read(changed(before, after)); });
+std::string seq_complaint(const std::string& before, const std::string& after) {
+  return error_of([&] { read_seq_text(seq_changed(before, after)); });
 }
 
 TEST(SeqCommands, SplitsLinesAndWords) {
@@ -72,7 +72,7 @@ TEST(SeqCommands, SplitsLinesAndWords) {
 }
 
 TEST(SeqReader, TakesOverEverything) {
-  const LensFile file = read(example);
+  const LensFile file = read_seq_text(seq_example);
   const Lens& lens = file.lens;
   EXPECT_EQ(lens.name, "a made-up lens; with ! signs");
   EXPECT_FALSE(lens.object_distance_mm);
@@ -101,22 +101,23 @@ TEST(SeqReader, TakesOverEverything) {
 }
 
 TEST(SeqReader, CurvatureUnlessRdm) {
-  EXPECT_EQ(read(changed("RDM;", "")).lens.surfaces[0].curvature_per_mm, 20);
-  EXPECT_EQ(read(changed("RDM;", "RDM N;")).lens.surfaces[0].curvature_per_mm, 20);
-  EXPECT_EQ(read(changed("RDM;", "RDM Y;")).lens.surfaces[0].curvature_per_mm, 1 / 20.0);
+  EXPECT_EQ(read_seq_text(seq_changed("RDM;", "")).lens.surfaces[0].curvature_per_mm, 20);
+  EXPECT_EQ(read_seq_text(seq_changed("RDM;", "RDM N;")).lens.surfaces[0].curvature_per_mm, 20);
+  EXPECT_EQ(read_seq_text(seq_changed("RDM;", "RDM Y;")).lens.surfaces[0].curvature_per_mm, 1 / 20.0);
   // RDY and CUY say which they are.
-  EXPECT_EQ(read(changed("SI ", "RDY S1 25\nSI ")).lens.surfaces[0].curvature_per_mm, 1 / 25.0);
-  EXPECT_EQ(read(changed("SI ", "CUY S1 0.5\nSI ")).lens.surfaces[0].curvature_per_mm, 0.5);
+  EXPECT_EQ(read_seq_text(seq_changed("SI ", "RDY S1 25\nSI ")).lens.surfaces[0].curvature_per_mm, 1 / 25.0);
+  EXPECT_EQ(read_seq_text(seq_changed("SI ", "CUY S1 0.5\nSI ")).lens.surfaces[0].curvature_per_mm, 0.5);
   // All curvatures absurd: radii, most likely.
   bool warned = false;
-  for (const std::string& note : read(changed("RDM;", "")).notes) warned |= note.find("RDM") != note.npos;
+  for (const std::string& note : read_seq_text(seq_changed("RDM;", "")).notes)
+    warned |= note.find("RDM") != note.npos;
   EXPECT_TRUE(warned);
 }
 
 // Focal lengths that another program (ray-optics) and hand calculation give for these two lenses: a
 // plano-convex landscape lens scaled to f = 10, and R1 = 10, R2 = −20, t = 1.
 TEST(SeqReader, TextbookLenses) {
-  const Lens singlet = read(
+  const Lens singlet = read_seq_text(
                            "tit 'singlet'\ndim m\nso 0. 100.\ns 0.1 1 '500.600'\ns -.05 15\nsi 0 0\n"
                            "fno 5.0\nwl 587.5618 650 450\nyim 0 1\n")
                            .lens;
@@ -131,16 +132,18 @@ TEST(SeqReader, TextbookLenses) {
 }
 
 TEST(SeqReader, Apertures) {
-  const auto kind = [](const std::string& text) { return read(changed("epd 5.0", text)).lens.aperture.kind; };
+  const auto kind = [](const std::string& text) {
+    return read_seq_text(seq_changed("epd 5.0", text)).lens.aperture.kind;
+  };
   EXPECT_EQ(kind("FNO 4"), Aperture::Kind::f_number);
   EXPECT_EQ(kind("NA 0.1"), Aperture::Kind::image_na);
-  std::string finite = changed("SO    0.0 0.1e14", "SO    0.0 50");
+  std::string finite = seq_changed("SO    0.0 0.1e14", "SO    0.0 50");
   finite.replace(finite.find("epd 5.0"), 7, "nao 0.1");
-  EXPECT_EQ(read(finite).lens.aperture.kind, Aperture::Kind::object_na);
+  EXPECT_EQ(read_seq_text(finite).lens.aperture.kind, Aperture::Kind::object_na);
 }
 
 TEST(SeqReader, UnitsScaleEveryLength) {
-  const Lens mm = read(example).lens, cm = read(changed("dim m", "dim c")).lens;
+  const Lens mm = read_seq_text(seq_example).lens, cm = read_seq_text(seq_changed("dim m", "dim c")).lens;
   EXPECT_EQ(cm.aperture.value, 10 * mm.aperture.value);
   EXPECT_EQ(cm.surfaces[0].thickness_mm, 10 * mm.surfaces[0].thickness_mm);
   EXPECT_DOUBLE_EQ(cm.surfaces[0].curvature_per_mm, mm.surfaces[0].curvature_per_mm / 10);
@@ -148,34 +151,37 @@ TEST(SeqReader, UnitsScaleEveryLength) {
   EXPECT_DOUBLE_EQ(cm.surfaces[1].asphere.at(4), 1e-9);
   EXPECT_EQ(*cm.surfaces[0].semi_diameter_mm, 60);
   expect_relative(first_order(cm).efl_mm, 10 * first_order(mm).efl_mm, 1e-12);
-  EXPECT_EQ(read(changed("dim m", "dim i")).lens.aperture.value, 5 * 25.4);
-  expect_mentions(complaint("dim m", "dim furlong"), {"lens.seq:3: DIM", "inch"});
+  EXPECT_EQ(read_seq_text(seq_changed("dim m", "dim i")).lens.aperture.value, 5 * 25.4);
+  expect_mentions(seq_complaint("dim m", "dim furlong"), {"lens.seq:3: DIM", "inch"});
 }
 
 TEST(SeqReader, FieldsOfAllKinds) {
   const auto fields = [](const std::string& text) {
-    return read(changed("XAN   0.0 0.0\nYAN   0.0 10.0\n", text)).lens.fields;
+    return read_seq_text(seq_changed("XAN   0.0 0.0\nYAN   0.0 10.0\n", text)).lens.fields;
   };
   EXPECT_EQ(fields("YIM 0 3\n").kind, Fields::Kind::paraxial_image_height_mm);
   EXPECT_EQ(fields("YRI 0 3\n").kind, Fields::Kind::real_image_height_mm);
   EXPECT_EQ(fields("XIM 0 3\nYIM 0 4\n").values, (std::vector<double>{0, 5}));
   EXPECT_EQ(fields("").values, std::vector<double>{0});
-  const std::string finite = changed("SO    0.0 0.1e14", "SO    0.0 50");
+  const std::string finite = seq_changed("SO    0.0 0.1e14", "SO    0.0 50");
   std::string heights = finite;
   heights.replace(heights.find("YAN"), 3, "YOB");
-  EXPECT_EQ(read(heights).lens.fields.kind, Fields::Kind::object_height_mm);
+  EXPECT_EQ(read_seq_text(heights).lens.fields.kind, Fields::Kind::object_height_mm);
 }
 
 TEST(SeqReader, SolvesTheParaxialImageWhereNoDistanceStands) {
-  const LensFile file = read(changed("S     -30. 25.5\nSI    0.0 0.25", "S     -30. 0\n PIM\nSI    0.0 0.0"));
+  const LensFile file =
+      read_seq_text(seq_changed("S     -30. 25.5\nSI    0.0 0.25", "S     -30. 0\n PIM\nSI    0.0 0.0"));
   EXPECT_NEAR(trace_paraxial(file.lens, 1, 0, 587.5618).height_mm.back(), 0, 1e-13);
   // A distance that stands there is the solved one.
-  EXPECT_EQ(read(changed("SI    0.0 0.25", " PIM\nSI    0.0 0")).lens.surfaces.back().thickness_mm, 25.5);
+  EXPECT_EQ(
+      read_seq_text(seq_changed("SI    0.0 0.25", " PIM\nSI    0.0 0")).lens.surfaces.back().thickness_mm,
+      25.5);
 }
 
 TEST(SeqReader, Glasses) {
   const auto glass = [](const std::string& name, const LensReadOptions& options = {}) {
-    return read(changed("NBK7_SCHOTT", name), options).lens.surfaces[0].material;
+    return read_seq_text(seq_changed("NBK7_SCHOTT", name), options).lens.surfaces[0].material;
   };
   EXPECT_EQ(glass("nbk7_schott").description(), "SCHOTT:N-BK7");
   EXPECT_EQ(glass("N-SK16_SCHOTT").description(), "SCHOTT:N-SK16");
@@ -184,51 +190,55 @@ TEST(SeqReader, Glasses) {
   EXPECT_EQ(std::get<Material::Model>(glass("517642").kind()).nd, 1.517);
   EXPECT_EQ(std::get<Material::Model>(glass("517642").kind()).vd, 64.2);
   EXPECT_EQ(std::get<Material::Model>(glass("500.700").kind()).vd, 70);
-  expect_mentions(complaint("NBK7_SCHOTT", "NBK99_SCHOTT"),
+  expect_mentions(seq_complaint("NBK7_SCHOTT", "NBK99_SCHOTT"),
                   {"lens.seq:16: S1: unknown glass", "N-BK7", "--substitute"});
-  expect_mentions(complaint("NBK7_SCHOTT", "1.5"), {"lens.seq:16: S1: 1.5", "517.642"});
+  expect_mentions(seq_complaint("NBK7_SCHOTT", "1.5"), {"lens.seq:16: S1: 1.5", "517.642"});
   LensReadOptions options;
   options.substitutions = {{"OLD_SCHOTT", "SCHOTT:F2"}};
   EXPECT_EQ(glass("OLD_SCHOTT", options).description(), "SCHOTT:F2");
   options.substitutions = {{"BK8", "SCHOTT:F2"}};
-  expect_mentions(error_of([&] { read(example, options); }), {"lens.seq: --substitute BK8", "NBK7_SCHOTT"});
+  expect_mentions(error_of([&] { read_seq_text(seq_example, options); }),
+                  {"lens.seq: --substitute BK8", "NBK7_SCHOTT"});
 }
 
 TEST(SeqReader, PrivateGlasses) {
   // Indices in the order of PWL, whatever it is.
-  const Material soft = read(example).lens.surfaces[3].material;
+  const Material soft = read_seq_text(seq_example).lens.surfaces[3].material;
   EXPECT_EQ(soft.index(486.1327), 1.63);
   EXPECT_EQ(soft.index(656.2725), 1.60);
-  const Material constant = read(changed("1.60 1.61 1.63", "1.5 1.5 1.5")).lens.surfaces[3].material;
+  const Material constant =
+      read_seq_text(seq_changed("1.60 1.61 1.63", "1.5 1.5 1.5")).lens.surfaces[3].material;
   EXPECT_EQ(constant.index(10600), 1.5);
-  expect_mentions(complaint("1.60 1.61 1.63", "1.60 1.61"), {"lens.seq:13: private glass 'soft': 2 indices"});
-  expect_mentions(complaint("1.60 1.61 1.63", "LAU 1 2 3"), {"lens.seq:13: private glass 'soft'", "LAU"});
-  expect_mentions(complaint("1.60 1.61 1.63", "0.6 1.61 1.63"), {"lens.seq:13: ", "0.6"});
+  expect_mentions(seq_complaint("1.60 1.61 1.63", "1.60 1.61"),
+                  {"lens.seq:13: private glass 'soft': 2 indices"});
+  expect_mentions(seq_complaint("1.60 1.61 1.63", "LAU 1 2 3"), {"lens.seq:13: private glass 'soft'", "LAU"});
+  expect_mentions(seq_complaint("1.60 1.61 1.63", "0.6 1.61 1.63"), {"lens.seq:13: ", "0.6"});
 }
 
 TEST(SeqReader, RefusesWhatItDoesNotModel) {
   const auto with = [&](const std::string& command) {
-    return complaint("  STO\n", "  STO\n " + command + "\n");
+    return seq_complaint("  STO\n", "  STO\n " + command + "\n");
   };
   for (const char* command : {"ADE 5", "XDE 0.1", "BEN", "YTO", "SPS XYP", "SPS QCN", "CUF 0.1", "DIF GRT",
                               "GRT", "HOE", "UDS", "ZOO 2", "REX 4", "CUX 1"})
     expect_mentions(with(command), {"lens.seq:26: S3: ", std::string(command, 3).c_str(), "not modelled"});
-  EXPECT_NO_THROW(read(changed("  STO\n", "  STO\n ADE 0; XDE 0.0; CUF 0.0; REX EDG 4\n")));
-  expect_mentions(complaint("30. 1.5 'soft'", "30. -1.5 REFL"), {"lens.seq:26: S4: S is a mirror"});
+  EXPECT_NO_THROW(read_seq_text(seq_changed("  STO\n", "  STO\n ADE 0; XDE 0.0; CUF 0.0; REX EDG 4\n")));
+  expect_mentions(seq_complaint("30. 1.5 'soft'", "30. -1.5 REFL"), {"lens.seq:26: S4: S is a mirror"});
   expect_mentions(with("GLA REFL"), {"S3: ", "mirrors"});
   expect_mentions(with("RMD REFL"), {"S3: ", "REFL"});
   expect_mentions(with("CIR OBS 2"), {"S3: CIR", "obscuration"});
-  expect_mentions(complaint("SI    0.0 0.25", "SI    0.1 0.25"), {"curved image"});
-  expect_mentions(complaint("SO    0.0", "SO    0.1"), {"curved object"});
-  expect_mentions(complaint("REF   2", "REF   2; TEM 40"), {"lens.seq:6: TEM", "temperature"});
-  EXPECT_NO_THROW(read(changed("REF   2", "REF   2; TEM 20; PRE 760")));
+  expect_mentions(seq_complaint("SI    0.0 0.25", "SI    0.1 0.25"), {"curved image"});
+  expect_mentions(seq_complaint("SO    0.0", "SO    0.1"), {"curved object"});
+  expect_mentions(seq_complaint("REF   2", "REF   2; TEM 40"), {"lens.seq:6: TEM", "temperature"});
+  EXPECT_NO_THROW(read_seq_text(seq_changed("REF   2", "REF   2; TEM 20; PRE 760")));
 }
 
 TEST(SeqReader, OddPolynomials) {
   // CODE V, Lens System Setup: z = conic + Σ AR_p (r/NRADIUS)^p; C1 is K, C(p + 1) is AR_p, C33 is NRADIUS,
   // and NRADIUS 0 stands for 1.
   const auto surface = [&](const std::string& commands) {
-    return read(changed("  ASP\n  K -0.5\n  A 1e-6; B -2e-8; J 3e-24\n", commands)).lens.surfaces[1];
+    return read_seq_text(seq_changed("  ASP\n  K -0.5\n  A 1e-6; B -2e-8; J 3e-24\n", commands))
+        .lens.surfaces[1];
   };
   using Terms = std::map<int, double>;
   const Surface named = surface("  SPS ODD 0.0\n  SCO K -0.5; SCO AR3 2e-4; sco ar30 -1e-20\n");
@@ -241,14 +251,14 @@ TEST(SeqReader, OddPolynomials) {
                              "  SPS ODD\n  SCO C33 2; SCO AR4 0.32\n"})
     EXPECT_NEAR(surface(radius).asphere.at(4), 0.02, 1e-17) << radius;
   // In inches: 0.32 in (r / 2 in)^4.
-  const std::string inches = changed("dim m", "dim i");
+  const std::string inches = seq_changed("dim m", "dim i");
   const std::size_t at = inches.find("  ASP");
-  const Lens lens =
-      read(inches.substr(0, at) + "  SPS ODD 2.0\n  SCO AR4 0.32\n" + inches.substr(inches.find("  CIR EDG")))
-          .lens;
+  const Lens lens = read_seq_text(inches.substr(0, at) + "  SPS ODD 2.0\n  SCO AR4 0.32\n" +
+                                  inches.substr(inches.find("  CIR EDG")))
+                        .lens;
   EXPECT_NEAR(lens.surfaces[1].asphere.at(4) / (0.32 * 25.4 / std::pow(50.8, 4)), 1, 1e-14);
   const auto refusal = [&](const std::string& commands) {
-    return complaint("  ASP\n  K -0.5\n  A 1e-6; B -2e-8; J 3e-24\n", commands);
+    return seq_complaint("  ASP\n  K -0.5\n  A 1e-6; B -2e-8; J 3e-24\n", commands);
   };
   expect_mentions(refusal("  SCO AR3 1\n"), {"lens.seq:20: S2: SCO", "no SPS ODD"});
   expect_mentions(refusal("  SPS ODD\n  SCO AR31 1\n"), {"lens.seq:21: S2: SCO AR31", "AR1 to AR30"});
@@ -258,39 +268,39 @@ TEST(SeqReader, OddPolynomials) {
 }
 
 TEST(SeqReader, LinesThatGoOnWithoutABlank) {
-  const Lens lens = read(changed("WL    656.2725 &\n", "WL    656.2725&\n")).lens;
+  const Lens lens = read_seq_text(seq_changed("WL    656.2725 &\n", "WL    656.2725&\n")).lens;
   EXPECT_EQ(lens.wavelengths_nm.size(), 3u);
-  EXPECT_EQ(read(changed("J 3e-24", "J&\n  3e-24")).lens.surfaces[1].asphere.at(20), 3e-24);
+  EXPECT_EQ(read_seq_text(seq_changed("J 3e-24", "J&\n  3e-24")).lens.surfaces[1].asphere.at(20), 3e-24);
 }
 
 TEST(SeqReader, SolvesLeaveTheNumberOnTheSurfacesLine) {
   const LensFile solved =
-      read(changed("SI    0.0 0.25", "THI S5 PIM\nTHI S4 OAL S1..5 60.0\nSI    0.0 0.25"));
+      read_seq_text(seq_changed("SI    0.0 0.25", "THI S5 PIM\nTHI S4 OAL S1..5 60.0\nSI    0.0 0.25"));
   EXPECT_EQ(solved.lens.surfaces[3].thickness_mm, 1.5);
   expect_mentions(solved.notes[0], {"THI: a solve"});
 }
 
 TEST(SeqReader, NotesWhatItPassesOver) {
-  const auto notes = read(changed("VUY   0.0 0.0", "VUY   0.0 0.1\nWXYZ 3")).notes;
+  const auto notes = read_seq_text(seq_changed("VUY   0.0 0.0", "VUY   0.0 0.1\nWXYZ 3")).notes;
   ASSERT_EQ(notes.size(), 4u);
   expect_mentions(notes[0], {"vignetting"});
   expect_mentions(notes[1], {"WXY"});
 }
 
 TEST(SeqReader, NamesTheLine) {
-  expect_mentions(complaint("S     20 4.5", "S     2x0 4.5"),
+  expect_mentions(seq_complaint("S     20 4.5", "S     2x0 4.5"),
                   {"lens.seq:16: S1: S must have a number", "2x0"});
-  expect_mentions(complaint("  K -0.5", "  K"), {"lens.seq:21: S2: K must have a number"});
-  expect_mentions(complaint("epd 5.0; ", ""), {"EPD, FNO, NA and NAO"});
-  expect_mentions(complaint("epd 5.0", "epd five"), {"lens.seq:3: EPD must have a number"});
-  expect_mentions(complaint("epd 5.0", "nao 0.1"), {"object_na needs an object"});
-  expect_mentions(complaint("REF   2", "REF   4"), {"lens.seq:6: REF", "1 to 3"});
-  expect_mentions(complaint("SO    0.0 0.1e14\n", ""), {"lens.seq:15: S comes before the object"});
-  expect_mentions(complaint("SI    0.0 0.25\n", ""), {"whole lens", "SI"});
-  expect_mentions(complaint("GO\n", "S 1 2\n"), {"lens.seq:29: S comes after the image"});
-  expect_mentions(complaint("GO\n", "STO S9\n"), {"S9", "not there"});
-  expect_mentions(complaint("S     -40 3", "S7     -40 3"), {"lens.seq:19: S7 is not the next surface"});
-  expect_mentions(complaint("S     -30. 25.5", "S     -30. 1e20"), {"S is infinitely far"});
+  expect_mentions(seq_complaint("  K -0.5", "  K"), {"lens.seq:21: S2: K must have a number"});
+  expect_mentions(seq_complaint("epd 5.0; ", ""), {"EPD, FNO, NA and NAO"});
+  expect_mentions(seq_complaint("epd 5.0", "epd five"), {"lens.seq:3: EPD must have a number"});
+  expect_mentions(seq_complaint("epd 5.0", "nao 0.1"), {"object_na needs an object"});
+  expect_mentions(seq_complaint("REF   2", "REF   4"), {"lens.seq:6: REF", "1 to 3"});
+  expect_mentions(seq_complaint("SO    0.0 0.1e14\n", ""), {"lens.seq:15: S comes before the object"});
+  expect_mentions(seq_complaint("SI    0.0 0.25\n", ""), {"whole lens", "SI"});
+  expect_mentions(seq_complaint("GO\n", "S 1 2\n"), {"lens.seq:29: S comes after the image"});
+  expect_mentions(seq_complaint("GO\n", "STO S9\n"), {"S9", "not there"});
+  expect_mentions(seq_complaint("S     -40 3", "S7     -40 3"), {"lens.seq:19: S7 is not the next surface"});
+  expect_mentions(seq_complaint("S     -30. 25.5", "S     -30. 1e20"), {"S is infinitely far"});
 }
 
 TEST(SeqWriter, ReadsBackTheSame) {

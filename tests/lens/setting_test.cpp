@@ -16,7 +16,7 @@ Lens set(const std::string& assignment) {
   return with_setting(triplet(), assignment);
 }
 
-std::string complaint(const std::string& assignment) {
+std::string setting_complaint(const std::string& assignment) {
   return error_of([&] { set(assignment); });
 }
 
@@ -90,34 +90,34 @@ TEST(Setting, ReachesLists) {
 }
 
 TEST(Setting, SaysWhatWouldBeRight) {
-  expect_mentions(complaint("surfaces[4].thicknes_mm=1"),
+  expect_mentions(setting_complaint("surfaces[4].thicknes_mm=1"),
                   {"--set surfaces[4].thicknes_mm=1: ", "thickness_mm"});
-  expect_mentions(complaint("surfaces[6].conic=1"), {"surfaces[6] is not there", "0 to 5"});
-  expect_mentions(complaint("surfaces[99999999999].conic=1"), {"is not a path"});
-  expect_mentions(complaint("fields.values[5]=1"), {"fields.values[5] is not there", "0 to 4"});
-  expect_mentions(complaint("apertur.f_number=1"), {"apertur is not a key", "aperture"});
-  expect_mentions(complaint("aperture.f_stop=1"), {"aperture.f_stop", "f_number"});
-  expect_mentions(complaint("surfaces[0].thickness_mm=wide"),
+  expect_mentions(setting_complaint("surfaces[6].conic=1"), {"surfaces[6] is not there", "0 to 5"});
+  expect_mentions(setting_complaint("surfaces[99999999999].conic=1"), {"is not a path"});
+  expect_mentions(setting_complaint("fields.values[5]=1"), {"fields.values[5] is not there", "0 to 4"});
+  expect_mentions(setting_complaint("apertur.f_number=1"), {"apertur is not a key", "aperture"});
+  expect_mentions(setting_complaint("aperture.f_stop=1"), {"aperture.f_stop", "f_number"});
+  expect_mentions(setting_complaint("surfaces[0].thickness_mm=wide"),
                   {"surfaces[0].thickness_mm must be a distance in mm, not a text"});
-  expect_mentions(complaint("surfaces[0].thickness_mm="), {"surfaces[0].thickness_mm must be"});
-  expect_mentions(complaint("surfaces[0].glass=N-BK77"), {"surfaces[0].glass", "N-BK7"});
-  expect_mentions(complaint("surfaces[3].stop=false"), {"no stop"});
-  expect_mentions(complaint("name.x=1"), {"name has no entries"});
-  expect_mentions(complaint("name[0]=1"), {"name is not a list"});
-  expect_mentions(complaint("surfaces[0]"), {"no value"});
-  expect_mentions(complaint("reference_wavelength_nm=null"), {"reference_wavelength_nm must be"});
+  expect_mentions(setting_complaint("surfaces[0].thickness_mm="), {"surfaces[0].thickness_mm must be"});
+  expect_mentions(setting_complaint("surfaces[0].glass=N-BK77"), {"surfaces[0].glass", "N-BK7"});
+  expect_mentions(setting_complaint("surfaces[3].stop=false"), {"no stop"});
+  expect_mentions(setting_complaint("name.x=1"), {"name has no entries"});
+  expect_mentions(setting_complaint("name[0]=1"), {"name is not a list"});
+  expect_mentions(setting_complaint("surfaces[0]"), {"no value"});
+  expect_mentions(setting_complaint("reference_wavelength_nm=null"), {"reference_wavelength_nm must be"});
   for (const char* path : {"=1", ".=1", "a..b=1", "[0]=1", "surfaces[=1", "surfaces[]=1", "surfaces[-1]=1",
                            "surfaces[0]x=1", "a.=1"})
-    expect_mentions(complaint(path), {"is not a path", "surfaces[4].thickness_mm"});
+    expect_mentions(setting_complaint(path), {"is not a path", "surfaces[4].thickness_mm"});
 }
 
 TEST(Setting, HostileValues) {
-  complaint("surfaces=" + std::string(100'000, '['));
-  complaint("surfaces[0].glass=" + std::string(100'000, 'x'));
-  complaint("surfaces=[]");
-  complaint("surfaces[0]=null");
-  complaint("format=petzval-lens/2");
-  complaint("surfaces[0].radius_mm=1e-320");
+  setting_complaint("surfaces=" + std::string(100'000, '['));
+  setting_complaint("surfaces[0].glass=" + std::string(100'000, 'x'));
+  setting_complaint("surfaces=[]");
+  setting_complaint("surfaces[0]=null");
+  setting_complaint("format=petzval-lens/2");
+  setting_complaint("surfaces[0].radius_mm=1e-320");
 }
 
 }  // namespace

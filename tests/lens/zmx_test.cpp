@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-constexpr const char* example =
+constexpr const char* zmx_example =
     "VERS 140124 258 36214\n"
     "MODE SEQ\n"
     "NAME a made-up lens\n"
@@ -76,20 +76,20 @@ constexpr const char* example =
     "TOL TOFF   0   0\n"
     "CURV 1 2 3\n";
 
-std::string changed(const std::string& before, const std::string& after) {
-  return with_change(example, before, after);
+std::string zmx_changed(const std::string& before, const std::string& after) {
+  return with_change(zmx_example, before, after);
 }
 
-LensFile read(const std::string& text, const LensReadOptions& options = {}) {
+LensFile read_zmx_text(const std::string& text, const LensReadOptions& options = {}) {
   return read_text("lens.zmx", text, options);
 }
 
-std::string complaint(const std::string& before, const std::string& after) {
-  return error_of([&] { read(changed(before, after)); });
+std::string zmx_complaint(const std::string& before, const std::string& after) {
+  return error_of([&] { read_zmx_text(zmx_changed(before, after)); });
 }
 
 TEST(ZmxReader, ReadsWhatThereIs) {
-  const LensFile file = read(example);
+  const LensFile file = read_zmx_text(zmx_example);
   const Lens& lens = file.lens;
   EXPECT_EQ(lens.name, "a made-up lens");
   EXPECT_FALSE(lens.object_distance_mm);
@@ -120,26 +120,26 @@ TEST(ZmxReader, ReadsWhatThereIs) {
 
 /// The same text in the encodings that these files come in.
 TEST(ZmxReader, KnowsItsEncodings) {
-  const Lens plain = read(example).lens;
+  const Lens plain = read_zmx_text(zmx_example).lens;
   std::string little = "\xFF\xFE", big = "\xFE\xFF", windows;
-  for (const char* c = example; *c; ++c) {
+  for (const char* c = zmx_example; *c; ++c) {
     little += {*c, '\0'};
     big += {'\0', *c};
     windows += *c == '\n' ? "\r\n" : std::string(1, *c);
   }
   for (const std::string& text :
-       {little, big, little.substr(2), big.substr(2), windows, "\xEF\xBB\xBF" + std::string(example)})
-    expect_same_lens(read(text).lens, plain);
-  EXPECT_EQ(read(changed("made-up", "\xE9")).lens.name, "a \xC3\xA9 lens");      // Latin-1
-  EXPECT_EQ(read(changed("made-up", "\xC3\xA9")).lens.name, "a \xC3\xA9 lens");  // UTF-8
+       {little, big, little.substr(2), big.substr(2), windows, "\xEF\xBB\xBF" + std::string(zmx_example)})
+    expect_same_lens(read_zmx_text(text).lens, plain);
+  EXPECT_EQ(read_zmx_text(zmx_changed("made-up", "\xE9")).lens.name, "a \xC3\xA9 lens");      // Latin-1
+  EXPECT_EQ(read_zmx_text(zmx_changed("made-up", "\xC3\xA9")).lens.name, "a \xC3\xA9 lens");  // UTF-8
 }
 
 TEST(ZmxReader, Apertures) {
   using Kind = Aperture::Kind;
   const auto aperture = [](const std::string& line) {
-    std::string text = changed("DISZ INFINITY", "DISZ 100");
+    std::string text = zmx_changed("DISZ INFINITY", "DISZ 100");
     text.replace(text.find("FNUM 4.0 0"), 10, line);
-    return read(text).lens.aperture;
+    return read_zmx_text(text).lens.aperture;
   };
   const auto expect = [&](const std::string& line, Kind kind, double value) {
     SCOPED_TRACE(line);
@@ -155,20 +155,22 @@ TEST(ZmxReader, Apertures) {
 }
 
 TEST(ZmxReader, UnitsAreLengths) {
-  const Lens mm = read(example).lens, inch = read(changed("UNIT MM", "UNIT IN")).lens;
+  const Lens mm = read_zmx_text(zmx_example).lens,
+             inch = read_zmx_text(zmx_changed("UNIT MM", "UNIT IN")).lens;
   EXPECT_DOUBLE_EQ(first_order(inch).efl_mm, 25.4 * first_order(mm).efl_mm);
   EXPECT_DOUBLE_EQ(*inch.surfaces[0].semi_diameter_mm, 25.4 * 8.5);
   EXPECT_DOUBLE_EQ(inch.surfaces[0].asphere.at(4), 1e-6 / (25.4 * 25.4 * 25.4));
   EXPECT_EQ(inch.fields.values, mm.fields.values);  // degrees
-  EXPECT_EQ(read(changed("UNIT MM", "UNIT METER")).lens.surfaces[0].thickness_mm, 4500);
-  expect_mentions(complaint("UNIT MM", "UNIT FURLONG"), {"lens.zmx:4: ", "FURLONG", "MM, CM, IN and METER"});
+  EXPECT_EQ(read_zmx_text(zmx_changed("UNIT MM", "UNIT METER")).lens.surfaces[0].thickness_mm, 4500);
+  expect_mentions(zmx_complaint("UNIT MM", "UNIT FURLONG"),
+                  {"lens.zmx:4: ", "FURLONG", "MM, CM, IN and METER"});
 }
 
 TEST(ZmxReader, Fields) {
   const auto fields = [](const std::string& type, const std::string& x) {
-    std::string text = changed("FTYP 0 0 3 2", "FTYP " + type + " 0 3 2");
+    std::string text = zmx_changed("FTYP 0 0 3 2", "FTYP " + type + " 0 3 2");
     text.replace(text.find("XFLN 0 0 0"), 10, "XFLN " + x);
-    return read(text).lens.fields;
+    return read_zmx_text(text).lens.fields;
   };
   EXPECT_EQ(fields("2", "0 0 0").kind, Fields::Kind::paraxial_image_height_mm);
   EXPECT_EQ(fields("3", "0 0 0").kind, Fields::Kind::real_image_height_mm);
@@ -181,39 +183,42 @@ TEST(ZmxReader, Fields) {
 }
 
 TEST(ZmxReader, OldFilesHaveOldKeywords) {
-  std::string text = changed("FTYP 0 0 3 2 0 0 0", "FTYP 0 0");
+  std::string text = zmx_changed("FTYP 0 0 3 2 0 0 0", "FTYP 0 0");
   text.replace(text.find("YFLN 0 7 10 0 0 0 0 0 0 0 0 0"), 29, "YFLD 0 7 10");
   text.replace(text.find("XFLN 0 0 0 0 0 0 0 0 0 0 0 0"), 28, "XFLD 0 0 0");
   const std::size_t waves = text.find("WAVM 1"), end = text.find("PWAV");
   text.replace(waves, end - waves, "WAVL 0.4861327 0.5875618\n");
-  expect_same_lens(read(text).lens, read(example).lens);
+  expect_same_lens(read_zmx_text(text).lens, read_zmx_text(zmx_example).lens);
 }
 
 TEST(ZmxReader, GlassNamesFollowTheCatalogueOrder) {
   // CDGM's and HIKARI's F2 are other glasses than SCHOTT's; without a preference the name decides nothing.
-  expect_mentions(complaint("GCAT SUMITA SCHOTT\n", ""),
+  expect_mentions(zmx_complaint("GCAT SUMITA SCHOTT\n", ""),
                   {"lens.zmx:27: SURF 1: ", "F2", "ambiguous", "SCHOTT:F2"});
-  EXPECT_NE(read(changed("GCAT SUMITA SCHOTT", "GCAT HIKARI SCHOTT")).lens.surfaces[0].material.description(),
+  EXPECT_NE(read_zmx_text(zmx_changed("GCAT SUMITA SCHOTT", "GCAT HIKARI SCHOTT"))
+                .lens.surfaces[0]
+                .material.description(),
             "SCHOTT:F2");
-  expect_mentions(complaint("GLAS F2", "GLAS FF22"), {"lens.zmx:28: SURF 1: unknown glass FF22"});
+  expect_mentions(zmx_complaint("GLAS F2", "GLAS FF22"), {"lens.zmx:28: SURF 1: unknown glass FF22"});
   LensReadOptions options;
   options.substitutions = {{"FF22", "CDGM:H-LAK10"}, {"___BLANK", "SCHOTT:F2"}};
-  const Lens lens = read(changed("GLAS F2", "GLAS FF22"), options).lens;
+  const Lens lens = read_zmx_text(zmx_changed("GLAS F2", "GLAS FF22"), options).lens;
   EXPECT_EQ(lens.surfaces[0].material.description(), "CDGM:H-LAK10");
   EXPECT_EQ(lens.surfaces[3].material.description(), "SCHOTT:F2");
 }
 
 TEST(ZmxReader, ModelGlasses) {
   // Flag 1 says that the numbers count and not the name.
-  const LensFile file = read(changed("GLAS F2 0 0 1.5 40", "GLAS F2 1 0 1.5 40"));
+  const LensFile file = read_zmx_text(zmx_changed("GLAS F2 0 0 1.5 40", "GLAS F2 1 0 1.5 40"));
   EXPECT_EQ(std::get<Material::Model>(file.lens.surfaces[0].material.kind()).vd, 40);
   ASSERT_EQ(file.notes.size(), 1u);
   expect_mentions(file.notes[0], {"SURF 1", "F2"});
-  const Lens constant = read(changed("1.62 36.5", "1.62 0")).lens;
+  const Lens constant = read_zmx_text(zmx_changed("1.62 36.5", "1.62 0")).lens;
   EXPECT_EQ(constant.surfaces[3].material.index(400), 1.62);
   // Off the normal line: P_gF is larger by so much, and nd and Vd stay.
-  const Material normal = read(example).lens.surfaces[3].material;
-  const Material off = read(changed("1.62 36.5 0 ", "1.62 36.5 0.01 ")).lens.surfaces[3].material;
+  const Material normal = read_zmx_text(zmx_example).lens.surfaces[3].material;
+  const Material off =
+      read_zmx_text(zmx_changed("1.62 36.5 0 ", "1.62 36.5 0.01 ")).lens.surfaces[3].material;
   const double g = 435.8343, f = 486.1327, d = 587.5618, c = 656.2725;
   const auto partial = [=](const Material& m) {
     return (m.index(g) - m.index(f)) / (m.index(f) - m.index(c));
@@ -226,57 +231,60 @@ TEST(ZmxReader, ModelGlasses) {
 TEST(ZmxReader, ExtendedAspheres) {
   // Coefficients of (r/R)², (r/R)⁴ …, R = 2.
   const Lens lens =
-      read(changed("  TYPE EVENASPH\n",
-                   "  TYPE XASPHERE\n  XDAT 1 3 0 0 1 0 0 \"\"\n  XDAT 2 2.0 0 0 1\n  XDAT 3 0\n"
-                   "  XDAT 4 1.6e-3\n  XDAT 5 -6.4e-4\n  XDAT 6 9\n"))
+      read_zmx_text(zmx_changed("  TYPE EVENASPH\n",
+                                "  TYPE XASPHERE\n  XDAT 1 3 0 0 1 0 0 \"\"\n  XDAT 2 2.0 0 0 1\n  XDAT 3 0\n"
+                                "  XDAT 4 1.6e-3\n  XDAT 5 -6.4e-4\n  XDAT 6 9\n"))
           .lens;
   ASSERT_EQ(lens.surfaces[0].asphere.size(), 2u);  // term 4 is beyond the number of terms
   EXPECT_DOUBLE_EQ(lens.surfaces[0].asphere.at(4), 1e-4);
   EXPECT_DOUBLE_EQ(lens.surfaces[0].asphere.at(6), -1e-5);
   // Odd ones are of r/R, (r/R)² ….
-  EXPECT_EQ(read(changed("  TYPE EVENASPH\n",
-                         "  TYPE XOSPHERE\n  XDAT 1 11\n  XDAT 2 2.0\n  XDAT 5 8e-3\n  XDAT 13 4.096e-5\n"))
-                .lens.surfaces[0]
-                .asphere,
-            (std::map<int, double>{{3, 1e-3}, {11, 2e-8}}));
-  expect_mentions(complaint("  TYPE EVENASPH\n", "  TYPE XASPHERE\n  XDAT 1 3\n  XDAT 4 1e-3\n"),
+  EXPECT_EQ(
+      read_zmx_text(
+          zmx_changed("  TYPE EVENASPH\n",
+                      "  TYPE XOSPHERE\n  XDAT 1 11\n  XDAT 2 2.0\n  XDAT 5 8e-3\n  XDAT 13 4.096e-5\n"))
+          .lens.surfaces[0]
+          .asphere,
+      (std::map<int, double>{{3, 1e-3}, {11, 2e-8}}));
+  expect_mentions(zmx_complaint("  TYPE EVENASPH\n", "  TYPE XASPHERE\n  XDAT 1 3\n  XDAT 4 1e-3\n"),
                   {"SURF 1: ", "XDAT 2"});
 }
 
 TEST(ZmxReader, ReadsTheConfigurationThatIsWrittenOut) {
-  const auto notes = read(changed("TOL TOFF", "MNUM 2\nTHIC 1 2 5\nTOL TOFF")).notes;
+  const auto notes = read_zmx_text(zmx_changed("TOL TOFF", "MNUM 2\nTHIC 1 2 5\nTOL TOFF")).notes;
   ASSERT_EQ(notes.size(), 1u);
   expect_mentions(notes[0], {"lens.zmx:60: of 2 configurations"});
-  EXPECT_TRUE(read(changed("TOL TOFF", "MNUM 1 1\nTOL TOFF")).notes.empty());
+  EXPECT_TRUE(read_zmx_text(zmx_changed("TOL TOFF", "MNUM 1 1\nTOL TOFF")).notes.empty());
 }
 
 TEST(ZmxReader, RefusesWhatItDoesNotModel) {
   const char* line = "  CONI -0.5\n";
-  const auto with = [&](const std::string& record) { return complaint(line, "  " + record + "\n"); };
-  expect_mentions(complaint("CLAP 0 8.5 0", "CLAP 1 8.5 0"), {"SURF 1: CLAP", "ring"});
+  const auto with = [&](const std::string& record) { return zmx_complaint(line, "  " + record + "\n"); };
+  expect_mentions(zmx_complaint("CLAP 0 8.5 0", "CLAP 1 8.5 0"), {"SURF 1: CLAP", "ring"});
   expect_mentions(with("OBDC 0.1 0"), {"lens.zmx:29: SURF 1: OBDC", "decentred"});
   expect_mentions(with("SCBD 0 0 0 45"), {"SURF 1: SCBD", "tilted"});
   for (const char* record : {"SQAP 1 2", "ELAP 1 2", "OBSC 0 1", "SPID 1 3", "UDAD 1", "IGNR 1", "NSCO 1"})
     expect_mentions(with(record), {"SURF 1: ", std::string(record, 4).c_str()});
   for (const char* type : {"COORDBRK", "DGRATING", "GRINSUR1", "BICONICX", "PARAXIAL", "USERSURF", ""})
-    expect_mentions(complaint("TYPE EVENASPH", std::string("TYPE ") + type),
+    expect_mentions(zmx_complaint("TYPE EVENASPH", std::string("TYPE ") + type),
                     {"lens.zmx:22: SURF 1: TYPE", type, "EVENASPH"});
-  expect_mentions(complaint("GLAS F2", "GLAS MIRROR"), {"SURF 1: GLAS MIRROR"});
-  expect_mentions(complaint("MODE SEQ", "MODE NSC"), {"lens.zmx:2: MODE NSC"});
-  expect_mentions(complaint("ENVD 20 1 0", "ENVD 40 1 1"), {"lens.zmx:6: ", "temperature"});
-  expect_mentions(complaint("ENVD 20 1 0", "PFIL 1 0 0"), {"lens.zmx:6: PFIL"});
-  expect_mentions(complaint("PARM 8", "PARM 9"), {"lens.zmx:26: SURF 1: PARM 9"});
-  expect_mentions(complaint("  CURV 0.0\n  DISZ 0\n", "  CURV 0.1\n  DISZ 0\n"), {"SURF 6: a curved image"});
-  expect_mentions(complaint("  DISZ INFINITY\n", "  DISZ 100\n  GLAS F2 0 0\n"),
+  expect_mentions(zmx_complaint("GLAS F2", "GLAS MIRROR"), {"SURF 1: GLAS MIRROR"});
+  expect_mentions(zmx_complaint("MODE SEQ", "MODE NSC"), {"lens.zmx:2: MODE NSC"});
+  expect_mentions(zmx_complaint("ENVD 20 1 0", "ENVD 40 1 1"), {"lens.zmx:6: ", "temperature"});
+  expect_mentions(zmx_complaint("ENVD 20 1 0", "PFIL 1 0 0"), {"lens.zmx:6: PFIL"});
+  expect_mentions(zmx_complaint("PARM 8", "PARM 9"), {"lens.zmx:26: SURF 1: PARM 9"});
+  expect_mentions(zmx_complaint("  CURV 0.0\n  DISZ 0\n", "  CURV 0.1\n  DISZ 0\n"),
+                  {"SURF 6: a curved image"});
+  expect_mentions(zmx_complaint("  DISZ INFINITY\n", "  DISZ 100\n  GLAS F2 0 0\n"),
                   {"SURF 0: glass behind the object"});
-  expect_mentions(complaint("DISZ 4.5", "DISZ INFINITY"), {"SURF 1: only the object"});
-  EXPECT_NO_THROW(read(changed(line, "  OBDC 0 0\n  SCBD 0 0 0 0\n")));
-  EXPECT_NO_THROW(read(changed("ENVD 20 1 0", "ENVD 40 1 0")));
+  expect_mentions(zmx_complaint("DISZ 4.5", "DISZ INFINITY"), {"SURF 1: only the object"});
+  EXPECT_NO_THROW(read_zmx_text(zmx_changed(line, "  OBDC 0 0\n  SCBD 0 0 0 0\n")));
+  EXPECT_NO_THROW(read_zmx_text(zmx_changed("ENVD 20 1 0", "ENVD 40 1 0")));
 }
 
 TEST(ZmxReader, NotesWhatItPassesOver) {
   const auto note = [](const std::string& before, const std::string& after) {
-    const auto notes = read(changed(before, after)).notes;
+    const auto notes = read_zmx_text(zmx_changed(before, after)).notes;
     EXPECT_EQ(notes.size(), 1u);
     return notes.empty() ? "" : notes[0];
   };
@@ -287,19 +295,20 @@ TEST(ZmxReader, NotesWhatItPassesOver) {
 }
 
 TEST(ZmxReader, NamesTheLine) {
-  expect_mentions(complaint("CURV 0.05", "CURV 0.05x"),
+  expect_mentions(zmx_complaint("CURV 0.05", "CURV 0.05x"),
                   {"lens.zmx:23: SURF 1: value 1 of CURV must be a number, not \"0.05x\""});
-  expect_mentions(complaint("CURV 0.05 0 0 0 0 \"\"", "CURV"), {"lens.zmx:23: SURF 1: value 1 of CURV"});
-  expect_mentions(complaint("SURF 3", "SURF 7"), {"lens.zmx:36: ", "SURF 3"});
-  expect_mentions(complaint("FNUM 4.0 0\n", ""), {"0 system apertures", "ENPD, FNUM, OBNA and FLOA"});
-  expect_mentions(complaint("FNUM 4.0 0\n", "FNUM 4.0 0\nENPD 3\n"), {"2 system apertures"});
-  expect_mentions(complaint("FNUM 4.0 0\n", "OBNA 0.1 0\n"), {"object_na needs an object"});
-  expect_mentions(complaint("  STOP\n", ""), {"no stop"});
-  expect_mentions(complaint("  CURV -0.02\n", "  STOP\n  CURV -0.02\n"), {"lens.zmx:37: surfaces[2].stop"});
-  expect_mentions(complaint("PWAV 2", "PWAV 3"), {"lens.zmx:15: PWAV", "1 to 2"});
-  expect_mentions(complaint("WAVM 2", "WAVM 5"), {"lens.zmx:13: WAVM"});
-  expect_mentions(complaint("YFLN 0 7", "YFLN 0 seven"), {"lens.zmx:10: value 2 of YFLN"});
-  expect_mentions(complaint("FTYP 0 0 3", "FTYP 0 0 -3"), {"lens.zmx:8: value 3 of FTYP"});
+  expect_mentions(zmx_complaint("CURV 0.05 0 0 0 0 \"\"", "CURV"), {"lens.zmx:23: SURF 1: value 1 of CURV"});
+  expect_mentions(zmx_complaint("SURF 3", "SURF 7"), {"lens.zmx:36: ", "SURF 3"});
+  expect_mentions(zmx_complaint("FNUM 4.0 0\n", ""), {"0 system apertures", "ENPD, FNUM, OBNA and FLOA"});
+  expect_mentions(zmx_complaint("FNUM 4.0 0\n", "FNUM 4.0 0\nENPD 3\n"), {"2 system apertures"});
+  expect_mentions(zmx_complaint("FNUM 4.0 0\n", "OBNA 0.1 0\n"), {"object_na needs an object"});
+  expect_mentions(zmx_complaint("  STOP\n", ""), {"no stop"});
+  expect_mentions(zmx_complaint("  CURV -0.02\n", "  STOP\n  CURV -0.02\n"),
+                  {"lens.zmx:37: surfaces[2].stop"});
+  expect_mentions(zmx_complaint("PWAV 2", "PWAV 3"), {"lens.zmx:15: PWAV", "1 to 2"});
+  expect_mentions(zmx_complaint("WAVM 2", "WAVM 5"), {"lens.zmx:13: WAVM"});
+  expect_mentions(zmx_complaint("YFLN 0 7", "YFLN 0 seven"), {"lens.zmx:10: value 2 of YFLN"});
+  expect_mentions(zmx_complaint("FTYP 0 0 3", "FTYP 0 0 -3"), {"lens.zmx:8: value 3 of FTYP"});
 }
 
 TEST(ZmxWriter, ReadsBackTheSame) {
@@ -371,7 +380,7 @@ TEST(LensFile, UnknownExtensions) {
   expect_mentions(error_of([&] { through_file(lens, "lens.txt"); }),
                   {"lens.txt: ", ".json", ".iset.json", ".dat", ".zmx", ".seq"});
   expect_mentions(error_of([] { read_lens("tesar"); }), {"tesar", "tessar"});
-  EXPECT_EQ(read_text("LENS.ZMX", example).lens.name, "a made-up lens");
+  EXPECT_EQ(read_text("LENS.ZMX", zmx_example).lens.name, "a made-up lens");
 }
 
 }  // namespace

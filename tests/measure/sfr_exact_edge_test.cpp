@@ -18,7 +18,7 @@ struct Case {
   int width = 100, height = 100;
 };
 
-struct Shot {
+struct EdgeShot {
   Plane plane;
   std::unique_ptr<RadialOtf> otf;
   TargetOptions options;
@@ -40,10 +40,10 @@ struct Shot {
   }
 };
 
-Shot shoot(const Case& c) {
+EdgeShot shoot(const Case& c) {
   TargetScene scene;
   scene.polygons.push_back({{half_plane({c.width / 2 + 0.3, c.height / 2 + 0.1}, c.angle_deg)}, 0, 0});
-  Shot shot{{}, radial_pupil_otf({{c.w020, c.w040}, 0}, 550, c.f_number), {}, c};
+  EdgeShot shot{{}, radial_pupil_otf({{c.w020, c.w040}, 0}, 550, c.f_number), {}, c};
   shot.options.columns = c.width, shot.options.rows = c.height, shot.options.pitch_um = 4.73;
   const TargetImage image = render_target(scene, *shot.otf, shot.options);
   shot.plane = {image.columns, image.rows, image.values};
@@ -51,7 +51,7 @@ Shot shoot(const Case& c) {
 }
 
 void expect_exact(const Case& c) {
-  const Shot shot = shoot(c);
+  const EdgeShot shot = shoot(c);
   const EdgeMeasurement m = shot.measure();
   double worst = 0;
   for (std::size_t i = 2; i <= 50; ++i)
@@ -81,14 +81,14 @@ TEST(MeasureEdge, AberratedEdges) {
 }
 
 TEST(MeasureEdge, HeavyBlurIsMeasured) {
-  const Shot shot = shoot({5, 4, 10, 0, 200, 100});
+  const EdgeShot shot = shoot({5, 4, 10, 0, 200, 100});
   const EdgeMeasurement m = shot.measure();
   for (std::size_t i = 2; i <= 50; ++i) EXPECT_NEAR(m.sfr[i], shot.truth(m.frequencies_cpp[i]), 1e-3);
 }
 
 TEST(MeasureEdge, EveryQuadrantAndBothPolarities) {
   for (const double angle : {-175.0, -95.0, 85.0, 100.0, 185.0}) {
-    const Shot shot = shoot({angle, 8, 0, 0});
+    const EdgeShot shot = shoot({angle, 8, 0, 0});
     const EdgeMeasurement m = shot.measure();
     EXPECT_NEAR(m.mtf50().frequency_cpp / shot.true_mtf50(), 1, 1e-3) << angle;
     EXPECT_NEAR(std::remainder(m.line.angle_deg() - angle, 90), 0, 1e-3);
@@ -101,7 +101,7 @@ TEST(MeasureEdge, NoiseStaysWithinItsConfidence) {
   // 200 seeds: the mean lies within 4 standard errors of the truth, and the scatter is what each measurement
   // says of itself, to 20 % (the standard deviation of 200 draws is known to 5 %; the stated one varies by
   // some per cent itself).
-  const Shot clean = shoot({5, 8, 0, 0, 60, 80});
+  const EdgeShot clean = shoot({5, 8, 0, 0, 60, 80});
   for (const double sigma : {0.002, 0.01}) {
     double sum = 0, square = 0, stated = 0, sfr_sum = 0, sfr_square = 0, sfr_stated = 0;
     constexpr int seeds = 200;
@@ -147,7 +147,7 @@ TEST(MeasureEdge, RoundingToEightBitsStaysWithinItsConfidence) {
     std::uniform_real_distribution<double> share(0, 1);
     std::normal_distribution<double> normal(0, 1);
     const double black = 0.02 + 0.1 * share(random), white = 0.6 + 0.35 * share(random);
-    Shot shot = shoot({3 + 8 * share(random), 8, 0, 0, 60, 80});
+    EdgeShot shot = shoot({3 + 8 * share(random), 8, 0, 0, 60, 80});
     const double noise_steps = noisy ? 0.5 * share(random) : 0;
     for (double& value : shot.plane.values) {
       const double light = black + (white - black) * value, code = 255 * (srgb ? srgb_encoded(light) : light);
@@ -172,7 +172,7 @@ TEST(MeasureEdge, EdgesAlongTheGridSayWhatTheyDoNotKnow) {
   // Rows of samples 1 or 1/√2 pixels apart leave a frequency and its alias mixed: stated, and noted, and not
   // refused.
   for (const double angle : {0.0, 90.0, 45.0}) {
-    const Shot shot = shoot({angle, 8, 0, 0});
+    const EdgeShot shot = shoot({angle, 8, 0, 0});
     const EdgeMeasurement m = shot.measure();
     EXPECT_EQ(m.notes.size(), 1u) << angle;
     for (std::size_t i = 2; i <= 50; ++i)
@@ -188,7 +188,7 @@ TEST(MeasureEdge, BentEdgesNeedTheirOrder) {
   // A circle of radius 700 px: over 100 px it leaves its tangent by 1.8 px.
   TargetScene scene;
   scene.polygons.push_back({{regular_polygon({-648, 52}, 700, 60000, 3)}, 0, 0});
-  Shot shot = shoot({0, 8, 0, 0});
+  EdgeShot shot = shoot({0, 8, 0, 0});
   const TargetImage image = render_target(scene, *shot.otf, shot.options);
   shot.plane.values = image.values;
   SfrOptions bent;
@@ -203,7 +203,7 @@ TEST(MeasureEdge, BentEdgesNeedTheirOrder) {
 
 TEST(MeasureEdge, IsoMethodIsNearAndLow) {
   // The taper and the box of the bin cost some per cent, no more, on a compact PSF.
-  const Shot shot = shoot({5, 8, 0, 0});
+  const EdgeShot shot = shoot({5, 8, 0, 0});
   const IsoEsfr iso = iso_esfr(shot.plane, {0, 0, 100, 100});
   EXPECT_NEAR(iso.mtf50_cpp / shot.true_mtf50(), 1, 0.03);
   EXPECT_NEAR(iso.angle_deg, 5, 0.2);
@@ -231,7 +231,7 @@ TEST(MeasureEdge, RefusesWhatIsNoEdge) {
   flat.values[100] = NAN;
   EXPECT_NE(message(flat, {0, 0, 60, 60}).find("not a finite number"), std::string::npos);
   // An overexposed edge: the bright side is cut off at 0.7.
-  Shot shot = shoot({5, 8, 1, 0});
+  EdgeShot shot = shoot({5, 8, 1, 0});
   for (double& value : shot.plane.values) value = std::min(value, 0.7);
   SfrOptions options;
   options.clip_high = 0.7;

@@ -13,8 +13,9 @@ namespace {
 
 /// A grid that is dark but for three marks: the chief ray, one step away from the axis, two steps to the
 /// side.
-PsfGrid marked(int size, int row, int column, int away_row, int away_column, int side_row, int side_column) {
-  PsfGrid grid{size, size, std::vector<double>(static_cast<std::size_t>(size * size))};
+NumberGrid marked(int size, int row, int column, int away_row, int away_column, int side_row,
+                  int side_column) {
+  NumberGrid grid{size, size, std::vector<double>(static_cast<std::size_t>(size * size))};
   const auto mark = [&](int r, int c, double value) {
     grid.values[static_cast<std::size_t>(r * size + c)] = value;
   };
@@ -34,7 +35,7 @@ class PsfFrames : public ::testing::TestWithParam<Lie> {};
 TEST_P(PsfFrames, PutAwayAndAsideWhereTheyBelong) {
   const Lie lie = GetParam();
   for (const int size : {6, 7}) {
-    const PsfGrid grid = marked(size, 3, 3, lie.away_row, lie.away_column, lie.side_row, lie.side_column);
+    const NumberGrid grid = marked(size, 3, 3, lie.away_row, lie.away_column, lie.side_row, lie.side_column);
     const PsfFrame frame{lie.away, 3, 3};
     const Psf psf = psf_of_grid(grid, frame, 0.5);
     const int c = psf.size / 2;
@@ -54,7 +55,7 @@ TEST(PsfGrid, RefusesWhatDoesNotFit) {
   const Psf psf = psf_of_grid(marked(7, 3, 3, 1, 0, 0, 1), {PsfAway::down, 3, 3}, 1);
   EXPECT_THROW(grid_of_psf(psf, {PsfAway::down, 3, 0}, 4), InputError);
   EXPECT_THROW(psf_of_grid(marked(7, 3, 3, 1, 0, 0, 1), {PsfAway::down, 7, 3}, 1), InputError);
-  PsfGrid dark = marked(7, 3, 3, 1, 0, 0, 1);
+  NumberGrid dark = marked(7, 3, 3, 1, 0, 0, 1);
   dark.values.assign(49, 0.0);
   EXPECT_THROW(psf_of_grid(dark, {PsfAway::down, 3, 3}, 1), InputError);
   dark.values[5] = NAN;
@@ -62,9 +63,9 @@ TEST(PsfGrid, RefusesWhatDoesNotFit) {
 }
 
 TEST(PsfGrid, TakesAnyUnitOfLight) {
-  PsfGrid grid = marked(7, 3, 3, 1, 0, 0, 1);
+  NumberGrid grid = marked(7, 3, 3, 1, 0, 0, 1);
   for (const double unit : {1e-310, 1e-30, 3.0, 1e307}) {
-    PsfGrid scaled = grid;
+    NumberGrid scaled = grid;
     for (double& value : scaled.values) value *= unit;
     const Psf psf = psf_of_grid(scaled, {PsfAway::down, 3, 3}, 1);
     EXPECT_NEAR(double(psf.at(psf.size / 2, psf.size / 2)), 0.5, 1e-6) << unit;  // a subnormal has few digits
@@ -74,7 +75,7 @@ TEST(PsfGrid, TakesAnyUnitOfLight) {
 TEST(PsfMirror, IsFoundWhereThereIsOne) {
   const int size = 16, centre = 7;
   for (const bool upright : {false, true}) {
-    PsfGrid grid{size, size, {}};
+    NumberGrid grid{size, size, {}};
     for (int row = 0; row < size; ++row)
       for (int column = 0; column < size; ++column) {
         const double along = (upright ? row : column) - centre, across = (upright ? column : row) - centre;
@@ -85,7 +86,7 @@ TEST(PsfMirror, IsFoundWhereThereIsOne) {
     EXPECT_EQ(mirror->upright, upright);
     EXPECT_EQ(mirror->centre, centre);
   }
-  PsfGrid round{size, size, {}};
+  NumberGrid round{size, size, {}};
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column)
       round.values.push_back(std::exp(-std::hypot(row - centre, column - centre)));

@@ -18,14 +18,14 @@ namespace {
 
 using namespace render;
 
-std::unique_ptr<const World> world_of(const std::string& text, const std::vector<double>& wavelengths_nm) {
+std::unique_ptr<const World> wall_world(const std::string& text, const std::vector<double>& wavelengths_nm) {
   Unsupported unsupported;
   return build_world(parse_scene_description("WorldBegin\n" + text, "test.pbrt", unsupported),
                      WavelengthGroups(wavelengths_nm), {true}, unsupported);
 }
 
 /// Light of radiance 1 at every wavelength from everywhere.
-constexpr const char* surround = "LightSource \"infinite\" \"spectrum L\" [ 200 1 900 1 ]\n";
+constexpr const char* wall_surround = "LightSource \"infinite\" \"spectrum L\" [ 200 1 900 1 ]\n";
 
 struct Measured {
   std::vector<double> mean, standard_error;  ///< by band
@@ -86,7 +86,7 @@ void expect_agreement(const Measured& wall, std::size_t band, double g, const st
 /// Light through a lens onto a film point, for each wavelength, by both ways.
 void expect_wall_is_g_sensor(const Lens& lens, double height_mm, const std::vector<double>& wavelengths_nm,
                              int samples = 32) {
-  const auto world = world_of(surround, wavelengths_nm);
+  const auto world = wall_world(wall_surround, wavelengths_nm);
   const FilmPoint point(height_mm);
   const Measured wall = point.wall(*world, LensCamera(lens, point.film, world->groups), samples);
   for (std::size_t b = 0; b < wavelengths_nm.size(); ++b) {
@@ -101,7 +101,7 @@ void expect_wall_is_g_sensor(const Lens& lens, double height_mm, const std::vect
 /// surface.
 void expect_lossy_wall_is_g_sensor(const Lens& lens, double height_mm, const Losses& losses, int samples) {
   const std::vector<double> wavelengths{430, 550, 660};
-  const auto world = world_of(surround, wavelengths);
+  const auto world = wall_world(wall_surround, wavelengths);
   const FilmPoint point(height_mm);
   LensCameraOptions options;
   options.losses = losses;
@@ -159,7 +159,7 @@ TEST(WallThroughLens, IsTheSameByTheSamplerOf2006) {
   LensCameraOptions options;
   options.sampling = LensCameraOptions::Sampling::rear_disk;
   const Lens lens = read_lens("dgauss-50mm").lens;
-  const auto world = world_of(surround, {550});
+  const auto world = wall_world(wall_surround, {550});
   const SensorGeometry film{9, 1009, 20};
   const LensCamera camera(lens, film, world->groups, options);
   for (const int row : {504, 904}) {
@@ -192,7 +192,7 @@ TEST(WallThroughLens, AgreesWithPbrt) {
 TEST(Stop, HalfTheDiameterGivesAQuarterOfTheLight) {
   Lens open = read_lens("dgauss-50mm").lens, half = open;
   half.aperture.value = open.aperture.value / 2;
-  const auto world = world_of(surround, {550});
+  const auto world = wall_world(wall_surround, {550});
   const SensorGeometry film{9, 9, 20};
   const double ratio = patch(*world, LensCamera(half, film, world->groups), film, 4, 4, 1, 256).mean[0] /
                        patch(*world, LensCamera(open, film, world->groups), film, 4, 4, 1, 256).mean[0];
@@ -212,7 +212,7 @@ TEST(PointOfLight, LandsWhereItsRaysLand) {
                 "180 0 1 0\nShape \"disk\" \"float "
                 "radius\" 0.0002",
                 height_mm * 1e-3, z_m);
-  const auto world = world_of(text, wavelengths);
+  const auto world = wall_world(text, wavelengths);
   // The image of a point above the axis lies below it: in the picture it is above the middle.
   const SensorGeometry film{240, 2000, 2.5};
   const LensCamera camera(lens, film, world->groups);

@@ -16,7 +16,7 @@
 namespace petzval {
 namespace {
 
-constexpr double lambda_nm = 5e6, lambda_mm = 5;
+constexpr double beam_nm = 5e6, lambda_mm = 5;
 
 /// The rim of a pupil, and how long its chords are.
 struct Rim {
@@ -58,20 +58,20 @@ struct Rim {
 TEST(VignettingLaw, LightAndContrastGoTogether) {
   Lens lens = read_lens("dgauss-50mm").lens;
   lens.aperture = {Aperture::Kind::f_number, 4};
-  lens.reference_wavelength_nm = lambda_nm;
-  lens.wavelengths_nm = {lambda_nm};
+  lens.reference_wavelength_nm = beam_nm;
+  lens.wavelengths_nm = {beam_nm};
   MtfOptions options;
   options.frequencies_cpmm = {0.005, 0.01, 0.02, 0.03, 0.04};  // the limit is 0.05 on the axis
   double dimmest = 1;
   for (const double field : {0.0, 10.0, 20.0, 22.0})
     for (const auto clip : {Tracer::Clip::apertures, Tracer::Clip::stop_only}) {
-      FieldTracer tracer(lens, lambda_nm, clip), open(lens, lambda_nm, Tracer::Clip::stop_only);
+      FieldTracer tracer(lens, beam_nm, clip), open(lens, beam_nm, Tracer::Clip::stop_only);
       const ChiefRay chief = *tracer.chief_ray(field);
       const Rim rim(tracer, chief);
       const double tolerance = field == 0 ? 1e-3 : 6e-3;
       const double g_sr = tracer.g_sensor_sr(chief);
       for (const MtfRow& row :
-           mtf_table(lens, {Fields::Kind::angle_deg, {field}, {lambda_nm}, clip, {}}, options)) {
+           mtf_table(lens, {Fields::Kind::angle_deg, {field}, {beam_nm}, clip, {}}, options)) {
         const double s = lambda_mm * row.frequency_cpmm;
         // Rays from the object point and rays to the image point differ by what aberrations do to the pupil:
         // the law holds to 1e-3 on the axis, to 6e-3 at 22°, where vignetting has taken 18 %.

@@ -19,7 +19,7 @@ using independent::IndependentRay;
 using independent::Real;
 using independent::SphereTracer;
 
-constexpr double lambda_nm = 587.5618;
+constexpr double light_nm = 587.5618;
 
 struct WideLens {
   Lens lens;
@@ -49,8 +49,8 @@ class WideAngle : public testing::TestWithParam<WideLens> {
 TEST_P(WideAngle, ChiefRaysPassTheCentreOfTheStop) {
   Lens front = lens();
   front.surfaces.resize(front.stop_index() + 1);
-  const SphereTracer to_stop(front, lambda_nm, 1e9L);
-  const Tracer tracer(lens(), lambda_nm);
+  const SphereTracer to_stop(front, light_nm, 1e9L);
+  const Tracer tracer(lens(), light_nm);
   ChiefRayMarch march(lens(), tracer), other_way(lens(), tracer);
   std::vector<double> outwards;
   for (const double field : fields()) {
@@ -69,8 +69,8 @@ TEST_P(WideAngle, ChiefRaysPassTheCentreOfTheStop) {
 }
 
 TEST_P(WideAngle, TheBoundaryIsWhereRaysBeginToBeLost) {
-  const Tracer tracer(lens(), lambda_nm);
-  const SphereTracer second(lens(), lambda_nm, tracer.stop_radius_mm());
+  const Tracer tracer(lens(), light_nm);
+  const SphereTracer second(lens(), light_nm, tracer.stop_radius_mm());
   ChiefRayMarch march(lens(), tracer);
   for (const double field : fields()) {
     const Pencil pencil = Pencil::from_object(lens(), field);
@@ -98,7 +98,7 @@ TEST_P(WideAngle, TheBoundaryIsWhereRaysBeginToBeLost) {
 
 TEST_P(WideAngle, ThePupilIsTheSameFromTheImage) {
   // The pupil grown around the backward chief ray of the same image point: its chief ray is the forward one.
-  const Tracer tracer(lens(), lambda_nm);
+  const Tracer tracer(lens(), light_nm);
   ChiefRayMarch march(lens(), tracer), from_image(lens(), tracer, ChiefRayMarch::From::image);
   for (const double field : fields()) {
     const Pencil pencil = Pencil::from_object(lens(), field);
@@ -118,8 +118,8 @@ TEST(Slivers, AreAsLargeAsACountOfRays) {
   // The last light of the fisheye, at 75° and 76°, comes through slivers four and eight times as wide as
   // high.
   const Lens lens = read_lens("fisheye-10mm").lens;
-  const Tracer tracer(lens, lambda_nm);
-  const SphereTracer second(lens, lambda_nm, tracer.stop_radius_mm());
+  const Tracer tracer(lens, light_nm);
+  const SphereTracer second(lens, light_nm, tracer.stop_radius_mm());
   ChiefRayMarch march(lens, tracer);
   for (const double field : {75.0, 76.0}) {
     const Ray chief =
@@ -157,7 +157,7 @@ TEST(WideAngleEnd, NoChiefRayBeyondTheLastThatPasses) {
   // Beyond some field the chief ray of these lenses misses the front or is totally reflected; no other root
   // may be taken for it.
   for (const Lens& lens : {sample::wide_100_degrees(), sample::fisheye_170_degrees()}) {
-    const Tracer tracer(lens, lambda_nm);
+    const Tracer tracer(lens, light_nm);
     ChiefRayMarch march(lens, tracer);
     double last_v = 0, last_field = 0;
     for (double field = 0; field < 175; field += 0.5) {

@@ -13,7 +13,7 @@ namespace petzval::render {
 namespace {
 
 /// The message with which a scene is refused; empty if it is not.
-std::string refusal(const std::string& text) {
+std::string complaint(const std::string& text) {
   try {
     Unsupported unsupported;
     const SceneDescription scene = parse_scene_description(text, "s.pbrt", unsupported);
@@ -25,7 +25,7 @@ std::string refusal(const std::string& text) {
 }
 
 std::string in_world(const std::string& text) {
-  return refusal("WorldBegin\n" + text);
+  return complaint("WorldBegin\n" + text);
 }
 
 void expect_refused(const std::string& message, const std::string& place, const std::string& part) {
@@ -56,8 +56,8 @@ TEST(SceneReader, NamesFileLineAndColumn) {
                  "s.pbrt:2:35: ", "none.png");
   expect_refused(in_world("Shape \"plymesh\" \"string filename\" \"none.ply\""), "s.pbrt:2:17: ", "none.ply");
   expect_refused(in_world("Material \"diffuse\" \"rgb reflectance\" [ 1 2 0 ]"), "s.pbrt:2:20: ", "exceed 1");
-  expect_refused(refusal("LookAt 0 0 0 1 0 0 0 1 0"), "s.pbrt: ", "WorldBegin");
-  expect_refused(refusal("Shape \"sphere\""), "s.pbrt:1:1: ", "before WorldBegin");
+  expect_refused(complaint("LookAt 0 0 0 1 0 0 0 1 0"), "s.pbrt: ", "WorldBegin");
+  expect_refused(complaint("Shape \"sphere\""), "s.pbrt:1:1: ", "before WorldBegin");
 }
 
 TEST(SceneReader, RefusesLightsThatAreNone) {
@@ -201,11 +201,11 @@ TEST(SceneReader, SurvivesDamagedText) {
       "\"mix\" \"string materials\" [ \"m\" \"m\" ]\nObjectBegin \"o\"\nShape \"trianglemesh\" \"point3 P\" "
       "[ 0 0 0 1 0 0 0 1 0 ]\nObjectEnd\nObjectInstance \"o\"\nLightSource \"infinite\"\n";
   for (std::size_t i = 0; i < text.size(); ++i) {
-    refusal(text.substr(0, i));
+    complaint(text.substr(0, i));
     for (const char byte : {'\0', '"', '[', ']', '9', '-', '#', '\n', '\xff'}) {
       std::string damaged = text;
       damaged[i] = byte;
-      const std::string message = refusal(damaged);
+      const std::string message = complaint(damaged);
       EXPECT_EQ(message.find_first_of("\n\r"), std::string::npos);
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-bool contains(const std::string& text, const std::string& part) {
+bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -77,10 +77,10 @@ TEST(SceneExr, PanoramaComesBackAsOne) {
   options.panorama = PanoramaView{5, 0};
   EXPECT_EQ(read_scene(scratch.path("all.exr"), options).view().yaw_deg, 5);
   options.horizontal_angle_deg = 40;
-  EXPECT_TRUE(contains(refusal(scratch.path("all.exr"), options), "--scene-angle"));
+  EXPECT_TRUE(says(refusal(scratch.path("all.exr"), options), "--scene-angle"));
   options = {};
   options.distance_m = 3;
-  EXPECT_TRUE(contains(refusal(scratch.path("all.exr"), options), "infinity"));
+  EXPECT_TRUE(says(refusal(scratch.path("all.exr"), options), "infinity"));
 }
 
 TEST(SceneExr, SceneAtInfinityComesBackFromThere) {
@@ -101,7 +101,7 @@ TEST(SceneExr, FilesOfOtherProgramsNeedAnAngle) {
   for (const char* units : {"W.m^-2.sr^-1.nm^-1", "W.m^-2.sr^-1", ""}) {
     exr.units = units;
     write_spectral_exr(scratch.path("other.exr"), exr);
-    EXPECT_TRUE(contains(refusal(scratch.path("other.exr")), "--scene-angle"));
+    EXPECT_TRUE(says(refusal(scratch.path("other.exr")), "--scene-angle"));
     SceneOptions options;
     options.horizontal_angle_deg = 20;
     const Scene scene = read_scene(scratch.path("other.exr"), options);
@@ -116,7 +116,7 @@ TEST(SceneExr, IrradianceIsNoScene) {
   exr.kind = SpectralExr::Kind::emissive;
   exr.units = spectral_irradiance_units;
   write_spectral_exr(scratch.path("sensor.exr"), exr);
-  EXPECT_TRUE(contains(refusal(scratch.path("sensor.exr")), "radiance"));
+  EXPECT_TRUE(says(refusal(scratch.path("sensor.exr")), "radiance"));
 }
 
 TEST(SceneExr, ReflectancesNeedLight) {
@@ -124,7 +124,7 @@ TEST(SceneExr, ReflectancesNeedLight) {
   write_spectral_exr(scratch.path("chart.exr"), reflectances());
   SceneOptions options;
   options.horizontal_angle_deg = 20;
-  EXPECT_TRUE(contains(refusal(scratch.path("chart.exr"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("chart.exr"), options), "--illuminant"));
   options.illuminant = "E";
   const Scene scene = read_scene(scratch.path("chart.exr"), options);
   EXPECT_NEAR(scene.mean_luminance_cd_m2(), 100, 1e-4);
@@ -139,7 +139,7 @@ TEST(SceneExr, RadianceHasItsLightAlready) {
   write_scene_exr(scratch.path("ramp.exr"), scene);
   SceneOptions options;
   options.illuminant = "A";
-  EXPECT_TRUE(contains(refusal(scratch.path("ramp.exr"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("ramp.exr"), options), "--illuminant"));
 }
 
 TEST(SceneExr, ImpossibleValuesAreNamed) {
@@ -150,7 +150,7 @@ TEST(SceneExr, ImpossibleValuesAreNamed) {
     scene.band(1)[4] = bad;
     write_scene_exr(scratch.path("bad.exr"), scene);
     const std::string message = refusal(scratch.path("bad.exr"));
-    EXPECT_TRUE(contains(message, "bad.exr") && contains(message, "row 1, column 1")) << message;
+    EXPECT_TRUE(says(message, "bad.exr") && says(message, "row 1, column 1")) << message;
   }
 }
 
@@ -164,13 +164,13 @@ TEST(SceneExr, BadAttributesAreRefused) {
     exr.strings["sceneIlluminant"] = text;
     write_spectral_exr(scratch.path("bad.exr"), exr);
     if (std::string(text) == "400:1 ") continue;  // a trailing blank does no harm
-    EXPECT_TRUE(contains(refusal(scratch.path("bad.exr")), "bad.exr")) << text;
+    EXPECT_TRUE(says(refusal(scratch.path("bad.exr")), "bad.exr")) << text;
   }
   exr.strings.clear();
   for (const double angle : {0.0, 200.0, std::nan("")}) {
     exr.numbers["sceneAngle_deg"] = angle;
     write_spectral_exr(scratch.path("bad.exr"), exr);
-    EXPECT_TRUE(contains(refusal(scratch.path("bad.exr")), "degrees")) << angle;
+    EXPECT_TRUE(says(refusal(scratch.path("bad.exr")), "degrees")) << angle;
   }
 }
 
@@ -213,13 +213,13 @@ TEST(ReadScene, OptionsThatDoNotApplyAreRefused) {
   write_mat(scratch.path("scene.mat"), iset_scene(), false);
   SceneOptions options;
   options.columns = 10;
-  EXPECT_TRUE(contains(refusal(scratch.path("scene.mat"), options), "size"));
+  EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "size"));
   options = {};
   options.illuminant = "D65";
-  EXPECT_TRUE(contains(refusal(scratch.path("scene.mat"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "--illuminant"));
   options = {};
   options.wavelengths_nm = {650};
-  EXPECT_TRUE(contains(refusal(scratch.path("scene.mat"), options), "650"));
+  EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "650"));
   for (const double distance : {0.0, -1.0, std::nan(""), -std::numeric_limits<double>::infinity()}) {
     options = {};
     options.distance_m = distance;
@@ -228,14 +228,14 @@ TEST(ReadScene, OptionsThatDoNotApplyAreRefused) {
 }
 
 TEST(ReadScene, UnknownNamesAndBadParameters) {
-  EXPECT_TRUE(contains(refusal("studioo"), "studio"));
+  EXPECT_TRUE(says(refusal("studioo"), "studio"));
   for (const char* name : {"", "/", ".", "nowhere.mat", "nowhere.exr", "checkerboard:", "checkerboard:0",
                            "checkerboard:x", "checkerboard:2.5", "checkerboard:-4", "checkerboard:1e30",
                            "checkerboard:nan", "wall:3", "studio:", "slanted-edge:90", "points:100000"})
     EXPECT_NE(refusal(name), "no error") << name;
   const Scratch scratch;
-  EXPECT_TRUE(contains(refusal(scratch.with("picture.gif", "x")), ".exr"));
-  EXPECT_TRUE(contains(refusal(scratch.with("picture.jpg", "x")), "JPEG"));
+  EXPECT_TRUE(says(refusal(scratch.with("picture.gif", "x")), ".exr"));
+  EXPECT_TRUE(says(refusal(scratch.with("picture.jpg", "x")), "JPEG"));
 }
 
 TEST(ReadScene, EveryListedChartIsMade) {

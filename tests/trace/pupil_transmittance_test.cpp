@@ -9,15 +9,15 @@
 namespace petzval {
 namespace {
 
-struct Case {
+struct LossCase {
   const char* lens;
   double film_radius_mm;
 };
-void PrintTo(const Case& each, std::ostream* out) {
+void PrintTo(const LossCase& each, std::ostream* out) {
   *out << each.lens;
 }
 
-class PupilLosses : public testing::TestWithParam<Case> {};
+class PupilLosses : public testing::TestWithParam<LossCase> {};
 
 /// Rays that pass, from anywhere on the film, each with its own transmittance.
 TEST_P(PupilLosses, AreThoseOfEveryRay) {
@@ -64,9 +64,9 @@ TEST_P(PupilLosses, AreThoseOfEveryRay) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, PupilLosses,
-                         testing::Values(Case{"double-gauss", 25}, Case{"edmund-54852", 3},
-                                         Case{"wide-22mm", 16}, Case{"fisheye-10mm", 13},
-                                         Case{"telephoto-250mm", 21}, Case{"us-2532751", 10}));
+                         testing::Values(LossCase{"double-gauss", 25}, LossCase{"edmund-54852", 3},
+                                         LossCase{"wide-22mm", 16}, LossCase{"fisheye-10mm", 13},
+                                         LossCase{"telephoto-250mm", 21}, LossCase{"us-2532751", 10}));
 
 }  // namespace
 }  // namespace petzval

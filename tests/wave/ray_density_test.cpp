@@ -10,13 +10,13 @@
 namespace petzval {
 namespace {
 
-constexpr double na = 0.1;
-constexpr double f_number = 1 / (2 * na), lambda_um = lambda_nm * 1e-3;
+constexpr double cone_na = 0.1;
+constexpr double f_number = 1 / (2 * cone_na), lambda_um = lambda_nm * 1e-3;
 
 TEST(RayDensity, DefocusMakesADiscOfEightNLambdaW) {
   const double w020 = 60;
   const SmoothPupil pupil =
-      smooth_disc(na, [&](double a, double b) { return w020 * (a * a + b * b) / (na * na); });
+      smooth_disc(cone_na, [&](double a, double b) { return w020 * (a * a + b * b) / (cone_na * cone_na); });
   const double radius_um = 4 * f_number * lambda_um * w020;
   const Psf psf = sum_rays(pupil, {101, 2.4 * radius_um / 101});
   const double flat = psf.spacing_um * psf.spacing_um / (pi * radius_um * radius_um);
@@ -38,19 +38,19 @@ TEST(RayDensity, DefocusMakesADiscOfEightNLambdaW) {
 }
 
 TEST(RayDensity, ComaFlaresToTheSideThatTheSlopeOfThePhaseSays) {
-  const SmoothPupil pupil =
-      smooth_disc(na, [](double a, double b) { return 40 * b * (a * a + b * b) / (na * na * na); });
+  const SmoothPupil pupil = smooth_disc(
+      cone_na, [](double a, double b) { return 40 * b * (a * a + b * b) / (cone_na * cone_na * cone_na); });
   const Psf psf = sum_rays(pupil, {65, 20});
   double centroid_um = 0;
   for (int i = 0; i < 65; ++i)
     for (int j = 0; j < 65; ++j) centroid_um += psf.at(i, j) * (i - 32) * psf.spacing_um;
   // t = −λ ∂φ/∂β, whose mean over the disc is −λ·40·(α² + 3β²)/na³ = −λ·40/na.
-  EXPECT_NEAR(centroid_um, -lambda_um * 40 / na, 1.0);  // a twentieth of a cell
+  EXPECT_NEAR(centroid_um, -lambda_um * 40 / cone_na, 1.0);  // a twentieth of a cell
 }
 
 TEST(RayDensity, CountsWhatFallsOutsideTheGrid) {
   const SmoothPupil pupil =
-      smooth_disc(na, [](double a, double b) { return 60 * (a * a + b * b) / (na * na); });
+      smooth_disc(cone_na, [](double a, double b) { return 60 * (a * a + b * b) / (cone_na * cone_na); });
   const double radius_um = 4 * f_number * lambda_um * 60;
   // The square inside the disc: 2/π of it.
   const Psf psf = sum_rays(pupil, {40, std::sqrt(2.0) * radius_um / 40});

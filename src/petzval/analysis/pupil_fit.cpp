@@ -11,12 +11,12 @@ namespace petzval {
 
 namespace {
 
-constexpr int outline_azimuths = 128;
+constexpr int fit_outline_azimuths = 128;
 /// Corners where two apertures meet are found to this in azimuth [rad] and radius (relative).
 constexpr double corner_tolerance = 1e-8;
 /// The area inside a polar boundary cuts corners, by up to this; more is a pupil misunderstood.
 constexpr double flux_tolerance = 0.01;
-constexpr int radial_nodes = 10;
+constexpr int fit_radial_nodes = 10;
 constexpr std::size_t azimuths_per_radial = 2;
 
 /// A point of the rim, and whether one aperture takes over from another there.
@@ -96,7 +96,7 @@ class RimWalk {
 
 /// The rim, then nodes inside.
 std::vector<PupilNode> fit_nodes(const PupilBoundary& pupil, const std::vector<RimPoint>& rim) {
-  const QuadratureRule radial = gauss_legendre(radial_nodes);
+  const QuadratureRule radial = gauss_legendre(fit_radial_nodes);
   std::vector<PupilNode> nodes;
   for (const RimPoint& point : rim) nodes.push_back(node_at(pupil, point.azimuth, point.radius));
   for (std::size_t i = 0; i < pupil.radius.size() / 2; i += azimuths_per_radial)
@@ -161,7 +161,7 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits) {
   if (tracer.tracer().stop_blades().count > 0) return {};  // not mirror symmetric
-  const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, outline_azimuths);
+  const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, fit_outline_azimuths);
   if (!boundary) return {};
   const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary).points();
   const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *boundary, fit_nodes(*boundary, rim));

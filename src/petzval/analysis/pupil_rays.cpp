@@ -12,7 +12,7 @@ namespace {
 
 /// Distance to neighbouring rays per pupil radius: the central difference errs by its square, 1e-8, and
 /// rounding by 1e-12.
-constexpr double nudge_per_radius = 1e-4;
+constexpr double opd_nudge_per_radius = 1e-4;
 
 class Launcher {
  public:
@@ -71,7 +71,7 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, sampling.azimuths);
   if (!pupil) return rays;
   const Launcher launcher(tracer, chief);
-  const double nudge = nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
+  const double nudge = opd_nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
   for (const PupilNode& node : pupil_nodes(*pupil, sampling.radial_nodes)) {
     const Tracer::Clearance traced = launcher.trace(node.u, node.v);
     if (!Launcher::arrived(traced)) continue;

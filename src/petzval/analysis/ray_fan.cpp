@@ -13,7 +13,7 @@ namespace {
 
 /// Rays to the very rim are drawn a hair inside it.
 constexpr double inside_rim = 1 - 1e-9;
-constexpr int rim_azimuths = 256;
+constexpr int fan_rim_azimuths = 256;
 
 MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, bool from_infinity) {
   std::vector<Intersection> hits;
@@ -49,7 +49,7 @@ std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_fi
   std::vector<MeridionalPath> fan;
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
   if (!chief) return fan;
-  const std::optional<PupilBoundary> pupil = tracer.object_pupil(*chief, rim_azimuths);
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(*chief, fan_rim_azimuths);
   if (!pupil) return fan;
   const Pencil pencil = Pencil::from_object(tracer.lens(), object_field);
   const double top = meridional_rim(tracer, pencil, *pupil, 1) * inside_rim,

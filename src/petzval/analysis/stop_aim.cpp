@@ -9,9 +9,9 @@ namespace petzval {
 namespace {
 
 /// Distance to the neighbouring rays of a derivative, per pupil radius.
-constexpr double nudge_per_radius = 1e-5;
+constexpr double aim_nudge_per_radius = 1e-5;
 /// A ray is aimed when it crosses the stop this near (in stop radii); Newton's last step squares its error.
-constexpr double aim_tolerance = 1e-10;
+constexpr double stop_aim_tolerance = 1e-10;
 constexpr int newton_steps = 20;
 /// Strides from the chief ray when the short way fails.
 constexpr int strides = 12;
@@ -34,7 +34,7 @@ std::optional<StopAim> StopAim::of(const FieldTracer& tracer, const ChiefRay& ch
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, coarse_azimuths);
   if (!pupil) return {};
   const double radius = *std::max_element(pupil->radius.begin(), pupil->radius.end());
-  return StopAim(tracer, chief, nudge_per_radius * radius);
+  return StopAim(tracer, chief, aim_nudge_per_radius * radius);
 }
 
 std::optional<Tracer::Clearance> StopAim::trace(double u, double v) const {
@@ -49,7 +49,7 @@ std::optional<StopAim::Found> StopAim::search(double x_mm, double y_mm, const Fo
     const auto at = trace(u, v), right = trace(u + nudge_, v), above = trace(u, v + nudge_);
     if (!at || !right || !above) return {};
     const double miss_x = x_mm - at->stop_x_mm, miss_y = y_mm - at->stop_y_mm;
-    if (std::hypot(miss_x, miss_y) < aim_tolerance * radius_mm_) return Found{x_mm, y_mm, u, v};
+    if (std::hypot(miss_x, miss_y) < stop_aim_tolerance * radius_mm_) return Found{x_mm, y_mm, u, v};
     const double x_u = right->stop_x_mm - at->stop_x_mm, y_u = right->stop_y_mm - at->stop_y_mm;
     const double x_v = above->stop_x_mm - at->stop_x_mm, y_v = above->stop_y_mm - at->stop_y_mm;
     const double scale = nudge_ / (x_u * y_v - x_v * y_u);

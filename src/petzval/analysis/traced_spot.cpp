@@ -10,7 +10,7 @@ namespace petzval {
 namespace {
 
 /// As many rays as fill 256 × 256 cells by a dozen each.
-constexpr int radial_nodes = 384, azimuths = 1024;
+constexpr int spot_radial_nodes = 384, azimuths = 1024;
 
 /// Spreads light over the two cells nearest to `at` (in cells from the middle of the first).
 template <class Add>
@@ -27,7 +27,7 @@ void between_cells(double at, int size, const Add& add) {
 std::optional<Psf> traced_spot(const FieldTracer& tracer, const ChiefRay& chief, const PsfGrid& grid) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, azimuths);
   if (!pupil) return {};
-  const std::vector<PupilNode> nodes = pupil_nodes(*pupil, radial_nodes);
+  const std::vector<PupilNode> nodes = pupil_nodes(*pupil, spot_radial_nodes);
   const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *pupil, nodes);
   const auto size = static_cast<std::size_t>(grid.size);
   std::vector<double> cells(size * size, 0.0);

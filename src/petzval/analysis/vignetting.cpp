@@ -11,10 +11,10 @@ namespace petzval {
 
 namespace {
 
-constexpr int rim_azimuths = 512;
+constexpr int passing_rim_azimuths = 512;
 
 std::optional<VignettingRow> vignetting(const FieldTracer& tracer, const ChiefRay& chief) {
-  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, rim_azimuths);
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, passing_rim_azimuths);
   const std::vector<PupilRay> rays = pupil_rays(tracer, chief);
   if (!pupil || rays.empty()) return {};
   const double radius = tracer.tracer().stop_radius_mm();

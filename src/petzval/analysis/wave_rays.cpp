@@ -10,7 +10,7 @@ namespace petzval {
 namespace {
 
 /// Finite differences of the exit direction, as a share of the pupil: truncation and rounding both near 1e-8.
-constexpr double nudge_per_radius = 1e-6;
+constexpr double wave_nudge_per_radius = 1e-6;
 /// A node's ray and its neighbours at u − nudge and v − nudge.
 constexpr std::size_t rays_per_node = 3;
 
@@ -57,7 +57,7 @@ std::vector<WaveRay> trace_wave_rays(const FieldTracer& tracer, const ChiefRay& 
   const double outwards = chief.image_height_mm < 0 ? -1.0 : 1.0;
   const double index = tracer.tracer().image_index();
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
-  const double nudge = nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
+  const double nudge = wave_nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
   const RayBatch rays = trace_with_neighbours(tracer, pencil, nodes, nudge);
 
   std::vector<WaveRay> waves(nodes.size());

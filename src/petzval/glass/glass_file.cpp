@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_file = std::size_t{64} << 20;
+constexpr std::size_t largest_glass_file = std::size_t{64} << 20;
 constexpr std::size_t most_files = 20'000;
 
 /// "CATALOGUE:NAME" leaves no room for colons and blanks.
@@ -33,7 +33,7 @@ bool is_yaml(const fs::path& path) {
 }
 
 GlassFile read_one(const fs::path& path, const std::string& yaml_catalogue) {
-  const std::string bytes = read_whole_file(path.string(), largest_file),
+  const std::string bytes = read_whole_file(path.string(), largest_glass_file),
                     stem = as_name(path.stem().string());
   if (is_yaml(path)) return read_glass_yaml(bytes, path.string(), yaml_catalogue, stem);
   if (extension_of(path) == ".AGF") return read_agf(bytes, path.string(), upper_case(stem));

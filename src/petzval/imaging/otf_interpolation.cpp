@@ -9,7 +9,7 @@ namespace petzval {
 namespace {
 
 using Image = AlignedVector<double>;
-using Spectrum = AlignedVector<std::complex<double>>;
+using OtfSamples = AlignedVector<std::complex<double>>;
 
 /// Where cell (row, column) of a kernel lies in a cyclic square with the middle cell at index 0.
 std::size_t cyclic_index(int row, int column, int radius, int square) {
@@ -17,9 +17,9 @@ std::size_t cyclic_index(int row, int column, int radius, int square) {
   return static_cast<std::size_t>(i) * static_cast<std::size_t>(square) + static_cast<std::size_t>(j);
 }
 
-Spectrum otf(const Kernel& kernel, const RealFft2<double>& fft) {
+OtfSamples otf(const Kernel& kernel, const RealFft2<double>& fft) {
   Image image(fft.size());
-  Spectrum spectrum(fft.spectrum_size());
+  OtfSamples spectrum(fft.spectrum_size());
   for (int row = 0; row < kernel.size(); ++row)
     for (int column = 0; column < kernel.size(); ++column)
       image[cyclic_index(row, column, kernel.radius, fft.columns())] =
@@ -33,8 +33,8 @@ Spectrum otf(const Kernel& kernel, const RealFft2<double>& fft) {
 Kernel between_otfs(const Kernel& low, const Kernel& high, double weight_high) {
   const int square = good_fft_size(2 * low.size());  // room for what interpolation spreads
   const RealFft2<double> fft(square, square);
-  Spectrum spectrum = otf(low, fft);
-  const Spectrum other = otf(high, fft);
+  OtfSamples spectrum = otf(low, fft);
+  const OtfSamples other = otf(high, fft);
   for (std::size_t k = 0; k < spectrum.size(); ++k) {
     const double modulus = (1 - weight_high) * std::abs(spectrum[k]) + weight_high * std::abs(other[k]);
     const double turn = std::arg(other[k] * std::conj(spectrum[k]));

@@ -12,7 +12,7 @@ namespace petzval {
 
 namespace {
 
-using Spectrum = AlignedVector<std::complex<float>>;
+using SectionSpectrum = AlignedVector<std::complex<float>>;
 
 /// Blurs sections one by one: the buffers of one thread's work.
 class SectionBlur {
@@ -47,7 +47,7 @@ class SectionBlur {
   int section_, radius_, margin_;
   RealFft2<float> fft_;
   AlignedVector<float> cells_;
-  Spectrum spectrum_, otf_;
+  SectionSpectrum spectrum_, otf_;
 };
 
 bool SectionBlur::has_light(int first_row, int first_column) const {

@@ -11,12 +11,6 @@ namespace {
 
 constexpr int strip_rows = 64;
 
-int mirrored(int index, int count) {
-  if (count == 1) return 0;
-  while (index < 0 || index >= count) index = index < 0 ? -index : 2 * count - 2 - index;
-  return index;
-}
-
 /// A piece of a plane with a margin around it on all sides.
 class Patch {
  public:
@@ -60,7 +54,7 @@ struct Strip {
   }
 };
 
-Planes empty_planes(const LinearMosaic& mosaic) {
+Planes empty_colours(const LinearMosaic& mosaic) {
   return {mosaic.columns, mosaic.rows,
           std::vector<std::vector<float>>(3, std::vector<float>(mosaic.values.size()))};
 }
@@ -173,7 +167,7 @@ float opposite_difference(const float* d, std::ptrdiff_t w) {
 }  // namespace
 
 Planes bayer_malvar(const LinearMosaic& mosaic) {
-  Planes planes = empty_planes(mosaic);
+  Planes planes = empty_colours(mosaic);
   constexpr int margin = 2;
   for_strips(mosaic, margin, [&](const Strip& strip, int count) {
     const std::ptrdiff_t w = strip.columns;
@@ -201,7 +195,7 @@ Planes bayer_malvar(const LinearMosaic& mosaic) {
 }
 
 Planes bayer_gradient(const LinearMosaic& mosaic) {
-  Planes planes = empty_planes(mosaic);
+  Planes planes = empty_colours(mosaic);
   // 2 for the line estimates, 1 and 2 for their changes, 4 for the directions, 3 for the other colour, 1 for
   // green pixels.
   constexpr int margin = 14;

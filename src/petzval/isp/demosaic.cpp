@@ -12,12 +12,6 @@ namespace petzval {
 
 namespace {
 
-int mirrored(int index, int count) {
-  if (count == 1) return 0;
-  while (index < 0 || index >= count) index = index < 0 ? -index : 2 * count - 2 - index;
-  return index;
-}
-
 /// For one cell of the mosaic: which neighbours make up each channel, and with what weights.
 struct Tap {
   int row, column, channel;

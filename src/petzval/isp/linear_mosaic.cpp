@@ -13,13 +13,6 @@ namespace petzval {
 
 namespace {
 
-/// Mirrored at the edges without repeating them, which keeps the phase of mosaics with a period of two.
-int mirrored(int index, int count) {
-  if (count == 1) return 0;
-  while (index < 0 || index >= count) index = index < 0 ? -index : 2 * count - 2 - index;
-  return index;
-}
-
 /// Places of the eight nearest pixels of the same channel, for each cell of the mosaic.
 std::vector<std::array<std::pair<int, int>, 8>> same_channel_neighbours(const Mosaic& mosaic) {
   std::vector<std::array<std::pair<int, int>, 8>> result;

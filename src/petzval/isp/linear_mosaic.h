@@ -29,6 +29,14 @@ struct LinearMosaic {
   }
 };
 
+/// The index 0 … count − 1 that stands for one beyond: mirrored at the edges without repeating them, which
+/// keeps the phase of mosaics with a period of two.
+inline int mirrored(int index, int count) {
+  if (count == 1) return 0;
+  while (index < 0 || index >= count) index = index < 0 ? -index : 2 * count - 2 - index;
+  return index;
+}
+
 /// Linearization table, black level, white level. \throws InputError as RawImage::validate.
 LinearMosaic linearised(const RawImage& raw);
 

@@ -12,8 +12,6 @@ namespace petzval {
 
 namespace {
 
-constexpr int chart_columns = 6, chart_rows = 4;
-
 /// The picture made small: noise and fine detail are of no interest here.
 struct SmallPicture {
   int columns = 0, rows = 0;

@@ -12,7 +12,6 @@ namespace petzval {
 
 namespace {
 
-constexpr int chart_columns = 6, chart_rows = 4;
 constexpr std::size_t first_grey = 18;
 
 /// Bilinear between the corners.

@@ -15,7 +15,7 @@ namespace petzval {
 
 namespace {
 
-using Plane = std::vector<float>;
+using Samples = std::vector<float>;
 
 /// Opponent channels (light-dark, red-green, blue-yellow) from XYZ, Poirson & Wandell as in the paper's
 /// appendix.
@@ -45,8 +45,8 @@ std::vector<float> kernel(double spread_px) {
 
 /// Along rows, result transposed: twice gives both directions. The picture is mirrored at its edges, again
 /// and again where a filter is wider than the picture.
-Plane blurred_transposed(const Plane& plane, int columns, int rows, const std::vector<float>& weights) {
-  Plane result(plane.size());
+Samples blurred_transposed(const Samples& plane, int columns, int rows, const std::vector<float>& weights) {
+  Samples result(plane.size());
   const int radius = static_cast<int>(weights.size()) / 2;
   std::vector<int> source;
   for (int i = -radius; i < columns + radius; ++i) {
@@ -67,14 +67,14 @@ Plane blurred_transposed(const Plane& plane, int columns, int rows, const std::v
   return result;
 }
 
-Plane seen(const Plane& plane, int columns, int rows, const std::vector<Gaussian>& gaussians,
-           double per_degree) {
+Samples seen(const Samples& plane, int columns, int rows, const std::vector<Gaussian>& gaussians,
+             double per_degree) {
   double total = 0;
   for (const Gaussian& gaussian : gaussians) total += gaussian.weight;
-  Plane sum(plane.size());
+  Samples sum(plane.size());
   for (const Gaussian& gaussian : gaussians) {
     const std::vector<float> weights = kernel(gaussian.spread_deg * per_degree);
-    const Plane part =
+    const Samples part =
         blurred_transposed(blurred_transposed(plane, columns, rows, weights), rows, columns, weights);
     const auto share = static_cast<float>(gaussian.weight / total);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += share * part[i];
@@ -97,7 +97,7 @@ ColourMatrix inverse(const ColourMatrix& m) {
 
 /// The picture as it is seen, in CIELAB.
 std::vector<Lab> seen_lab(const ViewedPicture& picture, double per_degree) {
-  std::array<Plane, 3> planes;
+  std::array<Samples, 3> planes;
   for (const Xyz& pixel : picture.pixels) {
     const Xyz opponent = opponent_from_xyz * pixel;
     planes[0].push_back(static_cast<float>(opponent.x));

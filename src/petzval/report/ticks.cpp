@@ -14,9 +14,8 @@ namespace {
 constexpr double on_tick = 1e-6;
 constexpr std::string_view minus_sign = "\xE2\x88\x92";  // U+2212
 
-std::string with_true_minus(std::string text) {
-  if (!text.empty() && text[0] == '-') text.replace(0, 1, minus_sign);
-  return text;
+std::string with_true_minus(const std::string& text) {
+  return text.starts_with('-') ? std::string(minus_sign) + text.substr(1) : text;
 }
 
 /// An axis with magnitudes from 10⁻³ to 10⁵ is written out; others in units of a power of 1000.
@@ -29,7 +28,7 @@ std::string fixed_label(double value, double step) {
   const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 12);
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.find_first_not_of("-0.") == std::string::npos) text.erase(0, text[0] == '-' ? 1 : 0);
-  return with_true_minus(std::move(text));
+  return with_true_minus(text);
 }
 
 double nice_step(double rough) {

@@ -54,7 +54,7 @@ std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& option
 }
 
 /// Reflectance × illuminant.
-void light(Scene& scene, const std::optional<Spectrum>& illuminant) {
+void put_under(Scene& scene, const std::optional<Spectrum>& illuminant) {
   if (!illuminant)
     throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
   bool any = false;
@@ -120,7 +120,7 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
     scene.for_each_band([factor](std::size_t, std::span<float> band) {
       for (float& value : band) value = static_cast<float>(value * factor);
     });
-  if (quantity == SceneQuantity::reflectance) light(scene, options.illuminant);
+  if (quantity == SceneQuantity::reflectance) put_under(scene, options.illuminant);
   if (quantity == SceneQuantity::radiance && options.illuminant) swap_illuminant(scene, *options.illuminant);
   if (quantity == SceneQuantity::emissivity) warm_emissivities(scene, options.thermal);
   return scene;

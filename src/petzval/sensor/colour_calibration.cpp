@@ -66,6 +66,15 @@ Patches patches_under(const Sensor& sensor, const Spectrum& light) {
   return patches;
 }
 
+/// X with A·X = B, of which B has more rows. Here alone, for each kind of solver costs seconds to compile.
+MatrixXd least_squares(const MatrixXd& a, const MatrixXd& b) {
+  return a.colPivHouseholderQr().solve(b);
+}
+
+MatrixXd product(const MatrixXd& a, const MatrixXd& b) {
+  return a * b;
+}
+
 Xyz as_xyz(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
@@ -77,17 +86,18 @@ class WhiteKeepingMap {
     const Eigen::Index channels = patches.neutral.size();
     const Eigen::Vector3d white(patches.white.x, patches.white.y, patches.white.z);
     base_ = white * patches.neutral.transpose() / patches.neutral.squaredNorm();
-    const MatrixXd q = Eigen::HouseholderQR<MatrixXd>(patches.neutral).householderQ();
+    const MatrixXd q = Eigen::ColPivHouseholderQR<MatrixXd>(patches.neutral).householderQ();
     free_ = q.rightCols(channels - 1).transpose();
   }
   Eigen::Index count() const { return 3 * free_.rows(); }
   MatrixXd matrix(const VectorXd& parameters) const {
-    return base_ + Eigen::Map<const MatrixXd>(parameters.data(), 3, free_.rows()) * free_;
+    return base_ + product(Eigen::Map<const MatrixXd>(parameters.data(), 3, free_.rows()), free_);
   }
   /// Least squares in XYZ.
   VectorXd start(const Patches& patches) const {
-    const MatrixXd seen = free_ * patches.camera, wanted = patches.xyz - base_ * patches.camera;
-    const MatrixXd solved = seen.transpose().colPivHouseholderQr().solve(wanted.transpose()).transpose();
+    const MatrixXd seen = product(free_, patches.camera),
+                   wanted = patches.xyz - product(base_, patches.camera),
+                   solved = least_squares(seen.transpose(), wanted.transpose()).transpose();
     return Eigen::Map<const VectorXd>(solved.data(), solved.size());
   }
 
@@ -96,7 +106,7 @@ class WhiteKeepingMap {
 };
 
 VectorXd lab_residuals(const Patches& patches, const MatrixXd& xyz_from_camera) {
-  const MatrixXd seen = xyz_from_camera * patches.camera;
+  const MatrixXd seen = product(xyz_from_camera, patches.camera);
   VectorXd residuals(3 * seen.cols());
   for (Eigen::Index i = 0; i < seen.cols(); ++i) {
     const Lab a = cielab(as_xyz(seen.col(i)), patches.white),
@@ -118,9 +128,10 @@ VectorXd refine(const WhiteKeepingMap& map, const Patches& patches, VectorXd par
       moved(p) += step;
       jacobian.col(p) = (lab_residuals(patches, map.matrix(moved)) - residuals) / step;
     }
-    MatrixXd normal = jacobian.transpose() * jacobian;
+    const MatrixXd transposed = jacobian.transpose();
+    MatrixXd normal = product(transposed, jacobian);
     normal.diagonal() *= 1 + damping;
-    const VectorXd trial = parameters - normal.ldlt().solve(jacobian.transpose() * residuals);
+    const VectorXd trial = parameters - least_squares(normal, product(transposed, residuals));
     const VectorXd trial_residuals = lab_residuals(patches, map.matrix(trial));
     const double gain = residuals.squaredNorm() - trial_residuals.squaredNorm();
     damping *= gain > 0 ? 0.2 : 10;
@@ -142,8 +153,8 @@ std::vector<double> flat(const MatrixXd& matrix) {
 
 /// Channels from XYZ: the inverse, or for more channels than three the least squares over the patches.
 MatrixXd inverse_map(const Patches& patches, const MatrixXd& xyz_from_camera) {
-  if (xyz_from_camera.cols() == 3) return xyz_from_camera.inverse();
-  return patches.xyz.transpose().colPivHouseholderQr().solve(patches.camera.transpose()).transpose();
+  if (xyz_from_camera.cols() == 3) return Eigen::Matrix3d(xyz_from_camera).inverse();
+  return least_squares(patches.xyz.transpose(), patches.camera.transpose()).transpose();
 }
 
 }  // namespace
@@ -158,7 +169,7 @@ ColourFit fit_colour(const Sensor& sensor, const Spectrum& light) {
   const MatrixXd fitted = map.matrix(refine(map, patches, map.start(patches)));
 
   ColourFit fit{flat(patches.neutral), flat(fitted), flat(inverse_map(patches, fitted)), 0, 0};
-  const MatrixXd seen = fitted * patches.camera;
+  const MatrixXd seen = product(fitted, patches.camera);
   for (Eigen::Index i = 0; i < seen.cols(); ++i) {
     const double difference = delta_e_2000(cielab(as_xyz(seen.col(i)), patches.white),
                                            cielab(as_xyz(patches.xyz.col(i)), patches.white));

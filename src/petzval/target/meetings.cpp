@@ -9,7 +9,7 @@ namespace petzval {
 
 namespace {
 
-struct Edge {
+struct Segment {
   Vertex a, b;
   std::uint32_t polygon;
 };
@@ -18,23 +18,24 @@ std::uint64_t key_of(std::size_t a, std::size_t b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
 }
 
-double turn(const Vertex& a, const Vertex& b, const Vertex& c) {
+double turn_of(const Vertex& a, const Vertex& b, const Vertex& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /// Whether segments cross or touch; those on one line count as touching.
-bool meet(const Edge& e, const Edge& f) {
-  return turn(e.a, e.b, f.a) * turn(e.a, e.b, f.b) <= 0 && turn(f.a, f.b, e.a) * turn(f.a, f.b, e.b) <= 0;
+bool touch(const Segment& e, const Segment& f) {
+  return turn_of(e.a, e.b, f.a) * turn_of(e.a, e.b, f.b) <= 0 &&
+         turn_of(f.a, f.b, e.a) * turn_of(f.a, f.b, e.b) <= 0;
 }
 
 /// Rows of equal height over nearly all corners; what lies beyond belongs to the first or the last.
 class Rows {
  public:
-  Rows(const std::vector<Edge>& edges) {
+  Rows(const std::vector<Segment>& edges) {
     constexpr std::size_t edges_each = 8, most = 1 << 16;
     count_ = std::clamp<std::size_t>(edges.size() / edges_each, 1, most);
     std::vector<double> heights;
-    for (const Edge& edge : edges) heights.push_back(edge.a.y);
+    for (const Segment& edge : edges) heights.push_back(edge.a.y);
     const auto at = [&](double share) {
       const auto place =
           heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
@@ -45,7 +46,7 @@ class Rows {
     low_ = at(outliers);
     height_ = std::max(1e-9, (at(1 - outliers) - low_) / static_cast<double>(count_));
     first_.assign(count_ + 1, 0);
-    for (const Edge& edge : edges) visit(edge, [&](std::size_t row) { ++first_[row + 1]; });
+    for (const Segment& edge : edges) visit(edge, [&](std::size_t row) { ++first_[row + 1]; });
     for (std::size_t row = 0; row < count_; ++row) first_[row + 1] += first_[row];
     members_.resize(first_.back());
     std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
@@ -62,7 +63,7 @@ class Rows {
             members_.begin() + static_cast<std::ptrdiff_t>(first_[row + 1])};
   }
   /// Range of x of an edge within a row, a little widened; the outer rows take edges whole.
-  std::pair<double, double> reach(const Edge& edge, std::size_t row) const {
+  std::pair<double, double> reach(const Segment& edge, std::size_t row) const {
     const double left = std::min(edge.a.x, edge.b.x), right = std::max(edge.a.x, edge.b.x);
     if (row == 0 || row + 1 == count_ || edge.a.y == edge.b.y) return {left, right};
     const auto x_at = [&](double y) {
@@ -77,7 +78,7 @@ class Rows {
 
  private:
   template <typename Work>
-  void visit(const Edge& edge, const Work& work) const {
+  void visit(const Segment& edge, const Work& work) const {
     const std::size_t last = row_of(std::max(edge.a.y, edge.b.y));
     for (std::size_t row = row_of(std::min(edge.a.y, edge.b.y)); row <= last; ++row) work(row);
   }
@@ -94,7 +95,7 @@ void sort_out(std::vector<std::uint64_t>& keys) {
 }
 
 /// Pairs whose edges meet within one row.
-std::vector<std::uint64_t> meetings_in(const std::vector<Edge>& edges, const Rows& rows, std::size_t row) {
+std::vector<std::uint64_t> meetings_in(const std::vector<Segment>& edges, const Rows& rows, std::size_t row) {
   struct Span {
     double from, to;
     std::uint32_t edge;
@@ -107,11 +108,11 @@ std::vector<std::uint64_t> meetings_in(const std::vector<Edge>& edges, const Row
   std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.from < b.from; });
   std::vector<std::uint64_t> found;
   for (const Span& span : spans) {
-    const Edge& edge = edges[span.edge];
+    const Segment& edge = edges[span.edge];
     std::erase_if(open, [&](const Span& other) { return other.to < span.from; });
     for (const Span& other : open) {
-      const Edge& before = edges[other.edge];
-      if (before.polygon != edge.polygon && meet(before, edge))
+      const Segment& before = edges[other.edge];
+      if (before.polygon != edge.polygon && touch(before, edge))
         found.push_back(key_of(before.polygon, edge.polygon));
     }
     open.push_back(span);
@@ -123,7 +124,7 @@ std::vector<std::uint64_t> meetings_in(const std::vector<Edge>& edges, const Row
 }  // namespace
 
 Meetings::Meetings(const std::vector<Polygon>& polygons, const std::vector<bool>& involved) {
-  std::vector<Edge> edges;
+  std::vector<Segment> edges;
   for (std::size_t p = 0; p < polygons.size(); ++p)
     if (involved[p])
       for (const Contour& contour : polygons[p].contours)
@@ -143,7 +144,7 @@ Meetings::Meetings(const std::vector<Polygon>& polygons, const std::vector<bool>
       const Vertex& at = contour[0];
       std::vector<std::uint32_t> touched;
       for (const std::uint32_t i : rows.members(rows.row_of(at.y))) {
-        const Edge& e = edges[i];
+        const Segment& e = edges[i];
         if ((e.a.y > at.y) == (e.b.y > at.y) ||
             at.x >= e.a.x + (e.b.x - e.a.x) * (at.y - e.a.y) / (e.b.y - e.a.y))
           continue;

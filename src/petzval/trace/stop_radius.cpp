@@ -12,7 +12,7 @@ namespace petzval {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unlimited_mm = std::numeric_limits<double>::infinity();
 
 /// The on-axis ray towards the edge of the paraxial entrance pupil.
 Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
@@ -34,7 +34,7 @@ Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
 std::optional<double> asked_radius_mm(const Lens& lens, bool must_reach) {
   if (lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm) return lens.aperture.value;
   const FirstOrder paraxial = first_order(lens, lens.reference_wavelength_nm);
-  const Tracer tracer(lens, lens.reference_wavelength_nm, infinity);
+  const Tracer tracer(lens, lens.reference_wavelength_nm, unlimited_mm);
   const Tracer::Clearance traced =
       tracer.clearance(ray_to_pupil_edge(lens, paraxial), false, Tracer::Clip::none);
   if (!traced.reached_stop && !must_reach) return {};
@@ -52,7 +52,7 @@ std::optional<double> asked_radius_mm(const Lens& lens, bool must_reach) {
 double stop_radius_mm(const Lens& lens) {
   const std::optional<double>& rim = lens.surfaces[lens.stop_index()].semi_diameter_mm;
   const std::optional<double> asked = asked_radius_mm(lens, !rim.has_value());
-  return std::min(rim.value_or(infinity), asked.value_or(infinity));
+  return std::min(rim.value_or(unlimited_mm), asked.value_or(unlimited_mm));
 }
 
 }  // namespace petzval

@@ -11,7 +11,7 @@ namespace petzval {
 
 namespace {
 
-std::optional<DepthPlane> read(const std::string& path) {
+std::optional<DepthPlane> read_depth(const std::string& path) {
   Imf::InputFile file(path.c_str(), 0);
   const Imf::Channel* channel = file.header().channels().findChannel(exr_depth_channel);
   if (channel == nullptr) return std::nullopt;
@@ -28,7 +28,7 @@ std::optional<DepthPlane> read(const std::string& path) {
 }  // namespace
 
 std::optional<DepthPlane> read_depth_exr(const std::string& path) {
-  return reading_exr(path, read);
+  return reading_exr(path, read_depth);
 }
 
 }  // namespace petzval

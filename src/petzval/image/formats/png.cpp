@@ -22,7 +22,7 @@ namespace petzval {
 
 namespace {
 
-constexpr png_uint_32 max_side = 1u << 20;
+constexpr png_uint_32 max_png_side = 1u << 20;
 
 struct PngError {
   char message[160] = "";
@@ -117,10 +117,10 @@ class Writer {
 };
 
 void check_layout(const std::string& path, const PngLayout& layout) {
-  if (layout.columns < 1 || layout.rows < 1 || layout.columns > static_cast<int>(max_side) ||
-      layout.rows > static_cast<int>(max_side))
+  if (layout.columns < 1 || layout.rows < 1 || layout.columns > static_cast<int>(max_png_side) ||
+      layout.rows > static_cast<int>(max_png_side))
     throw InputError(path, fmt::format("a picture of {} x {} pixels; each side must be 1 to {}",
-                                       layout.columns, layout.rows, max_side));
+                                       layout.columns, layout.rows, max_png_side));
   if (layout.channels < 1 || layout.channels > 4)
     throw InputError(path, fmt::format("a PNG of {} channels; it can have 1 to 4", layout.channels));
   if (layout.bits != 8 && layout.bits != 16)
@@ -158,7 +158,7 @@ class Reader {
 
   void read_header() {
     if (setjmp(png_jmpbuf(png_))) fail();
-    png_set_user_limits(png_, max_side, max_side);
+    png_set_user_limits(png_, max_png_side, max_png_side);
     constexpr png_alloc_size_t max_chunk_bytes = 1u << 24;
     png_set_chunk_malloc_max(png_, max_chunk_bytes);
     png_set_read_fn(png_, &rest_, read_bytes);

@@ -109,7 +109,7 @@ int compression_threads() {
   return threads;
 }
 
-SpectralExr read(const std::string& path) {
+SpectralExr read_spectra(const std::string& path) {
   Imf::InputFile file(path.c_str(), compression_threads());
   SpectralExr exr;
   const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
@@ -205,7 +205,7 @@ void SpectralExr::validate(const std::string& file) const {
 }
 
 SpectralExr read_spectral_exr(const std::string& path) {
-  return reading_exr(path, read);
+  return reading_exr(path, read_spectra);
 }
 
 void write_spectral_exr(const std::string& path, const SpectralExr& exr) {

@@ -16,19 +16,19 @@ namespace petzval {
 
 namespace {
 
-constexpr int max_side = 1 << 20;
+constexpr int max_tiff_side = 1 << 20;
 constexpr int max_channels = 512;
 constexpr std::size_t max_samples = std::size_t{1} << 31;
 // No supported compression makes more of one byte: LZW reaches about 2700, Deflate 1032.
-constexpr std::size_t max_expansion = 4000;
+constexpr std::size_t max_tiff_expansion = 4000;
 constexpr std::size_t strip_bytes = 1 << 16;
 
 // ---- writing
 
 void check(const std::string& path, const TiffImage& image) {
-  if (image.columns < 1 || image.rows < 1 || image.columns > max_side || image.rows > max_side)
+  if (image.columns < 1 || image.rows < 1 || image.columns > max_tiff_side || image.rows > max_tiff_side)
     throw InputError(path, fmt::format("a picture of {} x {} pixels; each side must be 1 to {}",
-                                       image.columns, image.rows, max_side));
+                                       image.columns, image.rows, max_tiff_side));
   if (image.channels < 1 || image.channels > max_channels)
     throw InputError(
         path, fmt::format("a TIFF of {} channels; 1 to {} would be right", image.channels, max_channels));
@@ -151,16 +151,17 @@ void check_kind(const std::string& path, const Layout& layout) {
 
 void check_sizes(const TiffStream& stream, const Layout& layout) {
   const auto within = [](std::uint64_t value, std::uint64_t most) { return value >= 1 && value <= most; };
-  if (!within(layout.columns, max_side) || !within(layout.rows, max_side) ||
+  if (!within(layout.columns, max_tiff_side) || !within(layout.rows, max_tiff_side) ||
       !within(layout.channels, max_channels))
     throw InputError(stream.path(),
                      fmt::format("promises {} x {} pixels of {} channels; sides must be 1 to {}, "
                                  "channels 1 to {}",
-                                 layout.columns, layout.rows, layout.channels, max_side, max_channels));
+                                 layout.columns, layout.rows, layout.channels, max_tiff_side, max_channels));
   const std::uint64_t samples = std::uint64_t{layout.columns} * layout.rows * layout.channels;
   const std::uint64_t block = std::uint64_t{layout.block_columns} * layout.block_rows *
                               layout.channels_in_block() * layout.sample_bytes();
-  const std::uint64_t most = stream.size() * (layout.compression == COMPRESSION_NONE ? 1 : max_expansion);
+  const std::uint64_t most =
+      stream.size() * (layout.compression == COMPRESSION_NONE ? 1 : max_tiff_expansion);
   if (samples > max_samples || samples * layout.sample_bytes() > most || block > 2 * most || block == 0)
     throw InputError(stream.path(), fmt::format("promises {} x {} pixels, but the file is too short for them",
                                                 layout.columns, layout.rows));

@@ -8,7 +8,7 @@ namespace petzval {
 
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string matlab_quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -17,7 +17,7 @@ std::string quoted(const std::string& text) {
 std::string iset_text(const Lens& lens) {
   const std::vector<LensRow> rows = rows_of_lens(lens, "an ISET file");
   std::string text = fmt::format("{{\n  \"name\": {},\n  \"description\": {},\n  \"surfaces\": [\n",
-                                 quoted(lens.name), quoted(lens.source));
+                                 matlab_quoted(lens.name), matlab_quoted(lens.source));
   for (std::size_t i = 0; i < rows.size(); ++i)
     text += fmt::format("    {{\"ior\": {}, \"radius\": {}, \"semi_aperture\": {}, \"thickness\": {}}}{}\n",
                         number_text(rows[i].index_after), row_radius_text(rows[i]),

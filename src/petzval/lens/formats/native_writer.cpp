@@ -18,7 +18,7 @@ std::string list(const std::vector<double>& numbers) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-struct GlassText {
+struct NativeGlassText {
   std::string operator()(const Material::Air&) const { return ""; }
   std::string operator()(const std::shared_ptr<const Glass>& glass) const {
     return quoted(glass->full_name());
@@ -44,7 +44,7 @@ std::string surface_text(const Surface& surface) {
   std::string text =
       fmt::format(R"({{"radius_mm": {}, "thickness_mm": {})",
                   flat ? "null" : radius_text(surface.curvature_per_mm), number_text(surface.thickness_mm));
-  const std::string glass = std::visit(GlassText{}, surface.material.kind());
+  const std::string glass = std::visit(NativeGlassText{}, surface.material.kind());
   if (!glass.empty()) text += ", \"glass\": " + glass;
   if (surface.stop) text += ", \"stop\": true";
   if (surface.blades.count != 0)

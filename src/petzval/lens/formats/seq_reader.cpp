@@ -20,43 +20,43 @@ namespace petzval {
 
 namespace {
 
-enum class Role { harmless, vignetting_factor, refused, refused_unless_zero };
+enum class SeqRole { harmless, vignetting_factor, refused, refused_unless_zero };
 
-struct Keyword {
-  Role role;
+struct SeqKeyword {
+  SeqRole role;
   const char* meaning;
 };
 
-const std::map<std::string, Keyword, std::less<>>& keywords() {
-  static const std::map<std::string, Keyword, std::less<>> table = [] {
-    std::map<std::string, Keyword, std::less<>> k;
-    const auto add = [&](Role role, std::initializer_list<const char*> names, const char* meaning) {
+const std::map<std::string, SeqKeyword, std::less<>>& keywords() {
+  static const std::map<std::string, SeqKeyword, std::less<>> table = [] {
+    std::map<std::string, SeqKeyword, std::less<>> k;
+    const auto add = [&](SeqRole role, std::initializer_list<const char*> names, const char* meaning) {
       for (const char* name : names) k[name] = {role, meaning};
     };
     // Names, weights, how a program varies, solves and draws; the present value of a solve is written out.
-    add(Role::harmless,
+    add(SeqRole::harmless,
         {"LEN", "GO",  "INI", "WTW", "WTF", "CWL", "DER", "SLB", "COM", "CON", "ASP", "CCY", "CCX", "THC",
          "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
          "ADC", "BDC", "CDC", "PFR", "MFL", "WID", "DAR", "REV", "RET", "SAV", "RES", "DOR", "UID", "SCC",
          "FRZ", "VIE", "LIS", "CIN", "TOR", "UMY", "UMC", "UIY", "HMY", "HCY", "UCY", "CAI", "DLC", "DLT"},
         "");
-    add(Role::vignetting_factor, {"VUX", "VLX", "VUY", "VLY"}, "");
-    add(Role::refused_unless_zero, {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"}, "a tilt or a decentre");
-    add(Role::refused_unless_zero, {"ADX", "ADY", "ARO"}, "a decentred aperture");
-    add(Role::refused_unless_zero, {"CUF"}, "a Fresnel surface");
-    add(Role::refused, {"BEN", "NSS", "NSC"}, "a bent or non-sequential path");
-    add(Role::refused, {"XTO", "YTO", "CYL", "AAS", "RDX", "CUX"}, "a surface that is not round");
-    add(Role::refused, {"SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
-    add(Role::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
+    add(SeqRole::vignetting_factor, {"VUX", "VLX", "VUY", "VLY"}, "");
+    add(SeqRole::refused_unless_zero, {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"}, "a tilt or a decentre");
+    add(SeqRole::refused_unless_zero, {"ADX", "ADY", "ARO"}, "a decentred aperture");
+    add(SeqRole::refused_unless_zero, {"CUF"}, "a Fresnel surface");
+    add(SeqRole::refused, {"BEN", "NSS", "NSC"}, "a bent or non-sequential path");
+    add(SeqRole::refused, {"XTO", "YTO", "CYL", "AAS", "RDX", "CUX"}, "a surface that is not round");
+    add(SeqRole::refused, {"SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
+    add(SeqRole::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
         "a grating or a hologram");
-    add(Role::refused, {"GRN", "UDG", "THM"}, "a graded index");
-    add(Role::refused, {"ZOO"}, "several zoom positions");
+    add(SeqRole::refused, {"GRN", "UDG", "THM"}, "a graded index");
+    add(SeqRole::refused, {"ZOO"}, "several zoom positions");
     return k;
   }();
   return table;
 }
 
-bool all_zero(const SeqCommand& command) {
+bool seq_all_zero(const SeqCommand& command) {
   return std::all_of(command.words.begin(), command.words.end(),
                      [](const std::string& word) { return parse_number(word).value_or(0) == 0; });
 }
@@ -66,13 +66,13 @@ bool is_rectangle_or_ellipse(const std::string& name) {
   return name == "REX" || name == "REY" || name == "ELX" || name == "ELY";
 }
 
-struct Findings {
+struct SeqFindings {
   std::set<std::string> unknown;
   bool vignetting = false;
 };
 
 void check_keyword(const SeqCommand& command, const SeqContext& context, const std::string& where,
-                   Findings& findings) {
+                   SeqFindings& findings) {
   if (is_rectangle_or_ellipse(command.name)) {
     const bool edge = std::any_of(command.words.begin(), command.words.end(),
                                   [](const std::string& word) { return upper_case(word) == "EDG"; });
@@ -85,12 +85,12 @@ void check_keyword(const SeqCommand& command, const SeqContext& context, const s
     return;
   }
   const auto [role, meaning] = keyword->second;
-  if (role == Role::refused || (role == Role::refused_unless_zero && !all_zero(command)))
+  if (role == SeqRole::refused || (role == SeqRole::refused_unless_zero && !seq_all_zero(command)))
     context.fail(command, fmt::format("({}) is not modelled; remove it from the file", meaning), where);
-  if (role == Role::vignetting_factor && !all_zero(command)) findings.vignetting = true;
+  if (role == SeqRole::vignetting_factor && !seq_all_zero(command)) findings.vignetting = true;
 }
 
-void note_findings(const Findings& findings, const SeqContext& context) {
+void note_findings(const SeqFindings& findings, const SeqContext& context) {
   if (findings.vignetting)
     context.notes.push_back(context.file +
                             ": vignetting factors are not used; the clear apertures vignette by themselves");
@@ -161,7 +161,7 @@ LensFile read_seq(const std::string& text, const std::string& file, const LensRe
   const SeqContext context{file, result.notes};
   SeqSystem system;
   SeqSurfaces surfaces;
-  Findings findings;
+  SeqFindings findings;
   for (const SeqCommand& command : seq_commands(text))
     if (!surfaces.apply(command, context) && !system.apply(command, context))
       check_keyword(command, context, surfaces.where(), findings);

@@ -16,7 +16,7 @@ namespace petzval {
 namespace {
 
 /// CODE V writes an infinite distance as 10^13 and takes any from 10^10 on for one.
-constexpr double infinite_distance = 1e10;
+constexpr double seq_infinite_distance = 1e10;
 
 /// A private glass of one index everywhere has no dispersion.
 Material private_material(const Material::Table& table) {
@@ -287,7 +287,7 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
   check_end(surfaces_.back(), "image");
   const double object = surfaces_.front().thickness;
   lens.object_distance_mm.reset();
-  if (!(std::abs(object) >= infinite_distance)) lens.object_distance_mm = object * mm_per_unit;
+  if (!(std::abs(object) >= seq_infinite_distance)) lens.object_distance_mm = object * mm_per_unit;
   const std::size_t stop = stop_.value_or(1);
   if (!stop_) context.notes.push_back(context.file + ": no STO; the stop is the first surface");
   if (stop == 0 || stop + 1 == surfaces_.size())
@@ -296,7 +296,7 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
     const SeqSurface& from = surfaces_[i];
     Surface surface;
     surface.curvature_per_mm = from.curvature / mm_per_unit;
-    if (!(std::abs(from.thickness) < infinite_distance))
+    if (!(std::abs(from.thickness) < seq_infinite_distance))
       context.fail(from.command, "is infinitely far from the next surface; only the object may be");
     surface.thickness_mm = from.thickness * mm_per_unit;
     surface.conic = from.conic;

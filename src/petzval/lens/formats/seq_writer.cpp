@@ -35,7 +35,7 @@ std::string numbers_text(const std::vector<double>& numbers) {
 }
 
 /// Names of glasses, and the private glasses that they need.
-struct GlassText {
+struct SeqGlassText {
   std::size_t surface;
   std::string& private_glasses;
 
@@ -111,7 +111,7 @@ std::string surface_text(const Lens& lens, std::size_t i, std::string& private_g
         "surfaces[{0}]: Petzval writes no blades into a .seq file; set surfaces[{0}].blades=null first", i));
   std::string text =
       fmt::format("S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
-                  std::visit(GlassText{i, private_glasses}, surface.material.kind()));
+                  std::visit(SeqGlassText{i, private_glasses}, surface.material.kind()));
   if (surface.stop) text += "  STO\n";
   if (surface.conic != 0 || !surface.asphere.empty()) text += asphere_text(surface, i);
   if (surface.semi_diameter_mm) text += fmt::format("  CIR {}\n", number_text(*surface.semi_diameter_mm));
@@ -149,7 +149,7 @@ std::string fields_text(const Fields& fields) {
   return fmt::format("{} {}\n", names[static_cast<std::size_t>(fields.kind)], numbers_text(fields.values));
 }
 
-std::string wavelengths_text(const Lens& lens) {
+std::string seq_wavelengths_text(const Lens& lens) {
   const auto& wavelengths = lens.wavelengths_nm;
   const auto reference = std::find(wavelengths.begin(), wavelengths.end(), lens.reference_wavelength_nm);
   if (reference == wavelengths.end())
@@ -174,7 +174,7 @@ std::string seq_text(const Lens& lens) {
   }
   std::string text =
       fmt::format("RDM N\nLEN\nTITLE {}\nDIM M\n{}\n", title_text(lens.name), aperture_text(lens));
-  text += wavelengths_text(lens) + fields_text(lens.fields);
+  text += seq_wavelengths_text(lens) + fields_text(lens.fields);
   if (!private_glasses.empty()) text += fmt::format("PRV\n{}END\n", private_glasses);
   text += fmt::format("SO 0.0 {}\n", number_text(lens.object_distance_mm.value_or(infinity)));
   return text + surfaces + "SI 0.0 0.0\nGO\n";

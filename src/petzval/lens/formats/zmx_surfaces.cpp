@@ -14,12 +14,12 @@ namespace petzval {
 namespace {
 
 /// The programs that write these files take a distance from 10^10 on for infinite.
-constexpr double infinite_distance = 1e10;
+constexpr double zmx_infinite_distance = 1e10;
 
 bool is_infinite(const ZmxRecord& thickness) {
   if (!thickness.has(0)) return false;
   if (thickness.values[0] == "INFINITY" || thickness.values[0] == "-INFINITY") return true;
-  return std::abs(parse_number(thickness.values[0]).value_or(0)) >= infinite_distance;
+  return std::abs(parse_number(thickness.values[0]).value_or(0)) >= zmx_infinite_distance;
 }
 
 /// Coefficient i (from 1) of PARM is that of r^(step·i). Extended aspheres have them in XDAT instead, after

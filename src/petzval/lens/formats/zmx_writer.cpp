@@ -56,7 +56,7 @@ std::vector<std::string> catalogue_order(const Lens& lens) {
   return order;
 }
 
-struct GlassText {
+struct ZmxGlassText {
   std::size_t surface;
 
   std::string operator()(const Material::Air&) const { return ""; }
@@ -118,7 +118,7 @@ std::string surface_text(const Lens& lens, std::size_t i) {
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
   text += fmt::format("  DISZ {}\n", number_text(surface.thickness_mm));
-  text += std::visit(GlassText{i}, surface.material.kind());
+  text += std::visit(ZmxGlassText{i}, surface.material.kind());
   // The size of the stop, where the aperture is given by it, is an automatic DIAM beside the clear aperture.
   const bool sets_aperture = surface.stop && lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm;
   const double semi = sets_aperture ? lens.aperture.value : surface.semi_diameter_mm.value_or(0);
@@ -159,7 +159,7 @@ std::string fields_text(const Lens& lens) {
                      lens.wavelengths_nm.size(), x, y, weights);
 }
 
-std::string wavelengths_text(const Lens& lens) {
+std::string zmx_wavelengths_text(const Lens& lens) {
   const auto& wavelengths = lens.wavelengths_nm;
   const auto reference = std::find(wavelengths.begin(), wavelengths.end(), lens.reference_wavelength_nm);
   if (reference == wavelengths.end())
@@ -180,7 +180,7 @@ std::string zmx_text(const Lens& lens) {
   text += aperture_text(lens.aperture);
   text += "ENVD 20 1 0\n";
   if (!catalogues.empty()) text += fmt::format("GCAT {}\n", fmt::join(catalogues, " "));
-  text += fields_text(lens) + wavelengths_text(lens);
+  text += fields_text(lens) + zmx_wavelengths_text(lens);
   text += fmt::format("SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ {}\n",
                       lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "INFINITY");
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) text += surface_text(lens, i);

@@ -33,7 +33,7 @@ void quintic(double t, double* values) {
   values[5] = p5(t) / 120;
 }
 
-double sinc(double x) {
+double knot_sinc(double x) {
   return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
 }
 
@@ -141,7 +141,7 @@ std::vector<std::complex<double>> EdgeSpreadModel::transform_row(double f) const
   const double fade = std::exp(-2 * pi * b * std::abs(f));
   std::vector<std::complex<double>> row{0, fade, -2 * pi * pi * std::abs(f) * fade,
                                         -2 * pi * pi * pi / b * f * f * fade};
-  const double window = std::pow(sinc(f * options_.knot_px), support) * options_.knot_px;
+  const double window = std::pow(knot_sinc(f * options_.knot_px), support) * options_.knot_px;
   for (int j = 0; j < splines_; ++j) {
     const double centre = (j - 0.5 * (splines_ - 1)) * options_.knot_px;
     row.push_back(std::complex<double>(0, 2 * pi * f) * window * std::polar(1.0, -2 * pi * f * centre));

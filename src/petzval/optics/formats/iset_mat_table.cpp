@@ -97,9 +97,9 @@ class PsfStack {
   int size() const { return size_; }
   const MatValue& function() const { return function_; }
 
-  PsfGrid grid(std::size_t field, std::size_t wave) const {
+  NumberGrid grid(std::size_t field, std::size_t wave) const {
     const auto side = static_cast<std::size_t>(size_), from = (wave * fields_ + field) * side * side;
-    PsfGrid grid{size_, size_, std::vector<double>(side * side)};
+    NumberGrid grid{size_, size_, std::vector<double>(side * side)};
     for (std::size_t row = 0; row < side; ++row)
       for (std::size_t column = 0; column < side; ++column)
         grid.values[row * side + column] = numbers_[from + column * side + row];
@@ -115,7 +115,7 @@ class PsfStack {
 
 /// The outer half of the field, where a PSF has a direction, at one wavelength.
 std::optional<PsfMirror> mirror_of(const PsfStack& stack, const RayTraceData& data) {
-  std::vector<PsfGrid> outer;
+  std::vector<NumberGrid> outer;
   for (std::size_t f = data.field_height_mm.size() / 2; f < data.field_height_mm.size(); ++f)
     outer.push_back(stack.grid(f, data.wavelengths_nm.size() / 2));
   return find_mirror(outer);
@@ -187,7 +187,7 @@ MatItem psf_item(const RayTraceData& data) {
   function.values.reserve(side * side * fields * waves);
   for (std::size_t w = 0; w < waves; ++w)
     for (std::size_t f = 0; f < fields; ++f) {
-      const PsfGrid grid = grid_of_psf(data.psf[f * waves + w], frame, size);
+      const NumberGrid grid = grid_of_psf(data.psf[f * waves + w], frame, size);
       for (int column = 0; column < size; ++column)
         for (int row = 0; row < size; ++row) function.values.push_back(grid.at(row, column));
     }

@@ -14,7 +14,7 @@ namespace petzval {
 namespace {
 
 /// More fields or wavelengths than anybody measures.
-constexpr std::size_t longest_axis = 10'000;
+constexpr std::size_t longest_measured_axis = 10'000;
 
 std::vector<double> distinct(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -37,7 +37,8 @@ Entries entries_of(const NumberColumns& file) {
   const std::vector<double>&fields = file.column("field_mm"), &waves = file.column("wavelength_nm");
   Entries entries{distinct(fields), distinct(waves), {}};
   const std::size_t count = entries.fields_mm.size(), wave_count = entries.wavelengths_nm.size();
-  if (count > longest_axis || wave_count > longest_axis || count * wave_count > fields.size())
+  if (count > longest_measured_axis || wave_count > longest_measured_axis ||
+      count * wave_count > fields.size())
     file.fail(fmt::format("has {} fields and {} wavelengths in {} rows: every field needs every wavelength",
                           count, wave_count, fields.size()));
   if (entries.fields_mm.front() != 0 || count < 2)

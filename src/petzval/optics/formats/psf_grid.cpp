@@ -38,7 +38,7 @@ Step clockwise_of(Step step) {
   return {step.column, -step.row};
 }
 
-void require_good(const PsfGrid& grid, const PsfFrame& frame) {
+void require_good(const NumberGrid& grid, const PsfFrame& frame) {
   if (grid.rows < 1 || grid.columns < 1) throw InputError("a PSF has no samples");
   if (frame.centre_row < 0 || frame.centre_row >= grid.rows || frame.centre_column < 0 ||
       frame.centre_column >= grid.columns)
@@ -57,9 +57,9 @@ int size_for(int before, int behind) {
 }
 
 /// How far the grids are from their mirror images about row or column `centre`, of all their light.
-double asymmetry(std::span<const PsfGrid> grids, bool upright, int centre) {
+double asymmetry(std::span<const NumberGrid> grids, bool upright, int centre) {
   double difference = 0, light = 0;
-  for (const PsfGrid& grid : grids)
+  for (const NumberGrid& grid : grids)
     for (int i = 0; i < grid.rows; ++i)
       for (int j = 0; j < grid.columns; ++j) {
         const int row = upright ? i : 2 * centre - i, column = upright ? 2 * centre - j : j;
@@ -82,7 +82,7 @@ std::string away_text(PsfAway away) {
   return away_names[static_cast<std::size_t>(away)];
 }
 
-Psf psf_of_grid(const PsfGrid& grid, const PsfFrame& frame, double spacing_um) {
+Psf psf_of_grid(const NumberGrid& grid, const PsfFrame& frame, double spacing_um) {
   require_good(grid, frame);
   const Step t_step = step_of(frame.away), s_step = clockwise_of(t_step);
   // t or s of an edge of the grid; both axes must fit.
@@ -116,10 +116,10 @@ Psf psf_of_grid(const PsfGrid& grid, const PsfFrame& frame, double spacing_um) {
   return psf;
 }
 
-PsfGrid grid_of_psf(const Psf& psf, const PsfFrame& frame, int size) {
+NumberGrid grid_of_psf(const Psf& psf, const PsfFrame& frame, int size) {
   const Step t_step = step_of(frame.away), s_step = clockwise_of(t_step);
-  PsfGrid grid{size, size,
-               std::vector<double>(static_cast<std::size_t>(size) * static_cast<std::size_t>(size))};
+  NumberGrid grid{size, size,
+                  std::vector<double>(static_cast<std::size_t>(size) * static_cast<std::size_t>(size))};
   for (int i = 0; i < psf.size; ++i)
     for (int j = 0; j < psf.size; ++j) {
       const int t = i - psf.size / 2, s = j - psf.size / 2;
@@ -134,7 +134,7 @@ PsfGrid grid_of_psf(const Psf& psf, const PsfFrame& frame, int size) {
   return grid;
 }
 
-std::optional<PsfMirror> find_mirror(std::span<const PsfGrid> grids) {
+std::optional<PsfMirror> find_mirror(std::span<const NumberGrid> grids) {
   constexpr double near = 0.02, clearly = 10;
   if (grids.empty() || grids.front().rows != grids.front().columns || grids.front().rows < 3) return {};
   double best[2] = {2, 2};

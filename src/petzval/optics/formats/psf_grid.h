@@ -12,7 +12,7 @@
 namespace petzval {
 
 /// Rows of numbers as they stand in a file, the first row on top.
-struct PsfGrid {
+struct NumberGrid {
   int rows = 0, columns = 0;
   std::vector<double> values;  ///< row-major
 
@@ -39,11 +39,11 @@ struct PsfFrame {
 /// \throws InputError unless the grid has values, all finite and none negative, some light, and the centre in
 /// it. The samples keep their values if they already sum to 1 as closely as single precision can, else they
 /// are divided by their sum.
-Psf psf_of_grid(const PsfGrid& grid, const PsfFrame& frame, double spacing_um);
+Psf psf_of_grid(const NumberGrid& grid, const PsfFrame& frame, double spacing_um);
 
 /// The other way round, on a square grid of `size`. \throws InputError if a sample other than 0 falls
 /// outside.
-PsfGrid grid_of_psf(const Psf& psf, const PsfFrame& frame, int size);
+NumberGrid grid_of_psf(const Psf& psf, const PsfFrame& frame, int size);
 
 /// What the mirror symmetry that PSFs of a centred lens have tells of their grid: light is the same on both
 /// sides of the line through the chief ray that runs away from the axis.
@@ -54,6 +54,6 @@ struct PsfMirror {
 
 /// Nothing unless the grids, which must be of one size, show it clearly: within 2 % about one line and ten
 /// times less about every crosswise one.
-std::optional<PsfMirror> find_mirror(std::span<const PsfGrid> grids);
+std::optional<PsfMirror> find_mirror(std::span<const NumberGrid> grids);
 
 }  // namespace petzval

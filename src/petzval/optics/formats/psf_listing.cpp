@@ -14,7 +14,7 @@ namespace petzval {
 namespace {
 
 constexpr int largest_side = 16384;
-constexpr double bytes_per_gib = 1 << 30;
+constexpr double listing_bytes_per_gib = 1 << 30;
 
 /// The numbers in a line of prose: "Data area is 32.00 by 32.00 µm." has two.
 std::vector<double> numbers_in(std::string_view text) {
@@ -65,7 +65,7 @@ struct Header {
         fail(line,
              fmt::format("a grid of {:g} by {:g} samples would take {:.3g} GiB of memory; up to {} a side "
                          "are read",
-                         sizes[0], sizes[1], 8 * sizes[0] * sizes[1] / bytes_per_gib, largest_side));
+                         sizes[0], sizes[1], 8 * sizes[0] * sizes[1] / listing_bytes_per_gib, largest_side));
     columns = static_cast<int>(sizes[0]);
     rows = static_cast<int>(sizes[1]);
   }
@@ -175,7 +175,7 @@ PsfFrame listing_frame(int size) {
 std::string psf_listing_text(const Psf& psf, int size, double wavelength_nm, double image_height_mm,
                              const std::string& title) {
   const PsfFrame frame = listing_frame(size);
-  const PsfGrid grid = grid_of_psf(psf, frame, size);
+  const NumberGrid grid = grid_of_psf(psf, frame, size);
   std::string text = fmt::format(
       "Listing of PSF Data\n\nTitle: {}\n\n{} µm\nData spacing is {} µm.\nData area is {:.6g} by {:.6g} µm.\n"
       "Image grid size: {} by {}\nCenter point is: row {}, column {}\nCenter coordinates: 0, {}\n"

@@ -12,7 +12,7 @@ namespace petzval {
 
 /// A listing "of Huygens PSF Data" or "of FFT PSF Data", or a bare matrix of numbers without a header.
 struct PsfListing {
-  PsfGrid grid;
+  NumberGrid grid;
   double spacing_um = 0;  ///< 0: the listing does not say
   /// Row and column of the chief ray, from 0; where the listing does not say, size/2.
   int centre_row = 0, centre_column = 0;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Larger text files are none of these.
-constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::size_t most_text_bytes = std::size_t{1} << 30;
 /// Room for the PSFs of a table.
 constexpr double most_memory = 8.0 * (1 << 30);
 
@@ -79,7 +79,7 @@ std::string parameters_path(const std::string& path) {
 /// A matrix of field heights × wavelengths, and nothing else.
 std::vector<double> read_curves(const std::string& path, std::size_t fields, std::size_t waves) {
   std::vector<double> values;
-  for (const TextLine& line : text_lines(decoded_text(read_whole_file(path, most_bytes))))
+  for (const TextLine& line : text_lines(decoded_text(read_whole_file(path, most_text_bytes))))
     for (const std::string& word : line.words) {
       const std::optional<double> value = parse_number(word);
       if (!value)
@@ -149,7 +149,7 @@ struct ListingReader {
   }
 
   Psf read(const std::string& path) {
-    const PsfListing listing = read_psf_listing(read_whole_file(path, most_bytes), path, size);
+    const PsfListing listing = read_psf_listing(read_whole_file(path, most_text_bytes), path, size);
     PsfFrame frame{away_of(listing), listing.centre_row, listing.centre_column};
     if (lie.centre) {
       frame.centre_row = lie.centre->first - 1;
@@ -187,7 +187,7 @@ std::string curves_text(const std::vector<double>& values, std::size_t waves) {
 RayTraceFile read_zemax_table(const std::string& path, ListingProgram program, const PsfLie& lie) {
   const std::string parameters_file = parameters_path(path);
   IsetParameters parameters =
-      read_isetparms(decoded_text(read_whole_file(parameters_file, most_bytes)), parameters_file);
+      read_isetparms(decoded_text(read_whole_file(parameters_file, most_text_bytes)), parameters_file);
   refuse_absurd(parameters, parameters_file);
   RayTraceFile file{std::move(parameters.data), {}};
   RayTraceData& data = file.data;
@@ -206,7 +206,7 @@ RayTraceFile read_zemax_table(const std::string& path, ListingProgram program, c
           names.with({fmt::format("_2D_PSF_Fld{}_Wave{}.dat", f, w), fmt::format("_PSF_{}_{}.dat", f, w)}))));
   for (const std::string& name : names.with({"_PETZVAL.json"}))
     if (const std::optional<std::string> kept = folder.find(name))
-      data.kept = read_whole_file(*kept, most_bytes);
+      data.kept = read_whole_file(*kept, most_text_bytes);
   return file;
 }
 

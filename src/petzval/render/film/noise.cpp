@@ -9,7 +9,7 @@ namespace petzval::render {
 
 namespace {
 
-constexpr int tile_side = 16;
+constexpr int noise_tile_side = 16;
 /// Tiles darker than this share of the picture's mean are measured by that.
 constexpr double dark_share = 0.1;
 /// Of all tiles, those that keep the noise which is stated.
@@ -22,11 +22,11 @@ double noise_of(const PixelWindow& window, std::span<const double> squared_error
   const double mean = std::accumulate(light.begin(), light.end(), 0.0) / static_cast<double>(light.size());
   if (!(mean > 0)) return 0;
   std::vector<double> tiles;
-  for (int top = 0; top < window.rows(); top += tile_side)
-    for (int left = 0; left < window.columns(); left += tile_side) {
+  for (int top = 0; top < window.rows(); top += noise_tile_side)
+    for (int left = 0; left < window.columns(); left += noise_tile_side) {
       double error = 0, sum = 0, count = 0;
-      for (int row = top; row < std::min(top + tile_side, window.rows()); ++row)
-        for (int column = left; column < std::min(left + tile_side, window.columns()); ++column) {
+      for (int row = top; row < std::min(top + noise_tile_side, window.rows()); ++row)
+        for (int column = left; column < std::min(left + noise_tile_side, window.columns()); ++column) {
           const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(window.columns()) +
                           static_cast<std::size_t>(column);
           error += squared_errors[at], sum += light[at], ++count;

@@ -9,13 +9,6 @@ namespace petzval::render {
 
 namespace {
 
-double mean_of(const BandSpectrum& spectrum) {
-  double sum = 0;
-  for (const Lanes& lanes : spectrum)
-    for (const float value : lanes.v) sum += static_cast<double>(value);
-  return sum / static_cast<double>(spectrum.size() * lane_count);
-}
-
 /// Index of the interval of a cumulative list that holds `at`, and how far into it.
 std::size_t find_interval(const double* begin, std::size_t count, double at, double& share) {
   const double* above = std::upper_bound(begin + 1, begin + count, at);

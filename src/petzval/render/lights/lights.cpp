@@ -8,13 +8,6 @@ namespace petzval::render {
 
 namespace {
 
-double mean_of(const BandSpectrum& spectrum) {
-  double sum = 0;
-  for (const Lanes& lanes : spectrum)
-    for (const float value : lanes.v) sum += static_cast<double>(value);
-  return sum / static_cast<double>(spectrum.size() * lane_count);
-}
-
 /// 1 inside of the cone, 0 outside, smooth between (pbrt-v4).
 double spot_share(const SmallLight& light, double cos) {
   if (cos >= light.cos_begin) return 1;

@@ -29,8 +29,8 @@ Cubic from_spline(const Vector3* p, int degree) {
   return {between(before, first, 0.5), first, second, between(second, after, 0.5)};
 }
 
-std::vector<Cubic> pieces(const std::vector<Vector3>& points, int degree, bool spline,
-                          const Parameters& parameters) {
+std::vector<Cubic> bezier_pieces(const std::vector<Vector3>& points, int degree, bool spline,
+                                 const Parameters& parameters) {
   const auto order = static_cast<std::size_t>(degree);
   const std::size_t step = spline ? 1 : order;
   if (points.size() < order + 1 || (points.size() - 1) % step != 0)
@@ -152,7 +152,7 @@ CurveSegments read_curve(const ShapeDescription& shape, Unsupported& unsupported
   const double begin = width_of(parameters, "width0", width), end = width_of(parameters, "width1", width);
   parameters.number("splitdepth", 3);  // how pbrt divides it
   const double scale = even_scale(shape, unsupported);
-  const std::vector<Cubic> cubics = pieces(world_points(shape), degree, spline, parameters);
+  const std::vector<Cubic> cubics = bezier_pieces(world_points(shape), degree, spline, parameters);
   for (std::size_t i = 0; i < cubics.size(); ++i)
     for (std::size_t k = 0; k < 4; ++k) {
       const double along =

@@ -12,10 +12,6 @@ namespace {
 /// as the twist is at the rims.
 constexpr std::uint32_t pieces = 32, twisted_strips = 8;
 
-TriangleMesh::Vertex vertex(Vector3 p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
 Vector3 turned(Vector3 from, Vector3 to, double share) {
   const double angle = std::acos(std::clamp(dot(from, to), -1.0, 1.0));
   if (std::sin(angle) < 1e-9) return from;
@@ -34,8 +30,8 @@ void add_row(const CurveSegments& ribbon, std::size_t segment, double t, std::ui
   const double u = (static_cast<double>(segment) + t) / static_cast<double>(ribbon.segments());
   for (std::uint32_t k = 0; k <= strips; ++k) {
     const double v = static_cast<double>(k) / strips;
-    mesh.positions.push_back(vertex(place.centre + (2 * v - 1) * place.radius * across));
-    mesh.normals.push_back(vertex(normal));
+    mesh.positions.push_back(mesh_vertex(place.centre + (2 * v - 1) * place.radius * across));
+    mesh.normals.push_back(mesh_vertex(normal));
     mesh.uvs.push_back({static_cast<float>(u), static_cast<float>(v)});
   }
 }

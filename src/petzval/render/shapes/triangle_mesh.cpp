@@ -14,10 +14,6 @@ constexpr int patch_pieces = 16;
 /// patch and two triangles are the same surface with the same texture coordinates.
 constexpr double flat_patch = 1e-6;
 
-TriangleMesh::Vertex vertex(Vector3 p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
 template <std::size_t Size>
 std::vector<std::array<float, Size>> tuples(const Parameters& parameters, const std::string& name,
                                             std::initializer_list<const char*> types) {
@@ -86,7 +82,7 @@ void add_patch(const TriangleMesh& corners, const std::array<std::uint32_t, 4>& 
     for (int i = 0; i <= pieces; ++i) {
       const double u = static_cast<double>(i) / pieces, v = static_cast<double>(j) / pieces;
       const std::array<double, 4> share{(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-      mesh.positions.push_back(vertex(patch.at(u, v)));
+      mesh.positions.push_back(mesh_vertex(patch.at(u, v)));
       Vector3 normal = patch.normal(u, v);
       if (!corners.normals.empty()) {
         normal = {};
@@ -95,7 +91,7 @@ void add_patch(const TriangleMesh& corners, const std::array<std::uint32_t, 4>& 
           normal = normal + share[c] * Vector3{n[0], n[1], n[2]};
         }
       }
-      mesh.normals.push_back(vertex(normal));
+      mesh.normals.push_back(mesh_vertex(normal));
       std::array<double, 2> uv{u, v};
       if (!corners.uvs.empty()) {
         uv = {};
@@ -165,8 +161,8 @@ double TriangleMesh::area(std::size_t triangle) const {
 
 void TriangleMesh::transform(const Transform& to) {
   for (std::size_t i = 0; i < positions.size(); ++i)
-    positions[i] = vertex(to.point(position(static_cast<std::uint32_t>(i))));
-  for (Vertex& n : normals) n = vertex(normalised(to.normal({n[0], n[1], n[2]})));
+    positions[i] = mesh_vertex(to.point(position(static_cast<std::uint32_t>(i))));
+  for (Vertex& n : normals) n = mesh_vertex(normalised(to.normal({n[0], n[1], n[2]})));
   validate();
 }
 

@@ -30,6 +30,10 @@ struct TriangleMesh {
   void validate() const;
 };
 
+inline TriangleMesh::Vertex mesh_vertex(Vector3 p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 /// pbrt's "trianglemesh", "bilinearmesh" and "plymesh", or the mesh that the description holds, in world
 /// space. Bilinear patches that are not flat become 2 × 16² triangles with the patch's own normals. \throws
 /// InputError with file, line and column.

@@ -38,4 +38,11 @@ BandSpectrum WavelengthGroups::sampled(const std::function<double(double)>& valu
   return result;
 }
 
+double mean_of(const BandSpectrum& spectrum) {
+  double sum = 0;
+  for (const Lanes& lanes : spectrum)
+    for (const float value : lanes.v) sum += static_cast<double>(value);
+  return sum / static_cast<double>(spectrum.size() * lane_count);
+}
+
 }  // namespace petzval::render

@@ -12,6 +12,9 @@ namespace petzval::render {
 /// A quantity at every wavelength of a picture, [group] of lanes.
 using BandSpectrum = std::vector<Lanes>;
 
+/// Over all lanes, the repeated ones too: a weight for choosing by, no measured quantity.
+double mean_of(const BandSpectrum& spectrum);
+
 /// The bands of a picture dealt out into groups of up to eight, each spread over the whole range: group g of
 /// G holds bands g, g + G, g + 2G, … Every band belongs to one group; a lane without a band repeats the
 /// group's first wavelength and is never read.

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* gain_unit = "W.m^-2.sr^-1.um^-1";
 constexpr std::uint64_t most_data_bytes = std::uint64_t{8} * Scene::max_values;
-constexpr double gib = 1024.0 * 1024 * 1024;
+constexpr double envi_gib = 1024.0 * 1024 * 1024;
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;
@@ -77,10 +77,10 @@ void check_size(const EnviHeader& header, std::uint64_t there, const std::string
   const std::string size = fmt::format("{} x {} samples in {} bands of {} bytes", header.columns, header.rows,
                                        header.bands, header.value_bytes());
   if (needed > most_data_bytes || needed / header.value_bytes() > Scene::max_values)
-    throw InputError(header_file,
-                     fmt::format("{} would take {:.1f} GiB; up to {} values fit", size,
-                                 static_cast<double>(needed / header.value_bytes()) * sizeof(float) / gib,
-                                 Scene::max_values));
+    throw InputError(header_file, fmt::format("{} would take {:.1f} GiB; up to {} values fit", size,
+                                              static_cast<double>(needed / header.value_bytes()) *
+                                                  sizeof(float) / envi_gib,
+                                              Scene::max_values));
   const std::uint64_t held = there > header.offset ? there - header.offset : 0;
   if (held != needed)
     throw InputError(data_file,

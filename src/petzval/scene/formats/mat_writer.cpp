@@ -15,7 +15,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t header_size = 128, tag_size = 8;
+constexpr std::size_t text_header_size = 128, tag_size = 8;
 constexpr std::uint32_t compressed_type = 15;
 constexpr double bytes_per_gib = 1 << 30;
 
@@ -69,14 +69,14 @@ double bytes_of(const MatItem& item) {
 
 /// The variable deflated as MATLAB does it. matio packs too, but writes wrong sizes for texts.
 std::string packed(std::string_view plain) {
-  const std::string_view variable = plain.substr(header_size);
+  const std::string_view variable = plain.substr(text_header_size);
   uLongf size = compressBound(variable.size());
   std::string bytes(size, '\0');
   if (compress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(variable.data()),
                variable.size()) != Z_OK)
     throw Failure("the variable cannot be packed");
   const std::uint32_t tag[2] = {compressed_type, static_cast<std::uint32_t>(size)};
-  std::string file(plain.substr(0, header_size));
+  std::string file(plain.substr(0, text_header_size));
   file.append(reinterpret_cast<const char*>(tag), tag_size).append(bytes, 0, size);
   return file;
 }

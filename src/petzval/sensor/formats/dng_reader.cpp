@@ -15,9 +15,9 @@ namespace petzval {
 
 namespace {
 
-constexpr std::uint32_t max_side = 1 << 17;
+constexpr std::uint32_t max_dng_side = 1 << 17;
 constexpr std::uint64_t max_expansion = 1032;  // of Deflate
-constexpr int max_mosaic_side = 64;
+constexpr int max_dng_mosaic_side = 64;
 
 class DngReader {
  public:
@@ -151,9 +151,9 @@ class DngReader {
     std::uint32_t columns = 0, rows = 0;
     TIFFGetField(tiff_, TIFFTAG_IMAGEWIDTH, &columns);
     TIFFGetField(tiff_, TIFFTAG_IMAGELENGTH, &rows);
-    if (columns < 1 || rows < 1 || columns > max_side || rows > max_side)
-      refuse(
-          fmt::format("promises {} x {} pixels; 1 to {} on a side would be right", columns, rows, max_side));
+    if (columns < 1 || rows < 1 || columns > max_dng_side || rows > max_dng_side)
+      refuse(fmt::format("promises {} x {} pixels; 1 to {} on a side would be right", columns, rows,
+                         max_dng_side));
     if (value_or<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1) != 1)
       refuse("has several samples a pixel; a raw picture has one");
     bits_ = value_or<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1);
@@ -182,8 +182,8 @@ class DngReader {
         !TIFFGetField(tiff_, TIFFTAG_CFAPATTERN, &cell_count, &cells))
       refuse("has no CFAPattern");
     raw_.mosaic = {period[0], period[1], {}};
-    if (period[0] < 1 || period[1] < 1 || period[0] > max_mosaic_side || period[1] > max_mosaic_side ||
-        period[0] * period[1] != cell_count)
+    if (period[0] < 1 || period[1] < 1 || period[0] > max_dng_mosaic_side ||
+        period[1] > max_dng_mosaic_side || period[0] * period[1] != cell_count)
       refuse(fmt::format("has a mosaic of {} x {} with {} cells", period[0], period[1], cell_count));
     std::vector<std::uint8_t> numbers = {0, 1, 2};
     if (TIFFGetField(tiff_, TIFFTAG_CFAPLANECOLOR, &plane_count, &planes) && planes)

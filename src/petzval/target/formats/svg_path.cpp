@@ -15,7 +15,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t most_corners = 10'000'000;
+constexpr std::size_t most_path_corners = 10'000'000;
 
 /// Numbers and letters of a text, separated as SVG separates them.
 class Scanner {
@@ -172,7 +172,7 @@ class PathBuilder {
     at_ = to;
   }
   void add(Vertex v) {
-    if (++corners_ > most_corners) scanner_.fail(fmt::format("more than {} corners", most_corners));
+    if (++corners_ > most_path_corners) scanner_.fail(fmt::format("more than {} corners", most_path_corners));
     if (!(v == current_.back())) current_.push_back(v);
   }
   void close(bool said) {
