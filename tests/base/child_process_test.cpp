@@ -40,8 +40,8 @@ TEST(ChildProcess, IsStoppedWhenItFindsNoEnd) {
   limits.processor_s = 1;
   EXPECT_EQ(run_in_child(
                 [] {
-                  for (volatile int i = 0;; i = i + 1) {
-                  }
+                  volatile int turns = 0;
+                  for (;;) turns = turns + 1;
                 },
                 limits),
             ChildEnd::endless);

@@ -68,7 +68,7 @@ TEST(NativeReader, ReadsEveryEntry) {
 
 TEST(NativeReader, StopsMayHaveBlades) {
   const std::string text =
-      changed("\"stop\": true,", R"("stop": true, "blades": {"count": 7, "rotation_deg": 12.5},)");
+      native_changed("\"stop\": true,", R"("stop": true, "blades": {"count": 7, "rotation_deg": 12.5},)");
   const Lens lens = lens_from_json(text, "file.json");
   EXPECT_EQ(lens.stop_blades().count, 7);
   EXPECT_EQ(lens.stop_blades().rotation_deg, 12.5);
@@ -76,19 +76,21 @@ TEST(NativeReader, StopsMayHaveBlades) {
   EXPECT_EQ(again.stop_blades().count, 7);
   EXPECT_EQ(again.stop_blades().rotation_deg, 12.5);
   const auto blades = [&](const std::string& value) {
-    return complaint(changed("\"stop\": true,", "\"stop\": true, \"blades\": " + value + ","));
+    return native_complaint(native_changed("\"stop\": true,", "\"stop\": true, \"blades\": " + value + ","));
   };
   expect_mentions(blades("{\"count\": 2}"), {"file.json:10", "surfaces[1].blades.count", "3 to 64"});
   expect_mentions(blades("{\"count\": 5.5}"), {"surfaces[1].blades.count", "whole number"});
   expect_mentions(blades("{\"count\": 1e300}"), {"surfaces[1].blades.count", "whole number"});
   expect_mentions(blades("{\"rotation_deg\": 5}"), {"surfaces[1].blades", "count"});
   expect_mentions(blades("{\"count\": 5, \"shape\": 5}"), {"shape"});
-  expect_mentions(complaint(changed("\"conic\": 0.5,", "\"conic\": 0.5, \"blades\": {\"count\": 5},")),
-                  {"surfaces[0].blades", "stop"});
-  EXPECT_EQ(lens_from_json(changed("\"stop\": true,", "\"stop\": true, \"blades\": null,"), "file.json")
-                .stop_blades()
-                .count,
-            0);
+  expect_mentions(
+      native_complaint(native_changed("\"conic\": 0.5,", "\"conic\": 0.5, \"blades\": {\"count\": 5},")),
+      {"surfaces[0].blades", "stop"});
+  EXPECT_EQ(
+      lens_from_json(native_changed("\"stop\": true,", "\"stop\": true, \"blades\": null,"), "file.json")
+          .stop_blades()
+          .count,
+      0);
 }
 
 TEST(NativeReader, NamesFileLineAndPath) {

@@ -149,18 +149,18 @@ TEST_F(DamagedMatHdf5, WrongTypesAreNamed) {
             "scene has no wAngular: its horizontal angle must be given (--scene-angle)");
 }
 
-void read_and_check(const std::string& path) {
+void read_hdf5_and_check(const std::string& path) {
   const Scene scene = read_iset_mat(path);
   scene.validate();
   EXPECT_GT(scene.band_size(), 0u);
 }
 
 TEST_F(DamagedMatHdf5, TruncatedIsRefused) {
-  refuses_truncations(scratch_, write_hdf5(scratch_.path("whole.mat"), iset_scene()), read_and_check);
+  refuses_truncations(scratch_, write_hdf5(scratch_.path("whole.mat"), iset_scene()), read_hdf5_and_check);
 }
 
 TEST_F(DamagedMatHdf5, FlippedBitsAreSurvived) {
-  survives_flips(scratch_, write_hdf5(scratch_.path("whole.mat"), iset_scene()), 0, read_and_check);
+  survives_flips(scratch_, write_hdf5(scratch_.path("whole.mat"), iset_scene()), 0, read_hdf5_and_check);
 }
 
 }  // namespace

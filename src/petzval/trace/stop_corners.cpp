@@ -11,7 +11,7 @@ namespace petzval {
 namespace {
 
 /// Of the stop's radius. Panels of a quadrature end here: an error of this share costs its square.
-constexpr double aim_tolerance = 1e-9;
+constexpr double corner_tolerance = 1e-9;
 /// Neighbouring rays, as a share of the pupil.
 constexpr double nudge_per_scale = 1e-6;
 constexpr int most_steps = 30;
@@ -33,7 +33,7 @@ std::optional<Point> aim(const Tracer& tracer, const Pencil& pencil, const Point
     const auto above = at_stop(tracer, pencil, {label[0], label[1] + nudge});
     if (!here || !right || !above) return {};
     const double miss_x = wanted[0] - (*here)[0], miss_y = wanted[1] - (*here)[1];
-    if (std::hypot(miss_x, miss_y) < aim_tolerance * tracer.stop_radius_mm()) return label;
+    if (std::hypot(miss_x, miss_y) < corner_tolerance * tracer.stop_radius_mm()) return label;
     const double xu = ((*right)[0] - (*here)[0]) / nudge, yu = ((*right)[1] - (*here)[1]) / nudge;
     const double xv = ((*above)[0] - (*here)[0]) / nudge, yv = ((*above)[1] - (*here)[1]) / nudge;
     const double area = xu * yv - xv * yu;

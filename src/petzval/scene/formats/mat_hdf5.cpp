@@ -14,16 +14,16 @@ namespace petzval {
 
 namespace {
 
-constexpr int max_depth = 32;      // of structs within structs, as in version 5
-constexpr int max_items = 100000;  // links may name one thing under any number of names
-constexpr std::size_t max_name_length = 63;
+constexpr int max_hdf5_depth = 32;  // of structs within structs, as in version 5
+constexpr int max_items = 100000;   // links may name one thing under any number of names
+constexpr std::size_t max_hdf5_name = 63;
 
 std::string joined(const std::string& holder, const std::string& field) {
   return holder.empty() ? field : holder + "." + field;
 }
 
 bool is_matlab_name(const std::string& name) {
-  return name.size() <= max_name_length && std::all_of(name.begin(), name.end(), [](char c) {
+  return name.size() <= max_hdf5_name && std::all_of(name.begin(), name.end(), [](char c) {
            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
          });
 }
@@ -49,9 +49,10 @@ std::vector<std::string> names_in(hid_t group) {
   return names;
 }
 
-class Walker {
+class Hdf5Walker {
  public:
-  Walker(const std::string& path, int descriptor) : path_(path), writer_(descriptor), file_(opened(path)) {
+  Hdf5Walker(const std::string& path, int descriptor)
+      : path_(path), writer_(descriptor), file_(opened(path)) {
     if (!file_) damaged("HDF5 cannot open it");
   }
 
@@ -84,7 +85,8 @@ class Walker {
 
   void write_object(const Hdf5Handle& object, const std::string& name, const std::string& full, int depth) {
     if (!object) damaged(full + " cannot be read");
-    if (depth > max_depth) refuse(fmt::format("is damaged: structs are nested more than {} deep", max_depth));
+    if (depth > max_hdf5_depth)
+      refuse(fmt::format("is damaged: structs are nested more than {} deep", max_hdf5_depth));
     if (++items_ > max_items) refuse(fmt::format("holds more than {} fields", max_items));
     const H5I_type_t type = H5Iget_type(object.id());
     if (type == H5I_GROUP) return write_group(object.id(), name, full, depth);
@@ -155,7 +157,7 @@ void write_mat_hdf5_records(const std::string& path, const std::vector<std::stri
                             int descriptor) {
   const Hdf5Silence silence;
   H5PLset_loading_state(0);  // no code from elsewhere, whatever filter a file asks for
-  Walker walker(path, descriptor);
+  Hdf5Walker walker(path, descriptor);
   for (const std::string& variable : variables) walker.write(variable);
 }
 

@@ -10,8 +10,8 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t max_rank = 32;     // of HDF5
-constexpr hsize_t max_ratio = 1032 * 4;  // zlib's limit, and some more
+constexpr std::size_t max_hdf5_rank = 32;  // of HDF5
+constexpr hsize_t max_ratio = 1032 * 4;    // zlib's limit, and some more
 constexpr hsize_t piece_bytes = 1 << 26, max_chunk_bytes = 1 << 30;
 
 const MatArrayClass array_classes[] = {
@@ -59,7 +59,7 @@ class ArrayWriter {
   std::vector<hsize_t> checked_sides(hid_t data, const MatArrayClass& kind, const std::string& full) const {
     const Hdf5Handle space(H5Dget_space(data), H5Sclose), plan(H5Dget_create_plist(data), H5Pclose);
     const int rank = H5Sget_simple_extent_ndims(space.id());
-    if (!plan || rank < 0 || rank > static_cast<int>(max_rank)) damaged(full + " has no size");
+    if (!plan || rank < 0 || rank > static_cast<int>(max_hdf5_rank)) damaged(full + " has no size");
     std::vector<hsize_t> sides(static_cast<std::size_t>(rank));
     H5Sget_simple_extent_dims(space.id(), sides.data(), nullptr);
     double bytes = static_cast<double>(kind.size);
@@ -87,8 +87,8 @@ class ArrayWriter {
         refuse(full + " is packed as MATLAB does not pack; deflate would be right");
     }
     if (layout != H5D_CHUNKED) return;
-    std::array<hsize_t, max_rank> chunk{};
-    const int rank = H5Pget_chunk(plan, max_rank, chunk.data());
+    std::array<hsize_t, max_hdf5_rank> chunk{};
+    const int rank = H5Pget_chunk(plan, max_hdf5_rank, chunk.data());
     double chunk_bytes = 8;
     for (int i = 0; i < rank; ++i) chunk_bytes *= static_cast<double>(chunk[static_cast<std::size_t>(i)]);
     if (rank < 0 || chunk_bytes > static_cast<double>(max_chunk_bytes))

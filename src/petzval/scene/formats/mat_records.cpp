@@ -11,11 +11,11 @@ namespace petzval {
 
 namespace {
 
-using Bytes = std::span<std::byte>;
+using RecordBytes = std::span<std::byte>;
 
 constexpr std::size_t word_bytes = 8;
 constexpr std::size_t most_in_name = 1000, most_dimensions = 32;
-constexpr int max_depth = 64;
+constexpr int max_record_depth = 64;
 
 std::size_t padding(std::size_t bytes) {
   return (word_bytes - bytes % word_bytes) % word_bytes;
@@ -26,12 +26,12 @@ struct Unsound {};
 /// Takes what a record is made of from the front of `rest`.
 class Taker {
  public:
-  explicit Taker(Bytes rest) : rest_(rest) {}
-  Bytes rest() const { return rest_; }
+  explicit Taker(RecordBytes rest) : rest_(rest) {}
+  RecordBytes rest() const { return rest_; }
 
-  Bytes take(std::size_t bytes) {
+  RecordBytes take(std::size_t bytes) {
     if (rest_.size() < bytes || rest_.size() - bytes < padding(bytes)) throw Unsound();
-    const Bytes taken = rest_.first(bytes);
+    const RecordBytes taken = rest_.first(bytes);
     rest_ = rest_.subspan(bytes + padding(bytes));
     return taken;
   }
@@ -41,12 +41,12 @@ class Taker {
     return value;
   }
   std::string text(std::size_t bytes) {
-    const Bytes taken = take(bytes);
+    const RecordBytes taken = take(bytes);
     return {reinterpret_cast<const char*>(taken.data()), taken.size()};
   }
 
  private:
-  Bytes rest_;
+  RecordBytes rest_;
 };
 
 MatRecord take_head(Taker& from) {
@@ -76,7 +76,7 @@ matvar_t* other_of(const std::string& name) {
 }
 
 matvar_t* array_of(const MatRecord& record, Taker& from) {
-  const Bytes data = from.take(record.bytes);
+  const RecordBytes data = from.take(record.bytes);
   std::vector<std::size_t> sides(record.dimensions.begin(), record.dimensions.end());
   matvar_t* const made =
       Mat_VarCreate(record.name.c_str(), static_cast<matio_classes>(record.class_type),
@@ -111,7 +111,7 @@ matvar_t* struct_of(const MatRecord& record, Taker& from, int depth) {
 }
 
 matvar_t* take_variable(Taker& from, int depth) {
-  if (depth > max_depth) throw Unsound();
+  if (depth > max_record_depth) throw Unsound();
   const MatRecord record = take_head(from);
   matvar_t* made = nullptr;
   if (record.kind == MatRecordKind::numbers || record.kind == MatRecordKind::text)
