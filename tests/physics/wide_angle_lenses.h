@@ -20,7 +20,7 @@ inline Lens lens_of(const char* name, const std::vector<Gap>& gaps, std::size_t 
     Surface surface;
     surface.curvature_per_mm = gap.radius_mm == 0 ? 0 : 1 / gap.radius_mm;
     surface.thickness_mm = gap.thickness_mm;
-    if (gap.index != 1) surface.material = Material(Material::Constant{gap.index});
+    if (gap.index != 1) surface.material = petzval::Material(petzval::Material::Constant{gap.index});
     if (gap.semi_diameter_mm > 0) surface.semi_diameter_mm = gap.semi_diameter_mm;
     lens.surfaces.push_back(surface);
   }
