@@ -25,16 +25,6 @@ HWY_ATTR HWY_INLINE void filter(const float* spectrum, const float* otf, const L
   }
 }
 
-HWY_ATTR HWY_INLINE void weigh(const float* elements, const float* weights, int count, float* out) {
-  const Lanes d;
-  const std::size_t element = element_floats();
-  for (int i = 0; i < count; ++i, elements += element, out += element) {
-    const Vector weight = hn::Set(d, weights[i]);
-    const Complex value = load(elements);
-    store({hn::Mul(weight, value.re), hn::Mul(weight, value.im)}, out);
-  }
-}
-
 /// The same for the column that holds −k where the transfer functions kept are those at k.
 HWY_ATTR HWY_INLINE void filter_mirrored(const float* spectrum, const float* otf, const LaneTiles& tiles,
                                          const std::vector<int>& mirrored, bool first, float* sums) {
@@ -65,9 +55,8 @@ HWY_ATTR void transform_rows(const LaneTransform& transform, const LaneTiles& ti
   for (int row = 0; row < tiles.tile; ++row) {
     io.load_row(set, row, work.sums);
     for (int a = 0; a < tiles.nodes; ++a) {
-      weigh(work.sums, tiles.weights + a * tiles.tile, tiles.tile, work.line);
-      pad(work.line, tiles.tile, n);
-      forward(work.line, n, transform.twiddles());
+      forward_padded(work.sums, tiles.weights + a * tiles.tile, tiles.tile, n, transform.twiddles(),
+                     work.line);
       float* turned = work.turned + static_cast<std::size_t>(a) * work.turned_node +
                       static_cast<std::size_t>(row) * element;
       for (int k = 0; k < n; ++k, turned += work.turned_row)
@@ -83,10 +72,9 @@ HWY_ATTR void filter_column(const LaneTransform& transform, const LaneTiles& til
   const auto k = static_cast<std::size_t>(column), nodes = static_cast<std::size_t>(tiles.nodes);
   for (std::size_t a = 0; a < nodes; ++a)
     for (std::size_t b = 0; b < nodes; ++b) {
-      weigh(work.turned + a * work.turned_node + k * work.turned_row,
-            tiles.weights + b * static_cast<std::size_t>(tiles.tile), tiles.tile, work.line);
-      pad(work.line, tiles.tile, n);
-      forward(work.line, n, transform.twiddles());
+      forward_padded(work.turned + a * work.turned_node + k * work.turned_row,
+                     tiles.weights + b * static_cast<std::size_t>(tiles.tile), tiles.tile, n,
+                     transform.twiddles(), work.line);
       const float* otf = tiles.otfs[b * nodes + a] + kept * static_cast<std::size_t>(n) * tiles.otf_stride;
       if (mirrored)
         filter_mirrored(work.line, otf, tiles, transform.mirrored(), a + b == 0, work.sums);

@@ -125,8 +125,8 @@ HWY_ATTR HWY_INLINE void pairs(float* data, int size) {
   }
 }
 
-HWY_ATTR inline void forward(float* data, int size, const float* twiddles) {
-  int length = size;
+/// The stages of a transform whose blocks have come down to `length`.
+HWY_ATTR inline void forward_from(float* data, int size, int length, const float* twiddles) {
   for (; length >= 4; length /= 4) {
     stage<true>(data, size, length, twiddles);
     twiddles += static_cast<std::size_t>(length / 4) * 6;
@@ -151,6 +151,40 @@ HWY_ATTR HWY_INLINE void pad(float* data, int from, int size) {
   const std::size_t element = element_floats();
   std::fill(data + static_cast<std::size_t>(from) * element, data + static_cast<std::size_t>(size) * element,
             0.0F);
+}
+
+/// The transform of `count` elements, each times its weight, and zeros behind them. \param weights  null:
+/// all 1.
+HWY_ATTR inline void forward_padded(const float* elements, const float* weights, int count, int size,
+                                    const float* twiddles, float* data) {
+  const Lanes d;
+  const std::size_t element = element_floats();
+  const auto at = [&](int i) HWY_ATTR {
+    const Complex value = load(elements + static_cast<std::size_t>(i) * element);
+    if (weights == nullptr) return value;
+    const Vector weight = hn::Set(d, weights[i]);
+    return Complex{hn::Mul(weight, value.re), hn::Mul(weight, value.im)};
+  };
+  const int quarter = size / 4;
+  if (count > 2 * quarter) {
+    for (int i = 0; i < count; ++i) store(at(i), data + static_cast<std::size_t>(i) * element);
+    pad(data, count, size);
+    return forward_from(data, size, size, twiddles);
+  }
+  // The first stage knows that at least half of what it takes is zero.
+  const std::size_t step = static_cast<std::size_t>(quarter) * element;
+  const float* w = twiddles;
+  for (int j = 0; j < quarter; ++j, w += 6) {
+    float* out = data + static_cast<std::size_t>(j) * element;
+    const Complex none{hn::Zero(d), hn::Zero(d)};
+    const Complex x0 = j < count ? at(j) : none, x1 = j + quarter < count ? at(j + quarter) : none;
+    const Complex turned = turned_difference(x1, none);
+    store(add(x0, x1), out);
+    store(multiply(subtract(x0, turned), broadcast(w)), out + step);
+    store(multiply(subtract(x0, x1), broadcast(w + 2)), out + 2 * step);
+    store(multiply(add(x0, turned), broadcast(w + 4)), out + 3 * step);
+  }
+  forward_from(data, size, quarter, w);
 }
 
 }  // namespace petzval::HWY_NAMESPACE

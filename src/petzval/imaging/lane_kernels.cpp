@@ -10,11 +10,6 @@ HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
 namespace {
 
-/// Elements of a line, a stride apart.
-HWY_ATTR HWY_INLINE void copy_line(const float* from, int count, float* line) {
-  std::copy_n(from, static_cast<std::size_t>(count) * element_floats(), line);
-}
-
 /// Of two real kernels a and b, whose transforms come as those of a + ib at k and at −k.
 HWY_ATTR HWY_INLINE void separate(const Complex& plus, const Complex& minus, Complex& a, Complex& b) {
   const Vector half = hn::Set(Lanes(), 0.5F);
@@ -36,17 +31,15 @@ HWY_ATTR void transform_kernels(const LaneTransform& transform, const std::array
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t column = 0; column < rows; ++column) {
       const std::size_t at = (row * rows + column) * lanes;
-      store({hn::Load(d, kernels[0] + at), hn::Load(d, kernels[1] + at)}, line + column * element);
+      store({hn::Load(d, kernels[0] + at), hn::Load(d, kernels[1] + at)}, other + column * element);
     }
-    pad(line, size, n);
-    forward(line, n, transform.twiddles());
+    forward_padded(other, nullptr, size, n, transform.twiddles(), line);
     for (std::size_t k = 0; k < side; ++k)
       store(load(line + k * element), turned + k * turned_row + row * element);
   }
   const auto column_of = [&](int k, float* out) {
-    copy_line(turned + static_cast<std::size_t>(k) * turned_row, size, out);
-    pad(out, size, n);
-    forward(out, n, transform.twiddles());
+    forward_padded(turned + static_cast<std::size_t>(k) * turned_row, nullptr, size, n, transform.twiddles(),
+                   out);
   };
   std::size_t at = 0;
   for (const LaneTransform::ColumnPair& columns : transform.columns()) {
