@@ -18,7 +18,7 @@ CurveSegments curve_of(const std::string& text) {
   return read_curve(described("Shape \"curve\" " + text).shapes.at(0), unsupported);
 }
 
-std::string refusal(const std::string& text) {
+std::string curve_refusal(const std::string& text) {
   try {
     world_of(text);
     return "";
@@ -139,7 +139,7 @@ TEST(Curves, WidthRunsFromEndToEndAndGrowsWithTheScene) {
 
 TEST(Curves, RefuseWhatMakesNoSense) {
   const auto expect = [](const std::string& text, const std::string& place, const std::string& part) {
-    const std::string message = refusal(text);
+    const std::string message = curve_refusal(text);
     EXPECT_EQ(message.rfind(place, 0), 0u) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
@@ -193,10 +193,10 @@ TEST(Ribbons, TwistLikeAHelicoid) {
 
 TEST(Ribbons, NeedANormalAtEveryEnd) {
   const std::string start = std::string("Shape \"curve\" \"string type\" \"ribbon\" ") + along_z;
-  EXPECT_NE(refusal(start).find("three for each of its 2"), std::string::npos) << refusal(start);
-  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0 ]").find("3 numbers"), std::string::npos);
-  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0  0 0 0 ]").find("no length"), std::string::npos);
-  EXPECT_NE(refusal(start + "\"normal N\" [ 0 1 0  0 -1 0 ]").find("either way"), std::string::npos);
+  EXPECT_NE(curve_refusal(start).find("three for each of its 2"), std::string::npos) << curve_refusal(start);
+  EXPECT_NE(curve_refusal(start + "\"normal N\" [ 0 1 0 ]").find("3 numbers"), std::string::npos);
+  EXPECT_NE(curve_refusal(start + "\"normal N\" [ 0 1 0  0 0 0 ]").find("no length"), std::string::npos);
+  EXPECT_NE(curve_refusal(start + "\"normal N\" [ 0 1 0  0 -1 0 ]").find("either way"), std::string::npos);
 }
 
 }  // namespace
