@@ -19,7 +19,11 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
     return fmt::format("exact, every cell its own PSF; {} interpolated", between);
   if (options.method == BlurMethod::product) {
     const ProductPlan& plan = report.product;
-    const std::string error = fmt::format("estimated error {:.1e} of {:g}; {} interpolated",
+    const std::string rim = plan.exact.empty()
+                                ? ""
+                                : fmt::format("every cell its own PSF {:.0f} to {:.0f} cells from the axis, ",
+                                              plan.exact.from, plan.exact.to);
+    const std::string error = fmt::format("{}estimated error {:.1e} of {:g}; {} interpolated", rim,
                                           plan.estimated_error, options.product.tolerance, between);
     if (plan.direct)
       return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,

@@ -24,14 +24,16 @@ namespace petzval {
 /// places if the PSFs are mirror symmetric. Product convolution: Nagy & O'Leary 1998 (SIAM J. Sci. Comput.
 /// 19, 1063) with piecewise constant and linear weights; Escande & Weiss 2017 (J. Math. Imaging Vis. 59, 31).
 ///
-/// The sums are made by Fourier transforms or directly, as the plan says.
+/// The sums are made by Fourier transforms or directly, as the plan says. Cells of the ring that it names
+/// get kernels of their own (blur_exact()).
 class ProductBlur {
  public:
   /// Makes the kernels of all nodes. \param grid  of the source planes.
-  /// \param memory  of another blur, to be used again.
+  /// \param psfs  outlive the blur. \param memory  of another blur, to be used again.
   ProductBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan,
               TransformBlur::KernelSets memory = {})
-      : by_(plan.direct ? By(std::in_place_type<DirectBlur>, psfs, grid, plan)
+      : psfs_(&psfs),
+        by_(plan.direct ? By(std::in_place_type<DirectBlur>, psfs, grid, plan)
                         : By(std::in_place_type<TransformBlur>, psfs, grid, plan, std::move(memory))) {}
   TransformBlur::KernelSets take_memory() && {
     auto* by_transforms = std::get_if<TransformBlur>(&by_);
@@ -41,9 +43,7 @@ class ProductBlur {
   /// \param source  light before blur on the grid; nothing comes from outside it.
   /// \param margin  the result is the grid less this many cells on every side. Same bytes for any number of
   /// threads. \throws InputError if the source has another grid.
-  CellPlane blur(const CellPlane& source, int margin) const {
-    return std::visit([&](const auto& by) { return by.blur(source, margin); }, by_);
-  }
+  CellPlane blur(const CellPlane& source, int margin) const;
 
   const ProductPlan& plan() const {
     return std::visit([](const auto& by) -> const ProductPlan& { return by.plan(); }, by_);
@@ -51,6 +51,11 @@ class ProductBlur {
 
  private:
   using By = std::variant<DirectBlur, TransformBlur>;
+  CellPlane blur_by_product(const CellPlane& source, int margin) const {
+    return std::visit([&](const auto& by) { return by.blur(source, margin); }, by_);
+  }
+
+  const PsfField* psfs_;
   By by_;
 };
 

@@ -24,31 +24,6 @@ constexpr double caution = 0.4;
 /// Transfer functions of a band may take this much memory.
 constexpr double most_otf_bytes = 768e6;
 
-/// Digit reversal: spreads `index` = 1, 2, … evenly over (0, 1).
-double radical_inverse(int index, int base) {
-  double value = 0, digit = 1.0 / base;
-  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
-  return value;
-}
-
-/// Σ of squares of what interpolation along one axis adds to the kernel at a place. \param at  of the place,
-/// in cells of the axis. \param kernel_there  the kernel at a place of the axis.
-template <typename KernelThere>
-double squared_error(const Kernel& exact, int at, int tile, const std::vector<double>& nodes,
-                     const KernelThere& kernel_there) {
-  const int first = at / tile * tile;
-  const std::vector<double> weights = lagrange_weights(nodes, double(at - first) / tile);
-  std::vector<double> difference = exact.weights;
-  for (std::size_t a = 0; a < nodes.size(); ++a) {
-    if (weights[a] == 0) continue;
-    const Kernel kernel = kernel_there(first + tile * nodes[a]);
-    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= weights[a] * kernel.weights[i];
-  }
-  double sum = 0;
-  for (const double value : difference) sum += value * value;
-  return sum;
-}
-
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
 constexpr double kernel_fixed_ns = 3000;  // of a kernel, whatever its size
 constexpr double deposit_ns = 8;          // per sample of a table's PSF and cell of a kernel
@@ -151,6 +126,18 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
   return plans;
 }
 
+/// Gives the plan what cells at the rim need kernels of their own, and the error that it has then. Whether
+/// that keeps it within the limit.
+bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, double limit, ProductPlan& plan) {
+  constexpr double scatter_ns = 1;  // of exact_blur, per weight
+  const RimError rim = rim_error(psfs, grid, plan.tile, plan.nodes, limit);
+  const double size = 2.0 * psfs.radius() + 1, cells = double(grid.columns) * grid.rows;
+  plan.exact = rim.ring;
+  plan.exact_ns = rim.ring_share * cells * (kernel_ns(psfs) + scatter_ns * size * size);
+  plan.estimated_error = std::hypot(plan.estimated_error, std::sqrt(rim.mean_square));
+  return rim.within;
+}
+
 }  // namespace
 
 void ProductOptions::validate() const {
@@ -164,34 +151,6 @@ void ProductOptions::validate() const {
         fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, LaneTransform::largest));
 }
 
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
-                    int looked_at) {
-  const OutwardAxis across(grid.columns), down(grid.rows);
-  const std::vector<double> lobatto = lobatto_nodes(nodes);
-  const double cell_mm = psfs.cell_um() * 1e-3;
-  const auto kernel = [&](double column, double row) {
-    return psfs.kernel_at(-across.position(column) * cell_mm, down.position(row) * cell_mm);
-  };
-  const auto error_at = [&](int place) {
-    const int column = static_cast<int>(radical_inverse(place, 2) * across.count());
-    const int row = static_cast<int>(radical_inverse(place, 3) * down.count());
-    const Kernel exact = kernel(column, row);
-    double square = 0;
-    for (const double weight : exact.weights) square += weight * weight;
-    return (squared_error(exact, column, tile, lobatto, [&](double at) { return kernel(at, row); }) +
-            squared_error(exact, row, tile, lobatto, [&](double at) { return kernel(column, at); })) /
-           (1 + square);
-  };
-  constexpr int at_once = 8;
-  double total = 0;
-  for (int first = 1; first <= looked_at && !(total > limit * limit * looked_at); first += at_once) {
-    std::array<double, at_once> errors{};
-    parallel_for(at_once, [&](std::size_t i) { errors[i] = error_at(first + static_cast<int>(i)); });
-    for (const double error : errors) total += error;
-  }
-  return std::sqrt(total / looked_at);
-}
-
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
@@ -201,7 +160,8 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
   const auto serves = [&](ProductPlan& plan, int looked_at) {
     plan.estimated_error =
         kernel_error(psfs, grid, plan.tile, plan.nodes, given ? INFINITY : limit, looked_at);
-    return given || plan.estimated_error <= limit;
+    if (given) return true;
+    return plan.estimated_error <= limit && mend_rim(psfs, grid, limit, plan);
   };
   if (hint && (hint->direct || hint->tile + 2 * psfs.radius() <= hint->transform)) {
     ProductPlan plan = hint->direct ? direct_candidate(psfs, grid, hint->tile, hint->nodes)
@@ -209,16 +169,20 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
     if (serves(plan, places_of_hint)) return plan;
   }
   std::vector<ProductPlan> failed;
+  std::optional<ProductPlan> best;
   for (ProductPlan& plan : candidates(psfs, grid, options)) {
+    if (best && plan.total_ns() >= best->total_ns()) break;
     // A coarser layout than one that failed fails too.
     const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
       return plan.tile >= other.tile && plan.nodes <= other.nodes;
     });
     if (hopeless) continue;
-    if (serves(plan, places)) return plan;
-    failed.push_back(plan);
+    if (!serves(plan, places))
+      failed.push_back(plan);
+    else if (!best || plan.total_ns() < best->total_ns())
+      best = plan;
   }
-  return {};
+  return best;
 }
 
 ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options) {

@@ -2,10 +2,10 @@
 // How fine the product convolution must be for the error that the user allows.
 #pragma once
 
+#include <petzval/imaging/kernel_error.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/sensor/sensor.h>
 
-#include <limits>
 #include <optional>
 
 namespace petzval {
@@ -16,6 +16,7 @@ struct ProductPlan {
   int nodes = 2;        ///< along a side of a tile
   int transform = 0;    ///< cells along a side; tile + 2 · kernel radius fit into it
   bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
+  CellRing exact = {};       ///< of source cells with kernels of their own
   /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
@@ -23,6 +24,9 @@ struct ProductPlan {
   /// By the cost model [ns of one core of the machine that it was measured on]: filtering, and making the
   /// transfer functions.
   double filter_ns = 0, kernels_ns = 0;
+  double exact_ns = 0;  ///< of the cells with kernels of their own
+
+  double total_ns() const { return filter_ns + kernels_ns + exact_ns; }
 };
 
 struct ProductOptions {
@@ -34,13 +38,6 @@ struct ProductOptions {
   /// \throws InputError saying what would be right.
   void validate() const;
 };
-
-/// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
-/// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
-/// kernels differs from it. \param limit  no more is added up once the error is sure to be above it: then
-/// what is returned is above it, but not the error. \param looked_at  places, a multiple of 8.
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
-                    double limit = std::numeric_limits<double>::infinity(), int looked_at = 64);
 
 /// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
 /// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the

@@ -42,6 +42,8 @@ class PsfField {
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
   int radius() const { return radius_; }
   double cell_um() const { return cell_um_; }
+  /// The height from which on kernels are those of the last field, turned.
+  double last_height_mm() const { return layers_[0].height_mm.back(); }
   /// Samples of the table that a kernel is made of, about.
   double deposited_samples() const;
   /// Whether all PSFs are the same left and right of the tangential plane, as those of a centred lens are;

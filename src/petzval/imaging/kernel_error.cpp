@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/kernel_error.h>
+#include <petzval/imaging/product_layout.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace petzval {
+
+namespace {
+
+/// Digit reversal: spreads `index` = 1, 2, … evenly over (0, 1).
+double radical_inverse(int index, int base) {
+  double value = 0, digit = 1.0 / base;
+  for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
+  return value;
+}
+
+/// Σ of squares of what interpolation along one axis adds to the kernel at a place. \param at  of the place,
+/// in cells of the axis. \param kernel_there  the kernel at a place of the axis.
+template <typename KernelThere>
+double squared_error(const Kernel& exact, int at, int tile, const std::vector<double>& nodes,
+                     const KernelThere& kernel_there) {
+  const int first = at / tile * tile;
+  const std::vector<double> weights = lagrange_weights(nodes, double(at - first) / tile);
+  std::vector<double> difference = exact.weights;
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    if (weights[a] == 0) continue;
+    const Kernel kernel = kernel_there(first + tile * nodes[a]);
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= weights[a] * kernel.weights[i];
+  }
+  double sum = 0;
+  for (const double value : difference) sum += value * value;
+  return sum;
+}
+
+/// Of a layout of tiles, at cells counted outwards.
+class ErrorAtPlaces {
+ public:
+  ErrorAtPlaces(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes)
+      : psfs_(psfs), across_(grid.columns), down_(grid.rows), tile_(tile), nodes_(lobatto_nodes(nodes)) {}
+  const OutwardAxis& across() const { return across_; }
+  const OutwardAxis& down() const { return down_; }
+  /// Σd²/(1 + Σh²).
+  double square(int column, int row) const {
+    const Kernel exact = kernel(column, row);
+    double square = 0;
+    for (const double weight : exact.weights) square += weight * weight;
+    return (squared_error(exact, column, tile_, nodes_, [&](double at) { return kernel(at, row); }) +
+            squared_error(exact, row, tile_, nodes_, [&](double at) { return kernel(column, at); })) /
+           (1 + square);
+  }
+
+ private:
+  Kernel kernel(double column, double row) const {
+    const double cell_mm = psfs_.cell_um() * mm_per_um;
+    return psfs_.kernel_at(-across_.position(column) * cell_mm, down_.position(row) * cell_mm);
+  }
+
+  const PsfField& psfs_;
+  OutwardAxis across_, down_;
+  int tile_;
+  std::vector<double> nodes_;
+};
+
+/// A cell of a quadrant.
+struct Place {
+  double radius;
+  int column, row;
+};
+
+/// Cells evenly over a quadrant that lie within a radius, the outermost first, and their share of all.
+struct Places {
+  std::vector<Place> inside;
+  double share = 0;
+};
+Places places_within(const ErrorAtPlaces& errors, double radius) {
+  constexpr int most = 256;  // along a side
+  const int columns = errors.across().count(), rows = errors.down().count();
+  const int across = (columns + most - 1) / most, down = (rows + most - 1) / most;
+  Places places;
+  std::size_t all = 0;
+  for (int row = down / 2; row < rows; row += down)
+    for (int column = across / 2; column < columns; column += across) {
+      const double r = std::hypot(errors.across().position(column), errors.down().position(row));
+      if (r < radius) places.inside.push_back({r, column, row});
+      ++all;
+    }
+  std::sort(places.inside.begin(), places.inside.end(),
+            [](const Place& a, const Place& b) { return a.radius > b.radius; });
+  places.share = double(places.inside.size()) / double(all);
+  return places;
+}
+
+/// The mean square error over some of the places [from, to).
+double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places, std::size_t from,
+                   std::size_t to) {
+  constexpr std::size_t most = 6;
+  const std::size_t count = std::min(most, to - from);
+  std::array<double, most> squares{};
+  parallel_for(count, [&](std::size_t i) {
+    const Place& place = places[from + (2 * i + 1) * (to - from) / (2 * count)];
+    squares[i] = errors.square(place.column, place.row);
+  });
+  double sum = 0;
+  for (const double square : squares) sum += square;
+  return sum / double(count);
+}
+
+}  // namespace
+
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
+                    int looked_at) {
+  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
+  const auto error_at = [&](int place) {
+    return errors.square(static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
+                         static_cast<int>(radical_inverse(place, 3) * errors.down().count()));
+  };
+  constexpr int at_once = 8;
+  double total = 0;
+  for (int first = 1; first <= looked_at && !(total > limit * limit * looked_at); first += at_once) {
+    std::array<double, at_once> squares{};
+    parallel_for(at_once, [&](std::size_t i) { squares[i] = error_at(first + static_cast<int>(i)); });
+    for (const double square : squares) total += square;
+  }
+  return std::sqrt(total / looked_at);
+}
+
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit) {
+  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
+  const double last_cells = psfs.last_height_mm() / (psfs.cell_um() * mm_per_um);
+  const Places sampled = places_within(errors, last_cells + 1);
+  const std::vector<Place>& places = sampled.inside;
+  RimError rim;
+  constexpr std::size_t fewest_places = 64;
+  if (places.size() < fewest_places) return rim;
+
+  // Shells from the rim inwards, each as large as all outside it: a thousandth of the cells to an eighth.
+  constexpr int most_shells = 8;
+  struct Shell {
+    double inner_radius, share, square;  ///< of the whole grid
+  };
+  std::vector<Shell> shells;
+  std::size_t from = 0;
+  double rest = 0, worst = 0;
+  for (int k = 0; k < most_shells; ++k) {
+    const std::size_t to = std::max(from + 1, (places.size() << k) / 1024);
+    const double share = sampled.share * double(to - from) / double(places.size());
+    const double square = mean_square(errors, places, from, to);
+    shells.push_back({places[to].radius, share, share * square});
+    rest += share * square;
+    worst = std::max(worst, square);
+    from = to;
+    // Where the outermost are not worse than others, there is nothing about the rim.
+    constexpr double usual = 4;
+    if (k == 1 && worst < usual * limit * limit) return rim;
+  }
+  for (const Shell& shell : shells) {
+    if (rest <= limit * limit) break;
+    rest -= shell.square;
+    rim.ring_share += shell.share;
+    rim.ring = {shell.inner_radius, places.front().radius + 2.0 * tile};  // a tile that begins inside
+  }
+  rim.within = rest <= limit * limit;
+  rim.mean_square = std::max(0.0, rest);
+  return rim;
+}
+
+}  // namespace petzval

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far mixtures of kernels are from the kernels that they stand for.
+#pragma once
+
+#include <petzval/imaging/psf_kernel.h>
+#include <petzval/sensor/sensor.h>
+
+#include <limits>
+
+namespace petzval {
+
+/// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
+/// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
+/// kernels differs from it. \param limit  no more is added up once the error is sure to be above it: then
+/// what is returned is above it, but not the error. \param looked_at  places, a multiple of 8.
+double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
+                    double limit = std::numeric_limits<double>::infinity(), int looked_at = 64);
+
+/// Cells whose distance from the axis lies between two radii [cells].
+struct CellRing {
+  double from = std::numeric_limits<double>::infinity(), to = from;
+
+  bool empty() const { return !(from < to); }
+  bool holds(double radius) const { return radius >= from && radius < to; }
+};
+
+/// What kernel_error() misses: just inside the last height of a table, where a pupil may close within a few
+/// cells, mixtures may be off by far more than elsewhere.
+struct RimError {
+  CellRing ring;           ///< that must be left out for the error of the rest to stay within the limit
+  double ring_share = 0;   ///< of the cells of the grid
+  double mean_square = 0;  ///< of the error of the rim without the ring, as a part of the whole grid's
+  bool within = true;      ///< false: even without the largest ring that is looked at it is beyond the limit
+};
+
+/// \param limit  for the RMS error of the rim, as a part of the whole grid's.
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit);
+
+}  // namespace petzval
