@@ -3,11 +3,14 @@
 // apart, making the kernels included. A 1.5 GHz Pentium M with MATLAB 14 took 63.6 s for the first and about
 // ten minutes for the second.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/product_blur.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -223,6 +226,67 @@ void product_4096x3072_band(benchmark::State& state) {
   filter_bands(state, {4096, 3072, 2}, 64, 1);
 }
 BENCHMARK(product_4096x3072_band)->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Seconds that work takes with so many threads.
+template <class Work>
+double seconds_with(int threads, const Work& work) {
+  const ThreadLimit limit(threads);
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What a second thread is worth to a band of 4096 × 3072 cells, its kernels and its filtering, and to work
+/// of registers alone that shares nothing: time with one thread over that with two, medians over rounds that
+/// take one after the other.
+void two_threads(benchmark::State& state) {
+  const SensorGeometry frame{4096, 3072, 2};
+  const LensDataTable table = wide_table({550}, 64, frame.pitch_um, frame.half_diagonal_mm());
+  const auto share_nothing = [] {
+    parallel_for(64, [](std::size_t i) {
+      double x = static_cast<double>(i);
+      for (int k = 0; k < 1000000; ++k) x = std::fma(x, 0.999, 1e-3);
+      benchmark::DoNotOptimize(x);
+    });
+  };
+  constexpr int rounds = 9;
+  std::vector<double> kernels, filters, controls;
+  const auto plan = plan_product(PsfField(table, 550, frame.pitch_um), frame, {1e-3});
+  if (!plan) return state.SkipWithError("no plan");
+#ifdef __GLIBC__
+  // As the program has it: what is freed is kept.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+  for (auto _ : state)
+    for (int round = 0; round < rounds; ++round) {
+      std::array<double, 3> made{}, filtered{}, control{};
+      for (const int threads : {1, 2}) {
+        const auto at = static_cast<std::size_t>(threads);
+        std::optional<PsfField> psfs;
+        std::optional<ProductBlur> blur;
+        control[at] = seconds_with(threads, share_nothing);
+        const CellPlane source = texture(frame);
+        made[at] = seconds_with(threads, [&] {
+          psfs.emplace(table, 550, frame.pitch_um);
+          blur.emplace(*psfs, frame, *plan);
+        });
+        filtered[at] = seconds_with(threads, [&] { benchmark::DoNotOptimize(blur->blur(source, 0)); });
+      }
+      kernels.push_back(made[1] / made[2]);
+      filters.push_back(filtered[1] / filtered[2]);
+      controls.push_back(control[1] / control[2]);
+    }
+  state.counters["kernels"] = median(kernels);
+  state.counters["filtering"] = median(filters);
+  state.counters["control"] = median(controls);
+}
+BENCHMARK(two_threads)->Iterations(1)->Unit(benchmark::kMillisecond);
 
 /// What the cost model says of one layout, and what it takes: filtering, and making the kernels.
 void layout(benchmark::State& state) {

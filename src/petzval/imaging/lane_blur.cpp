@@ -119,14 +119,18 @@ HWY_ATTR void blur_tiles(const LaneTransform& transform, const LaneTiles& tiles,
       if (columns.mirrored != columns.kept)
         filter_column(transform, tiles, columns.mirrored, kept, true, work);
     }
-  for (std::size_t set = 0; set < io.sets(); ++set) {
-    select(set);
-    for (std::size_t row = 0; row < extent; ++row) {
-      float* elements = work.result + row * work.result_row;
-      inverse(elements, n, transform.twiddles());
-      io.store_row(set, static_cast<int>(row), elements);
+  const auto each_row = [&](const auto& use) HWY_ATTR {
+    for (std::size_t set = 0; set < io.sets(); ++set) {
+      select(set);
+      for (std::size_t row = 0; row < extent; ++row) use(set, row, work.result + row * work.result_row);
     }
-  }
+  };
+  each_row([&](std::size_t, std::size_t, float* elements)
+               HWY_ATTR { inverse(elements, n, transform.twiddles()); });
+  io.begin_store();
+  each_row([&](std::size_t set, std::size_t row, const float* elements) {
+    io.store_row(set, static_cast<int>(row), elements);
+  });
 }
 
 HWY_ATTR std::size_t width() {

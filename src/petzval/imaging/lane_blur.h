@@ -57,6 +57,8 @@ class LaneTileIo {
   virtual std::size_t sets() const = 0;
   /// Fills the elements of a row of the tiles.
   virtual void load_row(std::size_t set, int row, float* elements) = 0;
+  /// Before the first row is stored.
+  virtual void begin_store() {}
   /// Takes the elements of a row of the blurred tiles, which begin one kernel radius before them.
   virtual void store_row(std::size_t set, int row, const float* elements) = 0;
 };

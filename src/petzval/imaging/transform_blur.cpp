@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <limits>
 
 namespace petzval {
 
@@ -25,32 +27,24 @@ std::vector<QuadrantPair> pairs_of(std::size_t set, bool symmetric) {
   return {{{{false, true}, {true, false}}}};
 }
 
-/// The rows of the result that a run of tile rows can reach, in both halves: blurred by itself and added in
-/// order, so that the sums do not depend on the threads.
-struct ResultStrip {
-  std::vector<int> slot_of_row;  ///< −1: not reached
-  AlignedVector<float> values;
-  std::size_t columns;
+/// Lets threads by one after the other, in the order of their tickets.
+class Turns {
+ public:
+  void await(std::size_t ticket) const {
+    for (std::size_t now; (now = turn_.load()) < ticket;) turn_.wait(now);
+  }
+  void end(std::size_t ticket) {
+    turn_.compare_exchange_strong(ticket, ticket + 1);
+    turn_.notify_all();
+  }
+  /// Nobody waits any more.
+  void abandon() {
+    turn_.store(std::numeric_limits<std::size_t>::max());
+    turn_.notify_all();
+  }
 
-  ResultStrip(int rows, int columns_of_result)
-      : slot_of_row(static_cast<std::size_t>(rows), -1),
-        columns(static_cast<std::size_t>(columns_of_result)) {}
-  void reach(const OutwardAxis& down, int from, int to, int margin) {
-    for (const bool below : {true, false})
-      for (int outward = from; outward < to; ++outward) {
-        const int row = down.cell(outward, below) - margin;
-        if (row >= 0 && row < static_cast<int>(slot_of_row.size()))
-          slot_of_row[static_cast<std::size_t>(row)] = 0;
-      }
-    int slots = 0;
-    for (int& slot : slot_of_row)
-      if (slot == 0) slot = slots++;
-    values.assign(static_cast<std::size_t>(slots) * columns, 0.0F);
-  }
-  float* row(int index) {
-    const int slot = slot_of_row[static_cast<std::size_t>(index)];
-    return slot < 0 ? nullptr : values.data() + static_cast<std::size_t>(slot) * columns;
-  }
+ private:
+  std::atomic<std::size_t> turn_{0};
 };
 
 }  // namespace
@@ -58,15 +52,18 @@ struct ResultStrip {
 /// Moves light between planes and the lanes of one batch.
 class TileIo : public LaneTileIo {
  public:
-  TileIo(const TransformBlur& blur, const CellPlane& source, int margin, ResultStrip& result)
-      : blur_(blur), source_(source), margin_(margin), result_(result), lanes_(lane_count()) {}
+  TileIo(const TransformBlur& blur, const CellPlane& source, int margin, CellPlane& result,
+         const Turns& turns)
+      : blur_(blur), source_(source), margin_(margin), result_(result), turns_(turns), lanes_(lane_count()) {}
 
-  void set_place(std::size_t first_lane, const std::vector<QuadrantPair>& pairs) {
+  void set_place(std::size_t ticket, std::size_t first_lane, const std::vector<QuadrantPair>& pairs) {
+    ticket_ = ticket;
     first_lane_ = first_lane;
     pairs_ = pairs;
   }
   std::size_t sets() const override { return pairs_.size(); }
   void load_row(std::size_t set, int row, float* elements) override;
+  void begin_store() override { turns_.await(ticket_); }
   void store_row(std::size_t set, int row, const float* elements) override;
 
  private:
@@ -84,8 +81,9 @@ class TileIo : public LaneTileIo {
   const TransformBlur& blur_;
   const CellPlane& source_;
   int margin_;
-  ResultStrip& result_;
-  std::size_t lanes_, first_lane_ = 0;
+  CellPlane& result_;
+  const Turns& turns_;
+  std::size_t lanes_, ticket_ = 0, first_lane_ = 0;
   std::vector<QuadrantPair> pairs_;
 };
 
@@ -111,7 +109,7 @@ void TileIo::load_row(std::size_t set, int row, float* elements) {
 
 void TileIo::store_row(std::size_t set, int row, const float* elements) {
   const int tile = blur_.plan_.tile, extent = tile + 2 * blur_.radius_;
-  const int columns = static_cast<int>(result_.columns), rows = static_cast<int>(result_.slot_of_row.size());
+  const int columns = result_.grid.columns, rows = result_.grid.rows;
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
     const int outward_row = tile_row * tile + row - blur_.radius_, first = tile_column * tile - blur_.radius_;
     for (std::size_t part = 0; part < 2; ++part) {
@@ -120,7 +118,7 @@ void TileIo::store_row(std::size_t set, int row, const float* elements) {
       if (result_row < 0 || result_row >= rows) continue;
       const int base = blur_.across_.cell(first, quadrant.right) - margin_;
       const float* in = elements + part * lanes_ + lane;
-      float* out = result_.row(result_row);
+      float* out = result_.row(static_cast<std::size_t>(result_row));
       // base ± i must lie within the result.
       const int from = quadrant.right ? std::max(0, -base) : std::max(0, base - (columns - 1));
       const int to = quadrant.right ? std::min(extent, columns - base) : std::min(extent, base + 1);
@@ -206,34 +204,31 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   if (source.grid.columns != grid_.columns || source.grid.rows != grid_.rows)
     throw InputError("the plane to be blurred has another grid than the blur was made for");
   CellPlane result(grown(grid_, -margin));
-  const std::size_t lanes = lane_count();
-  // A fixed number of strips, so that their sums are the same for any number of threads.
-  constexpr std::size_t most_strips = 8;
-  const std::size_t strips = std::clamp<std::size_t>(batches_ / 2, 1, most_strips);
-  std::vector<ResultStrip> parts;
-  for (std::size_t i = 0; i < strips; ++i) parts.emplace_back(result.grid.rows, result.grid.columns);
-  parallel_for(strips, [&](std::size_t strip) {
-    const std::size_t from = strip * batches_ / strips, to = (strip + 1) * batches_ / strips;
-    const auto first_row = static_cast<int>(from * lanes / lanes_per_row()),
-               last_row = static_cast<int>((to * lanes - 1) / lanes_per_row());
-    parts[strip].reach(down_, first_row * plan_.tile - radius_, (last_row + 1) * plan_.tile + radius_,
-                       margin);
-    TileIo io(*this, source, margin, parts[strip]);
+  // Batches are transformed by whoever is free, but added to the result one after the other, so that sums are
+  // the same for any number of threads.
+  const std::size_t items = sets_.size() * batches_;
+  std::atomic<std::size_t> next{0};
+  Turns turns;
+  const auto work = [&] {
+    TileIo io(*this, source, margin, result, turns);
     AlignedVector<float> workspace;
     LaneTiles tiles{plan_.tile, plan_.tile + 2 * radius_, plan_.nodes,  weights_.data(),
                     {},         2 * nodes_padded_,        nodes_padded_};
-    for (std::size_t batch = from; batch < to; ++batch)
-      for (std::size_t set = 0; set < sets_.size(); ++set) {
-        tiles.otfs = otfs_of(sets_[set], batch * lanes);
-        io.set_place(batch * lanes, pairs_of(set, sets_.size() == 1));
-        blur_lane_tiles(transform_, tiles, io, workspace);
-      }
-  });
-  parallel_for(result.rows(), [&](std::size_t row) {
-    float* sums = result.row(row);
-    for (ResultStrip& part : parts)
-      if (const float* values = part.row(static_cast<int>(row)))
-        for (std::size_t column = 0; column < result.columns(); ++column) sums[column] += values[column];
+    for (std::size_t item; (item = next++) < items;) {
+      const std::size_t set = item / batches_, first_lane = item % batches_ * lane_count();
+      tiles.otfs = otfs_of(sets_[set], first_lane);
+      io.set_place(item, first_lane, pairs_of(set, sets_.size() == 1));
+      blur_lane_tiles(transform_, tiles, io, workspace);
+      turns.end(item);
+    }
+  };
+  parallel_for(std::min(items, static_cast<std::size_t>(thread_count())), [&](std::size_t) {
+    try {
+      work();
+    } catch (...) {
+      turns.abandon();  // lest others wait for ever
+      throw;
+    }
   });
   return result;
 }
