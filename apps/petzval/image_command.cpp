@@ -44,8 +44,7 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
       fmt::format("petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
                   distance_text(scene), table.lens_name, table.first_order.working_f_number, method);
   for (const std::string& line : report.notes) note(shared, line);
-  const FormedImage formed = {std::move(light), std::move(scene), std::move(table), std::move(report),
-                              method};
+  FormedImage formed = {std::move(light), std::move(scene), std::move(table), std::move(report), method};
   const std::optional<Shot> shot = write_outputs(choice, formed, sensor, shared);
   if (shared.json) return print_json(with_layers(summary_json(formed, shot, choice.outputs), deep));
   if (shared.quiet) return;

@@ -9,6 +9,9 @@
 #include <petzval/image/picture.h>
 
 #include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 namespace petzval::app {
 
@@ -61,13 +64,14 @@ std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& sc
 
 }  // namespace
 
-std::optional<Shot> write_outputs(const ImageChoice& choice, const FormedImage& image,
+std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
                                   const std::optional<Sensor>& sensor, const Shared& shared) {
   StagedFiles files;
+  std::vector<std::string> of_light;
   for (const std::string& path : choice.outputs) {
     const std::string extension = extension_of(path);
     if (extension == ".exr" || extension == ".npy") {
-      write_irradiance(files.stage(path), image.light);
+      of_light.push_back(path);
     } else if (extension == ".png" && !choice.shot.develops(sensor)) {
       PictureOptions options;
       options.scene_white = usable_white(image.light, image.scene, shared);
@@ -77,6 +81,14 @@ std::optional<Shot> write_outputs(const ImageChoice& choice, const FormedImage& 
     }
   }
   std::optional<Shot> shot = choice.shot.shoot(image.light, sensor, choice.outputs, files, shared);
+  // Whole images come last: the last of them may use the room that the light takes.
+  for (std::size_t i = 0; i < of_light.size(); ++i) {
+    const std::string staged = files.stage(of_light[i]);
+    if (i + 1 < of_light.size())
+      write_irradiance(staged, image.light);
+    else
+      write_irradiance(staged, std::move(image.light));
+  }
   files.commit();
   return shot;
 }

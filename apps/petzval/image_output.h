@@ -28,8 +28,9 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
 /// Where the scene stands.
 std::string distance_text(const Scene& scene);
 
-/// Writes all outputs or none of them. \return what the sensor made of the light, if it was asked to.
-std::optional<Shot> write_outputs(const ImageChoice& choice, const FormedImage& image,
+/// Writes all outputs or none of them, and gives up the values of the light, but nothing else of the image.
+/// \return what the sensor made of the light, if it was asked to.
+std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
                                   const std::optional<Sensor>& sensor, const Shared& shared);
 
 nlohmann::ordered_json summary_json(const FormedImage& image, const std::optional<Shot>& shot,

@@ -55,9 +55,18 @@ void LargeFloats::store(std::size_t first, std::span<const float> values) {
     const ssize_t written = pwrite(file_->descriptor(), bytes.data() + done, bytes.size() - done,
                                    static_cast<off_t>(first * sizeof(float) + done));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw Failure(fmt::format("a nameless file cannot be written: {}", std::strerror(errno)));
+    if (written <= 0)
+      throw Failure(fmt::format("a nameless file cannot be written: {}", std::strerror(errno)));
     done += static_cast<std::size_t>(written);
   }
+}
+
+void LargeFloats::give_up(std::size_t first, std::size_t count) {
+  if (mapped_ == nullptr || count == 0) return;
+  // Where the file system cannot, they stay: nobody looks at them again.
+  static_cast<void>(fallocate(file_->descriptor(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                              static_cast<off_t>(first * sizeof(float)),
+                              static_cast<off_t>(count * sizeof(float))));
 }
 
 void LargeFloats::release_memory() const {

@@ -41,6 +41,10 @@ class LargeFloats {
   /// through all(). \throws Failure if they cannot be written.
   void store(std::size_t first, std::span<const float> values);
 
+  /// Gives up values that are kept in a file, and the room that they take there: from now on they are 0. In
+  /// memory they stay.
+  void give_up(std::size_t first, std::size_t count);
+
   /// Gives back the memory of what is kept in a file; the next look fetches it again. Values stay, spans
   /// too, and other threads may read meanwhile.
   void release_memory() const;

@@ -13,6 +13,17 @@ namespace petzval {
 /// An exception of a body ends the loop and is rethrown.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// What is done with every item, in a slot of its own [0, slots).
+struct Stages {
+  using Stage = std::function<void(std::size_t item, std::size_t slot)>;
+  Stage begin, work, end;
+};
+
+/// Takes the items [0, count) through three stages, at most `slots` items at a time. `begin` and `end` are
+/// called for one item after the other, in order, `work` for several at once; all may use parallel_for. An
+/// item has its slot to itself from its beginning to its end. An exception ends everything and is rethrown.
+void parallel_stages(std::size_t count, std::size_t slots, const Stages& stages);
+
 /// While it lives, at most `threads` threads work in parallel_for (0: as many as the machine has).
 class ThreadLimit {
  public:

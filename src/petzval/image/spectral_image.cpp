@@ -58,6 +58,15 @@ void SpectralImage::store_band(int index, std::span<const float> plane) {
   values_.store(static_cast<std::size_t>(index) * band_size(), plane);
 }
 
+void SpectralImage::give_up_rows(int first, int count) {
+  if (first < 0 || count < 0 || first > rows_ - count)
+    throw InputError(fmt::format("rows {} to {} of an image of {} rows", first, first + count, rows_));
+  const auto columns = static_cast<std::size_t>(columns_);
+  for (std::size_t index = 0; index < wavelengths_nm_.size(); ++index)
+    values_.give_up(index * band_size() + static_cast<std::size_t>(first) * columns,
+                    static_cast<std::size_t>(count) * columns);
+}
+
 float& SpectralImage::at(int band_index, int row, int column) {
   return band(band_index)[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                           static_cast<std::size_t>(column)];

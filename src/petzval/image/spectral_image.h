@@ -54,6 +54,9 @@ class SpectralImage {
   /// Puts a plane in its place, without the memory that band() takes of a large image.
   /// \throws InputError if it has another size.
   void store_band(int index, std::span<const float> plane);
+  /// Gives up rows of all bands of a large image, whose values are kept in a file, and the room that they
+  /// take; they are not to be looked at again. \throws InputError for rows that the image has not.
+  void give_up_rows(int first, int count);
   float& at(int band_index, int row, int column);
   float at(int band_index, int row, int column) const;
   /// All planes, one after the other.

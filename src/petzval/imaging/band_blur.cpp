@@ -11,16 +11,59 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void BandBlur::prepare(double wavelength_nm, const SensorGeometry& grid, int margin) {
+namespace {
+
+/// Kept of the plans of several bands: the one that allows the largest error.
+void keep_coarser(const ProductPlan& plan, ProductPlan& kept) {
+  if (kept.tile == 0 || plan.estimated_error > kept.estimated_error) kept = plan;
+}
+
+}  // namespace
+
+void add_report(const ImagingReport& band, ImagingReport& all) {
+  all.margin_cells = std::max(all.margin_cells, band.margin_cells);
+  all.transform_size = std::max(all.transform_size, band.transform_size);
+  if (band.product.tile != 0) keep_coarser(band.product, all.product);
+  all.least_captured = std::min(all.least_captured, band.least_captured);
+  all.distortion_seconds += band.distortion_seconds;
+  all.blur_seconds += band.blur_seconds;
+  all.kernel_seconds += band.kernel_seconds;
+}
+
+void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int margin,
+                      const std::optional<ProductPlan>& hint) {
   // The next kernels go where the last ones were: those of two bands need not be kept at a time.
   if (product_) memory_ = std::move(*product_).take_memory();
   product_.reset();
   sections_.reset();
+  grid_ = grid;
   margin_ = margin;
   if (options_.method == BlurMethod::none) return;
   psfs_.emplace(table_, wavelength_nm, grid.pitch_um, options_.interpolation, centres_);
-  if (options_.by_sections()) prepare_sections(options_.section_options());
-  if (options_.method == BlurMethod::product) prepare_product(grid);
+  if (options_.by_sections()) use_sections(options_.section_options());
+  if (options_.method == BlurMethod::product) choose_product(hint);
+}
+
+void BandBlur::choose_product(const std::optional<ProductPlan>& hint) {
+  const auto start = std::chrono::steady_clock::now();
+  plan_ = plan_product(*psfs_, grid_, options_.product, hint);
+  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, grid_, options_.product);
+  keep_coarser(plan, report_.product);
+  if (!plan_) return use_sections({plan.tile, 0, true});
+  report_.transform_size = std::max(report_.transform_size, plan.transform);
+  report_.kernel_seconds += seconds_since(start);
+}
+
+void BandBlur::use_sections(const SectionOptions& options) {
+  sections_ = options;
+  report_.transform_size = std::max(report_.transform_size, transform_size(options, psfs_->radius()));
+}
+
+void BandBlur::make_kernels() {
+  if (options_.method != BlurMethod::product || sections_) return;
+  const auto start = std::chrono::steady_clock::now();
+  product_.emplace(*psfs_, grid_, *plan_, std::move(memory_));
+  report_.kernel_seconds += seconds_since(start);
 }
 
 CellPlane BandBlur::operator()(CellPlane source, const ProgressCallback& progress) const {
@@ -28,23 +71,6 @@ CellPlane BandBlur::operator()(CellPlane source, const ProgressCallback& progres
   if (product_) return product_->blur(source, margin_);
   if (sections_) return blur_sections(source, *psfs_, margin_, *sections_, progress);
   return blur_exact(source, *psfs_, margin_, progress);
-}
-
-void BandBlur::prepare_sections(const SectionOptions& options) {
-  sections_ = options;
-  report_.transform_size = std::max(report_.transform_size, transform_size(options, psfs_->radius()));
-}
-
-void BandBlur::prepare_product(const SensorGeometry& grid) {
-  const auto start = std::chrono::steady_clock::now();
-  plan_ = plan_product(*psfs_, grid, options_.product, plan_);
-  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, grid, options_.product);
-  if (report_.product.tile == 0 || plan.estimated_error > report_.product.estimated_error)
-    report_.product = plan;
-  if (!plan_) return prepare_sections({plan.tile, 0, true});
-  product_.emplace(*psfs_, grid, plan, std::move(memory_));
-  report_.transform_size = std::max(report_.transform_size, plan.transform);
-  report_.kernel_seconds += seconds_since(start);
 }
 
 }  // namespace petzval

@@ -12,30 +12,42 @@ namespace petzval {
 
 /// Blurs planes of light, band by band; any number of planes of a band share its kernels.
 ///
-///     BandBlur blur(table, options, report);
+///     BandBlur blur(table, centres, options, report);
 ///     blur.prepare(550, source.grid, margin);
 ///     CellPlane image = blur(std::move(source));
 ///
-/// What it chose, and the time that kernels took, is added to the report. Table, options and report must
-/// outlive it.
+/// What it chose, and the time that kernels took, is added to the report. Everything it is given must outlive
+/// it.
 class BandBlur {
  public:
-  BandBlur(const LensDataTable& table, const ImagingOptions& options, ImagingReport& report)
-      : table_(table), options_(options), centres_(table), report_(report) {}
+  BandBlur(const LensDataTable& table, const LightCentres& centres, const ImagingOptions& options,
+           ImagingReport& report)
+      : table_(table), options_(options), centres_(centres), report_(report) {}
 
   /// Makes the kernels of a wavelength for planes on a grid. \param margin  by which their images are smaller
   /// on every side.
-  void prepare(double wavelength_nm, const SensorGeometry& grid, int margin);
+  void prepare(double wavelength_nm, const SensorGeometry& grid, int margin) {
+    choose(wavelength_nm, grid, margin, plan_);
+    make_kernels();
+  }
+  /// The first half of prepare(). \param hint  the plan() of a neighbouring band.
+  void choose(double wavelength_nm, const SensorGeometry& grid, int margin,
+              const std::optional<ProductPlan>& hint);
+  /// The second half.
+  void make_kernels();
+  /// What was chosen; absent for other methods than `product`, and where PSFs are too large for it.
+  const std::optional<ProductPlan>& plan() const { return plan_; }
   CellPlane operator()(CellPlane source, const ProgressCallback& progress = {}) const;
 
  private:
-  void prepare_product(const SensorGeometry& grid);
-  void prepare_sections(const SectionOptions& options);
+  void choose_product(const std::optional<ProductPlan>& hint);
+  void use_sections(const SectionOptions& options);
 
   const LensDataTable& table_;
   const ImagingOptions& options_;
-  const LightCentres centres_;
+  const LightCentres& centres_;
   ImagingReport& report_;
+  SensorGeometry grid_;
   int margin_ = 0;
   std::optional<PsfField> psfs_;
   std::optional<SectionOptions> sections_;
@@ -43,6 +55,9 @@ class BandBlur {
   std::optional<ProductPlan> plan_;  ///< of the last band
   TransformBlur::KernelSets memory_;
 };
+
+/// Adds what is said of one band to what is said of all.
+void add_report(const ImagingReport& band, ImagingReport& all);
 
 /// Since a start [s].
 double seconds_since(std::chrono::steady_clock::time_point start);

@@ -19,10 +19,9 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
     int margin = 0;
     double least_captured = 1;
     if (options.method != BlurMethod::none) {
-      // Made again when its band's turn comes: those of all bands together would fill the memory.
-      const PsfField psfs(table, wavelength_nm, frame.pitch_um, options.interpolation, centres);
-      margin = psfs.radius();
-      least_captured = psfs.least_captured();
+      const PsfReach reach = psf_reach(table, wavelength_nm, frame.pitch_um, centres);
+      margin = reach.radius;
+      least_captured = reach.least_captured;
     }
     if (options.by_sections()) transform_size(options.section_options(), margin);
     const LightProfile lens(profiles.at_wavelength(wavelength_nm), table, centres, wavelength_nm);

@@ -2,10 +2,10 @@
 // One wavelength's light on a grid of cells: what distortion makes and blur turns into another.
 #pragma once
 
+#include <petzval/base/unset_vector.h>
 #include <petzval/sensor/sensor.h>
 
 #include <cstddef>
-#include <vector>
 
 namespace petzval {
 
@@ -13,7 +13,7 @@ namespace petzval {
 /// cell is a pixel, or one of the S × S parts of a pixel when an image is supersampled.
 struct CellPlane {
   SensorGeometry grid;
-  std::vector<float> values;
+  UnsetVector<float> values;
 
   CellPlane() = default;
   /// All zero. \throws InputError for sizes below 1, more than 2^31 cells or a pitch that is not positive.

@@ -87,7 +87,8 @@ class DepthImaging {
     const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_);
     const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), pixel_um_);
     const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
-    BandBlur blur(table, options_, says());
+    const LightCentres centres(table);
+    BandBlur blur(table, centres, options_, says());
     for (int band = 0; band < scene_.bands(); ++band) {
       const BandPlan& plan = plans[static_cast<std::size_t>(band)];
       says().margin_cells = std::max(says().margin_cells, plan.margin);
@@ -153,7 +154,7 @@ SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, co
   const PixelTaps taps = image_taps(options, says.image);
   std::vector<CellPlane> planes = imaging.planes();
   for (int band = 0; band < scene.bands(); ++band) {
-    put_band(gathered(planes[static_cast<std::size_t>(band)], taps), band, image, says.image);
+    put_band(gathered(std::move(planes[static_cast<std::size_t>(band)]), taps), band, image, says.image);
     planes[static_cast<std::size_t>(band)] = {};
   }
   image.lens = lens_facts(camera.lens.name, first_order(camera.lens));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/band_blur.h>
 #include <petzval/imaging/coverage.h>
@@ -10,6 +11,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 namespace petzval {
 
@@ -31,6 +38,136 @@ void check_distances(const Scene& scene, const LensDataTable& table) {
                     "sensor; give the scene that distance, or build the table for the scene's",
                     say(scene_mm), say(table_mm)));
 }
+
+/// How far all bands are, when several are formed at once.
+class BandProgress {
+ public:
+  BandProgress(int bands, const ProgressCallback& callback)
+      : callback_(callback), fraction_(static_cast<std::size_t>(bands)) {}
+
+  void tell(std::size_t band, double fraction, const std::string& what) {
+    if (!callback_) return;
+    const std::lock_guard lock(mutex_);
+    fraction_[band] = fraction;
+    callback_(std::accumulate(fraction_.begin(), fraction_.end(), 0.0) / double(fraction_.size()), what);
+  }
+
+ private:
+  const ProgressCallback& callback_;
+  std::mutex mutex_;
+  std::vector<double> fraction_;
+};
+
+/// The bands of one image, some of them at a time.
+class BandByBand {
+ public:
+  BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
+             const ImagingOptions& options, const std::vector<BandPlan>& plans, const PixelTaps& taps,
+             const ProgressCallback& progress, ImagingReport& report, SpectralImage& image)
+      : scene_(scene),
+        table_(table),
+        centres_(table),
+        frame_(frame),
+        options_(options),
+        plans_(plans),
+        taps_(taps),
+        progress_(scene.bands(), progress),
+        report_(report),
+        image_(image) {}
+
+  void form() {
+    const auto start = std::chrono::steady_clock::now();
+    choose(0, places_.emplace_back(table_, centres_, options_));
+    while (places_.size() < places_wanted()) places_.emplace_back(table_, centres_, options_);
+    parallel_stages(plans_.size(), places_.size(),
+                    {[&](std::size_t band, std::size_t place) {
+                       if (band > 0) choose(band, places_[place]);
+                     },
+                     [&](std::size_t band, std::size_t place) { work(band, places_[place]); },
+                     [&](std::size_t band, std::size_t place) { end(band, places_[place]); }});
+    share_time(seconds_since(start));
+  }
+
+ private:
+  /// Where one band after the other is formed, using the same memory.
+  struct Place {
+    Place(const LensDataTable& table, const LightCentres& centres, const ImagingOptions& options)
+        : blur(table, centres, options, says) {}
+    ImagingReport says;
+    BandBlur blur;
+    CellPlane pixels;
+    double seconds = 0;
+  };
+
+  /// As many bands at a time as threads and memory allow, going by the first.
+  std::size_t places_wanted() const {
+    constexpr double most_bytes = 1.25e9, psf_bytes = 64e6;
+    constexpr int planes = 4;  // the light before and after blur, with room for the pixels
+    const std::optional<ProductPlan>& plan = places_.front().blur.plan();
+    const double bytes = (plan ? plan->kernel_bytes : 0) + psf_bytes +
+                         planes * double(frame_.columns) * double(frame_.rows) * sizeof(float);
+    const auto by_memory = static_cast<std::size_t>(std::max(1.0, most_bytes / bytes));
+    return std::min({by_memory, static_cast<std::size_t>(thread_count()), plans_.size()});
+  }
+
+  void choose(std::size_t band, Place& place) {
+    const auto start = std::chrono::steady_clock::now();
+    place.says = {};
+    const int margin = plans_[band].margin;
+    place.blur.choose(scene_.wavelengths_nm()[band], grown(frame_, margin), margin, last_plan_);
+    last_plan_ = place.blur.plan();
+    place.seconds = place.says.blur_seconds = seconds_since(start);
+  }
+
+  void work(std::size_t band, Place& place) {
+    const BandPlan& plan = plans_[band];
+    const auto start = std::chrono::steady_clock::now();
+    CellPlane ideal = ideal_irradiance(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
+                                       report_.scene_points_per_cell, options_.surround);
+    place.says.distortion_seconds = seconds_since(start);
+
+    const auto start_of_blur = std::chrono::steady_clock::now();
+    place.blur.make_kernels();
+    CellPlane blurred = place.blur(std::move(ideal), [&](double fraction, const std::string& what) {
+      progress_.tell(band, fraction, what);
+    });
+    place.says.blur_seconds += seconds_since(start_of_blur);
+    place.pixels = gathered(std::move(blurred), taps_);
+    place.seconds += seconds_since(start);
+  }
+
+  void end(std::size_t band, Place& place) {
+    const auto start = std::chrono::steady_clock::now();
+    put_band(place.pixels, static_cast<int>(band), image_, report_);
+    place.pixels = {};
+    scene_.release_memory();
+    place.says.margin_cells = plans_[band].margin;
+    place.says.least_captured = plans_[band].least_captured;
+    add_report(place.says, report_);
+    progress_.tell(band, 1, "image");
+    seconds_ += place.seconds + seconds_since(start);
+  }
+
+  void share_time(double seconds) {
+    if (seconds_ <= seconds) return;
+    for (double* of_step : {&report_.distortion_seconds, &report_.blur_seconds, &report_.kernel_seconds})
+      *of_step *= seconds / seconds_;
+  }
+
+  const Scene& scene_;
+  const LensDataTable& table_;
+  const LightCentres centres_;
+  const SensorGeometry& frame_;
+  const ImagingOptions& options_;
+  const std::vector<BandPlan>& plans_;
+  const PixelTaps& taps_;
+  BandProgress progress_;
+  ImagingReport& report_;
+  SpectralImage& image_;
+  std::deque<Place> places_;
+  std::optional<ProductPlan> last_plan_;
+  double seconds_ = 0;  ///< of all bands
+};
 
 }  // namespace
 
@@ -83,29 +220,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
 
   const PixelTaps taps = image_taps(options, says);
 
-  BandBlur blur(table, options, says);
-  for (int band = 0; band < scene.bands(); ++band) {
-    const BandPlan& plan = plans[static_cast<std::size_t>(band)];
-    const auto start = std::chrono::steady_clock::now();
-    CellPlane ideal = ideal_irradiance(scene, band, plan.map, grown(frame, plan.margin),
-                                       says.scene_points_per_cell, options.surround);
-    says.distortion_seconds += seconds_since(start);
-
-    const auto start_of_blur = std::chrono::steady_clock::now();
-    const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(band)];
-    const auto within_band = [&](double fraction, const std::string& what) {
-      if (progress) progress((band + fraction) / scene.bands(), what);
-    };
-    blur.prepare(wavelength_nm, ideal.grid, plan.margin);
-    const CellPlane blurred = blur(std::move(ideal), within_band);
-    says.blur_seconds += seconds_since(start_of_blur);
-
-    put_band(gathered(blurred, taps), band, image, says);
-    scene.release_memory();
-    says.margin_cells = std::max(says.margin_cells, plan.margin);
-    says.least_captured = std::min(says.least_captured, plan.least_captured);
-    if (progress) progress((band + 1.0) / scene.bands(), "image");
-  }
+  BandByBand(scene, table, frame, options, plans, taps, progress, says, image).form();
   image.lens = lens_facts(table.lens_name, table.first_order);
   note_result(options, says);
   return image;

@@ -63,12 +63,13 @@ struct ImagingReport {
   int scene_points_per_cell = 1;      ///< scene samples averaged in a cell: this squared
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
+  /// What the steps took; of bands that were formed side by side, their shares of the time that all took.
   double distortion_seconds = 0, blur_seconds = 0;
   double kernel_seconds = 0;  ///< of `blur_seconds`, what `product` took to plan and to make its kernels
 };
 
-/// Forms the image, band by band (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source,
-/// blur):
+/// Forms the image, band by band, or several bands side by side if there are threads and memory for them
+/// (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source, blur):
 ///
 /// 1. A grid of source cells, S × S to a pixel, covers the frame and as much around it as a PSF reaches.
 /// 2. Each cell takes the scene's radiance at the object point whose light is centred on it, times g_source:

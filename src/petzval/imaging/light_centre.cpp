@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/light_centre.h>
 #include <petzval/numeric/interpolation.h>
@@ -45,13 +46,16 @@ std::vector<std::pair<std::size_t, double>> bracketing_wavelengths(const LensDat
 
 LightCentres::LightCentres(const LensDataTable& table) : offsets_mm_(table.psf.size()) {
   constexpr double least_stretch = 0.5, most_stretch = 2;
+  std::vector<double> own_mm(table.psf.size());
+  parallel_for(own_mm.size(),
+               [&](std::size_t entry) { own_mm[entry] = tangential_centre_mm(table.psf[entry]); });
   for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
     for (std::size_t f = 1; f < table.fields.size(); ++f) {
       const std::size_t here = table.index(f, w), before = table.index(f - 1, w);
       const double step = table.real_image_height_mm[here] - table.real_image_height_mm[before];
       offsets_mm_[here] =
-          offsets_mm_[before] + std::clamp(tangential_centre_mm(table.psf[here]) - offsets_mm_[before],
-                                           (least_stretch - 1) * step, (most_stretch - 1) * step);
+          offsets_mm_[before] + std::clamp(own_mm[here] - offsets_mm_[before], (least_stretch - 1) * step,
+                                           (most_stretch - 1) * step);
     }
 }
 

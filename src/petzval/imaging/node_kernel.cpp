@@ -4,6 +4,7 @@
 #include <petzval/imaging/node_kernel.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace petzval {
@@ -30,6 +31,13 @@ NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const 
       nodes_down_(nodes_down),
       mirrored_(mirrored),
       diagonal_(psfs.mirror_symmetric() && across.position(0) == down.position(0)) {
+  std::vector<double> heights_mm;
+  for (std::size_t j = 0; j < nodes_down_; ++j)
+    for (std::size_t i = 0; i < nodes_across_; ++i)
+      heights_mm.push_back(psfs.cell_um() * mm_per_um *
+                           std::hypot(across_.position(places_[i]), down_.position(places_[j])));
+  psfs.prepare(heights_mm);
+
   constexpr double most_bytes = 256e6;
   const auto size = static_cast<std::size_t>(2 * psfs.radius() + 1), weights = size * size;
   if (!diagonal_ || double(count()) * double(weights) * sizeof(float) > most_bytes) return;

@@ -2,6 +2,7 @@
 // Kernels at the nodes of tiles, as seen from the axis outwards.
 #pragma once
 
+#include <petzval/base/unset_vector.h>
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/psf_kernel.h>
 
@@ -36,7 +37,7 @@ class NodeKernels {
   std::vector<double> places_;
   std::size_t nodes_across_, nodes_down_;
   bool mirrored_, diagonal_;
-  std::vector<float> weights_;  ///< empty where there is no symmetry to gain by
+  UnsetVector<float> weights_;  ///< empty where there is no symmetry to gain by
 };
 
 /// The Lagrange polynomials of the nodes at the cells along a side of a tile: [node][cell].

@@ -153,7 +153,7 @@ int cells_for(const Photosite& site, int boxes, int least) {
   return most_cells;
 }
 
-CellPlane gathered(const CellPlane& plane, const PixelTaps& taps) {
+CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
   if (taps.size() == 1) return plane;
   const SensorGeometry inner = grown(plane.grid, -taps.reach);
   CellPlane result({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});

@@ -34,6 +34,6 @@ PixelTaps pixel_taps(const Photosite& site, int cells, int boxes);
 int cells_for(const Photosite& site, int boxes, int least);
 
 /// \param plane  S × S cells to a pixel and taps.reach more all around. \returns the plane of pixels.
-CellPlane gathered(const CellPlane& plane, const PixelTaps& taps);
+CellPlane gathered(CellPlane plane, const PixelTaps& taps);
 
 }  // namespace petzval

@@ -21,8 +21,8 @@ constexpr int most_nodes = 6;
 /// estimate must stay below the tolerance by this factor.
 constexpr int places = 64, places_of_hint = 24;
 constexpr double caution = 0.4;
-/// Transfer functions of a band may take this much memory.
-constexpr double most_otf_bytes = 768e6;
+/// Kernels of a band may take this much memory.
+constexpr double most_kernel_bytes = 400e6;
 
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
 constexpr double kernel_fixed_ns = 3000;  // of a kernel, whatever its size
@@ -41,6 +41,19 @@ double kernel_ns(const PsfField& psfs) {
   return kernel_fixed_ns + deposit_ns * (psfs.deposited_samples() + size * size);
 }
 
+double kernel_bytes(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
+  const double sets = psfs.mirror_symmetric() ? 1 : 2;
+  if (plan.direct) {
+    const double taps = 2.0 * psfs.radius() + 1;
+    return kernel_count(psfs, grid, plan) * taps * taps * sizeof(float);
+  }
+  const double across = OutwardAxis(grid.columns).count() / double(plan.tile) + 2,
+               down = OutwardAxis(grid.rows).count() / double(plan.tile) + 2;
+  const double phases = double(plan.nodes - 1) * (plan.nodes - 1), columns = plan.transform / 2.0 + 1;
+  return sets * phases * (across * down + double(lane_count())) * columns * plan.transform * 2 *
+         sizeof(float);
+}
+
 /// Gathered sums that might do, and what they would cost.
 ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
   constexpr double product_ns = 0.026;  // per product
@@ -56,6 +69,7 @@ ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, i
       extent * (nodes * taps * taps * product_ns + add_ns) + double(nodes) * nodes * taps * taps * mix_ns;
   plan.filter_ns = 2 * across * grid.rows * per_row_and_tile;
   plan.kernels_ns = kernel_count(psfs, grid, plan) * kernel_ns(psfs);
+  plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
   return plan;
 }
 
@@ -78,18 +92,8 @@ ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int tran
   plan.filter_ns = 2 * batches * lanes * per_pair;
   plan.kernels_ns = kernel_count(psfs, grid, plan) *
                     (kernel_ns(psfs) + 2.0 * transform * transform * std::log2(transform) * transform_ns);
+  plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
   return plan;
-}
-
-double otf_bytes(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
-  const double across = OutwardAxis(grid.columns).count() / double(plan.tile) + 2,
-               down = OutwardAxis(grid.rows).count() / double(plan.tile) + 2;
-  const double phases = double(plan.nodes - 1) * (plan.nodes - 1), sets = psfs.mirror_symmetric() ? 1 : 2;
-  if (plan.direct) {
-    const double taps = 2.0 * psfs.radius() + 1;
-    return kernel_count(psfs, grid, plan) * taps * taps * 4;
-  }
-  return sets * phases * (across * down + double(lane_count())) * plan.transform * plan.transform * 8;
 }
 
 /// Calls use(tile, nodes) for the layouts whose tiles fit into some room.
@@ -119,7 +123,7 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
       each_layout(std::min(transform - 2 * psfs.radius(), widest), options, [&](int tile, int nodes) {
         plans.push_back(candidate(psfs, grid, transform, tile, nodes));
       });
-  std::erase_if(plans, [&](const ProductPlan& plan) { return otf_bytes(psfs, grid, plan) > most_otf_bytes; });
+  std::erase_if(plans, [](const ProductPlan& plan) { return plan.kernel_bytes > most_kernel_bytes; });
   std::sort(plans.begin(), plans.end(), [](const ProductPlan& a, const ProductPlan& b) {
     return a.filter_ns + a.kernels_ns < b.filter_ns + b.kernels_ns;
   });

@@ -16,7 +16,7 @@ struct ProductPlan {
   int nodes = 2;        ///< along a side of a tile
   int transform = 0;    ///< cells along a side; tile + 2 · kernel radius fit into it
   bool direct = false;  ///< sums are gathered (DirectBlur); else by transforms (ProductBlur)
-  CellRing exact = {};       ///< of source cells with kernels of their own
+  CellRing exact = {};  ///< of source cells with kernels of their own
   /// Relative L2 error against the exact method, estimated for a texture whose contrast is 1 at every
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
@@ -25,6 +25,8 @@ struct ProductPlan {
   /// transfer functions.
   double filter_ns = 0, kernels_ns = 0;
   double exact_ns = 0;  ///< of the cells with kernels of their own
+
+  double kernel_bytes = 0;  ///< that the kernels or their transfer functions take
 
   double total_ns() const { return filter_ns + kernels_ns + exact_ns; }
 };

@@ -59,16 +59,45 @@ bool is_mirror_symmetric(const Psf& psf) {
   return true;
 }
 
-void check(const Psf& psf, double wavelength_nm) {
-  const bool whole =
-      psf.size > 0 && std::isfinite(psf.spacing_um) && psf.spacing_um > 0 &&
-      psf.values.size() == static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size);
-  const double sum = whole ? std::accumulate(psf.values.begin(), psf.values.end(), 0.0) : 0.0;
-  if (!(sum > 0) || !std::isfinite(sum))
-    throw InputError(
-        fmt::format("the lens data table holds a PSF at {} nm that is empty, dark or damaged; "
-                    "samples of sum 1 at a positive spacing are right",
-                    wavelength_nm));
+bool has_light(const Psf& psf) {
+  if (!(psf.size > 0 && std::isfinite(psf.spacing_um) && psf.spacing_um > 0 &&
+        psf.values.size() == static_cast<std::size_t>(psf.size) * static_cast<std::size_t>(psf.size)))
+    return false;
+  const double sum = std::accumulate(psf.values.begin(), psf.values.end(), 0.0);
+  return sum > 0 && std::isfinite(sum);
+}
+
+/// The PSFs of one wavelength of a table: how far they extend, field by field, and what that makes of
+/// `reach`.
+std::vector<Extent> extents_of(const LensDataTable& table, std::size_t wavelength, double cell_um,
+                               const LightCentres& centres, PsfReach& reach) {
+  constexpr double max_radius = 2000;  // beyond it a single kernel would take minutes and 128 MB
+  if (table.fields.empty()) throw InputError("the lens data table has no fields");
+  std::vector<std::optional<Extent>> extents(table.fields.size());
+  parallel_for(extents.size(), [&](std::size_t field) {
+    const std::size_t entry = table.index(field, wavelength);
+    const Psf& psf = table.psf.at(entry);
+    if (has_light(psf)) extents[field] = extent_of(psf, centres.offset_mm(entry) * um_per_mm);
+  });
+  std::vector<Extent> found;
+  for (std::size_t field = 0; field < extents.size(); ++field) {
+    if (!extents[field])
+      throw InputError(
+          fmt::format("the lens data table holds a PSF at {} nm that is empty, dark or damaged; "
+                      "samples of sum 1 at a positive spacing are right",
+                      table.wavelengths_nm[wavelength]));
+    const Psf& psf = table.psf[table.index(field, wavelength)];
+    const double radius = std::ceil((extents[field]->reach_um + psf.spacing_um) / cell_um);
+    if (!(radius <= max_radius))
+      throw InputError(
+          fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
+                      "pitch or less supersampling helps",
+                      extents[field]->reach_um, radius, cell_um, max_radius));
+    reach.radius = std::max(reach.radius, static_cast<int>(radius));
+    reach.least_captured = std::min(reach.least_captured, psf.captured);
+    found.push_back(*extents[field]);
+  }
+  return found;
 }
 
 /// Without the corners of its window. The PSF on the axis of a centred lens is the same at every azimuth; a
@@ -105,33 +134,27 @@ MergedPsf merged_psf(const Psf& psf, double origin_um, double cell_um, double he
 
 }  // namespace
 
+PsfReach psf_reach(const LensDataTable& table, double wavelength_nm, double cell_um,
+                   const LightCentres& centres) {
+  PsfReach reach;
+  for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm))
+    extents_of(table, wavelength, cell_um, centres, reach);
+  return reach;
+}
+
 PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
                    PsfInterpolation interpolation, const LightCentres& centres)
     : cell_um_(cell_um), interpolation_(interpolation) {
-  constexpr double max_radius = 2000;  // beyond it a single kernel would take minutes and 128 MB
   for (const auto& part : bracketing_wavelengths(table, wavelength_nm)) {
-    const std::size_t wavelength = part.first;
+    const std::size_t wavelength = part.first, fields = table.fields.size();
     Layer layer;
     layer.weight = part.second;
-    for (std::size_t field = 0; field < table.fields.size(); ++field) {
+    const std::vector<Extent> extents = extents_of(table, wavelength, cell_um, centres, reach_);
+    for (std::size_t field = 0; field < fields; ++field) {
       const std::size_t entry = table.index(field, wavelength);
-      const Psf& psf = table.psf.at(entry);
-      check(psf, table.wavelengths_nm[wavelength]);
-      const double origin_mm = centres.offset_mm(entry);
-      const Extent extent = extent_of(psf, origin_mm * um_per_mm);
-      const double radius = std::ceil((extent.reach_um + psf.spacing_um) / cell_um);
-      if (!(radius <= max_radius))
-        throw InputError(
-            fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
-                        "pitch or less supersampling helps",
-                        extent.reach_um, radius, cell_um, max_radius));
-      radius_ = std::max(radius_, static_cast<int>(radius));
-      layer.half_side_um.push_back(extent.half_side_um + psf.spacing_um);
-      least_captured_ = std::min(least_captured_, psf.captured);
-      layer.height_mm.push_back(table.real_image_height_mm.at(entry) + origin_mm);
+      layer.half_side_um.push_back(extents[field].half_side_um + table.psf[entry].spacing_um);
+      layer.height_mm.push_back(table.real_image_height_mm.at(entry) + centres.offset_mm(entry));
     }
-    const std::size_t fields = table.fields.size();
-    if (fields == 0) throw InputError("the lens data table has no fields");
     std::vector<std::optional<MergedPsf>> merged(fields);
     std::vector<char> symmetric(fields);
     parallel_for(fields, [&](std::size_t field) {
@@ -255,8 +278,14 @@ void PsfField::add(const Layer& layer, const MergedPsf& psf, double weight,
   deposit(psf, {weight, {s, t}}, direction, cell_um, kernel);
 }
 
+void PsfField::prepare(const std::vector<double>& heights_mm) const {
+  if (interpolation_ == PsfInterpolation::psf)
+    series_->prepare(heights_mm,
+                     [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
+}
+
 Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double height_mm) const {
-  Kernel kernel(radius_);
+  Kernel kernel(reach_.radius);
   const PsfSeries::Mixture psfs =
       series_->at(height_mm, [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
   deposit(psfs, direction, cell_um_, kernel);
@@ -265,7 +294,7 @@ Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double
 
 Kernel PsfField::interpolated_otf(const std::array<double, 2>& direction, double height_mm) const {
   const auto kernel_of = [&](const Layer& layer, const MergedPsf& psf) {
-    Kernel kernel(radius_);
+    Kernel kernel(reach_.radius);
     add(layer, psf, 1, direction, height_mm, cell_um_, kernel);
     return kernel;
   };

@@ -21,6 +21,15 @@ enum class PsfInterpolation {
         ///< compare
 };
 
+/// How far the kernels of one wavelength reach.
+struct PsfReach {
+  int radius = 0;             ///< cells
+  double least_captured = 1;  ///< the least share of light that a PSF's window caught
+};
+/// What a PsfField says of itself, without making one. \throws InputError as PsfField.
+PsfReach psf_reach(const LensDataTable& table, double wavelength_nm, double cell_um,
+                   const LightCentres& centres = {});
+
 /// The kernels of one wavelength at every place of the image.
 ///
 /// For light that lands about (x', y') the PSFs of the four fields about that height (field_shares()), at the
@@ -40,7 +49,7 @@ class PsfField {
            PsfInterpolation interpolation = PsfInterpolation::psf, const LightCentres& centres = {});
 
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
-  int radius() const { return radius_; }
+  int radius() const { return reach_.radius; }
   double cell_um() const { return cell_um_; }
   /// The height from which on kernels are those of the last field, turned.
   double last_height_mm() const { return layers_[0].height_mm.back(); }
@@ -50,11 +59,13 @@ class PsfField {
   /// then mirrored places have mirrored kernels.
   bool mirror_symmetric() const { return mirror_symmetric_; }
   /// The least share of light that a PSF's window caught when the table was made.
-  double least_captured() const { return least_captured_; }
+  double least_captured() const { return reach_.least_captured; }
 
   /// \param x_mm, y_mm  where the chief ray, or the centre of the light, lands in image space (x' > 0 is left
   /// of the picture's middle).
   Kernel kernel_at(double x_mm, double y_mm) const;
+  /// Makes ready what kernels at these heights share, with all threads; else the first that needs it does.
+  void prepare(const std::vector<double>& heights_mm) const;
 
  private:
   /// The moments of PSFs of unit sum over height: smooth curves, for where the spread of light grows ever
@@ -100,9 +111,8 @@ class PsfField {
   PsfInterpolation interpolation_;
   std::vector<Layer> layers_;
   std::unique_ptr<PsfSeries> series_;
-  int radius_ = 0;
+  PsfReach reach_;
   bool mirror_symmetric_ = true;
-  double least_captured_ = 1;
 };
 
 }  // namespace petzval

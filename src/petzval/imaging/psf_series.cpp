@@ -46,12 +46,14 @@ PsfSeries::PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> l
     }
     runs_.back().last_interval = i;
   }
-  for (Run& run : runs_)
-    run.entries = std::make_unique<Entry[]>((run.last_interval + 1) * steps_ + 1 - run.first_node);
+  for (Run& run : runs_) {
+    run.size = (run.last_interval + 1) * steps_ + 1 - run.first_node;
+    run.entries = std::make_unique<Entry[]>(run.size);
+  }
 }
 
 std::vector<PsfSeries::Share> PsfSeries::shares_at(double height_mm) const {
-  if (height_mm_.size() == 1) return {{0, 0, 1}};
+  if (height_mm_.size() == 1) return {{{0, 0}, 1}};
   const double inside = std::clamp(height_mm, height_mm_.front(), height_mm_.back());
   const std::size_t interval = bracket(height_mm_, inside);
   const double low = height_mm_[interval], span = height_mm_[interval + 1] - low;
@@ -70,11 +72,24 @@ std::vector<PsfSeries::Share> PsfSeries::shares_at(double height_mm) const {
   const auto add = [&](std::size_t of_run, double weight) {
     for (const FieldShare& share : of_places)
       if (weight * share.weight != 0)
-        shares.push_back({of_run, interval * steps_ + share.field, weight * share.weight});
+        shares.push_back({{of_run, interval * steps_ + share.field}, weight * share.weight});
   };
   add(run, 1 - of_next);
   add(run + 1, of_next);
   return shares;
+}
+
+std::vector<PsfSeries::Node> PsfSeries::nodes_of(const std::vector<double>& heights_mm) const {
+  std::vector<std::vector<char>> wanted;
+  for (const Run& run : runs_) wanted.emplace_back(run.size);
+  for (const double height_mm : heights_mm)
+    for (const Share& share : shares_at(height_mm))
+      wanted[share.node.run][share.node.index - runs_[share.node.run].first_node] = 1;
+  std::vector<Node> nodes;
+  for (std::size_t run = 0; run < wanted.size(); ++run)
+    for (std::size_t i = 0; i < wanted[run].size(); ++i)
+      if (wanted[run][i] != 0) nodes.push_back({run, runs_[run].first_node + i});
+  return nodes;
 }
 
 double PsfSeries::height_of(std::size_t node) const {

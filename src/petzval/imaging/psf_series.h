@@ -2,6 +2,7 @@
 // PSFs at many heights between the fields of a table, made when they are first asked for.
 #pragma once
 
+#include <petzval/base/parallel.h>
 #include <petzval/imaging/psf_deposit.h>
 
 #include <cmath>
@@ -36,18 +37,16 @@ class PsfSeries {
   PsfSeries(std::vector<double> height_mm, std::vector<SampleLattice> lattices, double step_mm);
 
   /// \param make  (height [mm], lattice) ↦ MergedPsf. Heights beyond the fields: the first and the last.
+  /// prepare() makes what these heights need, lest threads wait for one another later.
+  template <typename Make>
+  void prepare(const std::vector<double>& heights_mm, const Make& make) const {
+    const std::vector<Node> nodes = nodes_of(heights_mm);
+    parallel_for(nodes.size(), [&](std::size_t i) { psf(nodes[i], make); });
+  }
   template <typename Make>
   Mixture at(double height_mm, const Make& make) const {
     Mixture mixture;
-    for (const Share& share : shares_at(height_mm)) {
-      const Run& run = runs_[share.run];
-      Entry& entry = run.entries[share.node - run.first_node];
-      std::call_once(entry.made, [&] {
-        const SampleLattice lattice{run.spacing_um, half_side_um(share.node)};
-        entry.psf = std::make_unique<MergedPsf>(make(height_of(share.node), lattice));
-      });
-      mixture.push_back({entry.psf.get(), share.weight});
-    }
+    for (const Share& share : shares_at(height_mm)) mixture.push_back({psf(share.node, make), share.weight});
     return mixture;
   }
 
@@ -60,14 +59,30 @@ class PsfSeries {
   struct Run {
     double spacing_um = 0;
     std::size_t first_node = 0, last_interval = 0;
-    std::unique_ptr<Entry[]> entries;  ///< from the first node to the end of the last interval
+    std::size_t size = 0;  ///< nodes from the first to the end of the last interval
+    std::unique_ptr<Entry[]> entries;
+  };
+  struct Node {
+    std::size_t run = 0, index = 0;
   };
   struct Share {
-    std::size_t run = 0, node = 0;
+    Node node;
     double weight = 0;
   };
   /// None of them 0; those of one run stand together.
   std::vector<Share> shares_at(double height_mm) const;
+  /// All that mixtures at these heights are made of, each once.
+  std::vector<Node> nodes_of(const std::vector<double>& heights_mm) const;
+  template <typename Make>
+  const MergedPsf* psf(const Node& node, const Make& make) const {
+    const Run& run = runs_[node.run];
+    Entry& entry = run.entries[node.index - run.first_node];
+    std::call_once(entry.made, [&] {
+      const SampleLattice lattice{run.spacing_um, half_side_um(node.index)};
+      entry.psf = std::make_unique<MergedPsf>(make(height_of(node.index), lattice));
+    });
+    return entry.psf.get();
+  }
   double height_of(std::size_t node) const;
   double half_side_um(std::size_t node) const;
 

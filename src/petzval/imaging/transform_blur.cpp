@@ -5,7 +5,6 @@
 #include <petzval/imaging/transform_blur.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <limits>
 
@@ -13,13 +12,7 @@ namespace petzval {
 
 namespace {
 
-/// One of the four quadrants: right of the axis, below it.
-struct Quadrant {
-  bool right, below;
-};
-
-/// Pairs of quadrants that share all kernels, as real and imaginary part.
-using QuadrantPair = std::array<Quadrant, 2>;
+using QuadrantPair = TransformBlur::QuadrantPair;
 
 std::vector<QuadrantPair> pairs_of(std::size_t set, bool symmetric) {
   if (symmetric) return {{{{true, true}, {false, true}}}, {{{true, false}, {false, false}}}};
@@ -95,7 +88,7 @@ void TileIo::load_row(std::size_t set, int row, float* elements) {
     if (outward_row >= blur_.down_.count()) return;
     const int count = std::min(tile, blur_.across_.count() - first);
     for (std::size_t part = 0; part < 2; ++part) {
-      const Quadrant& quadrant = pairs_[set][part];
+      const TransformBlur::Quadrant& quadrant = pairs_[set][part];
       const float* in = source_.row(static_cast<std::size_t>(blur_.down_.cell(outward_row, quadrant.below))) +
                         blur_.across_.cell(first, quadrant.right);
       const std::ptrdiff_t step = quadrant.right ? 1 : -1;
@@ -113,7 +106,7 @@ void TileIo::store_row(std::size_t set, int row, const float* elements) {
   each_tile([&](int tile_row, int tile_column, std::size_t lane) {
     const int outward_row = tile_row * tile + row - blur_.radius_, first = tile_column * tile - blur_.radius_;
     for (std::size_t part = 0; part < 2; ++part) {
-      const Quadrant& quadrant = pairs_[set][part];
+      const TransformBlur::Quadrant& quadrant = pairs_[set][part];
       const int result_row = blur_.down_.cell(outward_row, quadrant.below) - margin_;
       if (result_row < 0 || result_row >= rows) continue;
       const int base = blur_.across_.cell(first, quadrant.right) - margin_;
@@ -200,13 +193,30 @@ std::vector<const float*> TransformBlur::otfs_of(const KernelSet& set, std::size
   return otfs;
 }
 
+std::vector<TransformBlur::Item> TransformBlur::items_for(std::size_t threads) const {
+  std::vector<Item> items;
+  for (std::size_t set = 0; set < sets_.size(); ++set)
+    for (std::size_t batch = 0; batch < batches_; ++batch)
+      items.push_back({set, batch * lane_count(), pairs_of(set, sets_.size() == 1)});
+  // The last ones, which not all threads get one of, are halved if they can be. The order of sums, set by set
+  // within a batch, is the same.
+  const std::size_t whole = items.size() - items.size() % threads;
+  std::vector<Item> halves;
+  for (std::size_t i = whole; i < items.size(); ++i)
+    for (const QuadrantPair& pair : items[i].pairs)
+      halves.push_back({items[i].set, items[i].first_lane, {pair}});
+  items.resize(whole);
+  items.insert(items.end(), halves.begin(), halves.end());
+  return items;
+}
+
 CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   if (source.grid.columns != grid_.columns || source.grid.rows != grid_.rows)
     throw InputError("the plane to be blurred has another grid than the blur was made for");
   CellPlane result(grown(grid_, -margin));
   // Batches are transformed by whoever is free, but added to the result one after the other, so that sums are
   // the same for any number of threads.
-  const std::size_t items = sets_.size() * batches_;
+  const std::vector<Item> items = items_for(static_cast<std::size_t>(thread_count()));
   std::atomic<std::size_t> next{0};
   Turns turns;
   const auto work = [&] {
@@ -214,15 +224,15 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
     AlignedVector<float> workspace;
     LaneTiles tiles{plan_.tile, plan_.tile + 2 * radius_, plan_.nodes,  weights_.data(),
                     {},         2 * nodes_padded_,        nodes_padded_};
-    for (std::size_t item; (item = next++) < items;) {
-      const std::size_t set = item / batches_, first_lane = item % batches_ * lane_count();
+    for (std::size_t ticket; (ticket = next++) < items.size();) {
+      const auto& [set, first_lane, pairs] = items[ticket];
       tiles.otfs = otfs_of(sets_[set], first_lane);
-      io.set_place(item, first_lane, pairs_of(set, sets_.size() == 1));
+      io.set_place(ticket, first_lane, pairs);
       blur_lane_tiles(transform_, tiles, io, workspace);
-      turns.end(item);
+      turns.end(ticket);
     }
   };
-  parallel_for(std::min(items, static_cast<std::size_t>(thread_count())), [&](std::size_t) {
+  parallel_for(std::min(items.size(), static_cast<std::size_t>(thread_count())), [&](std::size_t) {
     try {
       work();
     } catch (...) {

@@ -2,12 +2,13 @@
 // The product convolution by Fourier transforms.
 #pragma once
 
-#include <petzval/base/progress.h>
+#include <petzval/base/unset_vector.h>
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/lane_blur.h>
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/product_plan.h>
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -20,7 +21,7 @@ class TransformBlur {
  public:
   /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node], of
   /// each pair of columns of frequencies one.
-  using KernelSet = AlignedVector<float>;
+  using KernelSet = UnsetVector<float, AlignedAllocator<float>>;
   /// One if the PSFs are mirror symmetric, else two.
   using KernelSets = std::vector<KernelSet>;
 
@@ -35,8 +36,22 @@ class TransformBlur {
 
   const ProductPlan& plan() const { return plan_; }
 
+  /// One of the four quadrants: right of the axis, below it.
+  struct Quadrant {
+    bool right, below;
+  };
+  /// Two quadrants that share all kernels, as real and imaginary part.
+  using QuadrantPair = std::array<Quadrant, 2>;
+
  private:
   friend class TileIo;
+  /// Tiles that are blurred at a time: those of the lanes from the first on, in some pairs of quadrants.
+  struct Item {
+    std::size_t set, first_lane;
+    std::vector<QuadrantPair> pairs;
+  };
+  /// All tiles in the order in which they are added to the result.
+  std::vector<Item> items_for(std::size_t threads) const;
   /// Lanes are counted over tiles row by row, with one idle lane at the end of each row, so that the next
   /// node along either side is always the same number of lanes away.
   std::size_t lanes_per_row() const { return static_cast<std::size_t>(tiles_across_) + 1; }

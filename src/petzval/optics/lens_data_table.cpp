@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/optics/lens_data_table.h>
 
@@ -85,10 +86,12 @@ void require_psfs(const LensDataTable& table) {
   if (table.psf.size() != expected)
     refuse(fmt::format("there are {} PSFs; {} fields × {} wavelengths need {}", table.psf.size(),
                        table.fields.size(), table.wavelengths_nm.size(), expected));
+  std::vector<std::string> faults(expected);
+  parallel_for(expected, [&](std::size_t i) { faults[i] = psf_fault(table.psf[i]); });
   for (std::size_t i = 0; i < expected; ++i)
-    if (const std::string fault = psf_fault(table.psf[i]); !fault.empty())
+    if (!faults[i].empty())
       refuse(fmt::format("the PSF of field {} at {} nm {}", table.fields[i / table.wavelengths_nm.size()],
-                         table.wavelengths_nm[i % table.wavelengths_nm.size()], fault));
+                         table.wavelengths_nm[i % table.wavelengths_nm.size()], faults[i]));
 }
 
 }  // namespace

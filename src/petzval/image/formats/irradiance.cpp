@@ -100,6 +100,11 @@ void write_irradiance(const std::string& path, const SpectralImage& image) {
   throw InputError(path, "irradiance is written as .exr or .npy");
 }
 
+void write_irradiance(const std::string& path, SpectralImage&& image) {
+  if (extension_of(path) == ".npy") return write_npy(path, std::move(image));
+  write_irradiance(path, std::as_const(image));
+}
+
 SpectralImage read_irradiance(const std::string& path) {
   if (extension_of(path) == ".npy")
     throw InputError(path,

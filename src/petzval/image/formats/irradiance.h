@@ -15,6 +15,8 @@ namespace petzval {
 /// columns, bands) and carries neither wavelengths nor pitch nor units. \throws InputError for another
 /// extension, and as the writers; Failure.
 void write_irradiance(const std::string& path, const SpectralImage& image);
+/// The same for an image whose values nobody needs any more: as write_npy().
+void write_irradiance(const std::string& path, SpectralImage&& image);
 
 /// Reads what write_irradiance wrote as .exr.
 /// \throws InputError for a file that is damaged or holds something else (radiance, no pitch, NaN), and for

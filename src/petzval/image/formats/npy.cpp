@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/npy_file.h>
 #include <petzval/image/formats/output_file.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <functional>
 #include <string_view>
 
 namespace petzval {
@@ -50,6 +53,54 @@ void write_array(const std::string& path, std::string_view type, std::span<const
   file.commit();
 }
 
+/// Rows `first` to `end` with the bands of a pixel side by side.
+void interleave(const SpectralImage& image, std::size_t first, std::size_t end, std::vector<float>& pixels) {
+  const auto columns = static_cast<std::size_t>(image.columns()),
+             bands = static_cast<std::size_t>(image.bands());
+  pixels.resize((end - first) * columns * bands);
+  for (std::size_t row = first; row < end; ++row)
+    for (std::size_t band = 0; band < bands; ++band) {
+      const float* in = image.band(static_cast<int>(band)).data() + row * columns;
+      float* out = pixels.data() + (row - first) * columns * bands + band;
+      for (std::size_t column = 0; column < columns; ++column, out += bands) *out = in[column];
+    }
+}
+
+/// \param done  told of rows that have been written; may be empty.
+void write_image(const std::string& path, const SpectralImage& image,
+                 const std::function<void(int first, int count)>& done) {
+  const auto rows = static_cast<std::size_t>(image.rows());
+  const std::size_t shape[] = {rows, static_cast<std::size_t>(image.columns()),
+                               static_cast<std::size_t>(image.bands())};
+  OutputFile file(path);
+  const std::string header = header_bytes("<f4", shape);
+  file.write(header.data(), header.size());
+
+  // Some rows are turned into pixels while those before them are written. What is given up in pieces as
+  // large as these the system uses at once for what is written next.
+  constexpr std::size_t rows_at_once = 8, bytes_given_up = std::size_t{4} << 20;
+  const std::size_t blocks = (rows + rows_at_once - 1) / rows_at_once;
+  const std::size_t rows_given_up = std::max(rows_at_once, bytes_given_up / (shape[1] * sizeof(float)));
+  const auto slots = static_cast<std::size_t>(thread_count()) + 1;
+  std::vector<std::vector<float>> pixels(slots);
+  std::size_t written = 0, given_up = 0;
+  const auto end_of = [&](std::size_t block) { return std::min(rows, (block + 1) * rows_at_once); };
+  parallel_stages(blocks, slots,
+                  {[](std::size_t, std::size_t) {},
+                   [&](std::size_t block, std::size_t slot) {
+                     interleave(image, block * rows_at_once, end_of(block), pixels[slot]);
+                   },
+                   [&](std::size_t block, std::size_t slot) {
+                     file.write(pixels[slot].data(), pixels[slot].size() * sizeof(float));
+                     written = end_of(block);
+                     if (written - given_up < rows_given_up && written < rows) return;
+                     image.release_memory();
+                     if (done) done(static_cast<int>(given_up), static_cast<int>(written - given_up));
+                     given_up = written;
+                   }});
+  file.commit();
+}
+
 }  // namespace
 
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values) {
@@ -61,25 +112,11 @@ void write_npy(const std::string& path, std::span<const std::size_t> shape, std:
 }
 
 void write_npy(const std::string& path, const SpectralImage& image) {
-  const auto rows = static_cast<std::size_t>(image.rows()),
-             columns = static_cast<std::size_t>(image.columns());
-  const auto bands = static_cast<std::size_t>(image.bands());
-  const std::size_t shape[] = {rows, columns, bands};
-  OutputFile file(path);
-  const std::string header = header_bytes("<f4", shape);
-  file.write(header.data(), header.size());
-  std::vector<float> line(columns * bands);
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t band = 0; band < bands; ++band) {
-      const std::span<const float> source =
-          image.band(static_cast<int>(band)).subspan(row * columns, columns);
-      for (std::size_t column = 0; column < columns; ++column) line[column * bands + band] = source[column];
-    }
-    file.write(line.data(), line.size() * sizeof(float));
-    constexpr std::size_t rows_kept = 64;
-    if (row % rows_kept == 0) image.release_memory();
-  }
-  file.commit();
+  write_image(path, image, {});
+}
+
+void write_npy(const std::string& path, SpectralImage&& image) {
+  write_image(path, image, [&](int first, int count) { image.give_up_rows(first, count); });
 }
 
 NpyArray read_npy(const std::string& path) {

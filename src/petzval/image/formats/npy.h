@@ -25,6 +25,9 @@ void write_npy(const std::string& path, std::span<const std::size_t> shape, std:
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const double> values);
 /// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹].
 void write_npy(const std::string& path, const SpectralImage& image);
+/// The same for an image whose values nobody needs any more. Those of a large image are given up while they
+/// are written, so that there need not be room for both; everything else of the image stays.
+void write_npy(const std::string& path, SpectralImage&& image);
 
 /// Reads float32, float64 and whole numbers of 8 to 32 bits, of either byte order, in C order.
 /// \throws InputError for another type or order, a damaged header, or a file shorter or longer than its shape
