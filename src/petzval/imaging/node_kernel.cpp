@@ -68,13 +68,10 @@ Kernel NodeKernels::made(std::size_t node_across, std::size_t node_down) const {
   return kernel_at_node(psfs_, across_, down_, places_[node_across], places_[node_down], mirrored_);
 }
 
-void NodeKernels::lay(std::size_t node_across, std::size_t node_down, double scale, float* out,
-                      std::size_t step) const {
+void NodeKernels::lay(std::size_t node_across, std::size_t node_down, double scale, float* out) const {
   if (weights_.empty()) {
-    for (const double weight : made(node_across, node_down).weights) {
-      *out = static_cast<float>(scale * weight);
-      out += step;
-    }
+    for (const double weight : made(node_across, node_down).weights)
+      *out++ = static_cast<float>(scale * weight);
     return;
   }
   const auto size = static_cast<std::size_t>(2 * psfs_.radius() + 1);
@@ -83,8 +80,8 @@ void NodeKernels::lay(std::size_t node_across, std::size_t node_down, double sca
   const std::size_t per_row = transposed ? 1 : size, per_column = transposed ? size : 1;
   const auto factor = static_cast<float>(scale);
   for (std::size_t row = 0; row < size; ++row)
-    for (std::size_t column = 0; column < size; ++column, out += step)
-      *out = factor * weights[row * per_row + column * per_column];
+    for (std::size_t column = 0; column < size; ++column)
+      *out++ = factor * weights[row * per_row + column * per_column];
 }
 
 std::vector<float> cell_weights(const std::vector<double>& nodes, int tile) {

@@ -23,8 +23,8 @@ class NodeKernels {
   /// \param places  of nodes, increasing [cells]. \param nodes_across, nodes_down  so many of them.
   NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
               std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down, bool mirrored);
-  /// Writes scale · weights to `out`, `step` floats apart. From any thread.
-  void lay(std::size_t node_across, std::size_t node_down, double scale, float* out, std::size_t step) const;
+  /// Writes scale · weights to `out`. From any thread.
+  void lay(std::size_t node_across, std::size_t node_down, double scale, float* out) const;
 
  private:
   Kernel made(std::size_t node_across, std::size_t node_down) const;

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/imaging/lane_blur.h>
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/product_plan.h>
+#include <petzval/imaging/tile_blur.h>
 
 #include <algorithm>
 #include <array>
@@ -25,9 +25,8 @@ constexpr double caution = 0.4;
 constexpr double most_kernel_bytes = 400e6;
 
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
-constexpr double kernel_fixed_ns = 3000;  // of a kernel, whatever its size
-constexpr double deposit_ns = 8;          // per sample of a table's PSF and cell of a kernel
-constexpr double transform_ns = 0.042;    // of a lane, per element and halving of a transform along a line
+constexpr double kernel_fixed_ns = 1700;  // of a kernel, whatever its size
+constexpr double deposit_ns = 2.5;        // per sample of a PSF and cell of a kernel
 
 /// Kernels that a layout needs, and what one costs without its transform.
 double kernel_count(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
@@ -42,21 +41,17 @@ double kernel_ns(const PsfField& psfs) {
 }
 
 double kernel_bytes(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
-  const double sets = psfs.mirror_symmetric() ? 1 : 2;
   if (plan.direct) {
     const double taps = 2.0 * psfs.radius() + 1;
     return kernel_count(psfs, grid, plan) * taps * taps * sizeof(float);
   }
-  const double across = OutwardAxis(grid.columns).count() / double(plan.tile) + 2,
-               down = OutwardAxis(grid.rows).count() / double(plan.tile) + 2;
-  const double phases = double(plan.nodes - 1) * (plan.nodes - 1), columns = plan.transform / 2.0 + 1;
-  return sets * phases * (across * down + double(lane_count())) * columns * plan.transform * 2 *
-         sizeof(float);
+  const double side = plan.transform;
+  return kernel_count(psfs, grid, plan) * (side * side + 2 * side) * sizeof(float);
 }
 
 /// Gathered sums that might do, and what they would cost.
 ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
-  constexpr double product_ns = 0.026;  // per product
+  constexpr double product_ns = 0.036;  // per product
   constexpr double mix_ns = 0.1;        // per weight of a kernel that goes into a mixture
   constexpr double add_ns = 5;          // per cell whose light is prepared and added
   ProductPlan plan;
@@ -75,24 +70,23 @@ ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, i
 
 /// A layout that might do, and what it would cost.
 ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int transform, int tile, int nodes) {
-  constexpr double filter_ns = 0.12;  // of a lane, per element of a spectrum and kernel
-  constexpr double move_ns = 1.0;     // per cell that is read, and per cell that is added to the result
+  constexpr double line_ns = 8;           // of a vector, per element of a line: transformed, turned, filtered
+  constexpr double fetch_ns = 0.04;       // per byte of transfer functions
+  constexpr double kernel_line_ns = 1.1;  // of a vector, per element and halving of a kernel's line
   ProductPlan plan;
   plan.tile = tile;
   plan.nodes = nodes;
   plan.transform = transform;
   const double across = std::ceil(OutwardAxis(grid.columns).count() / double(tile)),
                down = std::ceil(OutwardAxis(grid.rows).count() / double(tile));
-  const double lanes = double(lane_count()), extent = tile + 2 * psfs.radius();
-  const double batches = std::ceil((across + 1) * down / lanes);
-  const double lines = nodes * tile + (nodes * nodes + 1) * transform + extent;
-  const double per_pair = lines * transform * std::log2(transform) * transform_ns +
-                          double(nodes) * nodes * transform * transform * filter_ns +
-                          2 * move_ns * (double(tile) * tile + extent * extent);
-  plan.filter_ns = 2 * batches * lanes * per_pair;
-  plan.kernels_ns = kernel_count(psfs, grid, plan) *
-                    (kernel_ns(psfs) + 2.0 * transform * transform * std::log2(transform) * transform_ns);
+  const double lanes = double(lane_count()), columns = transform / lanes;
+  const double lines = nodes * std::ceil(tile / lanes) + (nodes * nodes + 1) * columns +
+                       std::ceil((tile + 2 * psfs.radius()) / lanes);
   plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
+  plan.filter_ns = 2 * across * down * lines * transform * line_ns + plan.kernel_bytes * fetch_ns;
+  const double kernel_lines = (std::ceil((2 * psfs.radius() + 1) / lanes) + columns) / 2;
+  plan.kernels_ns = kernel_count(psfs, grid, plan) *
+                    (kernel_ns(psfs) + kernel_lines * transform * std::log2(transform) * kernel_line_ns);
   return plan;
 }
 
@@ -116,9 +110,9 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
   std::vector<ProductPlan> plans;
   const int widest = std::max(OutwardAxis(grid.columns).count(), OutwardAxis(grid.rows).count());
   if (options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
-    each_layout(std::min(LaneTransform::largest, widest), options,
+    each_layout(std::min(TileTransform::largest, widest), options,
                 [&](int tile, int nodes) { plans.push_back(direct_candidate(psfs, grid, tile, nodes)); });
-  for (int transform = LaneTransform::smallest; transform <= LaneTransform::largest; transform *= 2)
+  for (int transform = TileTransform::smallest; transform <= TileTransform::largest; transform *= 2)
     if (!options.direct.value_or(false))
       each_layout(std::min(transform - 2 * psfs.radius(), widest), options, [&](int tile, int nodes) {
         plans.push_back(candidate(psfs, grid, transform, tile, nodes));
@@ -150,9 +144,9 @@ void ProductOptions::validate() const {
   if (nodes != 0 && (nodes < 2 || nodes > most_nodes))
     throw InputError(
         fmt::format("{} nodes along a tile: 2 to {} are right, or 0 to choose", nodes, most_nodes));
-  if (tile < 0 || tile == 1 || tile > LaneTransform::largest)
+  if (tile < 0 || tile == 1 || tile > TileTransform::largest)
     throw InputError(
-        fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, LaneTransform::largest));
+        fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, TileTransform::largest));
 }
 
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
@@ -192,7 +186,7 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
 ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options) {
   options.validate();
   ProductPlan plan;
-  plan.tile = std::max(LaneTransform::largest, psfs.radius());
+  plan.tile = std::max(TileTransform::largest, psfs.radius());
   while (true) {
     const double limit = caution * options.tolerance;
     plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit);

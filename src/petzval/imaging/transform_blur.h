@@ -4,9 +4,9 @@
 
 #include <petzval/base/unset_vector.h>
 #include <petzval/imaging/cell_plane.h>
-#include <petzval/imaging/lane_blur.h>
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/product_plan.h>
+#include <petzval/imaging/tile_blur.h>
 
 #include <array>
 #include <cstddef>
@@ -15,12 +15,11 @@
 
 namespace petzval {
 
-/// The sums of ProductBlur by Fourier transforms. Pairs of mirrored places, whose kernels are the same, are
-/// real and imaginary part of one transform, and the lanes of a vector are tiles side by side (lane_blur.h).
+/// The sums of ProductBlur by Fourier transforms (tile_blur.h). Pairs of mirrored places, whose kernels are
+/// the same, are real and imaginary part of one tile.
 class TransformBlur {
  public:
-  /// Transfer functions of kernels that are shared by mirrored places: [phase][frequency]{re, im}[node], of
-  /// each pair of columns of frequencies one.
+  /// Transfer functions of kernels that are shared by mirrored places: [node down][node across].
   using KernelSet = UnsetVector<float, AlignedAllocator<float>>;
   /// One if the PSFs are mirror symmetric, else two.
   using KernelSets = std::vector<KernelSet>;
@@ -36,36 +35,35 @@ class TransformBlur {
 
   const ProductPlan& plan() const { return plan_; }
 
+ private:
   /// One of the four quadrants: right of the axis, below it.
   struct Quadrant {
     bool right, below;
   };
   /// Two quadrants that share all kernels, as real and imaginary part.
   using QuadrantPair = std::array<Quadrant, 2>;
-
- private:
-  friend class TileIo;
-  /// Tiles that are blurred at a time: those of the lanes from the first on, in some pairs of quadrants.
-  struct Item {
-    std::size_t set, first_lane;
-    std::vector<QuadrantPair> pairs;
+  /// Tiles [first, end) of a pair of quadrants, counted row by row, which are added to the result together.
+  struct TileRun {
+    std::size_t set = 0;
+    QuadrantPair pair;
+    int first = 0, end = 0;
   };
-  /// All tiles in the order in which they are added to the result.
-  std::vector<Item> items_for(std::size_t threads) const;
-  /// Lanes are counted over tiles row by row, with one idle lane at the end of each row, so that the next
-  /// node along either side is always the same number of lanes away.
-  std::size_t lanes_per_row() const { return static_cast<std::size_t>(tiles_across_) + 1; }
-  std::size_t tile_lanes() const { return lanes_per_row() * static_cast<std::size_t>(tiles_down_); }
-  std::size_t phase_floats() const;
+  class Light;
+  static std::vector<QuadrantPair> pairs_of(std::size_t set, bool symmetric);
+  /// All runs in the order in which they are added to the result.
+  std::vector<TileRun> runs() const;
+  std::size_t nodes_across() const { return phases() * static_cast<std::size_t>(tiles_across_) + 1; }
+  std::size_t nodes_down() const { return phases() * static_cast<std::size_t>(tiles_down_) + 1; }
+  std::size_t phases() const { return nodes_.size() - 1; }
   void make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const;
-  std::vector<const float*> otfs_of(const KernelSet& set, std::size_t first_lane) const;
+  TileMixture mixture_of(std::size_t set, int tile) const;
+  void add(const float* blurred, const QuadrantPair& pair, int tile, int margin, CellPlane& result) const;
 
   ProductPlan plan_;
   SensorGeometry grid_;
   OutwardAxis across_, down_;
-  LaneTransform transform_;
+  TileTransform transform_;
   int radius_, tiles_across_, tiles_down_;
-  std::size_t batches_, nodes_padded_;
   std::vector<double> nodes_;
   AlignedVector<float> weights_;  ///< [node][cell along a side]
   KernelSets sets_;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Transforms along lines of complex elements whose lanes are tiles (lane_blur.h), once per instruction set.
-#if defined(PETZVAL_IMAGING_LANE_FFT_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef PETZVAL_IMAGING_LANE_FFT_INL_H_
-#undef PETZVAL_IMAGING_LANE_FFT_INL_H_
+// Transforms along lines of complex elements whose lanes are rows or columns of a tile (tile_blur.h), once
+// per instruction set.
+#if defined(PETZVAL_IMAGING_TILE_FFT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PETZVAL_IMAGING_TILE_FFT_INL_H_
+#undef PETZVAL_IMAGING_TILE_FFT_INL_H_
 #else
-#define PETZVAL_IMAGING_LANE_FFT_INL_H_
+#define PETZVAL_IMAGING_TILE_FFT_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -185,6 +186,87 @@ HWY_ATTR inline void forward_padded(const float* elements, const float* weights,
     store(multiply(add(x0, turned), broadcast(w + 4)), out + 3 * step);
   }
   forward_from(data, size, quarter, w);
+}
+
+/// A square of floats, as many as a vector has: vector i of what comes out holds what the vectors that go in
+/// hold in lane i. \param from  (i) ↦ where vector i is. \param to  (i) ↦ where vector i goes.
+template <typename From, typename To>
+HWY_ATTR HWY_INLINE void transpose(const From& from, const To& to) {
+  const Lanes d;
+  constexpr std::size_t lanes = hn::MaxLanes(Lanes());
+  std::array<Vector, lanes> in;
+  HWY_UNROLL(16)
+  for (std::size_t i = 0; i < lanes; ++i) in[i] = hn::Load(d, from(i));
+#if HWY_TARGET != HWY_SCALAR
+  std::array<Vector, lanes> out;
+  // Number of vector and number of lane, written one behind the other in binary, turn by a digit each time.
+  HWY_UNROLL(4)
+  for (std::size_t digit = 1; digit < lanes; digit *= 2) {
+    HWY_UNROLL(8)
+    for (std::size_t i = 0; i < lanes / 2; ++i) {
+      out[i] = hn::ConcatEven(d, in[2 * i + 1], in[2 * i]);
+      out[lanes / 2 + i] = hn::ConcatOdd(d, in[2 * i + 1], in[2 * i]);
+    }
+    in = out;
+  }
+#endif
+  HWY_UNROLL(16)
+  for (std::size_t i = 0; i < lanes; ++i) hn::Store(in[i], d, to(i));
+}
+
+/// What is laid out in whole vectors.
+HWY_ATTR HWY_INLINE std::size_t whole_vectors(int count) {
+  const std::size_t lanes = hn::Lanes(Lanes());
+  return (static_cast<std::size_t>(count) + lanes - 1) / lanes;
+}
+
+/// Rows of a tile that become columns of frequencies, lane by lane.
+struct RowPass {
+  std::size_t width;        ///< floats of a row of whole vectors
+  float *real, *imaginary;  ///< [lane][column]
+  float *elements, *line;   ///< [column]{re, im}[lane], and transformed
+  static std::size_t floats(int count, int size) {
+    const std::size_t lanes = hn::Lanes(Lanes()), width = whole_vectors(count) * lanes;
+    return 4 * lanes * width + static_cast<std::size_t>(size) * 2 * lanes;
+  }
+  RowPass(int count, float* memory) : width(whole_vectors(count) * hn::Lanes(Lanes())) {
+    const std::size_t plane = hn::Lanes(Lanes()) * width;
+    real = memory;
+    imaginary = real + plane;
+    elements = imaginary + plane;
+    line = elements + 2 * plane;
+  }
+};
+
+/// From rows to elements.
+HWY_ATTR HWY_INLINE void rows_to_elements(const RowPass& pass) {
+  const std::size_t lanes = hn::Lanes(Lanes()), element = 2 * lanes;
+  for (std::size_t column = 0; column < pass.width; column += lanes) {
+    float* out = pass.elements + column * element;
+    transpose([&](std::size_t i) HWY_ATTR { return pass.real + i * pass.width + column; },
+              [&](std::size_t i) HWY_ATTR { return out + i * element; });
+    transpose([&](std::size_t i) HWY_ATTR { return pass.imaginary + i * pass.width + column; },
+              [&](std::size_t i) HWY_ATTR { return out + lanes + i * element; });
+  }
+}
+
+/// From places of a line, whose lanes are rows, to elements that follow each other, whose lanes are those
+/// places.
+HWY_ATTR HWY_INLINE void turn_columns(const float* line, const int* places, float* out) {
+  const std::size_t lanes = hn::Lanes(Lanes()), element = 2 * lanes;
+  for (const std::size_t part : {std::size_t{0}, lanes})
+    transpose([&](std::size_t i)
+                  HWY_ATTR { return line + static_cast<std::size_t>(places[i]) * element + part; },
+              [&](std::size_t i) HWY_ATTR { return out + i * element + part; });
+}
+
+/// And back.
+HWY_ATTR HWY_INLINE void turn_back(const float* elements, const int* places, float* line) {
+  const std::size_t lanes = hn::Lanes(Lanes()), element = 2 * lanes;
+  for (const std::size_t part : {std::size_t{0}, lanes})
+    transpose([&](std::size_t i) HWY_ATTR { return elements + i * element + part; },
+              [&](std::size_t i)
+                  HWY_ATTR { return line + static_cast<std::size_t>(places[i]) * element + part; });
 }
 
 }  // namespace petzval::HWY_NAMESPACE
