@@ -44,6 +44,19 @@ TEST(LargeFloats, KeepTheirValuesWhenTheirMemoryIsGivenBack) {
   EXPECT_EQ(many.all()[12345], 12345.0F);
 }
 
+TEST(LargeFloats, GiveUpSomeValuesAndKeepTheOthers) {
+  LargeFloats many(count, 1000), few(count);
+  for (LargeFloats* floats : {&many, &few}) {
+    std::iota(floats->all().begin(), floats->all().end(), 1.0F);
+    floats->give_up(1001, 500000);  // begins and ends within a page
+    EXPECT_EQ(floats->all()[1000], 1001.0F);
+    EXPECT_EQ(floats->all()[501001], 501002.0F);
+    EXPECT_EQ(floats->all()[count - 1], static_cast<float>(count));
+  }
+  EXPECT_EQ(few.all()[1001], 1002.0F);
+  EXPECT_EQ(std::count(many.all().begin() + 1001, many.all().begin() + 501001, 0.0F), 500000);
+}
+
 TEST(LargeFloats, AreCopiedAndMoved) {
   LargeFloats many(5000, 1000);
   many.all()[4999] = 7;

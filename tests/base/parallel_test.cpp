@@ -35,6 +35,53 @@ TEST(ParallelFor, HandsOnExceptions) {
                InputError);
 }
 
+TEST(ParallelStages, BeginAndEndInOrderAndKeepTheirSlots) {
+  constexpr std::size_t count = 100;
+  for (const std::size_t slots : {1U, 2U, 5U}) {
+    std::vector<int> busy(slots, 0);
+    std::vector<std::size_t> begun, worked(count, 0), ended;
+    std::atomic<std::size_t> at_once{0}, most{0};
+    parallel_stages(count, slots,
+                    {[&](std::size_t item, std::size_t slot) {
+                       begun.push_back(item);
+                       EXPECT_EQ(busy.at(slot)++, 0) << "the slot is another item's";
+                     },
+                     [&](std::size_t item, std::size_t slot) {
+                       const std::size_t now = ++at_once;
+                       for (std::size_t seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+                       }
+                       EXPECT_EQ(busy.at(slot), 1);
+                       parallel_for(10, [&](std::size_t) {});
+                       worked[item] = item + 1;
+                       --at_once;
+                     },
+                     [&](std::size_t item, std::size_t slot) {
+                       EXPECT_EQ(worked[item], item + 1);
+                       ended.push_back(item);
+                       --busy.at(slot);
+                     }});
+    ASSERT_EQ(begun.size(), count);
+    ASSERT_EQ(ended.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(begun[i], i);
+      EXPECT_EQ(ended[i], i);
+    }
+    EXPECT_LE(most, slots);
+  }
+  parallel_stages(0, 2, {[](auto...) { FAIL(); }, [](auto...) { FAIL(); }, [](auto...) { FAIL(); }});
+}
+
+TEST(ParallelStages, HandOnExceptionsOfAnyStage) {
+  for (int failing = 0; failing < 3; ++failing) {
+    const auto stage = [&](int number) {
+      return [=](std::size_t item, std::size_t) {
+        if (number == failing && item == 7) throw InputError("seven");
+      };
+    };
+    EXPECT_THROW(parallel_stages(20, 3, {stage(0), stage(1), stage(2)}), InputError) << failing;
+  }
+}
+
 TEST(ThreadLimit, HoldsWhileItLives) {
   const int before = thread_count();
   {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npy_file.h>
 
 #include "hostile.h"
 
@@ -46,6 +47,35 @@ TEST(Npy, DataStartAtAMultipleOf64) {
     write_npy(scratch.path("a.npy"), shape, std::vector<float>(count));
     EXPECT_EQ((read_whole_file(scratch.path("a.npy")).size() - 4 * count) % 64, 0u);
   }
+}
+
+// Kept in a file, whose room is given back while the pixels are written.
+TEST(Npy, AnImageMayBeGivenUpWhileItIsWritten) {
+  const test::Scratch scratch;
+  SpectralImage image(4099, 4111, {400, 450, 500, 550, 600, 650, 700, 750}, 5);
+  ASSERT_GT(image.values().size(), LargeFloats::most_in_memory);
+  image.provenance = "stays";
+  const auto value = [](std::size_t band, std::size_t pixel) {
+    return static_cast<float>((8 * pixel + band) % 16777213);  // whole numbers of a float, hardly ever twice
+  };
+  std::vector<float> plane(image.band_size());
+  for (std::size_t band = 0; band < 8; ++band) {
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = value(band, i);
+    image.store_band(static_cast<int>(band), plane);
+  }
+  write_npy(scratch.path("i.npy"), std::move(image));
+  EXPECT_EQ(image.provenance, "stays");
+  EXPECT_EQ(image.rows(), 4111);
+  const NpyFile file(scratch.path("i.npy"));
+  EXPECT_EQ(file.shape(), (std::vector<std::size_t>{4111, 4099, 8}));
+  std::vector<float> row(std::size_t{4099} * 8);
+  std::size_t wrong = 0;
+  for (std::size_t y = 0; y < 4111; ++y) {
+    file.read(y * row.size(), std::span(row));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (row[i] != value(i % 8, y * 4099 + i / 8)) ++wrong;
+  }
+  EXPECT_EQ(wrong, 0U);
 }
 
 TEST(Npy, AnImageIsRowsColumnsBands) {

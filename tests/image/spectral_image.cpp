@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace petzval {
 namespace {
@@ -34,6 +35,13 @@ TEST(SpectralImage, RefusesWhatIsNoImage) {
   EXPECT_THROW(SpectralImage(2, 2, {450}, inf), InputError);
   // Would be 2^64 bytes: refused before anything is allocated.
   EXPECT_THROW(SpectralImage(2147483647, 2147483647, {450}, 1), InputError);
+}
+
+TEST(SpectralImage, GivesUpNoRowsThatItHasNot) {
+  SpectralImage image(3, 4, {450, 550}, 6.25);
+  EXPECT_NO_THROW(image.give_up_rows(1, 3));
+  for (const auto& [first, count] : {std::pair{-1, 2}, {2, 3}, {0, -1}, {2147483647, 2}})
+    EXPECT_THROW(image.give_up_rows(first, count), InputError) << first << ", " << count;
 }
 
 TEST(SpectralImage, SaysWhereItIsNotFinite) {

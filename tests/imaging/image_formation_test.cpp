@@ -176,6 +176,50 @@ TEST(FormImage, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(bytes(1, BlurMethod::exact), bytes(2, BlurMethod::exact));
 }
 
+// Bands are formed side by side where there are threads for them.
+TEST(FormImage, SaysTheSameOfManyBandsForAnyNumberOfThreads) {
+  TableRecipe recipe = comatic_recipe(0.3);
+  recipe.wavelengths_nm = {500, 600};
+  const LensDataTable table = make_table(recipe);
+  Scene scene = wall(1, {500, 520, 540, 560, 600});
+  for (int band = 0; band < scene.bands(); ++band)
+    for (std::size_t i = 0; i < scene.band_size(); i += static_cast<std::size_t>(5 + band))
+      scene.band(band)[i] = static_cast<float>(3 + band);
+  struct Formed {
+    std::vector<float> values;
+    ImagingReport report;
+    double furthest = 0;
+  };
+  const auto formed = [&](int threads, BlurMethod method) {
+    const ThreadLimit limit(threads);
+    Formed result;
+    const auto progress = [&](double fraction, const std::string&) {
+      EXPECT_GE(fraction, result.furthest);
+      result.furthest = fraction;
+    };
+    const SpectralImage image =
+        form_image(scene, table, sensor, with_method(method, 8), progress, &result.report);
+    result.values.assign(image.values().begin(), image.values().end());
+    return result;
+  };
+  for (const BlurMethod method : {BlurMethod::product, BlurMethod::blended, BlurMethod::none}) {
+    const Formed one = formed(1, method);
+    EXPECT_NEAR(one.furthest, 1, 1e-12);
+    for (const int threads : {2, 4}) {
+      const Formed many = formed(threads, method);
+      EXPECT_EQ(many.values, one.values);
+      EXPECT_EQ(many.report.notes, one.report.notes);
+      EXPECT_EQ(many.report.margin_cells, one.report.margin_cells);
+      EXPECT_EQ(many.report.product.tile, one.report.product.tile);
+      EXPECT_EQ(many.report.product.estimated_error, one.report.product.estimated_error);
+      EXPECT_EQ(many.report.transform_size, one.report.transform_size);
+      EXPECT_EQ(many.report.brightest, one.report.brightest);
+      EXPECT_EQ(many.report.darkest, one.report.darkest);
+      EXPECT_NEAR(many.furthest, 1, 1e-12);
+    }
+  }
+}
+
 TEST(FormImage, TakesEachBandAtItsOwnWavelength) {
   TableRecipe recipe;
   recipe.wavelengths_nm = {500, 600};

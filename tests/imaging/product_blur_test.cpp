@@ -50,8 +50,8 @@ TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
        {SensorGeometry{96, 64, grid_um}, {77, 51, grid_um}, {5, 90, grid_um}, {1, 1, grid_um}}) {
     const CellPlane source = random_plane(grid);
     const CellPlane expected = blur_exact(source, psfs, 0);
-    for (const auto& [tile, nodes, transform] : {std::tuple{8, 2, 16},
-                                                 {3, 3, 16},
+    for (const auto& [tile, nodes, transform] : {std::tuple{8, 2, 32},
+                                                 {3, 3, 32},
                                                  {16, 2, 32},
                                                  {20, 4, 32},
                                                  {50, 2, 64},

@@ -269,6 +269,37 @@ TEST(PsfKernel, MixesFieldsAndWavelengths) {
     EXPECT_NEAR(kernel.weights[i], expected.weights[i], 3e-3 * peak);
 }
 
+TEST(PsfKernel, SaysItsReachBeforeItIsMade) {
+  TableRecipe recipe = comatic_recipe(0.3);
+  recipe.wavelengths_nm = {500, 600};
+  LensDataTable table = make_table(recipe);
+  table.psf[1].captured = 0.9;
+  table.psf[2].captured = 0.8;
+  const LightCentres centres(table);
+  for (const double wavelength_nm : {500.0, 530.0, 600.0})
+    for (const double cell_um : {1.0, 12.5}) {
+      const PsfField psfs(table, wavelength_nm, cell_um, PsfInterpolation::psf, centres);
+      const PsfReach reach = psf_reach(table, wavelength_nm, cell_um, centres);
+      EXPECT_GT(reach.radius, 0);
+      EXPECT_EQ(reach.radius, psfs.radius());
+      EXPECT_EQ(reach.least_captured, psfs.least_captured());
+    }
+  EXPECT_EQ(psf_reach(table, 500, 1.0).least_captured, 0.8);
+  EXPECT_EQ(psf_reach(table, 600, 1.0).least_captured, 0.9);
+  EXPECT_THROW(psf_reach(table, 499, 1.0), InputError);
+  EXPECT_THROW(psf_reach(table, 550, 1e-4), InputError);
+}
+
+// Kernels do not depend on whether what they share was made before.
+TEST(PsfKernel, IsTheSameWhenPrepared) {
+  const LensDataTable table = make_table(comatic_recipe(0.3));
+  const PsfField prepared(table, 550, 12.5), as_it_comes(table, 550, 12.5);
+  prepared.prepare({0, 0.1, 0.4, 0.4, 2});
+  for (const double height_mm : {0.1, 0.25, 0.4})
+    EXPECT_EQ(prepared.kernel_at(0.6 * height_mm, 0.8 * height_mm).weights,
+              as_it_comes.kernel_at(0.6 * height_mm, 0.8 * height_mm).weights);
+}
+
 TEST(PsfKernel, RefusesDamagedTablesAndForeignWavelengths) {
   LensDataTable table = make_table({});
   EXPECT_THROW(PsfField(table, 549.4, 3.0), InputError);

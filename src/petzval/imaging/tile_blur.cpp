@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/imaging/tile_blur.h>
 
 #include <algorithm>
@@ -181,6 +183,9 @@ TileTransform::TileTransform(int size)
     : size_(size),
       mirrored_(static_cast<std::size_t>(size)),
       kept_blocks_(static_cast<std::size_t>(size) / 2 / lane_count()) {
+  if (size < smallest || size > largest || (size & (size - 1)) != 0)
+    throw InputError(fmt::format("transforms of {0} x {0}: a power of two, {1} to {2}, is right", size,
+                                 smallest, largest));
   for (int length = size; length >= 4; length /= 4)
     for (int j = 0; j < length / 4; ++j)
       for (int power = 1; power <= 3; ++power) {

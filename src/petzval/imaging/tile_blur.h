@@ -25,7 +25,7 @@ std::size_t lane_count();
 class TileTransform {
  public:
   static constexpr int smallest = 32, largest = 256;
-  /// \param size  of a side: a power of two from `smallest` to `largest`.
+  /// \param size  of a side: a power of two from `smallest` to `largest`. \throws InputError for another.
   explicit TileTransform(int size);
   int size() const { return size_; }
   const float* twiddles() const { return twiddles_.data(); }
