@@ -241,9 +241,9 @@ double seconds_with(int threads, const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What a second thread is worth to a band of 4096 × 3072 cells, its kernels and its filtering, and to work
-/// of registers alone that shares nothing: time with one thread over that with two, medians over rounds that
-/// take one after the other.
+/// What a second thread is worth to a band of 4096 × 3072 cells, its kernels and its filtering, to an image
+/// of four such bands, and to work of registers alone that shares nothing: time with one thread over that
+/// with two, medians over rounds that take one after the other.
 void two_threads(benchmark::State& state) {
   const SensorGeometry frame{4096, 3072, 2};
   const LensDataTable table = wide_table({550}, 64, frame.pitch_um, frame.half_diagonal_mm());
@@ -255,7 +255,12 @@ void two_threads(benchmark::State& state) {
     });
   };
   constexpr int rounds = 9;
-  std::vector<double> kernels, filters, controls;
+  const std::vector<double> four_nm = {540, 547, 553, 560};
+  const LensDataTable table_of_four = wide_table({540, 560}, 64, frame.pitch_um, frame.half_diagonal_mm());
+  const Scene scene = checkerboard(four_nm, 1200, 900);
+  ImagingOptions options;
+  options.surround = Surround::extend;
+  std::vector<double> kernels, filters, images, controls;
   const auto plan = plan_product(PsfField(table, 550, frame.pitch_um), frame, {1e-3});
   if (!plan) return state.SkipWithError("no plan");
 #ifdef __GLIBC__
@@ -265,7 +270,7 @@ void two_threads(benchmark::State& state) {
 #endif
   for (auto _ : state)
     for (int round = 0; round < rounds; ++round) {
-      std::array<double, 3> made{}, filtered{}, control{};
+      std::array<double, 3> made{}, filtered{}, imaged{}, control{};
       for (const int threads : {1, 2}) {
         const auto at = static_cast<std::size_t>(threads);
         std::optional<PsfField> psfs;
@@ -276,14 +281,21 @@ void two_threads(benchmark::State& state) {
           psfs.emplace(table, 550, frame.pitch_um);
           blur.emplace(*psfs, frame, *plan);
         });
-        filtered[at] = seconds_with(threads, [&] { benchmark::DoNotOptimize(blur->blur(source, 0)); });
+        filtered[at] = seconds_with(threads, [&] {
+          for (int i = 0; i < 4; ++i) benchmark::DoNotOptimize(blur->blur(source, 0));
+        });
+        blur.reset();
+        imaged[at] = seconds_with(
+            threads, [&] { benchmark::DoNotOptimize(form_image(scene, table_of_four, frame, options)); });
       }
       kernels.push_back(made[1] / made[2]);
       filters.push_back(filtered[1] / filtered[2]);
+      images.push_back(imaged[1] / imaged[2]);
       controls.push_back(control[1] / control[2]);
     }
   state.counters["kernels"] = median(kernels);
   state.counters["filtering"] = median(filters);
+  state.counters["image"] = median(images);
   state.counters["control"] = median(controls);
 }
 BENCHMARK(two_threads)->Iterations(1)->Unit(benchmark::kMillisecond);

@@ -7,30 +7,65 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <utility>
 
 namespace petzval {
 
 namespace {
 
-/// Lets threads by one after the other, in the order of their tickets.
-class Turns {
+/// Uses what threads make in the order of its tickets, while they go on to make more: a fast thread does not
+/// wait for a slow one until a good deal has piled up.
+class InOrder {
  public:
-  void await(std::size_t ticket) const {
-    for (std::size_t now; (now = turn_.load()) < ticket;) turn_.wait(now);
-  }
-  void end(std::size_t ticket) {
-    turn_.compare_exchange_strong(ticket, ticket + 1);
-    turn_.notify_all();
+  using Made = AlignedVector<float>;
+  using Use = std::function<void(std::size_t ticket, const Made& made)>;
+  InOrder(std::size_t most_waiting, Use use) : most_waiting_(most_waiting), use_(std::move(use)) {}
+
+  /// \return  memory that has been used, or none.
+  Made hand_in(std::size_t ticket, Made made) {
+    std::unique_lock lock(mutex_);
+    waiting_.emplace(ticket, std::move(made));
+    if (!using_) use_ready(lock);
+    changed_.wait(lock, [&] { return abandoned_ || waiting_.size() <= most_waiting_; });
+    if (spare_.empty()) return {};
+    Made spare = std::move(spare_.back());
+    spare_.pop_back();
+    return spare;
   }
   /// Nobody waits any more.
   void abandon() {
-    turn_.store(std::numeric_limits<std::size_t>::max());
-    turn_.notify_all();
+    const std::lock_guard lock(mutex_);
+    abandoned_ = true;
+    changed_.notify_all();
   }
 
  private:
-  std::atomic<std::size_t> turn_{0};
+  void use_ready(std::unique_lock<std::mutex>& lock) {
+    using_ = true;
+    for (auto next = waiting_.find(turn_); next != waiting_.end(); next = waiting_.find(++turn_)) {
+      Made made = std::move(next->second);
+      waiting_.erase(next);
+      lock.unlock();
+      use_(turn_, made);
+      lock.lock();
+      spare_.push_back(std::move(made));
+      changed_.notify_all();
+    }
+    using_ = false;
+  }
+
+  const std::size_t most_waiting_;
+  const Use use_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::size_t, Made> waiting_;
+  std::vector<Made> spare_;
+  std::size_t turn_ = 0;
+  bool using_ = false, abandoned_ = false;
 };
 
 }  // namespace
@@ -188,32 +223,32 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   // Runs are blurred by whoever is free, but added to the result one after the other, so that sums are the
   // same for any number of threads.
   const std::vector<TileRun> all = runs();
+  const std::size_t floats = blurred_floats(transform_, mixture_of(0, 0));
+  constexpr std::size_t waiting_a_thread = 4;
+  const auto threads = std::min(all.size(), static_cast<std::size_t>(thread_count()));
+  InOrder sums(waiting_a_thread * threads, [&](std::size_t ticket, const AlignedVector<float>& blurred) {
+    const TileRun& run = all[ticket];
+    for (int tile = run.first; tile < run.end; ++tile)
+      add(blurred.data() + floats * static_cast<std::size_t>(tile - run.first), run.pair, tile, margin,
+          result);
+  });
   std::atomic<std::size_t> next{0};
-  Turns turns;
   const auto work = [&] {
     AlignedVector<float> workspace, blurred;
     for (std::size_t ticket; (ticket = next++) < all.size();) {
       const TileRun& run = all[ticket];
-      std::size_t floats = 0;
-      for (int tile = run.first; tile < run.end; ++tile) {
-        const TileMixture mixture = mixture_of(run.set, tile);
-        floats = blurred_floats(transform_, mixture);
-        blurred.resize(floats * static_cast<std::size_t>(run.end - run.first));
-        blur_tile(transform_, mixture, Light(*this, source, run.pair, tile), workspace,
-                  blurred.data() + floats * static_cast<std::size_t>(tile - run.first));
-      }
-      turns.await(ticket);
+      blurred.resize(floats * static_cast<std::size_t>(run.end - run.first));
       for (int tile = run.first; tile < run.end; ++tile)
-        add(blurred.data() + floats * static_cast<std::size_t>(tile - run.first), run.pair, tile, margin,
-            result);
-      turns.end(ticket);
+        blur_tile(transform_, mixture_of(run.set, tile), Light(*this, source, run.pair, tile), workspace,
+                  blurred.data() + floats * static_cast<std::size_t>(tile - run.first));
+      blurred = sums.hand_in(ticket, std::move(blurred));
     }
   };
-  parallel_for(std::min(all.size(), static_cast<std::size_t>(thread_count())), [&](std::size_t) {
+  parallel_for(threads, [&](std::size_t) {
     try {
       work();
     } catch (...) {
-      turns.abandon();  // lest others wait for ever
+      sums.abandon();  // lest others wait for ever
       throw;
     }
   });
