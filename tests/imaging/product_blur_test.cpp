@@ -3,6 +3,7 @@
 #include "imaging/synthetic_table.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/imaging/exact_blur.h>
@@ -193,6 +194,26 @@ TEST(ProductBlur, GivesTheSameBytesForAnyNumberOfThreads) {
     return blurred(psfs, source, 3, {12, 3, 32}).values;
   };
   EXPECT_EQ(with_threads(1), with_threads(2));
+}
+
+// From four lanes to sixteen, whichever this machine can: the layout of tiles and kernels follows their
+// number, the image must not.
+TEST(ProductBlur, IsTheSameOnEveryInstructionSet) {
+  const PsfField psfs(make_table(comatic_recipe(0.6)), 550, grid_um);
+  const CellPlane source = random_plane({131, 90, grid_um});
+  const ProductPlan plans[] = {{12, 3, 32}, {30, 2, 64}, {70, 4, 128}, {100, 2, 256}, {12, 3, 0, true}};
+  std::vector<CellPlane> expected;
+  for (const ProductPlan& plan : plans) expected.push_back(blurred(psfs, source, 3, plan));
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for (std::size_t i = 0; i < std::size(plans); ++i)
+      EXPECT_LT(relative_l2(blurred(psfs, source, 3, plans[i]), expected[i]), 5e-7)
+          << hwy::TargetName(target) << ", " << lane_count() << " lanes, transforms of "
+          << plans[i].transform;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 TEST(ProductBlur, LeavesWhatIsTooLargeForItsTransformsToSections) {

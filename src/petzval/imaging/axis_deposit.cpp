@@ -68,7 +68,7 @@ std::vector<float> gathered(const float* lines, std::size_t count, const std::ve
 
 }  // namespace
 
-void deposit_along_axes(const SampleSquare& psf, const SampleLattice2& lattice, Kernel& kernel) {
+void deposit_along_axes(const SampleSquare& psf, const PlacedLattice& lattice, Kernel& kernel) {
   const auto cells = static_cast<std::size_t>(kernel.size());
   const double start = kernel.radius + 0.5;
   const auto shares = [&](std::size_t axis, double step) {

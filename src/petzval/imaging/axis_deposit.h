@@ -10,6 +10,6 @@ namespace petzval {
 /// Adds weight · samples to a kernel, integrated over its cells: between samples light is linear; samples
 /// coarser than half a cell are squares. One axis after the other. What falls outside the kernel is left out.
 /// \param lattice  rows of samples along rows of the kernel, from the middle of its middle cell.
-void deposit_along_axes(const SampleSquare& psf, const SampleLattice2& lattice, Kernel& kernel);
+void deposit_along_axes(const SampleSquare& psf, const PlacedLattice& lattice, Kernel& kernel);
 
 }  // namespace petzval

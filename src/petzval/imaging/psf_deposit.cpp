@@ -204,8 +204,8 @@ const MergedPsf& largest(std::span<const WeightedPsf> psfs) {
 }
 
 /// How the lattice of a PSF, stretched, lies on cells. The origin of the PSF is that of the places.
-SampleLattice2 lattice_on_cells(const MergedPsf& psf, const Placement& placement, const Vector& centre_um,
-                                const Vector& direction, double cell_um) {
+PlacedLattice lattice_on_cells(const MergedPsf& psf, const Placement& placement, const Vector& centre_um,
+                               const Vector& direction, double cell_um) {
   // Picture columns run along −x', rows along +y'; e_t = direction, e_s = (direction_y, −direction_x).
   const Vector e_s{-direction[1], -direction[0]}, e_t{-direction[0], direction[1]};
   const Vector& stretch = placement.stretch;
@@ -220,7 +220,7 @@ SampleLattice2 lattice_on_cells(const MergedPsf& psf, const Placement& placement
 }
 
 /// \param lattice  that of the largest, from the middle of the kernel.
-void scatter(std::span<const WeightedPsf> psfs, const SampleLattice2& lattice, Kernel& kernel) {
+void scatter(std::span<const WeightedPsf> psfs, const PlacedLattice& lattice, Kernel& kernel) {
   // Blobs wider than a cell are cut into parts that are not; into as many at any angle, lest kernels jump
   // where one more is needed.
   const auto length = [](const Vector& step) { return std::hypot(step[0], step[1]); };
@@ -235,7 +235,7 @@ void scatter(std::span<const WeightedPsf> psfs, const SampleLattice2& lattice, K
   for (int a = 0; a < parts; ++a)
     for (int b = 0; b < parts; ++b) {
       const double i = (a + 0.5) / parts - 0.5, j = (b + 0.5) / parts - 0.5;
-      SampleLattice2 moved = lattice;
+      PlacedLattice moved = lattice;
       for (std::size_t axis = 0; axis < 2; ++axis)
         moved.first[axis] += radius + 1.5 + i * lattice.per_row[axis] + j * lattice.per_column[axis];
       scatter_samples(squares, moved, canvas);
@@ -251,7 +251,7 @@ void deposit(const MergedPsf& psf, const Placement& placement, const std::array<
              double cell_um, Kernel& kernel) {
   const Moments& moments = psf.moments();
   const Vector centre_um{moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()};
-  const SampleLattice2 lattice = lattice_on_cells(psf, placement, centre_um, direction, cell_um);
+  const PlacedLattice lattice = lattice_on_cells(psf, placement, centre_um, direction, cell_um);
   const SampleSquare square{psf.row(0), static_cast<std::size_t>(psf.size()),
                             static_cast<float>(placement.weight)};
   if (direction[0] == 0)

@@ -134,7 +134,7 @@ HWY_ATTR HWY_INLINE void add_four(const float* parts, float* cell) {
     hn::Store(hn::Add(hn::Load(d, cell + i), hn::Load(d, parts + i)), d, cell + i);
 }
 
-HWY_ATTR void scatter(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas) {
+HWY_ATTR void scatter(std::span<const SampleSquare> squares, const PlacedLattice& lattice, Canvas& canvas) {
   const std::size_t lanes = hn::Lanes(Lanes());
   std::size_t size = 0;
   for (const SampleSquare& square : squares) size = std::max(size, square.size);
@@ -183,7 +183,7 @@ namespace petzval {
 HWY_EXPORT(scatter);
 HWY_EXPORT(add_scaled);
 
-void scatter_samples(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas) {
+void scatter_samples(std::span<const SampleSquare> squares, const PlacedLattice& lattice, Canvas& canvas) {
   HWY_DYNAMIC_DISPATCH(scatter)(squares, lattice, canvas);
 }
 

@@ -18,7 +18,7 @@ struct SampleSquare {
 };
 
 /// How samples lie on the cells, which have sides of 1: {column, row}.
-struct SampleLattice2 {
+struct PlacedLattice {
   std::array<double, 2> first;                ///< the first sample of the first row
   std::array<double, 2> per_row, per_column;  ///< from sample to sample
 };
@@ -56,7 +56,7 @@ inline double blob_radius(double step) {
 /// a and b the steps along rows and columns as far as they go along that axis: for square lattices the same
 /// at any angle. At most half a cell: samples farther apart are not smooth. What falls beside the canvas is
 /// left out.
-void scatter_samples(std::span<const SampleSquare> squares, const SampleLattice2& lattice, Canvas& canvas);
+void scatter_samples(std::span<const SampleSquare> squares, const PlacedLattice& lattice, Canvas& canvas);
 
 /// sums[i] += weight · row[i], i < count.
 void add_scaled(const float* row, float weight, std::size_t count, float* sums);
