@@ -10,7 +10,7 @@
 
 namespace petzval {
 
-/// The floats of a vector of this machine, 4 to 16: so many rows or columns of a tile are transformed at
+/// The floats of a vector of this machine, 1 to 16: so many rows or columns of a tile are transformed at
 /// once.
 std::size_t lane_count();
 
