@@ -40,7 +40,7 @@ TEST(ChildProcess, IsStoppedWhenItFindsNoEnd) {
   limits.processor_s = 1;
   EXPECT_EQ(run_in_child(
                 [] {
-                  volatile int turns = 0;
+                  volatile unsigned turns = 0;
                   for (;;) turns = turns + 1;
                 },
                 limits),

@@ -60,7 +60,7 @@ void SpectralImage::store_band(int index, std::span<const float> plane) {
 
 void SpectralImage::give_up_rows(int first, int count) {
   if (first < 0 || count < 0 || first > rows_ - count)
-    throw InputError(fmt::format("rows {} to {} of an image of {} rows", first, first + count, rows_));
+    throw InputError(fmt::format("{} rows from row {} on of an image of {} rows", count, first, rows_));
   const auto columns = static_cast<std::size_t>(columns_);
   for (std::size_t index = 0; index < wavelengths_nm_.size(); ++index)
     values_.give_up(index * band_size() + static_cast<std::size_t>(first) * columns,
