@@ -36,7 +36,8 @@ class Large(ProgramTest):
     def facts(self, name, *options):
         taken, text = peak_mb("scene", "info", name, "--scene-angle", 20, "--scene-quantity", "radiance", "--threads", 2, *options,
                               cwd=self.folder, env={**os.environ, "TMPDIR": str(self.folder)})
-        self.assertLess(taken, BOUND_MB)
+        if "PETZVAL_SANITIZED" not in os.environ:
+            self.assertLess(taken, BOUND_MB)
         self.assertGreater(HELD_MB, 2 * BOUND_MB)
         return [line for line in text.splitlines() if "luminance" in line or "radiance" in line]
 

@@ -6,7 +6,12 @@ if(TARGET petzval_program)
     get_filename_component(name ${script} NAME_WE)
     string(REPLACE "test_" "cli." name ${name})
     add_test(NAME ${name} COMMAND Python3::Interpreter ${script})
+    # AddressSanitizer keeps memory of its own beside the program's: bounds on memory hold without it.
+    set(sanitized "")
+    if(CMAKE_CXX_FLAGS MATCHES "sanitize=[a-z,-]*address")
+      set(sanitized "PETZVAL_SANITIZED=1;")
+    endif()
     set_tests_properties(${name} PROPERTIES ENVIRONMENT
-      "PYTHONDONTWRITEBYTECODE=1;PETZVAL_PROGRAM=$<TARGET_FILE:petzval_program>;PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
+      "${sanitized}PYTHONDONTWRITEBYTECODE=1;PETZVAL_PROGRAM=$<TARGET_FILE:petzval_program>;PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
   endforeach()
 endif()
