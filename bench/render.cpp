@@ -15,6 +15,7 @@
 #include <petzval/render/renderer.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 namespace {
@@ -122,8 +123,9 @@ BENCHMARK_CAPTURE(construct_lens_camera, dispersing, "double-gauss")->Unit(bench
 /// A wavy sheet of two million triangles in a binary PLY file: read, and ready to be met by rays.
 void load_two_million_triangles(benchmark::State& state) {
   constexpr int side = 1000;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-bench-render";
-  std::filesystem::create_directories(folder);
+  std::string pattern = (std::filesystem::temp_directory_path() / "petzval-bench-XXXXXX").string();
+  if (!mkdtemp(pattern.data())) return state.SkipWithError("no folder for the sheet can be made");
+  const std::filesystem::path folder = pattern;
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds text that has no place in the repository: source files without their licence line, folders of one
-machine, and marks of unfinished work. Reads the files that git knows, or, without git, the whole tree."""
+machine, temporary files that two processes could share, and marks of unfinished work. Reads the files that git
+knows, or, without git, the whole tree."""
 
 import pathlib
 import re
@@ -16,6 +17,9 @@ FORBIDDEN = [
     (re.compile(r"(^|[\s\"'(=:])/wor[k]/"), "names a folder of one machine"),
     (re.compile(r"\b(TOD[O]|FIXM[E]|XX[X]|HAC[K])\b"), "marks unfinished work"),
     (re.compile(r"^\s*#\s*if\s+[0]\s*$"), "switches code off"),
+    # Tests run side by side: a fixed name in the shared folder is one that they share. mkstemp() and mkdtemp()
+    # take a pattern that ends in six of these letters.
+    (re.compile(r"^(?!.*X{6}).*(temp_directory_pat[h]\(|\bTempDi[r]\()"), "names a temporary file that others may name too"),
 ]
 
 

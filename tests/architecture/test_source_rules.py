@@ -29,6 +29,12 @@ class SourceRules(unittest.TestCase):
             self.assertEqual(self.faults("a.md", f"see {folder}\n"), [(1, "names a folder of one machine")], folder)
         self.assertEqual(self.faults("a.md", "homework/1 and root/2; net" + "work/3\n"), [])
 
+    def test_temporary_files_of_two_tests(self):
+        for folder in ("std::filesystem::temp_directory" + "_path()", "testing::Temp" + "Dir()"):
+            self.assertEqual(self.faults("a.cpp", LICENCE + folder + ' / "a.png"\n'),
+                             [(2, "names a temporary file that others may name too")], folder)
+            self.assertEqual(self.faults("a.h", LICENCE + folder + ' / "petzval-XXXXXX"\n'), [], folder)
+
     def test_unfinished_work(self):
         for mark in ("TO" + "DO", "FIX" + "ME", "#if " + "0"):
             self.assertEqual(len(self.faults("a.cpp", LICENCE + mark + "\n")), 1, mark)

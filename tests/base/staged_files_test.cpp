@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "scratch.h"
+
 namespace petzval {
 namespace {
 
@@ -14,17 +16,13 @@ namespace fs = std::filesystem;
 
 class StagedFilesTest : public testing::Test {
  protected:
-  StagedFilesTest() {
-    std::string pattern = (fs::temp_directory_path() / "petzval-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-    fs::create_directory(folder / "other");
-  }
-  ~StagedFilesTest() override { fs::remove_all(folder); }
+  StagedFilesTest() { fs::create_directory(folder / "other"); }
   static std::ptrdiff_t entries(const fs::path& of) {
     return std::distance(fs::directory_iterator(of), fs::directory_iterator());
   }
 
-  fs::path folder;
+  const test::Scratch scratch;
+  const fs::path folder = scratch.folder();
 };
 
 TEST_F(StagedFilesTest, AppearTogether) {

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
+
 namespace petzval {
 namespace {
 
@@ -16,16 +18,12 @@ namespace fs = std::filesystem;
 
 class WholeFileTest : public testing::Test {
  protected:
-  WholeFileTest() {
-    std::string pattern = (fs::temp_directory_path() / "petzval-XXXXXX").string();
-    folder = mkdtemp(pattern.data());
-  }
-  ~WholeFileTest() override { fs::remove_all(folder); }
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
 
-  fs::path folder;
+  const test::Scratch scratch;
+  const fs::path folder = scratch.folder();
 };
 
 TEST_F(WholeFileTest, AppearsOnlyWhenCommitted) {

@@ -9,8 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <thread>
+
+#include "scratch.h"
 
 namespace petzval {
 namespace {
@@ -118,8 +119,8 @@ TEST(BundledCatalogue, EveryGlassHasAnIndexThroughoutItsRange) {
 
 TEST(BundledCatalogue, HoldsWhatItPromises) {
   EXPECT_EQ(bundled().size(), 1636u);
-  EXPECT_EQ(bundled().catalogues(), (std::vector<std::string>{"CDGM", "HIKARI", "HOYA", "INFRARED", "MISC", "OHARA",
-                                                              "POLYMERS", "SCHOTT", "SUMITA"}));
+  EXPECT_EQ(bundled().catalogues(), (std::vector<std::string>{"CDGM", "HIKARI", "HOYA", "INFRARED", "MISC",
+                                                              "OHARA", "POLYMERS", "SCHOTT", "SUMITA"}));
   const std::vector<std::string> names = bundled().full_names();
   EXPECT_EQ(names.size(), bundled().size());
   const auto count = [&](const std::string& catalogue) {
@@ -198,9 +199,8 @@ TEST(BundledCatalogue, PolymersGoBySeveralNames) {
 
 class OpenedCatalogue : public ::testing::Test {
  protected:
-  OpenedCatalogue() { write_whole_file(path_, testing::small_catalogue()); }
-  ~OpenedCatalogue() override { std::filesystem::remove(path_); }
-  std::string path_ = ::testing::TempDir() + "petzval_small_catalogue.pgc";
+  const test::Scratch scratch_;
+  const std::string path_ = scratch_.with("small.pgc", testing::small_catalogue());
 };
 
 TEST_F(OpenedCatalogue, TakesABareNameWhereTwoMakersAgree) {
@@ -232,8 +232,9 @@ TEST_F(OpenedCatalogue, OfAnEmptyFileKnowsNoGlass) {
 }
 
 TEST(GlassCatalogue, MissingFileIsAnInputError) {
-  EXPECT_THROW(GlassCatalogue::open(::testing::TempDir() + "no-such-catalogue.pgc"), InputError);
-  EXPECT_THROW(GlassCatalogue::open(::testing::TempDir()), InputError) << "a folder";
+  const test::Scratch scratch;
+  EXPECT_THROW(GlassCatalogue::open(scratch.path("no-such-catalogue.pgc")), InputError);
+  EXPECT_THROW(GlassCatalogue::open(scratch.folder().string()), InputError) << "a folder";
 }
 
 }  // namespace

@@ -13,6 +13,8 @@
 #include <fstream>
 #include <functional>
 
+#include "scratch.h"
+
 namespace petzval {
 namespace {
 
@@ -309,8 +311,9 @@ TEST(OwnGlasses, AreFoundBeforeTheBundledOnes) {
 }
 
 TEST(OwnGlasses, FilesAndFolders) {
-  const auto folder = std::filesystem::temp_directory_path() / "petzval-own-glasses";
-  std::filesystem::create_directories(folder);
+  const test::Scratch scratch;
+  const std::filesystem::path folder = scratch.folder() / "petzval-own-glasses";
+  std::filesystem::create_directory(folder);
   std::ofstream(folder / "mine.agf") << agf;
   std::ofstream(folder / "X 1.yml") << yaml;
   std::ofstream(folder / "notes.txt") << "nothing";
@@ -322,7 +325,6 @@ TEST(OwnGlasses, FilesAndFolders) {
   expect_mentions(error_of([&] { read_glass_files((folder / "notes.txt").string()); }),
                   {"notes.txt", ".agf"});
   expect_mentions(error_of([] { read_glass_files("/no/such/file.agf"); }), {"/no/such/file.agf"});
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

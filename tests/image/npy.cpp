@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/npy_file.h>
 
 #include "hostile.h"
+#include "python_program.h"
 
 namespace petzval {
 namespace {

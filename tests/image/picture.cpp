@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/colour/colour_map.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/picture.h>

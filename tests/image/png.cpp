@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/image/formats/png.h>
 #include <sys/resource.h>
 
@@ -9,6 +10,7 @@
 #include <stdexcept>
 
 #include "hostile.h"
+#include "python_program.h"
 
 namespace petzval {
 namespace {

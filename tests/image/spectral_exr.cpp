@@ -10,6 +10,7 @@
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <sys/resource.h>
 
 #include <cmath>

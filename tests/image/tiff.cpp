@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/image/formats/tiff.h>
 #include <tiffio.h>
 

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "mosaic_samples.h"
+#include "scratch.h"
 
 namespace petzval {
 namespace {
@@ -210,21 +211,22 @@ TEST(IccProfile, HasThePublishedColorants) {
 
 TEST(IccProfile, ExiftoolReadsIt) {
   if (std::system("exiftool -ver >/dev/null 2>&1") != 0) GTEST_SKIP() << "exiftool is not installed";
-  const std::string folder = ::testing::TempDir() + "petzval-icc-";
+  const test::Scratch scratch;
   Planes picture{2, 2, {{0, 0.5f, 1, 2}, {0, 0.5f, 1, 2}, {0, 0.5f, 1, 2}}};
   for (const char* name : {"a.png", "a.tif"}) {
-    write_display_picture(folder + name, picture, DisplaySpace::display_p3, 8, "test");
+    write_display_picture(scratch.path(name), picture, DisplaySpace::display_p3, 8, "test");
     const std::string command =
         "exiftool -s3 -ICC_Profile:ProfileDescription -ICC_Profile:MediaWhitePoint -validate -warning '" +
-        folder + name + "' > '" + folder + "said'";
+        scratch.path(name) + "' > '" + scratch.path("said") + "'";
     EXPECT_EQ(std::system(command.c_str()), 0);
-    EXPECT_EQ(read_whole_file(folder + "said"), "Display P3\n0.9642 1 0.82491\nOK\n") << name;
+    EXPECT_EQ(read_whole_file(scratch.path("said")), "Display P3\n0.9642 1 0.82491\nOK\n") << name;
   }
 }
 
 TEST(DisplayPicture, CodesAreThoseOfTheCurve) {
   // Against the curve itself, for every 16-bit code: within one code of rounding.
-  const std::string path = ::testing::TempDir() + "petzval-codes.tif";
+  const test::Scratch scratch;
+  const std::string path = scratch.path("codes.tif");
   Planes ramp{1024, 64, {{}}};
   for (int i = 0; i < 65536; ++i) ramp.values[0].push_back(static_cast<float>(srgb_decoded(i / 65535.0)));
   write_display_picture(path, ramp, DisplaySpace::srgb, 16, "");

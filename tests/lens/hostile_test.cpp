@@ -5,6 +5,7 @@
 #include "scratch_file.h"
 
 #include <petzval/base/text_lines.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/native.h>

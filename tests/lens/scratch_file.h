@@ -2,36 +2,25 @@
 // Lens files that live as long as a test.
 #pragma once
 
-#include <petzval/base/whole_file.h>
 #include <petzval/lens/lens_file.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
+#include "scratch.h"
+
 namespace petzval::testing {
 
+/// A file in a folder of its own. Without contents there is only its path.
 class ScratchFile {
  public:
-  explicit ScratchFile(const std::string& name, std::string_view contents = {})
-      : folder_(std::filesystem::temp_directory_path() / ("petzval-lens-test-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
-    path_ = (folder_ / name).string();
-    // Not write_whole_file(): it waits for the disk.
-    if (!contents.empty())
-      std::ofstream(path_, std::ios::binary)
-          .write(contents.data(), static_cast<std::streamsize>(contents.size()));
+  explicit ScratchFile(const std::string& name, std::string_view contents = {}) : path_(scratch_.path(name)) {
+    if (!contents.empty()) scratch_.with(name, contents);
   }
-  ~ScratchFile() { std::filesystem::remove_all(folder_); }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-
   const std::string& path() const { return path_; }
 
  private:
-  std::filesystem::path folder_;
+  test::Scratch scratch_;
   std::string path_;
 };
 

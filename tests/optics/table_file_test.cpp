@@ -18,24 +18,19 @@
 #include <functional>
 #include <thread>
 
+#include "scratch.h"
+
 namespace petzval {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::analytic_table;
 
-/// A folder of its own, removed afterwards.
 class TableFileTest : public ::testing::Test {
  protected:
-  TableFileTest() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("petzval-table-" + std::to_string(getpid()) + "-" + info->name());
-    fs::create_directories(folder_);
-  }
-  ~TableFileTest() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return scratch_.path(name); }
 
-  fs::path folder_;
+  const test::Scratch scratch_;
 };
 
 /// What read_table says against a file; empty if it takes it.
@@ -135,12 +130,12 @@ TEST_F(TableFileTest, LeavesNothingBehindOnAFullDisk) {
   EXPECT_THROW(write_table(analytic_table(), path("t.h5")), Failure);
   setrlimit(RLIMIT_FSIZE, &old);
   sigaction(SIGXFSZ, &before, nullptr);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(scratch_.is_empty());
 }
 
 TEST_F(TableFileTest, RefusesWhatIsNoFile) {
   EXPECT_NE(complaint(path("absent.h5")).find("cannot be read"), std::string::npos);
-  EXPECT_NE(complaint(folder_.string()).find("is a folder"), std::string::npos);
+  EXPECT_NE(complaint(scratch_.folder().string()).find("is a folder"), std::string::npos);
   write_whole_file(path("empty.h5"), "");
   EXPECT_NE(complaint(path("empty.h5")).find("not an HDF5 file"), std::string::npos);
   write_whole_file(path("text.h5"), "radius 12\n");

@@ -71,7 +71,8 @@ TEST(GltfRefusals, RefusesDamagedBinaries) {
 }
 
 TEST(GltfRefusals, ReadsNoFilesFromElsewhere) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "gltf_folder";
+  const test::Scratch scratch;
+  const std::filesystem::path folder = scratch.folder() / "gltf_folder";
   std::filesystem::create_directories(folder / "in");
   GltfText gltf = wall(0.5);
   std::ofstream(folder / "part.bin", std::ios::binary) << gltf.bytes;

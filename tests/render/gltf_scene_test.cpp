@@ -55,7 +55,8 @@ MakeNamedMaterial "lamp" "string type" "conductor" "rgb reflectance" [ 1 1 1 ] "
 
 TEST(GltfScene, IsThePictureThatPbrtMakesOfIt) {
   // The texture of the pbrt scene has the factor in its numbers: blue at half its light.
-  const std::string path = testing::TempDir() + "gltf_tiles.png";
+  const test::Scratch scratch;
+  const std::string path = scratch.path("tiles.png");
   PngImage tiles;
   tiles.columns = 2, tiles.rows = 2, tiles.channels = 3, tiles.bits = 16,
   tiles.transfer = PngTransfer::linear;

@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "scene_text.h"
+#include "scratch.h"
 
 namespace petzval::render {
 
@@ -36,7 +37,8 @@ inline void expect_refused(const std::string& message, const std::string& place,
 }
 
 inline std::string png_of(int columns, int rows, int channels, std::vector<std::uint16_t> samples) {
-  const std::string path = testing::TempDir() + "gltf_texture.png";
+  const test::Scratch scratch;
+  const std::string path = scratch.path("texture.png");
   PngImage image;
   image.columns = columns, image.rows = rows, image.channels = channels;
   image.samples = std::move(samples);

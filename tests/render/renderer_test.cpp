@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "scene_text.h"
+#include "scratch.h"
 
 namespace petzval::render {
 namespace {
@@ -67,8 +68,8 @@ TEST(Renderer, GivesTheSameBytesOnAnyNumberOfThreads) {
 
 TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   const SmallPicture small;
-  const std::string path = (std::filesystem::temp_directory_path() / "petzval-checkpoint-test").string();
-  std::filesystem::remove(path);
+  const test::Scratch scratch;
+  const std::string path = scratch.path("checkpoint");
   RenderOptions options;
   options.checkpoint = path;
   options.fingerprint = "this picture";
@@ -95,7 +96,6 @@ TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   EXPECT_THROW(small.render(options), InputError);
   std::ofstream(path) << "something else";
   EXPECT_THROW(small.render(options), InputError);
-  std::filesystem::remove(path);
 }
 
 std::vector<double> summed_over_bands(const Rendering& rendering) {
@@ -150,14 +150,13 @@ TEST(Renderer, EndsAtTheSameNoiseOnAnyThreadsAndAfterAnInterruption) {
     EXPECT_EQ(values(again), values(whole));
     EXPECT_EQ(again.noise, whole.noise);
   }
-  const std::string path = (std::filesystem::temp_directory_path() / "petzval-noise-test").string();
-  std::filesystem::remove(path);
+  const test::Scratch scratch;
+  const std::string path = scratch.path("checkpoint");
   options.checkpoint = path;
   options.after_pass = [](int done, int) { return done < 3; };
   EXPECT_FALSE(small.render_with(options, 2000).complete);
   options.after_pass = nullptr;
   EXPECT_EQ(values(small.render_with(options, 2000)), values(whole));
-  std::filesystem::remove(path);
   // No more than is allowed, in whole pairs of passes: 2 groups × 4 samples × 2.
   options.checkpoint.clear();
   options.noise = 1e-6;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "scene_text.h"
+#include "scratch.h"
 
 namespace petzval::render {
 namespace {
@@ -97,8 +98,8 @@ TEST(SceneReader, RefusesMeshesThatMakeNoSense) {
 
 /// What other files hold is told with their name, and where the scene names them.
 TEST(SceneReader, TellsWhereFilesAreNamedThatCannotBeUsed) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-scene-files-test";
-  std::filesystem::create_directories(folder);
+  const test::Scratch scratch;
+  const std::filesystem::path& folder = scratch.folder();
   std::ofstream(folder / "nan.ply")
       << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
          "y\nproperty float z\nelement face 1\nproperty list uchar int "
@@ -131,12 +132,11 @@ TEST(SceneReader, TellsWhereFilesAreNamedThatCannotBeUsed) {
   const std::string p = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] ";
   expect_refused(refused(p + "\"normal N\" [ 0 0 1 0 nan 1 0 0 1 ]"), scene + ":2:55: ", "finite");
   expect_refused(refused(p + "\"point2 uv\" [ 0 0 1 inf 0 1 ]"), scene + ":2:55: ", "finite");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "petzval-include-test";
-  std::filesystem::create_directories(folder);
+  const test::Scratch scratch;
+  const std::filesystem::path& folder = scratch.folder();
   std::ofstream(folder / "a.pbrt") << "WorldBegin\nInclude \"b.pbrt\"\n";
   std::ofstream(folder / "b.pbrt") << "\n  Include \"a.pbrt\"\n";
   try {
@@ -147,7 +147,6 @@ TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
     EXPECT_NE(std::string(error.what()).find("b.pbrt:2:3: "), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("includes itself"), std::string::npos) << error.what();
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST(SceneReader, ListsEverythingThatIsNotSupported) {

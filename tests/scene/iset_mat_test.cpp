@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "image/scratch.h"
 #include "iset_fixture.h"
+#include "scratch.h"
 
 namespace petzval {
 namespace {

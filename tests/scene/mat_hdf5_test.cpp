@@ -3,6 +3,7 @@
 // out, made with h5py, are in cli/test_mat_hdf5.py.)
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/scene/formats/hdf5_handle.h>
 #include <petzval/scene/formats/iset_mat.h>
 

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "image/scratch.h"
+#include "scratch.h"
 
 namespace petzval {
 namespace {

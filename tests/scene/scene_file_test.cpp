@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/scene/formats/scene_exr.h>
 #include <petzval/scene/scene_file.h>
@@ -116,7 +117,9 @@ TEST(SceneExr, IrradianceIsNoScene) {
   exr.kind = SpectralExr::Kind::emissive;
   exr.units = spectral_irradiance_units;
   write_spectral_exr(scratch.path("sensor.exr"), exr);
-  EXPECT_TRUE(says(refusal(scratch.path("sensor.exr")), "radiance"));
+  SceneOptions options;
+  options.horizontal_angle_deg = 20;
+  EXPECT_TRUE(says(refusal(scratch.path("sensor.exr"), options), " (irradiance); a scene is radiance"));
 }
 
 TEST(SceneExr, ReflectancesNeedLight) {

@@ -13,22 +13,17 @@
 #include <memory>
 
 #include "flat_sensor.h"
+#include "scratch.h"
 
 namespace petzval {
 namespace {
 
 class Dng : public ::testing::Test {
  protected:
-  Dng()
-      : folder_(::testing::TempDir() + "petzval-dng-" +
-                ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Dng() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  std::string path(const std::string& name) const { return scratch_.path(name); }
 
  private:
-  std::string folder_;
+  const test::Scratch scratch_;
 };
 
 /// 60 x 44 random samples of a Bayer sensor with all facts of a camera.

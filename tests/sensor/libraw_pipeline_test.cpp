@@ -14,9 +14,10 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "scratch.h"
 
 namespace petzval {
 namespace {
@@ -83,10 +84,10 @@ TEST(LibRawPipeline, BringsColourCheckerBack) {
     RawImage raw = capture(current, sensor, metered_exposure_s(current, saturation, {}), {});
     raw.calibrations = standard_calibrations(sensor);
     raw.as_shot_neutral = neutral_of(sensor, light);
-    const std::string path = ::testing::TempDir() + "petzval-libraw-" + name + ".dng";
+    const test::Scratch scratch;
+    const std::string path = scratch.path("raw.dng");
     write_dng(path, raw);
     const std::vector<std::uint16_t> picture = developed_by_libraw(path);
-    std::filesystem::remove(path);
 
     // The exposure is free: the greys give it.
     std::vector<Xyz> seen, wanted;

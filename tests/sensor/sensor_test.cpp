@@ -6,18 +6,15 @@
 #include <petzval/sensor/sensor_reader.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+
+#include "scratch.h"
 
 namespace petzval {
 namespace {
 
 class SensorFile : public ::testing::Test {
  protected:
-  std::string write(const std::string& text) {
-    std::ofstream(path_) << text;
-    return path_;
-  }
+  std::string write(const std::string& text) { return scratch_.with("sensor.json", text); }
   std::string message_of(const std::string& text) {
     try {
       read_sensor(write(text));
@@ -26,11 +23,9 @@ class SensorFile : public ::testing::Test {
     }
     return "no error";
   }
-  void TearDown() override { std::filesystem::remove(path_); }
 
  private:
-  std::string path_ = ::testing::TempDir() + "petzval_sensor_" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+  const test::Scratch scratch_;
 };
 
 bool contains(const std::string& text, const std::string& part) {
