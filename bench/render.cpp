@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/scratch_folder.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/first_order.h>
@@ -15,7 +16,6 @@
 #include <petzval/render/renderer.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 namespace {
@@ -123,9 +123,8 @@ BENCHMARK_CAPTURE(construct_lens_camera, dispersing, "double-gauss")->Unit(bench
 /// A wavy sheet of two million triangles in a binary PLY file: read, and ready to be met by rays.
 void load_two_million_triangles(benchmark::State& state) {
   constexpr int side = 1000;
-  std::string pattern = (std::filesystem::temp_directory_path() / "petzval-bench-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) return state.SkipWithError("no folder for the sheet can be made");
-  const std::filesystem::path folder = pattern;
+  const ScratchFolder scratch;
+  const std::filesystem::path folder = scratch.path();
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
@@ -150,7 +149,6 @@ void load_two_million_triangles(benchmark::State& state) {
                                 (folder / "scene.pbrt").string(), unsupported);
     benchmark::DoNotOptimize(build_world(description, WavelengthGroups({550}), {}, unsupported));
   }
-  std::filesystem::remove_all(folder);
 }
 BENCHMARK(load_two_million_triangles)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 

@@ -26,10 +26,8 @@ CubeOptions answers_for(const SpectralCube& cube) {
   if (cube.quantity == SceneQuantity::temperature) options.wavelengths_nm = {9000, 11000};
   options.thermal.temperature_k = 300;
   if (!cube.horizontal_angle_deg) options.horizontal_angle_deg = 20;
-  const std::size_t bands = cube.values.size() / cube.band_size();
   if (cube.wavelengths_nm.empty() && cube.quantity != SceneQuantity::temperature)
-    for (std::size_t band = 0; band < bands; ++band)
-      options.file_bands_nm.push_back(400 + static_cast<double>(band));
+    for (int band = 0; band < cube.bands; ++band) options.file_bands_nm.push_back(400.0 + band);
   options.negative_is_zero = true;
   return options;
 }

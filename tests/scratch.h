@@ -2,10 +2,10 @@
 // Files that a test makes and that go away with it.
 #pragma once
 
-#include <cstdlib>
+#include <petzval/base/scratch_folder.h>
+
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -15,20 +15,8 @@ namespace petzval::test {
 /// two of them share is a file that one removes while the other reads it.
 class Scratch {
  public:
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "petzval-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot make the folder " + pattern);
-    folder_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  const std::filesystem::path& folder() const { return folder_; }
-  std::string path(const std::string& file) const { return (folder_ / file).string(); }
+  std::filesystem::path folder() const { return folder_.path(); }
+  std::string path(const std::string& file) const { return (folder() / file).string(); }
   /// Writes a file. \returns its path.
   std::string with(const std::string& file, std::string_view bytes) const {
     // Quickly, for thousands of files: no flush to disk, and no truncation, which some file systems flush
@@ -37,10 +25,10 @@ class Scratch {
     std::ofstream(path(file), std::ios::binary) << bytes;
     return path(file);
   }
-  bool is_empty() const { return std::filesystem::is_empty(folder_); }
+  bool is_empty() const { return std::filesystem::is_empty(folder()); }
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 }  // namespace petzval::test

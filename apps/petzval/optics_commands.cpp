@@ -12,7 +12,7 @@
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_interpolation.h>
 #include <petzval/optics/table_layout.h>
-#include <petzval/scene/scene_file.h>
+#include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/sensor.h>
 
 #include <algorithm>

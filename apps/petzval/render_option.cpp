@@ -7,7 +7,7 @@
 #include <petzval/colour/observer.h>
 #include <petzval/render/gltf/gltf_scene.h>
 #include <petzval/render/pbrt/entity_maker.h>
-#include <petzval/scene/scene_file.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <cstdio>
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/scene/depth_map.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <charconv>
 #include <cmath>

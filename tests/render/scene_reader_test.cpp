@@ -99,7 +99,7 @@ TEST(SceneReader, RefusesMeshesThatMakeNoSense) {
 /// What other files hold is told with their name, and where the scene names them.
 TEST(SceneReader, TellsWhereFilesAreNamedThatCannotBeUsed) {
   const test::Scratch scratch;
-  const std::filesystem::path& folder = scratch.folder();
+  const std::filesystem::path folder = scratch.folder();
   std::ofstream(folder / "nan.ply")
       << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
          "y\nproperty float z\nelement face 1\nproperty list uchar int "
@@ -136,7 +136,7 @@ TEST(SceneReader, TellsWhereFilesAreNamedThatCannotBeUsed) {
 
 TEST(SceneReader, FindsIncludesThatIncludeThemselves) {
   const test::Scratch scratch;
-  const std::filesystem::path& folder = scratch.folder();
+  const std::filesystem::path folder = scratch.folder();
   std::ofstream(folder / "a.pbrt") << "WorldBegin\nInclude \"b.pbrt\"\n";
   std::ofstream(folder / "b.pbrt") << "\n  Include \"a.pbrt\"\n";
   try {

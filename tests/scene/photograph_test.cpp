@@ -7,6 +7,7 @@
 #include <petzval/image/picture.h>
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/scene/formats/scene_exr.h>
 #include <petzval/scene/scene_file.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/colour/illuminants.h>
-#include <petzval/scene/charts.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/scene/formats/envi.h>
 #include <petzval/scene/formats/iset_mat.h>
@@ -12,12 +11,11 @@
 #include <petzval/scene/formats/npy_scene.h>
 #include <petzval/scene/formats/scene_exr.h>
 #include <petzval/scene/illuminant_swap.h>
+#include <petzval/scene/named_chart.h>
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -29,58 +27,6 @@ namespace petzval {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A chart by name, with the parameter that may follow a colon.
-struct Chart {
-  const char* name;
-  const char* parameter;  // "" if it takes none
-  const char* description;
-  Scene (*make)(const ChartOptions& options, std::optional<double> parameter);
-  bool deep = false;  // stands at a finite distance, with depth
-};
-
-int whole(double parameter, const char* chart) {
-  if (!(parameter >= 1 && parameter <= 1e6) || parameter != std::floor(parameter))
-    throw InputError(fmt::format("{}:{}: a whole number from 1 up would be right", chart, parameter));
-  return static_cast<int>(parameter);
-}
-
-constexpr std::array charts = {
-    Chart{"cards", "", "three cards before a wall with lamps, at four depths",
-          [](const ChartOptions& options, std::optional<double>) { return cards_chart(options); }, true},
-    Chart{"checkerboard", "N", "black and white squares, N (16) across",
-          [](const ChartOptions& options, std::optional<double> n) {
-            return checkerboard_chart(options, whole(n.value_or(16), "checkerboard"));
-          }},
-    Chart{"colorchecker", "", "the 24 patches of a ColorChecker, measured reflectances",
-          [](const ChartOptions& options, std::optional<double>) { return colorchecker_chart(options); }},
-    Chart{"points", "N", "N x N (9 x 9) white samples on black",
-          [](const ChartOptions& options, std::optional<double> n) {
-            return point_chart(options, whole(n.value_or(9), "points"));
-          }},
-    Chart{"slanted-edge", "DEGREES", "a dark and a light half, the edge 5 degrees from the vertical",
-          [](const ChartOptions& options, std::optional<double> angle) {
-            return slanted_edge_chart(options, angle.value_or(5));
-          }},
-    Chart{"slanted-plane", "", "a checkerboard that recedes from left to right, with depth",
-          [](const ChartOptions& options, std::optional<double>) { return slanted_plane_chart(options); },
-          true},
-    Chart{"studio", "", "ColorChecker, greys, slanted edges, stars, bars, lettering on a line grid",
-          [](const ChartOptions& options, std::optional<double>) { return studio_chart(options); }},
-    Chart{"wall", "", "white everywhere",
-          [](const ChartOptions& options, std::optional<double>) { return wall_chart(options); }},
-};
-
-std::string shown_name(const Chart& chart) {
-  return *chart.parameter ? fmt::format("{}[:{}]", chart.name, chart.parameter) : chart.name;
-}
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 std::optional<double> finite_distance(double distance_m) {
   return std::isinf(distance_m) && distance_m > 0 ? std::nullopt : std::optional(distance_m);
@@ -96,14 +42,6 @@ ChartOptions chart_options(const SceneOptions& options) {
   if (!options.illuminant.empty()) chart.illuminant = options.illuminant;
   chart.mean_luminance_cd_m2 = options.mean_luminance_cd_m2.value_or(chart.mean_luminance_cd_m2);
   return chart;
-}
-
-/// The chart that a text such as "points:5" means, or none.
-const Chart* find_chart(const std::string& text) {
-  const std::string name = text.substr(0, text.find(':'));
-  const auto chart =
-      std::find_if(charts.begin(), charts.end(), [&](const Chart& c) { return c.name == name; });
-  return chart == charts.end() ? nullptr : &*chart;
 }
 
 /// What only files of bare numbers leave open.
@@ -122,14 +60,7 @@ void refuse_thermal_options(const std::string& what, const SceneOptions& options
                      "are for emissivities and maps of temperature");
 }
 
-Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions& options) {
-  const std::size_t colon = text.find(':');
-  std::optional<double> parameter;
-  if (colon != std::string::npos) {
-    parameter = parse_number(std::string_view(text).substr(colon + 1));
-    if (!*chart.parameter || !parameter)
-      throw InputError(fmt::format("scene {}: {} would be right", text, shown_name(chart)));
-  }
+Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOptions& options) {
   if (options.encoding)
     throw InputError(
         fmt::format("scene {}: a chart has no encoding; --scene-encoding is for photographs", text));
@@ -138,9 +69,7 @@ Scene make_chart(const std::string& text, const Chart& chart, const SceneOptions
   if (chart.deep && options.distance_m && std::isinf(*options.distance_m))
     throw InputError(fmt::format(
         "scene {}: its depths are multiples of a finite --scene-distance (1 m unless given)", text));
-  Scene scene = chart.make(chart_options(options), parameter);
-  scene.name = text;
-  return scene;
+  return make_chart(text, chart, chart_options(options));
 }
 
 bool is_file(const std::string& path) {
@@ -180,13 +109,17 @@ CubeOptions cube_options(const SceneOptions& options) {
 }
 
 Scene read_cube_file(const std::string& path, const std::string& extension, const SceneOptions& options) {
-  SpectralCube cube = extension == ".exr"   ? read_scene_exr(path)
-                      : extension == ".npy" ? read_npy_scene(path)
-                                            : read_envi(path);
-  const std::optional<SceneQuantity> quantity = options.quantity ? options.quantity : cube.quantity;
-  if (quantity == SceneQuantity::radiance || quantity == SceneQuantity::reflectance)
-    refuse_thermal_options(path, options);
-  return naming_file(path, [&] { return scene_of(std::move(cube), cube_options(options)); });
+  const CubeOptions wanted = cube_options(options);
+  const CubeCheck check = [&](const SpectralCube& cube) {
+    const std::optional<SceneQuantity> quantity = options.quantity ? options.quantity : cube.quantity;
+    if (quantity == SceneQuantity::radiance || quantity == SceneQuantity::reflectance)
+      refuse_thermal_options(path, options);
+    naming_file(path, [&] { check_cube(cube, wanted); });
+  };
+  SpectralCube cube = extension == ".exr"   ? read_scene_exr(path, check)
+                      : extension == ".npy" ? read_npy_scene(path, check)
+                                            : read_envi(path, check);
+  return naming_file(path, [&] { return scene_of(std::move(cube), wanted); });
 }
 
 Scene read_mat_file(const std::string& path, const SceneOptions& options) {
@@ -234,38 +167,14 @@ std::string find_scene_file(const std::string& name) {
       if (bundled == name) return (fs::path(data_directory()) / "scenes" / (name + extension)).string();
       known.push_back(bundled);
     }
-  for (const Chart& chart : charts) known.push_back(chart.name);
+  for (const NamedChart& chart : named_charts()) known.push_back(chart.name);
   throw InputError(name, fmt::format("no such file, and no scene of that name; the nearest are {}",
                                      fmt::join(nearest_names(name, known), ", ")));
 }
 
-/// Adds one item of a list of wavelengths: a number or from:step:to.
-void add_wavelengths(std::string_view item, std::vector<double>& wavelengths, const std::string& all) {
-  const auto complain = [&] {
-    throw InputError(
-        fmt::format("wavelengths {}: write 400:10:700 (from, step, to) or a list such as 450,550,650", all));
-  };
-  constexpr double max_count = 10000;
-  std::vector<double> numbers;
-  for (std::size_t from = 0; from <= item.size();) {
-    const std::size_t to = std::min(item.find(':', from), item.size());
-    const std::optional<double> number = parse_number(item.substr(from, to - from));
-    if (!number || !(*number > 0)) complain();
-    numbers.push_back(*number);
-    from = to + 1;
-  }
-  if (numbers.size() == 1) return wavelengths.push_back(numbers[0]);
-  if (numbers.size() != 3 || numbers[2] < numbers[0]) complain();
-  const double steps = (numbers[2] - numbers[0]) / numbers[1];
-  if (!(steps < max_count)) complain();
-  // The end belongs to the range although steps such as 0.1 do not add up to it exactly.
-  constexpr double rounding = 1e-9;
-  for (int i = 0; i <= std::floor(steps + rounding); ++i) wavelengths.push_back(numbers[0] + i * numbers[1]);
-}
-
 Scene read_plane(const std::string& path_or_name, const SceneOptions& options) {
   if (is_file(path_or_name)) return read_scene_file(path_or_name, options);
-  if (const Chart* chart = find_chart(path_or_name)) return make_chart(path_or_name, *chart, options);
+  if (const NamedChart* chart = find_chart(path_or_name)) return read_chart(path_or_name, *chart, options);
   return read_scene_file(find_scene_file(path_or_name), options);
 }
 
@@ -319,21 +228,8 @@ bool is_deep_chart(const std::string& path_or_name) {
 
 std::vector<BuiltinScene> builtin_scenes() {
   std::vector<BuiltinScene> scenes;
-  for (const Chart& chart : charts) scenes.push_back({shown_name(chart), chart.description});
+  for (const NamedChart& chart : named_charts()) scenes.push_back({shown_name(chart), chart.description});
   return scenes;
-}
-
-std::vector<double> parse_wavelengths_nm(const std::string& text) {
-  std::vector<double> wavelengths;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t to = std::min(text.find(',', from), text.size());
-    add_wavelengths(std::string_view(text).substr(from, to - from), wavelengths, text);
-    from = to + 1;
-  }
-  for (std::size_t i = 1; i < wavelengths.size(); ++i)
-    if (!(wavelengths[i] > wavelengths[i - 1]))
-      throw InputError(fmt::format("wavelengths {}: they must increase", text));
-  return wavelengths;
 }
 
 }  // namespace petzval

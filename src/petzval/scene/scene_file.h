@@ -62,8 +62,4 @@ bool is_deep_chart(const std::string& path_or_name);
 /// Whether read_scene makes a chart of this name: it is one's name, and no file is called so.
 bool is_builtin_scene(const std::string& path_or_name);
 
-/// Wavelengths as users write them: "400:10:700" (from, step, to), "450,550,650", "587.5618", and mixtures.
-/// \throws InputError saying what would be right.
-std::vector<double> parse_wavelengths_nm(const std::string& text);
-
 }  // namespace petzval

@@ -32,10 +32,9 @@ double angle_of(const SpectralCube& cube, const CubeOptions& options) {
 }
 
 std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& options, SceneQuantity quantity) {
-  const std::size_t planes = cube.planes();
   if (quantity == SceneQuantity::temperature) {
-    if (planes != 1)
-      throw InputError(fmt::format("is a map of temperatures with {} bands; one would be right", planes));
+    if (cube.bands != 1)
+      throw InputError(fmt::format("is a map of temperatures with {} bands; one would be right", cube.bands));
     if (options.wavelengths_nm.empty())
       throw InputError(
           "is a map of temperatures; --wavelengths 8000:500:14000 or the like says where it shines");
@@ -47,34 +46,57 @@ std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& option
     throw InputError(
         fmt::format("does not say the wavelengths of its {} bands; --scene-bands 400:10:700 or the "
                     "like does",
-                    planes));
-  if (bands.size() != planes)
-    throw InputError(fmt::format("has {} bands, but {} wavelengths are given", planes, bands.size()));
+                    cube.bands));
+  if (bands.size() != static_cast<std::size_t>(cube.bands))
+    throw InputError(fmt::format("has {} bands, but {} wavelengths are given", cube.bands, bands.size()));
   return bands;
 }
 
+const std::string& radiance_unit_of(const SpectralCube& cube, const CubeOptions& options) {
+  return options.radiance_unit.empty() ? cube.radiance_unit : options.radiance_unit;
+}
+
+/// What quantities of this kind need beside their numbers, and what they cannot have.
+void check_light(const CubeOptions& options, SceneQuantity quantity, const std::vector<double>& bands) {
+  const std::optional<Spectrum>& light = options.illuminant;
+  if (quantity == SceneQuantity::reflectance) {
+    if (!light)
+      throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
+    if (std::none_of(bands.begin(), bands.end(), [&](double nm) { return light->at(nm) > 0; }))
+      throw InputError("the illuminant has no light in the bands of the scene");
+  } else if (quantity != SceneQuantity::radiance) {
+    if (light) throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
+    options.thermal.validate();
+    if (quantity == SceneQuantity::emissivity && !options.thermal.temperature_k)
+      throw InputError(
+          "holds emissivities; they need a temperature to shine: --scene-temperature 310, in kelvins, for "
+          "example");
+  }
+}
+
 /// Reflectance × illuminant.
-void put_under(Scene& scene, const std::optional<Spectrum>& illuminant) {
-  if (!illuminant)
-    throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
-  bool any = false;
+void put_under(Scene& scene, const Spectrum& illuminant) {
   scene.for_each_band([&](std::size_t index, std::span<float> band) {
-    const double factor = illuminant->at(scene.wavelengths_nm()[index]);
-    any = any || factor > 0;
+    const double factor = illuminant.at(scene.wavelengths_nm()[index]);
     for (float& value : band) value = static_cast<float>(value * factor);
   });
-  if (!any) throw InputError("the illuminant has no light in the bands of the scene");
   scene.illuminant = illuminant;
   if (scene.mean_luminance_cd_m2() > 0) scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
 }
 
+double scale_of(const SpectralCube& cube, const CubeOptions& options) {
+  const double scale = cube.scale * options.scale;
+  if (!(scale > 0 && std::isfinite(scale)))
+    throw InputError(fmt::format("a scale of {}; a positive one would be right", scale));
+  return scale;
+}
+
 void scale(SpectralCube& cube, const CubeOptions& options) {
-  if (!(options.scale > 0 && std::isfinite(options.scale)))
-    throw InputError(fmt::format("a scale of {}; a positive one would be right", options.scale));
-  if (options.scale == 1 && !options.negative_is_zero) return;
-  for (std::size_t index = 0; index < cube.planes(); ++index) {
-    if (options.scale != 1)
-      for (float& value : cube.plane(index)) value = static_cast<float>(value * options.scale);
+  const double scale = scale_of(cube, options);
+  if (scale == 1 && !options.negative_is_zero) return;
+  for (std::size_t index = 0; index < static_cast<std::size_t>(cube.bands); ++index) {
+    if (scale != 1)
+      for (float& value : cube.plane(index)) value = static_cast<float>(value * scale);
     if (options.negative_is_zero)
       for (float& value : cube.plane(index)) value = value < 0 ? 0.0f : value;  // NaN stays, to be refused
     cube.values.release_memory();
@@ -92,9 +114,20 @@ SceneQuantity parse_scene_quantity(const std::string& word) {
       "a quantity '{}'; radiance, reflectance, emissivity or temperature would be right", quotable(word)));
 }
 
-Scene scene_of(SpectralCube cube, const CubeOptions& options) {
+void check_cube(const SpectralCube& cube, const CubeOptions& options) {
   const SceneQuantity quantity = quantity_of(cube, options);
-  const bool warm = quantity == SceneQuantity::emissivity || quantity == SceneQuantity::temperature;
+  const std::vector<double> bands = bands_of(cube, options, quantity);
+  angle_of(cube, options);
+  scale_of(cube, options);
+  check_light(options, quantity, bands);
+  if (const std::string& unit = radiance_unit_of(cube, options);
+      quantity == SceneQuantity::radiance && !unit.empty())
+    radiance_scale(unit);
+}
+
+Scene scene_of(SpectralCube cube, const CubeOptions& options) {
+  check_cube(cube, options);
+  const SceneQuantity quantity = quantity_of(cube, options);
   std::vector<double> bands = bands_of(cube, options, quantity);
   const double angle = angle_of(cube, options);
   scale(cube, options);
@@ -107,20 +140,18 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
   scene.depth_m = std::move(cube.depth_m);
   scene.depth_from = cube.depth_from;
   if (cube.panorama) scene.make_panorama(*cube.panorama);
-  if (options.illuminant && warm)
-    throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
   if (quantity == SceneQuantity::temperature) {
     warm_temperatures(scene, cube.values.all(), options.thermal);
     return scene;
   }
   scene.validate();
-  const std::string& unit = options.radiance_unit.empty() ? cube.radiance_unit : options.radiance_unit;
+  const std::string& unit = radiance_unit_of(cube, options);
   const double factor = quantity == SceneQuantity::radiance && !unit.empty() ? radiance_scale(unit) : 1;
   if (factor != 1)
     scene.for_each_band([factor](std::size_t, std::span<float> band) {
       for (float& value : band) value = static_cast<float>(value * factor);
     });
-  if (quantity == SceneQuantity::reflectance) put_under(scene, options.illuminant);
+  if (quantity == SceneQuantity::reflectance) put_under(scene, *options.illuminant);
   if (quantity == SceneQuantity::radiance && options.illuminant) swap_illuminant(scene, *options.illuminant);
   if (quantity == SceneQuantity::emissivity) warm_emissivities(scene, options.thermal);
   return scene;

@@ -5,6 +5,7 @@
 #include <petzval/scene/scene.h>
 #include <petzval/scene/thermal.h>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,9 +25,10 @@ SceneQuantity parse_scene_quantity(const std::string& word);
 
 /// A file's numbers and whatever it says about them.
 struct SpectralCube {
-  int columns = 0, rows = 0;
+  int columns = 0, rows = 0, bands = 0;
   std::vector<double> wavelengths_nm;  ///< strictly increasing; empty: not said
-  LargeFloats values;                  ///< a plane a wavelength, rows from the top
+  LargeFloats values;                  ///< a plane a band, rows from the top
+  double scale = 1;                    ///< times every number
   std::optional<SceneQuantity> quantity;
   std::string radiance_unit;  ///< as radiance_scale() takes it; empty: W·m⁻²·sr⁻¹·nm⁻¹
   std::optional<double> horizontal_angle_deg, distance_m;
@@ -37,15 +39,17 @@ struct SpectralCube {
   std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
 
   std::size_t band_size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
-  std::size_t planes() const { return values.size() / band_size(); }
   std::span<float> plane(std::size_t index) { return values.all().subspan(index * band_size(), band_size()); }
 };
+
+/// What readers of files call when all but the values is there, before they are read. May throw.
+using CubeCheck = std::function<void(const SpectralCube&)>;
 
 /// What the user says about a file that leaves things open.
 struct CubeOptions {
   std::optional<SceneQuantity> quantity;
   std::string radiance_unit;           ///< empty: the file's
-  double scale = 1;                    ///< times every number, before anything else
+  double scale = 1;                    ///< times every number and the file's scale, before anything else
   std::vector<double> file_bands_nm;   ///< of a file that does not say its wavelengths
   std::vector<double> wavelengths_nm;  ///< wanted; of temperatures the only ones there are
   std::optional<double> horizontal_angle_deg;
@@ -53,6 +57,9 @@ struct CubeOptions {
   ThermalOptions thermal;
   bool negative_is_zero = false;  ///< instead of an error
 };
+
+/// Refuses what scene_of() would refuse whatever the values are: they need not be there yet.
+void check_cube(const SpectralCube& cube, const CubeOptions& options);
 
 /// Radiance is taken as it is; reflectance × illuminant is brought to a mean luminance of 100 cd/m² if it is
 /// visible; emissivities and temperatures shine by Planck's law. A temperature map has the wavelengths that

@@ -45,10 +45,7 @@ double thermal_radiance(double wavelength_nm, double temperature_k, double emiss
 
 void warm_emissivities(Scene& scene, const ThermalOptions& options) {
   options.validate();
-  if (!options.temperature_k)
-    throw InputError(
-        "holds emissivities; they need a temperature to shine: --scene-temperature 310, in "
-        "kelvins, for example");
+  if (!options.temperature_k) throw InputError("emissivities need a temperature to shine");
   for (int index = 0; index < scene.bands(); ++index) {
     const double nm = scene.wavelengths_nm()[static_cast<std::size_t>(index)];
     const std::span<float> band = scene.band(index);

@@ -109,7 +109,7 @@ int compression_threads() {
   return threads;
 }
 
-SpectralExr read_spectra(const std::string& path) {
+SpectralExr read_spectra(const std::string& path, const std::function<void(const SpectralExr&)>& check) {
   Imf::InputFile file(path.c_str(), compression_threads());
   SpectralExr exr;
   const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
@@ -120,8 +120,9 @@ SpectralExr read_spectra(const std::string& path) {
   if (bands.size() > SpectralImage::max_values / exr.band_size())
     throw InputError(path, fmt::format("{} x {} pixels in {} bands are more than can be held", exr.width,
                                        exr.height, bands.size()));
-  exr.values = LargeFloats(exr.band_size() * bands.size());
   take_attributes(file.header(), exr);
+  if (check) check(exr);
+  exr.values = LargeFloats(exr.band_size() * bands.size());
   read_pixels(file, bands, exr);
   return exr;
 }
@@ -204,8 +205,8 @@ void SpectralExr::validate(const std::string& file) const {
   }
 }
 
-SpectralExr read_spectral_exr(const std::string& path) {
-  return reading_exr(path, read_spectra);
+SpectralExr read_spectral_exr(const std::string& path, const std::function<void(const SpectralExr&)>& check) {
+  return reading_exr(path, [&check](const std::string& file) { return read_spectra(file, check); });
 }
 
 void write_spectral_exr(const std::string& path, const SpectralExr& exr) {

@@ -54,8 +54,10 @@ struct SpectralExr {
 /// tiles, any compression, any data window. If the file has light (S0) and reflectance (T), the light is
 /// read; polarisation (S1…S3), colour previews (R, G, B) and bi-spectral channels are left aside. Bands are
 /// sorted. \throws InputError if the file is missing, damaged, truncated or not spectral, or has a band
-/// twice. Values are not looked at: see SpectralExr::validate.
-SpectralExr read_spectral_exr(const std::string& path);
+/// twice. Values are not looked at: see SpectralExr::validate. \param check  is called before values and
+/// depth are read, and may throw.
+SpectralExr read_spectral_exr(const std::string& path,
+                              const std::function<void(const SpectralExr&)>& check = {});
 
 /// Writes 32-bit floats, scan lines, ZIP compression; the same bytes for the same image.
 /// \throws InputError unless the sizes agree and the wavelengths increase, and as WholeFile; Failure.

@@ -107,15 +107,18 @@ bool is_envi_path(const std::string& path) {
 
 namespace {
 
-SpectralCube cube_of(const EnviHeader& header, const std::string& header_file, const EnviBytes& bytes) {
+SpectralCube cube_of(const EnviHeader& header, const std::string& header_file, const EnviBytes& bytes,
+                     const CubeCheck& check = {}) {
   const std::vector<std::size_t> order = order_of(header, header_file);
   SpectralCube cube;
   cube.columns = header.columns, cube.rows = header.rows;
-  cube.values = LargeFloats(order.size() * cube.band_size());
-  read_envi_planes(header, order, bytes, cube);
+  cube.bands = static_cast<int>(order.size());
   if (!header.wavelengths_nm.empty())
     for (const std::size_t band : order) cube.wavelengths_nm.push_back(header.wavelengths_nm[band]);
   say_what_it_is(header, cube);
+  if (check) check(cube);
+  cube.values = LargeFloats(order.size() * cube.band_size());
+  read_envi_planes(header, order, bytes, cube);
   return cube;
 }
 
@@ -130,19 +133,20 @@ SpectralCube decode_envi(std::string_view header_text, std::string_view data, co
   });
 }
 
-SpectralCube read_envi(const std::string& path) {
+SpectralCube read_envi(const std::string& path, const CubeCheck& check) {
   const std::string header_file = is_header(path) ? path : header_of(path);
   const std::string data_file = is_header(path) ? data_of(path) : path;
   const EnviHeader header = parse_envi_header(read_whole_file(header_file), header_file);
   std::ifstream data(data_file, std::ios::binary);
   if (!data) throw InputError(data_file, "cannot be read");
   check_size(header, fs::file_size(data_file), header_file, data_file);
-  return cube_of(header, header_file, [&](std::uint64_t from, std::span<char> out) {
+  const auto read = [&](std::uint64_t from, std::span<char> out) {
     data.seekg(static_cast<std::streamoff>(from));
     data.read(out.data(), static_cast<std::streamsize>(out.size()));
     if (data.gcount() != static_cast<std::streamsize>(out.size()))
       throw InputError(data_file, "became shorter while it was read");
-  });
+  };
+  return cube_of(header, header_file, read, check);
 }
 
 }  // namespace petzval

@@ -15,8 +15,8 @@ namespace petzval {
 /// mean "no data" become 0. `reflectance scale factor` and `data reflectance gain values` make reflectances;
 /// `data gain values` make radiance, in W·m⁻²·sr⁻¹·µm⁻¹ as ENVI has it, or in `data units`. \throws
 /// InputError for a damaged header, data that are shorter or longer than it says, or more than a scene may
-/// have, before room is made for them.
-SpectralCube read_envi(const std::string& path);
+/// have, before room is made for them. \param check  is called before the numbers are read.
+SpectralCube read_envi(const std::string& path, const CubeCheck& check = {});
 
 /// Whether a path is read_envi()'s: a header, or a file with a header beside it.
 bool is_envi_path(const std::string& path);

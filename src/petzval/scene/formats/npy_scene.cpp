@@ -75,12 +75,8 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
     } else if (key == "name") {
       cube.name = text_of(value, key, file);
     } else if (key == "scale") {
-      const double scale = number_of(value, key, file);
-      if (!(scale > 0)) throw InputError(file, "scale must be positive");
-      for (std::size_t index = 0; index < cube.planes(); ++index) {
-        for (float& each : cube.plane(index)) each = static_cast<float>(each * scale);
-        cube.values.release_memory();
-      }
+      cube.scale = number_of(value, key, file);
+      if (!(cube.scale > 0)) throw InputError(file, "scale must be positive");
     } else {
       throw InputError(file,
                        fmt::format("has the unknown key '{}'; quantity, unit, wavelengths_nm, angle_deg, "
@@ -90,7 +86,7 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
   }
 }
 
-SpectralCube read_npy_scene(const std::string& path) {
+SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check) {
   const NpyFile array(path);
   const std::vector<std::size_t>& shape = array.shape();
   if (shape.size() != 2 && shape.size() != 3)
@@ -99,7 +95,7 @@ SpectralCube read_npy_scene(const std::string& path) {
                           shape.size()));
   constexpr std::size_t most = std::numeric_limits<int>::max();
   const std::size_t bands = shape.size() == 3 ? shape[2] : 1;
-  if (shape[0] < 1 || shape[1] < 1 || bands < 1 || shape[0] > most || shape[1] > most)
+  if (shape[0] < 1 || shape[1] < 1 || bands < 1 || shape[0] > most || shape[1] > most || bands > most)
     throw InputError(path, fmt::format("is an array of {} x {} x {}; at least one of each would be right",
                                        shape[0], shape[1], bands));
   constexpr double gib = 1024.0 * 1024 * 1024;
@@ -110,11 +106,13 @@ SpectralCube read_npy_scene(const std::string& path) {
                           Scene::max_values));
   SpectralCube cube;
   cube.rows = static_cast<int>(shape[0]), cube.columns = static_cast<int>(shape[1]);
-  take_planes(array, bands, cube);
+  cube.bands = static_cast<int>(bands);
   const fs::path beside = fs::path(path).replace_extension(".json");
   std::error_code ignored;
   if (fs::is_regular_file(beside, ignored))
     describe_cube(read_whole_file(beside.string(), std::size_t{1} << 24), beside.string(), cube);
+  if (check) check(cube);
+  take_planes(array, bands, cube);
   return cube;
 }
 

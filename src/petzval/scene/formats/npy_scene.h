@@ -15,8 +15,9 @@ namespace petzval {
 ///     {"quantity": "radiance", "unit": "W.m^-2.sr^-1.nm^-1", "wavelengths_nm": [450, 550, 650],
 ///      "angle_deg": 20, "distance_m": 1.5, "scale": 1, "name": "bench"}
 ///
-/// All keys are optional. \throws InputError as read_npy, for another shape, and for a bad JSON file.
-SpectralCube read_npy_scene(const std::string& path);
+/// All keys are optional. \param check  is called before the numbers are read. \throws InputError as
+/// read_npy, for another shape, and for a bad JSON file.
+SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check = {});
 
 /// Puts what a JSON text says into the cube. \param file  for messages. \throws InputError for an unknown key
 /// or a value of another kind.

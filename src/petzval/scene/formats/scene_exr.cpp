@@ -39,18 +39,15 @@ std::optional<double> number(const SpectralExr& exr, const char* attribute) {
   return found == exr.numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace
-
-SpectralCube read_scene_exr(const std::string& path) {
-  SpectralExr exr = read_spectral_exr(path);
+/// All but values and depth.
+SpectralCube described_by(const SpectralExr& exr, const std::string& path) {
   SpectralCube cube;
   cube.columns = exr.width, cube.rows = exr.height;
-  cube.wavelengths_nm = std::move(exr.wavelengths_nm);
-  cube.values = std::move(exr.values);
+  cube.bands = static_cast<int>(exr.wavelengths_nm.size());
+  cube.wavelengths_nm = exr.wavelengths_nm;
   const bool light = exr.kind == SpectralExr::Kind::emissive;
   cube.quantity = light ? SceneQuantity::radiance : SceneQuantity::reflectance;
   if (light) cube.radiance_unit = exr.units;
-  cube.depth_m = std::move(exr.depth);
   if (const auto text = exr.strings.find(depth_from_attribute); text != exr.strings.end())
     cube.depth_from = naming_file(path, [&] { return parse_depth_from(text->second); });
   cube.horizontal_angle_deg = number(exr, angle_attribute);
@@ -65,6 +62,19 @@ SpectralCube read_scene_exr(const std::string& path) {
     cube.panorama.emplace(
         PanoramaView{number(exr, yaw_attribute).value_or(0), number(exr, pitch_attribute).value_or(0)});
   }
+  return cube;
+}
+
+}  // namespace
+
+SpectralCube read_scene_exr(const std::string& path, const CubeCheck& check) {
+  SpectralCube cube;
+  SpectralExr exr = read_spectral_exr(path, [&](const SpectralExr& header) {
+    cube = described_by(header, path);
+    if (check) check(cube);
+  });
+  cube.values = std::move(exr.values);
+  cube.depth_m = std::move(exr.depth);
   return cube;
 }
 
