@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <libraw/libraw.h>
 #include <petzval/base/error.h>
@@ -205,6 +206,35 @@ TEST_F(Dng, ExiftoolFindsNothingWrong) {
       "exiftool -validate -warning -error -a '" + path("a.dng") + "' > '" + path("said") + "'";
   EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(read_whole_file(path("said")), "Validate                        : OK\n");
+}
+
+/// Entries of a directory are tag, type, count and place; the file is little-endian.
+TEST_F(Dng, ATagOfAnotherTypeIsRefusedNotTakenForItsBytes) {
+  write_dng(path("a.dng"), example());
+  const std::string bytes = read_whole_file(path("a.dng"));
+  const auto entry = [](int tag, int type) {
+    return std::string{static_cast<char>(tag & 255), static_cast<char>(tag >> 8), static_cast<char>(type), 0};
+  };
+  constexpr int ascii = 2, rational = 5, signed_rational = 10, real = 12;
+  struct Change {
+    const char* name;
+    int tag, from, to;
+  };
+  for (const auto& [name, tag, from, to] :
+       {Change{"ForwardMatrix1", 50964, signed_rational, ascii}, Change{"NoiseProfile", 51041, real, ascii},
+        Change{"ColorMatrix1", 50721, signed_rational, ascii},
+        Change{"BlackLevel", 50714, rational, ascii}}) {
+    std::string changed = bytes;
+    const std::size_t at = changed.rfind(entry(tag, from));  // libtiff writes the directory twice
+    ASSERT_NE(at, changed.npos) << name;
+    changed.replace(at, 4, entry(tag, to));
+    try {
+      parse_dng(changed, "x.dng");
+      ADD_FAILURE() << name;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), fmt::format("x.dng: has a {} that cannot be read", name));
+    }
+  }
 }
 
 TEST_F(Dng, DamageIsRefusedOrHarmless) {

@@ -23,6 +23,7 @@ struct Memory {
   std::string bytes, complaint;
   std::size_t position = 0;
   bool is_cut_short = false;
+  std::vector<std::string> ignored_tags;
 };
 
 tmsize_t read_bytes(thandle_t data, void* into, tmsize_t count) {
@@ -71,12 +72,23 @@ int keep_complaint(TIFF*, void* data, const char*, const char* format, va_list a
   return 1;
 }
 
-/// Warnings are no matter, but for one: that the value of a tag lies beyond the end of the file.
+/// Warnings are no matter, but for two: that the value of a tag lies beyond the end of the file, and that a
+/// tag was ignored.
 int look_at_warning(TIFF*, void* data, const char*, const char* format, va_list arguments) {
   Memory& memory = *static_cast<Memory*>(data);
-  if (std::string_view(format).starts_with("IO error")) {
-    memory.is_cut_short = true;
-    keep_complaint(nullptr, data, nullptr, format, arguments);
+  char text[200];
+  std::vsnprintf(text, sizeof text, format, arguments);
+  const std::string_view warning = text;
+  try {
+    if (warning.starts_with("IO error")) {
+      memory.is_cut_short = true;
+      if (memory.complaint.empty()) memory.complaint = warning;
+    } else if (warning.ends_with("; tag ignored")) {
+      const std::size_t from = warning.find('"') + 1, to = warning.find('"', from);
+      if (to != warning.npos) memory.ignored_tags.emplace_back(warning.substr(from, to - from));
+    }
+  } catch (const std::bad_alloc&) {
+    memory.is_cut_short = true;  // what cannot be told is no reason to go on
   }
   return 1;
 }
@@ -141,6 +153,10 @@ std::size_t TiffStream::size() const {
 
 void TiffStream::require_whole() const {
   if (state_->is_cut_short) fail("the file is cut short");
+}
+
+const std::vector<std::string>& TiffStream::ignored_tags() const {
+  return state_->ignored_tags;
 }
 
 void TiffStream::require(bool success) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 struct tiff;  // libtiff's TIFF
 
@@ -36,6 +37,9 @@ class TiffStream {
   void require(bool success) const;
   /// \throws InputError if a tag that has been read had its value beyond the end of the file.
   void require_whole() const;
+  /// libtiff's names of tags that are there and that it ignored: values of another type than they may be, or
+  /// too many.
+  const std::vector<std::string>& ignored_tags() const;
   /// Throws what require(false) would, about `what` if libtiff has said nothing.
   [[noreturn]] void fail(const std::string& what) const;
   /// Closes a written file and gives its bytes.

@@ -12,15 +12,22 @@ namespace {
 
 constexpr std::array<const char*, 7> names = {"red", "green", "blue", "cyan", "magenta", "yellow", "white"};
 
-}  // namespace
+TIFFExtendProc other_tags = nullptr;  // of whoever else extends libtiff in this process
 
-void add_tags(tiff* handle) {
+void add_tags(TIFF* handle) {
   static char noise[] = "NoiseProfile", forward_1[] = "ForwardMatrix1", forward_2[] = "ForwardMatrix2";
   static const TIFFFieldInfo fields[] = {
       {noise_profile_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, noise},
       {forward_matrix_1_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_1},
       {forward_matrix_2_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_2}};
   TIFFMergeFieldInfo(handle, fields, static_cast<std::uint32_t>(std::size(fields)));
+  if (other_tags) other_tags(handle);
+}
+
+}  // namespace
+
+void register_tags() {
+  [[maybe_unused]] static const bool once = (other_tags = TIFFSetTagExtender(add_tags), true);
 }
 
 std::optional<std::uint8_t> colour_number(const std::string& channel) {

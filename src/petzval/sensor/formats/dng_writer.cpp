@@ -22,9 +22,7 @@ constexpr std::size_t strip_bytes = 1 << 18;
 class DngWriter {
  public:
   DngWriter(const std::string& path, const RawImage& raw)
-      : raw_(raw), stream_(path, 2 * raw.samples.size()), tiff_(stream_.handle()) {
-    dng::add_tags(tiff_);
-  }
+      : raw_(raw), stream_(path, 2 * raw.samples.size()), tiff_(stream_.handle()) {}
 
   std::string bytes() {
     set_picture();
@@ -180,7 +178,6 @@ class DngWriter {
     std::uint64_t place = 0;
     stream_.require(TIFFWriteCustomDirectory(tiff_, &place) != 0);
     stream_.require(TIFFSetDirectory(tiff_, 0) != 0);
-    dng::add_tags(tiff_);
     set(TIFFTAG_EXIFIFD, place);
     stream_.require(TIFFRewriteDirectory(tiff_) != 0);
   }
@@ -203,6 +200,7 @@ bool fits_dng(const RawImage& raw) {
 
 std::string dng_bytes(const RawImage& raw, const std::string& path) {
   raw.validate();
+  dng::register_tags();
   return DngWriter(path, raw).bytes();
 }
 
