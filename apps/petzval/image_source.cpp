@@ -87,6 +87,11 @@ SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeo
   if (choice.f_number) camera.set_f_number(*choice.f_number);
   Scene scene = read_scene(choice, camera.object_distance_from_sensor_m(), choice.focus == "design");
   const bool deep = !scene.depth_m.empty();
+  if (scene.distance_m() && !deep) {
+    Camera placed = camera;
+    placed.place_object_at_m(scene.distance_m());
+    if (!placed.lens().object_distance_mm) scene.set_distance_m({});  // so far away that this is infinity
+  }
   const Lens lens =
       focused(camera, choice.focus, deep ? object_in_focus_m(choice, scene, camera) : scene.distance_m());
   TableOptions options;

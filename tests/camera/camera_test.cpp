@@ -250,5 +250,28 @@ TEST(Camera, AHelicoidFocusesAThinLensByNewtonsEquation) {
   EXPECT_NEAR(low, data.efl_mm * data.efl_mm / x - (near.surfaces.back().thickness_mm - data.bfl_mm), 1e-9);
 }
 
+// Flat to a thousandth of a wave over the pupil (25 mm: from 156 km on), and ten million focal lengths away.
+TEST(Camera, TakesWhatIsFarAwayForInfinity) {
+  Camera camera(thin_lens());
+  for (const double distance_m : {1e3, 1e5, 4e5}) {
+    camera.place_object_at_m(distance_m);
+    EXPECT_NEAR(camera.object_distance_from_sensor_m().value_or(0), distance_m, 1e-9 * distance_m);
+  }
+  for (const double distance_m : {6e5, 1e9, 1e30}) {
+    camera.place_object_at_m(distance_m);
+    EXPECT_FALSE(camera.lens().object_distance_mm) << distance_m;
+    camera.focus_at_m(distance_m);
+    EXPECT_FALSE(camera.lens().object_distance_mm) << distance_m;
+    EXPECT_NEAR(camera.lens().surfaces.back().thickness_mm, 50, 5e-6);
+  }
+  Lens lens = thin_lens();
+  lens.object_distance_mm = 1e20;
+  lens.fields = {Fields::Kind::object_height_mm, {0, 1e20}};
+  const Camera far(lens);
+  EXPECT_FALSE(far.lens().object_distance_mm);
+  EXPECT_EQ(far.lens().fields.kind, Fields::Kind::angle_deg);
+  EXPECT_NEAR(far.lens().fields.values[1], 45, 1e-9);
+}
+
 }  // namespace
 }  // namespace petzval

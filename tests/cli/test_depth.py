@@ -67,6 +67,18 @@ class Depth(petzval_cli.ProgramTest):
             found = contrasts(*(("--focus", *focus) if focus else ()))
             self.assertEqual(max(range(3), key=lambda part: found[part]), sharpest, found)
 
+    def test_what_is_far_away_is_not_dark(self):
+        # An even wall whose right half is far away: behind a lens that is focused there it is as light as a plane.
+        wall = ("wall", *self.CHART[1:])
+        plane = self.image("plane.npy", "--scene-distance", "inf", scene=wall)
+        for far in (1000, 65535, 1e10):
+            self.depth_file("halves.npy", lambda x, _, far=far: 1 if x < COLUMNS // 2 else far)
+            deep = self.image("deep.npy", "--scene-distance", "inf", "--scene-depth", "halves.npy", "--focus",
+                              "infinity", scene=wall)
+            right = [row * 24 + 20 for row in range(4, 12)]
+            for at in right:
+                self.assertAlmostEqual(deep[at] / plane[at], 1, delta=2e-3, msg=far)
+
     def test_layers_are_reported(self):
         report = self.json_of("image", "slanted-plane", "--scene-size", "60x40", "--wavelengths", 550, *self.LENS,
                               "--layers", 5, "-o", "slanted.npy")

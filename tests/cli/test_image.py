@@ -45,6 +45,19 @@ class Image(ProgramTest):
         difference = sum(abs(a - b) for a, b in zip(lens, table)) / sum(lens)
         self.assertLess(difference, 0.02)
 
+    def test_a_wall_far_away_is_one_at_infinity(self):
+        def wall(lens, distance_m):
+            self.assert_succeeds("image", "wall", "--lens", lens, "--sensor", "16x12@60", "--wavelengths", 550,
+                                 "--scene-distance", distance_m, "-o", "wall.npy")
+            return read_npy(self.folder / "wall.npy")[1]
+
+        for lens in ("edmund-54852", "dgauss-50mm"):
+            infinite = wall(lens, "inf")
+            for distance_m in (50, 1e3, 1e5, 1e9):
+                for got, wanted in zip(wall(lens, distance_m), infinite):
+                    # Of a wall at 50 m the lens sees a thousandth less: f-numbers grow by the magnification.
+                    self.assertAlmostEqual(got / wanted, 1, delta=2e-3 if distance_m < 1e3 else 2e-4, msg=distance_m)
+
     def test_same_bytes_for_any_number_of_threads(self):
         for threads in (1, 2):
             self.assert_succeeds("image", "studio", "--lens", "double-gauss", *SMALL, "--threads", threads,

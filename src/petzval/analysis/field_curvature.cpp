@@ -62,7 +62,7 @@ AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief)
   Vergence bundle{0, 0};
   Vector at = launched.point_mm, direction = launched.direction;
   if (!pencil.object_at_infinity()) {
-    const double distance = distance_along(at, path[0].point_mm, direction);
+    const double distance = distance_along(pencil.point_mm(), path[0].point_mm, direction);
     bundle = {-glass.object_index() / distance, -glass.object_index() / distance};
     at = path[0].point_mm;
   }

@@ -15,14 +15,14 @@ namespace {
 constexpr double inside_rim = 1 - 1e-9;
 constexpr int fan_rim_azimuths = 256;
 
-MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, bool from_infinity) {
+MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, double object_z_mm) {
   std::vector<Intersection> hits;
   const Ray end = tracer.trace(start, Tracer::Clip::none, &hits);
   if (end.status != RayStatus::ok) return {};
   MeridionalPath path;
   // Back from the first surface along the incoming ray, to the lead plane or the object.
   const auto& first = hits.front().point_mm;
-  const double z = from_infinity ? -lead_mm : std::max(-lead_mm, start.point_mm[2]);
+  const double z = std::max(-lead_mm, object_z_mm);
   if (start.direction[2] > 0 && z < first[2])
     path.push_back({z, first[1] + (z - first[2]) * start.direction[1] / start.direction[2]});
   for (const Intersection& hit : hits) path.push_back({hit.point_mm[2], hit.point_mm[1]});
@@ -58,7 +58,7 @@ std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_fi
     const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
     const double v = count == 1 ? chief->v : pupil->centre_v + share * (share > 0 ? top : bottom);
     if (const std::optional<Ray> ray = pencil.ray(0, v)) {
-      MeridionalPath path = path_of(tracer.tracer(), *ray, lead_mm, pencil.object_at_infinity());
+      MeridionalPath path = path_of(tracer.tracer(), *ray, lead_mm, pencil.point_mm()[2]);
       if (!path.empty()) fan.push_back(std::move(path));
     }
   }

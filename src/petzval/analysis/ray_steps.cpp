@@ -34,7 +34,9 @@ std::vector<RayStep> ray_steps(const FieldTracer& tracer, const ChiefRay& chief,
   std::vector<Intersection> path;
   glass.trace(*launched, Tracer::Clip::none, &path);
   std::vector<RayStep> steps;
-  Vector at = launched->point_mm, direction = launched->direction;
+  const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
+  Vector at = pencil.object_at_infinity() ? launched->point_mm : pencil.point_mm();
+  Vector direction = launched->direction;
   double opl_mm = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const bool image = i == glass.surface_count();

@@ -44,12 +44,13 @@ std::optional<Tracer::Clearance> StopAim::trace(double u, double v) const {
 }
 
 std::optional<StopAim::Found> StopAim::search(double x_mm, double y_mm, const Found& from) const {
+  const double close = std::max(stop_aim_tolerance * radius_mm_, pencil_.rounding_mm());
   double u = from.u, v = from.v;
   for (int step = 0; step < newton_steps; ++step) {
     const auto at = trace(u, v), right = trace(u + nudge_, v), above = trace(u, v + nudge_);
     if (!at || !right || !above) return {};
     const double miss_x = x_mm - at->stop_x_mm, miss_y = y_mm - at->stop_y_mm;
-    if (std::hypot(miss_x, miss_y) < stop_aim_tolerance * radius_mm_) return Found{x_mm, y_mm, u, v};
+    if (std::hypot(miss_x, miss_y) < close) return Found{x_mm, y_mm, u, v};
     const double x_u = right->stop_x_mm - at->stop_x_mm, y_u = right->stop_y_mm - at->stop_y_mm;
     const double x_v = above->stop_x_mm - at->stop_x_mm, y_v = above->stop_y_mm - at->stop_y_mm;
     const double scale = nudge_ / (x_u * y_v - x_v * y_u);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace petzval {
 
@@ -11,6 +12,15 @@ namespace {
 
 /// Finite differences of the exit direction, as a share of the pupil: truncation and rounding both near 1e-8.
 constexpr double wave_nudge_per_radius = 1e-6;
+
+/// More where the object is so far away that labels have few digits within the pupil: the share at which
+/// rounding is as large as truncation.
+double nudge_for(const PupilBoundary& pupil) {
+  const double radius = *std::max_element(pupil.radius.begin(), pupil.radius.end());
+  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(pupil.centre_v) / radius;
+  return radius * std::max(wave_nudge_per_radius, std::sqrt(rounding));
+}
+
 /// A node's ray and its neighbours at u − nudge and v − nudge.
 constexpr std::size_t rays_per_node = 3;
 
@@ -21,7 +31,7 @@ RayBatch trace_with_neighbours(const FieldTracer& tracer, const Pencil& pencil,
     // Labels outside the unit disc have no ray; a ray along the axis' perpendicular fails in the trace.
     const Ray ray = pencil.ray(u, v).value_or(Ray{{0, 0, 0}, {1, 0, 0}});
     rays.push_back(ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],
-                   ray.direction[2]);
+                   ray.direction[2], ray.opl_mm);
   };
   for (const PupilNode& node : nodes) {
     launch(node.u, node.v);
@@ -57,7 +67,7 @@ std::vector<WaveRay> trace_wave_rays(const FieldTracer& tracer, const ChiefRay& 
   const double outwards = chief.image_height_mm < 0 ? -1.0 : 1.0;
   const double index = tracer.tracer().image_index();
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
-  const double nudge = wave_nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
+  const double nudge = nudge_for(pupil);
   const RayBatch rays = trace_with_neighbours(tracer, pencil, nodes, nudge);
 
   std::vector<WaveRay> waves(nodes.size());

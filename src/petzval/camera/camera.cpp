@@ -41,6 +41,19 @@ struct LensMatrix {
   }
 };
 
+/// Waves of an object so far away are flat over the entrance pupil to this [mm], a thousandth of a wave, and
+/// chief rays at its edge are parallel to this share of the lens: it is at infinity. (Labels of rays from an
+/// object point would run out of digits a hundred times farther.)
+constexpr double flat_mm = 5e-7, parallel_share = 1e-7;
+
+bool as_good_as_infinite(const Lens& lens, double object_distance_mm) {
+  if (!(object_distance_mm > lens.total_track_mm() / parallel_share)) return false;
+  const FirstOrder facts = first_order(lens);
+  const double pupil_mm = facts.entrance_pupil.diameter_mm;
+  return object_distance_mm > std::abs(facts.efl_mm) / parallel_share &&
+         object_distance_mm > pupil_mm * pupil_mm / (8 * flat_mm);
+}
+
 /// "infinity", or the distance in m.
 std::string named_distance(std::optional<double> distance_m) {
   return distance_m ? fmt::format("{} m", *distance_m) : "infinity";
@@ -101,12 +114,14 @@ void keep_aperture_and_angles(const Lens& lens, Lens& moved) {
 
 Camera::Camera(Lens lens) : prescription_(std::move(lens)) {
   prescription_.validate();
-  lens_ = prescription_;
+  focus_as_designed();
 }
 
 /// Rebuilds the lens in use from the prescription.
 void Camera::use(std::optional<double> object_distance_mm, double last_thickness_mm) {
   Lens lens = prescription_;
+  if (object_distance_mm && as_good_as_infinite(prescription_, *object_distance_mm))
+    object_distance_mm.reset();
   lens.object_distance_mm = object_distance_mm;
   lens.surfaces.back().thickness_mm = last_thickness_mm;
   if (f_number_) lens.aperture = {Aperture::Kind::f_number, *f_number_};

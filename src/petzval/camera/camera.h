@@ -18,7 +18,9 @@ namespace petzval {
 ///
 /// A change of object distance leaves the rest of the lens as it was: an aperture that is stated at the
 /// object (working f-number, numerical aperture) becomes the entrance pupil diameter that it stood for, and
-/// field points stated as object heights keep their angle from the entrance pupil.
+/// field points stated as object heights keep their angle from the entrance pupil. An object whose waves are
+/// flat over the entrance pupil to a thousandth of a wave, and ten million times as far away as the lens is
+/// large, is at infinity.
 class Camera {
  public:
   /// The lens as its prescription has it.

@@ -23,6 +23,13 @@ constexpr double smallest_step_share = 1e-3;
 /// A predicted ray may miss the centre of a pinhole stop by this [mm].
 constexpr double least_catch_mm = 1e-3;
 constexpr int scan_points = 2000;
+/// From here on rays of object points start near the lens [mm].
+constexpr double far_mm = 1e5;
+/// Differences for slopes, as a share of all labels there are, and of the stop where objects are so far away
+/// that this is more than the pupil.
+constexpr double nudge_per_range = 1e-7, nudge_per_stop = 1e-4;
+/// Roundings that a stop height may have gathered.
+constexpr double roundings = 64;
 
 /// Height at the stop of the meridional ray v, or NaN.
 double stop_height(const Tracer& tracer, const Pencil& pencil, double v) {
@@ -31,8 +38,8 @@ double stop_height(const Tracer& tracer, const Pencil& pencil, double v) {
 }
 
 std::optional<double> newton_on_stop(const Tracer& tracer, const Pencil& pencil, double v) {
-  const LabelRange range = label_range(tracer, pencil);
-  const double nudge = 1e-7 * (range.high - range.low);
+  const double nudge = label_nudge(tracer, pencil);
+  const double close = std::max(1e3 * aim_tolerance * tracer.stop_radius_mm(), pencil.rounding_mm());
   double height = stop_height(tracer, pencil, v);
   for (int i = 0; i < 40; ++i) {
     if (!std::isfinite(height)) return {};
@@ -43,8 +50,7 @@ std::optional<double> newton_on_stop(const Tracer& tracer, const Pencil& pencil,
     const double next_height = stop_height(tracer, pencil, v - step);
     // Converged when the next step no longer helps: the last digits of the height are rounding.
     const bool small = std::abs(height) < aim_tolerance * tracer.stop_radius_mm();
-    const bool stalled = std::abs(height) < 1e3 * aim_tolerance * tracer.stop_radius_mm() &&
-                         !(std::abs(next_height) < std::abs(height));
+    const bool stalled = std::abs(height) < close && !(std::abs(next_height) < std::abs(height));
     if (small || stalled) return v;
     v -= step;
     height = next_height;
@@ -94,6 +100,15 @@ LabelRange label_range(const Tracer& tracer, const Pencil& pencil) {
   return {-2 * reach, 2 * reach};
 }
 
+double label_nudge(const Tracer& tracer, const Pencil& pencil) {
+  const LabelRange range = label_range(tracer, pencil);
+  const double widest = nudge_per_range * (range.high - range.low);
+  if (pencil.object_at_infinity() || pencil.backward() || !std::isfinite(tracer.stop_radius_mm()))
+    return widest;
+  const double step_mm = nudge_per_stop * std::max(tracer.stop_radius_mm(), least_catch_mm);
+  return std::min(widest, pencil.v_through(step_mm) - pencil.v_through(0));
+}
+
 Pencil Pencil::from_object(const Lens& lens, double field) {
   if (!std::isfinite(field)) throw InputError("a field must be a finite number");
   if (lens.object_distance_mm) return Pencil(Kind::object_point, field, -*lens.object_distance_mm);
@@ -106,6 +121,26 @@ Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm) {
   return Pencil(Kind::image_point, image_height_mm, tracer.image_z_mm());
 }
 
+std::array<double, 3> Pencil::point_mm() const {
+  if (kind_ == Kind::parallel) return {0, 0, -std::numeric_limits<double>::infinity()};
+  return {0, y_, z_};
+}
+
+double Pencil::entrance_mm(double v) const {
+  return kind_ == Kind::object_point ? y_ - z_ * v / std::sqrt(1 - v * v) : v;
+}
+
+double Pencil::v_through(double entrance_mm) const {
+  if (kind_ != Kind::object_point) return entrance_mm;
+  const double rise = std::copysign(1.0, -z_) * (entrance_mm - y_);
+  return rise / std::hypot(rise, z_);
+}
+
+double Pencil::rounding_mm() const {
+  return kind_ == Kind::object_point ? roundings * std::numeric_limits<double>::epsilon() * std::hypot(y_, z_)
+                                     : 0;
+}
+
 std::optional<Ray> Pencil::ray(double u, double v) const {
   if (kind_ == Kind::parallel) return Ray{{u, v * z_, -v * y_}, {0, y_, z_}};
   const double cosine_sq = 1 - u * u - v * v;
@@ -113,7 +148,10 @@ std::optional<Ray> Pencil::ray(double u, double v) const {
   const double cosine = std::sqrt(cosine_sq);
   // A backward ray travels against the light.
   if (kind_ == Kind::image_point) return Ray{{0, y_, z_}, {-u, -v, -cosine}};
-  return Ray{{0, y_, z_}, {u, v, cosine}};
+  if (-z_ < far_mm) return Ray{{0, y_, z_}, {u, v, cosine}};
+  const double way = -(y_ * v + z_ * cosine);
+  const double x = way * u, y = y_ + way * v, z = -(x * u + y * v) / cosine;
+  return Ray{{x, y, z}, {u, v, cosine}, -(x * x + y * y + z * z) / (std::hypot(y_, z_) + way)};
 }
 
 Tracer::Clearance Pencil::clearance(const Tracer& tracer, double u, double v, Tracer::Clip clip) const {
@@ -152,14 +190,17 @@ Pencil ChiefRayMarch::pencil_at(double field) const {
 std::optional<double> ChiefRayMarch::v_at(double field) {
   // From the last field inwards or outwards, or from the axis if that is nearer.
   if (std::abs(field) < 0.5 * std::abs(last_field_) || field * last_field_ < 0)
-    last_field_ = last_v_ = slope_ = 0;
+    last_field_ = last_v_ = last_entrance_ = slope_ = 0;
   double step = step_;
   while (last_field_ != field) {
     const double remaining = field - last_field_;
     const double next = std::abs(remaining) <= step ? field : last_field_ + std::copysign(step, remaining);
-    const double predicted = last_v_ + slope_ * (next - last_field_);
-    if (const std::optional<double> v = follow(pencil_at(next), predicted)) {
-      slope_ = (*v - last_v_) / (next - last_field_);
+    const double predicted = last_entrance_ + slope_ * (next - last_field_);
+    const Pencil pencil = pencil_at(next);
+    if (const std::optional<double> v = follow(pencil, pencil.v_through(predicted))) {
+      const double entrance = pencil.entrance_mm(*v);
+      slope_ = (entrance - last_entrance_) / (next - last_field_);
+      last_entrance_ = entrance;
       last_v_ = *v;
       last_field_ = next;
       step = std::min(2 * step, step_);

@@ -4,6 +4,7 @@
 
 #include <petzval/trace/tracer.h>
 
+#include <array>
 #include <optional>
 
 namespace petzval {
@@ -28,10 +29,23 @@ class Pencil {
   static Pencil from_image(const Tracer& tracer, double image_height_mm);
 
   /// The ray (u, v), at its object point, on its launch plane, or at its image point; nothing where u² + v² ≥
-  /// 1 for direction cosines.
+  /// 1 for direction cosines. From an object point more than 100 m away it starts where it is nearest to
+  /// vertex 1, its path counted from the sphere about the object point through vertex 1: differences of paths
+  /// keep their digits.
   std::optional<Ray> ray(double u, double v) const;
+  /// The object or image point; infinitely far in front of the lens for parallel rays.
+  std::array<double, 3> point_mm() const;
   bool backward() const { return kind_ == Kind::image_point; }
   bool object_at_infinity() const { return kind_ == Kind::parallel; }
+
+  /// Where on the plane through vertex 1 the ray (0, v) of an object point goes [mm], and back: as the object
+  /// goes away, rays through the same part of the lens keep their place there, while their v draw together.
+  /// Of other pencils v itself.
+  double entrance_mm(double v) const;
+  double v_through(double entrance_mm) const;
+  /// What heights at the stop may be off by [mm], of object points that are far away: the digits of v are
+  /// steps where the lens stands.
+  double rounding_mm() const;
 
   /// The ray traced through the whole lens, and by how much it clears the apertures; a ray that does not
   /// exist is +infinity outside.
@@ -51,6 +65,8 @@ struct LabelRange {
   double low, high;
 };
 LabelRange label_range(const Tracer& tracer, const Pencil& pencil);
+/// A difference of labels for slopes at the stop: far smaller than the pupil, far larger than rounding.
+double label_nudge(const Tracer& tracer, const Pencil& pencil);
 
 /// Finds the v of the chief ray of a pencil: the meridional ray through the centre of the real stop surface.
 /// Newton from `guess`, with a scan of the whole pencil when that fails; among several solutions the one
@@ -59,7 +75,8 @@ std::optional<double> aim_chief_ray(const Tracer& tracer, const Pencil& pencil, 
 
 /// Marches from the axis outwards to a field, chief ray after chief ray; for wide-angle lenses, whose pupil
 /// wanders too far for the paraxial guess. Every step predicts the next chief ray from the last two, and is
-/// halved until the predicted ray crosses the stop inside its rim: so the branch that begins on the axis is
+/// halved until the predicted ray crosses the stop inside its rim (predictions are places on the plane
+/// through vertex 1, which an object's distance hardly changes): so the branch that begins on the axis is
 /// never left for another, and where it ends there is no chief ray. Fields may be asked in any order; near
 /// the last one is cheapest.
 class ChiefRayMarch {
@@ -78,7 +95,7 @@ class ChiefRayMarch {
   const Lens& lens_;
   const Tracer& tracer_;
   From from_;
-  double step_, last_field_ = 0, last_v_ = 0, slope_ = 0;
+  double step_, last_field_ = 0, last_v_ = 0, last_entrance_ = 0, slope_ = 0;
 };
 
 }  // namespace petzval

@@ -35,7 +35,7 @@ class PupilSearch {
 
   /// How far from the chief ray, in v, the rim of the stop lies to first order.
   double stop_scale(double chief_v) const {
-    const double nudge = 1e-6 * std::max(1e-3, std::abs(chief_v));
+    const double nudge = std::min(1e-6 * std::max(1e-3, std::abs(chief_v)), label_nudge(tracer_, pencil_));
     const auto above = pencil_.clearance(tracer_, 0, chief_v + nudge, Tracer::Clip::none);
     const auto below = pencil_.clearance(tracer_, 0, chief_v - nudge, Tracer::Clip::none);
     const double slope = (above.stop_y_mm - below.stop_y_mm) / (2 * nudge);

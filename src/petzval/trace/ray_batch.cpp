@@ -23,14 +23,15 @@ void RayBatch::resize(std::size_t count) {
   failed_at.resize(count, -1);
 }
 
-void RayBatch::push_back(double x, double y, double z, double dir_l, double dir_m, double dir_n) {
+void RayBatch::push_back(double x, double y, double z, double dir_l, double dir_m, double dir_n,
+                         double path_mm) {
   x_mm.push_back(x);
   y_mm.push_back(y);
   z_mm.push_back(z);
   l.push_back(dir_l);
   m.push_back(dir_m);
   n.push_back(dir_n);
-  opl_mm.push_back(0);
+  opl_mm.push_back(path_mm);
   status.push_back(RayStatus::ok);
   failed_at.push_back(-1);
 }

@@ -26,7 +26,7 @@ struct RayBatch {
   explicit RayBatch(std::size_t count) { resize(count); }
   std::size_t size() const { return x_mm.size(); }
   void resize(std::size_t count);
-  void push_back(double x, double y, double z, double dir_l, double dir_m, double dir_n);
+  void push_back(double x, double y, double z, double dir_l, double dir_m, double dir_n, double path_mm = 0);
 };
 
 }  // namespace petzval

@@ -27,13 +27,14 @@ std::optional<Point> at_stop(const Tracer& tracer, const Pencil& pencil, const P
 std::optional<Point> aim(const Tracer& tracer, const Pencil& pencil, const Point& wanted, Point label,
                          double scale) {
   const double nudge = nudge_per_scale * scale;
+  const double close = std::max(corner_tolerance * tracer.stop_radius_mm(), pencil.rounding_mm());
   for (int step = 0; step < most_steps; ++step) {
     const auto here = at_stop(tracer, pencil, label);
     const auto right = at_stop(tracer, pencil, {label[0] + nudge, label[1]});
     const auto above = at_stop(tracer, pencil, {label[0], label[1] + nudge});
     if (!here || !right || !above) return {};
     const double miss_x = wanted[0] - (*here)[0], miss_y = wanted[1] - (*here)[1];
-    if (std::hypot(miss_x, miss_y) < corner_tolerance * tracer.stop_radius_mm()) return label;
+    if (std::hypot(miss_x, miss_y) < close) return label;
     const double xu = ((*right)[0] - (*here)[0]) / nudge, yu = ((*right)[1] - (*here)[1]) / nudge;
     const double xv = ((*above)[0] - (*here)[0]) / nudge, yv = ((*above)[1] - (*here)[1]) / nudge;
     const double area = xu * yv - xv * yu;
