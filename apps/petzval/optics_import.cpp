@@ -4,6 +4,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/optics/formats/iset_mat_table.h>
 #include <petzval/optics/formats/measured.h>
@@ -61,10 +62,8 @@ PsfLie lie_of(const ImportCommand& command) {
 /// Complaints of the conversion do not know the file.
 template <typename File>
 ImportedTable converted(const File& file, const ImportCommand& command) {
-  RayTraceReading reading = command.reading;
-  if (command.relative_illumination == "source") reading.illumination = RayTraceReading::Illumination::source;
   try {
-    ImportedTable imported = table_of(file.data, reading);
+    ImportedTable imported = table_of(file.data, command.reading);
     imported.notes.insert(imported.notes.begin(), file.notes.begin(), file.notes.end());
     return imported;
   } catch (const InputError& error) {
@@ -76,11 +75,34 @@ MeasuredFile read_measurement(const ImportCommand& command) {
   constexpr std::size_t most_bytes = std::size_t{1} << 30;
   const std::string text = read_whole_file(command.path, most_bytes);
   const std::string curves = command.curves.empty() ? "" : read_whole_file(command.curves, most_bytes);
+  if (!command.curves.empty() && curves.empty())
+    throw InputError(
+        command.curves,
+        "is empty; columns field_mm and paraxial_height_mm or relative_illumination would be right");
   return read_measured(text, command.path, curves, command.curves, command.measured);
+}
+
+/// Refuses options that say nothing of this kind of file, and numbers that no lens has.
+void check(const ImportCommand& command, const std::string& kind) {
+  const auto refuse = [&](bool given, const char* options, const char* of) {
+    if (given)
+      throw InputError(command.path, fmt::format("{} have no meaning for it; they are for {}", options, of));
+  };
+  refuse(kind != "measured" && (!command.curves.empty() || command.measured.clip_negative),
+         "--curves and --clip-negative", "measurements (.csv)");
+  refuse((kind == "measured" || kind == "hdf5") && (!command.away.empty() || !command.centre.empty()),
+         "--psf-away and --psf-centre", "PSFs of ISET, Zemax and CODE V");
+  refuse(kind == "hdf5" && command.reading.says_something(),
+         "--g-axis, --relative-illumination and --vertex-to-sensor", "files that do not say it themselves");
+  if (command.reading.g_axis_sr.value_or(0) > pi)
+    throw InputError(fmt::format(
+        "--g-axis {:g}: up to π = {:.4f} sr would be right; a whole hemisphere of light gives no more",
+        *command.reading.g_axis_sr, pi));
 }
 
 ImportedTable read(const ImportCommand& command) {
   const std::string kind = command.from == "auto" ? kind_of(command.path) : command.from;
+  check(command, kind);
   if (kind == "hdf5") return {read_table(command.path, TableOrigin::elsewhere), {}};
   if (kind == "iset") return converted(read_iset_mat_table(command.path, lie_of(command)), command);
   if (kind == "measured") return converted(read_measurement(command), command);
@@ -88,7 +110,9 @@ ImportedTable read(const ImportCommand& command) {
   return converted(read_zemax_table(command.path, program, lie_of(command)), command);
 }
 
-void import(const ImportCommand& command, const Shared& shared) {
+void import(ImportCommand command, const Shared& shared) {
+  if (command.relative_illumination == "source")
+    command.reading.illumination = RayTraceReading::Illumination::source;
   const ImportedTable imported = read(command);
   for (const std::string& text : imported.notes) note(shared, fmt::format("{}: {}", command.path, text));
   write_table(imported.table, command.output);
@@ -110,8 +134,10 @@ void add_ray_trace_options(CLI::App& command, ImportCommand& options) {
                   "What it is of: a uniform wall (sensor), or an object point before the blur (source)")
       ->check(CLI::IsMember({"sensor", "source"}))
       ->capture_default_str();
-  command.add_option("--vertex-to-sensor", options.reading.vertex_to_sensor_mm,
-                     "Length of the lens, from its first vertex to the sensor [mm]");
+  command
+      .add_option("--vertex-to-sensor", options.reading.vertex_to_sensor_mm,
+                  "Length of the lens, from its first vertex to the sensor [mm]")
+      ->check(positive_number());
 }
 
 void add_measured_options(CLI::App& command, ImportCommand& options) {

@@ -245,6 +245,20 @@ class Zemax(Exchange):
         self.assertEqual(self.contents()["w.h5"], self.contents()["z.h5"])
 
 
+    def test_illumination_in_per_cent_or_relative_to_the_brightest_field(self):
+        """CODE V prints per cent; other programs divide by the brightest field. The picture is the same."""
+        iset_files.write_zemax(self.folder / "z")
+        path = self.folder / "z" / "CLOSED_RI_.dat"
+        rows = np.loadtxt(path)
+        self.assert_succeeds("optics", "import", "z", "-o", "native.h5")
+        for factor, words in ((100, "per cent"), (0.9, "is 0.9 on the axis")):
+            np.savetxt(path, factor * rows, fmt="%.12E")
+            done = self.petzval("optics", "import", "z", "-o", "z.h5")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assert_same_picture("z.h5", 1e-6)  # pictures are single precision
+
+
 class Refusals(Exchange):
     def spoil(self, change):
         trace = iset_files.ray_trace()
@@ -273,6 +287,12 @@ class Refusals(Exchange):
                 (lambda t: t["relIllum"].update(function=math.nan * t["relIllum"]["function"]), ["nan"]),
                 (lambda t: t.update(fNumber=math.nan), ["--g-axis"]),
                 (lambda t: t.update(effectiveFocalLength=0.0), ["focal length"]),
+                (lambda t: t.update(effectiveFocalLength=-8.0), ["focal length is -8 mm"]),
+                (lambda t: t.pop("fNumber"), ["does not say the f-number"]),
+                (lambda t: t.update(objectDistance=-100.0), ["object distance is -100 mm"]),
+                (lambda t: [t[axes].update(wavelength=[[0.5], [0.6]]) for axes in ("geometry", "relIllum", "psf")],
+                 ["0.5 µm are 500 nm"]),
+                (lambda t: t["relIllum"].update(function=[[1, 1]] + 12 * [[50, 50]]), ["π"]),
                 (lambda t: t.update(petzval="{"), ["kept"]),
         ):
             with self.subTest(words=words):
@@ -332,7 +352,13 @@ class Refusals(Exchange):
         self.assert_refused("optics", "export", "native.h5", "--to", "oslo", "-o", "t", words=["oslo"])
         self.assert_refused("optics", "import", "native.h5", "--from", "iset", "-o", "t.h5", words=["native.h5", "MAT"])
         self.write("a.mat", b"")
-        for option, value in (("--psf-away", "north"), ("--psf-centre", "3"), ("--g-axis", "-1")):
+        self.assert_refused("optics", "import", "nowhere.h5", "-o", "t.h5", words=["nowhere.h5", "no such file"])
+        self.assert_refused("optics", "import", "a.mat", "--curves", "nowhere.csv", "-o", "t.h5", words=["--curves"])
+        self.assert_refused("optics", "import", "a.mat", "--clip-negative", "-o", "t.h5", words=["--clip-negative"])
+        self.assert_refused("optics", "import", "native.h5", "--g-axis", "0.1", "-o", "t.h5", words=["--g-axis"])
+        self.assert_refused("optics", "import", "a.csv", "--psf-away", "up", "-o", "t.h5", words=["--psf-away"])
+        for option, value in (("--psf-away", "north"), ("--psf-centre", "3"), ("--g-axis", "-1"), ("--g-axis", "3.2"),
+                              ("--vertex-to-sensor", "-3")):
             self.assert_refused("optics", "import", "a.mat", option, value, "-o", "t.h5", words=[option[2:5]])
 
 

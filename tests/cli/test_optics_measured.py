@@ -163,7 +163,11 @@ class Refusals(Measured):
                 (psf_csv([(f, w, x + 1e3, y, v) for f, w, x, y, v in good]), ["too many"]),
                 (psf_csv([(f, w, x, y, 0) for f, w, x, y, v in good]), ["no light"]),
                 (psf_csv([(f, w, x, y, math.nan) for f, w, x, y, v in good]), [":5", "value", "nan"]),
-                (psf_csv(good).replace("value", "light"), ["no column value"]),
+                (psf_csv(good).replace("value", "light"), ["bad.csv: has no column value"]),
+                (mtf_csv(contrast).replace("tangential", "radial"), ["bad.csv: has no column tangential"]),
+                (psf_csv([(f, 0.55, x, y, v) for f, w, x, y, v in good]), ["0.55 µm are 550 nm"]),
+                (psf_csv(good, HEAD.replace("f_number", "number")), ["does not say the f-number"]),
+                (psf_csv(good, HEAD + "# object_distance_mm: -100\n"), ["object distance is -100 mm"]),
                 (psf_csv(good) + "0,550,1\n", [":23", "3 values"]),
                 (mtf_csv(contrast[::2]), ["two frequencies"]),
                 (mtf_csv([(f, w, c, 1.2, s) for f, w, c, t, s in contrast]), ["1.2", "10 cycles/mm"]),
@@ -173,7 +177,7 @@ class Refusals(Measured):
                 self.write("bad.csv", text)
                 self.assert_refused("optics", "import", "bad.csv", "-o", "x.h5", words=["bad.csv", *words])
         self.write("good.csv", psf_csv(good))
-        for text, words in (("field_mm,x\n0,1\n", ["relative_illumination"]),
+        for text, words in (("", ["curves.csv", "is empty"]), ("field_mm,x\n0,1\n", ["relative_illumination"]),
                             ("field_mm,relative_illumination\n0,1\n0.5,1\n", ["0 to 1"]),
                             ("field_mm,relative_illumination\n0,1\n2,1\n1,1\n", ["curves.csv"])):
             with self.subTest(words=words):

@@ -32,6 +32,8 @@ TEST(LensDataTable, NamesWhatIsWrong) {
       {"real_image_height_mm", [&](LensDataTable& t) { t.real_image_height_mm[5] = nan; }},
       {"g_source_sr", [&](LensDataTable& t) { t.g_source_sr[5] = INFINITY; }},
       {"g_sensor_sr", [](LensDataTable& t) { t.g_sensor_sr[5] = -1e-9; }},
+      {"from the whole hemisphere", [](LensDataTable& t) { t.g_sensor_sr[5] = 3.15; }},
+      {"from the whole hemisphere", [](LensDataTable& t) { t.g_source_sr[5] = 22; }},
       {"need 42", [](LensDataTable& t) { t.g_sensor_sr.pop_back(); }},
       {"no light of 600 nm", [](LensDataTable& t) { t.g_source_sr[1] = 0; }},
       {"does not rise", [](LensDataTable& t) { t.real_image_height_mm[12] = t.real_image_height_mm[10]; }},
@@ -56,6 +58,17 @@ TEST(LensDataTable, NamesWhatIsWrong) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   }
+}
+
+/// Oil or glass before the sensor holds n'² times the light of air.
+TEST(LensDataTable, AcceptsWhatOnlyAnImmersedLensGives) {
+  LensDataTable table = analytic_table();
+  table.g_sensor_sr[0] = 1.4 * 1.4 * pi;
+  EXPECT_THROW(table.validate(), InputError);
+  table.first_order.image_space_na = 1.4;
+  EXPECT_NO_THROW(table.validate());
+  table.lens_json.clear();  // the number is all that says so
+  EXPECT_THROW(table.validate(), InputError);
 }
 
 TEST(LensDataTable, KnowsTheTangentOfItsFields) {

@@ -42,6 +42,27 @@ void require_values(const LensDataTable& table, const std::vector<double>& value
                          table.wavelengths_nm[i % table.wavelengths_nm.size()], values[i]));
 }
 
+/// Illumination that a lens can give. Light from every direction makes g_sensor π n'², n' the index in front
+/// of the sensor: air, unless the aperture of a prescription says that there is something denser. g_source
+/// exceeds it where blur spreads the image, which it does at most twice each way (source_from_sensor()).
+void require_possible_light(const LensDataTable& table) {
+  constexpr double rounding = 1e-6, densest = 4 /* germanium */, widest_spread = 4;
+  const double na = table.first_order.image_space_na;
+  const bool immersed = !table.lens_json.empty() && na > 1 && na < densest;
+  const double most = (1 + rounding) * pi * (immersed ? densest * densest : 1);
+  const auto require = [&](const std::vector<double>& values, double limit, const char* name) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i] > limit)
+        refuse(
+            fmt::format("{} of field {} at {} nm is {:.4g} sr; the most that a lens in air gives is π, light "
+                        "from the whole hemisphere",
+                        name, table.fields[i / table.wavelengths_nm.size()],
+                        table.wavelengths_nm[i % table.wavelengths_nm.size()], values[i]));
+  };
+  require(table.g_sensor_sr, most, "g_sensor_sr");
+  require(table.g_source_sr, widest_spread * most, "g_source_sr");
+}
+
 /// The axis has an image, or there is nothing to be relative to.
 void require_light_on_axis(const LensDataTable& table) {
   for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
@@ -118,6 +139,7 @@ void LensDataTable::validate() const {
   require_values(*this, g_source_sr, "g_source_sr");
   require_values(*this, g_sensor_sr, "g_sensor_sr");
   require_light_on_axis(*this);
+  require_possible_light(*this);
   require_rising_heights(*this);
   require_psfs(*this);
 }

@@ -42,7 +42,8 @@ struct LensDataTable {
   /// Tangent of the object angle, seen from vertex 1's plane at the object distance (finite: h / distance),
   /// of a field value.
   double field_tangent(double field) const;
-  /// \throws InputError unless sizes agree, axes increase, heights increase with field and nothing is NaN.
+  /// \throws InputError unless sizes agree, axes increase, heights increase with field, nothing is NaN or
+  /// negative and no more light arrives than a hemisphere holds (π sr).
   void validate() const;
 };
 

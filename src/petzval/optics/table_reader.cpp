@@ -10,6 +10,7 @@
 #include <petzval/scene/formats/hdf5_handle.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -33,6 +34,8 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 class TableFile {
  public:
   explicit TableFile(const std::string& path) : path_(path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) refuse("no such file");
     if (H5Fis_hdf5(path.c_str()) <= 0)
       refuse("is not an HDF5 file; petzval optics build makes lens data tables");
     file_ = {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose};

@@ -81,6 +81,10 @@ MeasuredMtf measured_mtf(const NumberColumns& file, std::vector<std::size_t> row
 void take_psfs(const NumberColumns& file, const Entries& entries, const MeasuredOptions& options,
                MeasuredFile& measured) {
   const bool mtfs = file.has("frequency_cpmm");
+  // What is missing altogether is missing from no measurement in particular.
+  for (const char* column :
+       mtfs ? std::vector{"tangential", "sagittal"} : std::vector{"x_mm", "y_mm", "value"})
+    file.column(column);
   MtfPsf worst;
   std::string worst_name;
   for (std::size_t i = 0; i < entries.rows.size(); ++i) try {

@@ -4,7 +4,9 @@
 #include <petzval/base/units.h>
 #include <petzval/numeric/interpolation.h>
 #include <petzval/optics/formats/kept_beside.h>
+#include <petzval/optics/formats/ray_trace_checks.h>
 #include <petzval/optics/formats/ray_trace_data.h>
+#include <petzval/optics/formats/relative_illumination.h>
 #include <petzval/optics/irradiance_formula.h>
 #include <petzval/optics/table_layout.h>
 
@@ -15,8 +17,6 @@ namespace petzval {
 
 namespace {
 
-/// Zemax writes 10^10 mm for infinity.
-constexpr double infinity_mm = 1e9;
 /// Two numbers of which one went through a file and a division or two.
 constexpr double rounding = 1e-12;
 
@@ -29,45 +29,12 @@ bool agree(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return agree(x, y); });
 }
 
-bool is_finite_object(const RayTraceData& data) {
-  return data.object_distance_mm < infinity_mm && data.magnification != 0;
-}
-
 /// Paraxial image height of an object field and back; `scale_mm` is |efl| for fields in degrees, |m| for mm.
 double height_of_field(bool finite_object, double scale, double field) {
   return finite_object ? scale * field : scale * std::tan(radians(field));
 }
 double field_of_height(bool finite_object, double scale, double height_mm) {
   return finite_object ? height_mm / scale : degrees(std::atan(height_mm / scale));
-}
-
-double scale_of(bool finite_object, double efl_mm, double magnification) {
-  const double scale = std::abs(finite_object ? magnification : efl_mm);
-  if (!(std::isfinite(scale) && scale > 0))
-    throw InputError(fmt::format(
-        "the {} is {}: without it paraxial image heights and object fields cannot be "
-        "turned into each other",
-        finite_object ? "magnification" : "focal length", finite_object ? magnification : efl_mm));
-  return scale;
-}
-
-void require_size(std::size_t size, std::size_t expected, const RayTraceData& data, const char* what) {
-  if (size != expected)
-    throw InputError(fmt::format("{} has {} values; {} field heights × {} wavelengths need {}", what, size,
-                                 data.field_height_mm.size(), data.wavelengths_nm.size(), expected));
-}
-
-void require_whole(const RayTraceData& data) {
-  const std::size_t expected = data.field_height_mm.size() * data.wavelengths_nm.size();
-  if (expected == 0) throw InputError("there are no field heights or no wavelengths");
-  require_size(data.distorted_height_mm.size(), expected, data, "the geometry");
-  require_size(data.relative_illumination.size(), expected, data, "the relative illumination");
-  require_size(data.psf.size(), expected, data, "the list of PSFs");
-  if (!data.transmittance.empty() && data.transmittance.size() != data.wavelengths_nm.size())
-    throw InputError("the transmittance has another number of wavelengths");
-  for (const double height : data.field_height_mm)
-    if (!(std::isfinite(height) && height >= 0))
-      throw InputError(fmt::format("a field height is {} mm; heights are finite and start at 0", height));
 }
 
 FirstOrder first_order_of(const RayTraceData& data, bool finite_object) {
@@ -89,9 +56,11 @@ double g_axis_sr(const RayTraceData& data, const RayTraceReading& reading, bool 
                  std::vector<std::string>& notes) {
   if (reading.g_axis_sr) return *reading.g_axis_sr;
   const double n = data.f_number, m = finite_object ? std::abs(data.magnification) : 0;
+  if (std::isnan(n))
+    throw InputError("does not say the f-number: without it the level of the light must be given (--g-axis)");
   if (!(std::isfinite(n) && n > 0))
-    throw InputError(
-        fmt::format("the f-number is {}: without it the level of the light must be given (--g-axis)", n));
+    throw InputError(fmt::format(
+        "the f-number is {:g}: a positive one, or the level of the light (--g-axis), would be right", n));
   const double g = iset_irradiance_sr(n, m);
   notes.push_back(
       fmt::format("the file says nothing of the level of the light: g_sensor on the axis is taken as "
@@ -196,17 +165,28 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
   require_whole(data);
   ImportedTable imported;
   if (!data.kept.empty()) {
-    if (std::optional<LensDataTable> table = table_as_kept(data)) return {*std::move(table), {}};
+    if (std::optional<LensDataTable> table = table_as_kept(data)) {
+      if (reading.says_something())
+        imported.notes.push_back(
+            "the file holds the table that Petzval made it of, which is taken as it was: the level of the "
+            "light, the kind of the illumination and the length of the lens are in it, and --g-axis, "
+            "--relative-illumination and --vertex-to-sensor have no effect");
+      return {*std::move(table), std::move(imported.notes)};
+    }
     imported.notes.push_back(
         "the file was altered since Petzval wrote it: what Petzval had kept beside it is left aside");
   }
   LensDataTable& table = imported.table;
-  const bool finite = is_finite_object(data);
-  const double scale = scale_of(finite, data.effective_focal_length_mm, data.magnification);
+  const bool finite = has_finite_object(data, imported.notes);
+  const double scale = height_scale(finite, data.effective_focal_length_mm, data.magnification);
   table.lens_name = data.lens_file;
   table.provenance =
       fmt::format("imported from data of {}", data.program.empty() ? "an unknown program" : data.program);
   if (finite) table.object_distance_mm = data.object_distance_mm;
+  if (!finite && data.effective_focal_length_mm < 0)
+    throw InputError(fmt::format(
+        "the focal length is {:g} mm: light from infinity comes to a real image where it is positive",
+        data.effective_focal_length_mm));
   table.vertex_to_sensor_mm = reading.vertex_to_sensor_mm;
   table.first_order = first_order_of(data, finite);
   for (const double height : data.field_height_mm)
@@ -215,9 +195,13 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
   table.real_image_height_mm = data.distorted_height_mm;
   table.psf = data.psf;
   const double axis = g_axis_sr(data, reading, finite, imported.notes);
-  for (std::size_t i = 0; i < data.relative_illumination.size(); ++i) {
+  std::vector<double> relative = data.relative_illumination;
+  take_per_cent(relative, data.wavelengths_nm.size(), imported.notes);
+  if (reading.illumination == RayTraceReading::Illumination::sensor)
+    make_relative_to_axis(relative, data.wavelengths_nm.size(), imported.notes);
+  for (std::size_t i = 0; i < relative.size(); ++i) {
     const double passes = data.transmittance.empty() ? 1 : data.transmittance[i % data.wavelengths_nm.size()];
-    table.g_sensor_sr.push_back(axis * passes * data.relative_illumination[i]);
+    table.g_sensor_sr.push_back(axis * passes * relative[i]);
   }
   table.g_source_sr = table.g_sensor_sr;
   table.validate();
@@ -236,7 +220,7 @@ RayTraceData ray_trace_data(const LensDataTable& table) {
   table.validate();
   const FirstOrder& first = table.first_order;
   const bool finite = table.finite_object();
-  const double scale = scale_of(finite, first.efl_mm, first.magnification);
+  const double scale = height_scale(finite, first.efl_mm, first.magnification);
   for (const Psf& psf : table.psf)
     if (psf.spacing_um != table.psf.front().spacing_um)
       throw InputError(

@@ -29,7 +29,7 @@ struct RayTraceData {
   std::vector<double> field_height_mm;  ///< paraxial image height, from 0, increasing
   std::vector<double> wavelengths_nm;
   std::vector<double> distorted_height_mm;    ///< of the real chief ray
-  std::vector<double> relative_illumination;  ///< 1 on the axis
+  std::vector<double> relative_illumination;  ///< as in the file, per cent too
   std::vector<Psf> psf;
   std::vector<double> transmittance;  ///< of the lens, by wavelength; empty: 1
   /// What Petzval keeps beside it (kept_beside()); empty in files of others.
@@ -45,6 +45,10 @@ struct RayTraceReading {
   enum class Illumination { sensor, source } illumination = Illumination::sensor;
   /// Vertex 1 to the sensor. A finite object's distance from the sensor needs it.
   double vertex_to_sensor_mm = 0;
+
+  bool says_something() const {
+    return g_axis_sr || illumination != Illumination::sensor || vertex_to_sensor_mm != 0;
+  }
 };
 
 struct ImportedTable {
@@ -53,8 +57,9 @@ struct ImportedTable {
 };
 
 /// The table, valid. Object fields follow from paraxial image heights by focal length or magnification. With
-/// `kept` that agrees with the rest, the table is what it was made from, bit for bit.
-/// \throws InputError saying what is missing or wrong.
+/// `kept` that agrees with the rest, the table is what it was made from, bit for bit. Of relative
+/// illumination per cent become shares, and that of a wall becomes 1 on the axis. \throws InputError saying
+/// what is missing or wrong.
 ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading = {});
 
 /// The structure of a table. \throws InputError for a table that it cannot hold: PSFs on several grids
