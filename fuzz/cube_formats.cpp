@@ -24,7 +24,7 @@ CubeOptions answers_for(const SpectralCube& cube) {
   if (!cube.quantity) options.quantity = SceneQuantity::radiance;
   if (cube.quantity == SceneQuantity::reflectance) options.illuminant = Spectrum({100, 1e5}, {1, 1});
   if (cube.quantity == SceneQuantity::temperature) options.wavelengths_nm = {9000, 11000};
-  options.thermal.temperature_k = 300;
+  if (cube.quantity != SceneQuantity::temperature) options.thermal.temperature_k = 300;
   if (!cube.horizontal_angle_deg) options.horizontal_angle_deg = 20;
   if (cube.wavelengths_nm.empty() && cube.quantity != SceneQuantity::temperature)
     for (int band = 0; band < cube.bands; ++band) options.file_bands_nm.push_back(400.0 + band);

@@ -31,6 +31,7 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
 
   ProgressBar bar(!shared.quiet);
   auto [scene, table, depth] = read_source(choice, wanted, bar.callback(), shared);
+  choice.scene.print_notes(scene, shared);
   const SensorGeometry frame = fit_to_each_other(choice, options, scene, table, depth, wanted, shared);
   check_depth(scene, depth.has_value(), choice.depth, shared);
 

@@ -113,11 +113,11 @@ void write_scene_picture(const std::string& path, const Scene& scene) {
 }
 
 void convert_scene(const SceneChoice& choice, const std::string& out, bool depth, const Shared& shared) {
-  if (depth) return write_depth(out, choice.read(), shared);
+  if (depth) return write_depth(out, choice.read(shared), shared);
   const std::string extension = extension_of(out);
   if (extension != ".exr" && extension != ".png")
     throw InputError(out, "a scene is written as .exr or, to look at, .png");
-  const Scene scene = choice.read();
+  const Scene scene = choice.read(shared);
   if (extension == ".exr")
     write_scene_exr(out, scene);
   else
@@ -137,7 +137,7 @@ void add_scene_commands(CLI::App& app, Shared& shared) {
   info->add_to(*add_command(*scene, shared, "info", "Say what a scene is", "petzval scene info studio --json",
                             true, [&shared, info] {
                               const ThreadLimit limit(shared.threads);
-                              const Scene read = info->read();
+                              const Scene read = info->read(shared);
                               if (shared.json) return fmt::print("{}\n", facts(read).dump(2));
                               print_facts(read);
                             }));

@@ -122,6 +122,16 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   return options;
 }
 
+Scene SceneChoice::read(const Shared& shared) const {
+  Scene scene = read();
+  print_notes(scene, shared);
+  return scene;
+}
+
+void SceneChoice::print_notes(const Scene& scene, const Shared& shared) const {
+  for (const std::string& text : scene.notes) note(shared, fmt::format("{}: {}", path_or_name, text));
+}
+
 void SceneChoice::take_panorama(SceneOptions& options) const {
   const auto angle_of = [](const char* option, const std::string& text) {
     const std::optional<double> value = text.empty() ? std::optional(0.0) : whole_text<double>(text);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "cli11.h"
+#include "command.h"
 
 namespace petzval::app {
 
@@ -30,6 +30,9 @@ struct SceneChoice {
   SceneOptions options(SceneOptions defaults = {}) const;
   /// Reads the scene with these options.
   Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
+  /// Reads it and prints its notes.
+  Scene read(const Shared& shared) const;
+  void print_notes(const Scene& scene, const Shared& shared) const;
   /// Whether the scene is a chart, which can be made in any size.
   bool is_chart() const { return is_builtin_scene(path_or_name); }
   /// Whether it is a chart that has depth of its own.

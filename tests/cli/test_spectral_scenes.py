@@ -112,6 +112,39 @@ class SpectralScenes(petzval_cli.ProgramTest):
         self.assertAlmostEqual(facts["min_radiance"] / facts["max_radiance"], 0.5, delta=1e-6)
         self.assertAlmostEqual(facts["mean_luminance_cd_m2"], 100, delta=1e-3)
 
+    def test_what_openexr_files_leave_open_is_said(self):
+        """The channels are renamed and an attribute called otherwise, byte by byte."""
+        whole = sample_files.spectral_exr(3, 2, [450, 550], self.number)
+        ask = ("scene", "info", "s.exr", "--scene-angle", 10)
+
+        def notes(content, *options):
+            self.write("s.exr", content)
+            done = self.petzval(*ask, *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stderr
+
+        self.assertEqual(notes(whole), "")
+        unsaid = whole.replace(b"emissiveUnits", b"somethingElse")
+        self.assertIn("s.exr: does not say the unit", notes(unsaid))
+        self.assertEqual(notes(unsaid, "--quiet"), "")
+        self.assertEqual(notes(unsaid, "--scene-unit", "W.m^-2.sr^-1.nm^-1"), "")
+        both = whole.replace(b"S0.550,000000nm", b"T.550,0000000nm")
+        self.assertIn("the light is taken", notes(both))
+        self.assertEqual(self.values(*ask[2:])["wavelengths_nm"], [450])
+
+    def test_reflectances_in_per_cent(self):
+        """numpy's mean of a cube in per cent is 1 to 100; 1 is a perfect white."""
+        self.write("r.npy", spectral_files.npy((1, 2, 1), [80, 20]))
+        ask = ("r.npy", "--scene-quantity", "reflectance", "--scene-bands", 550, "--illuminant", "D65", "--scene-angle", 20)
+        self.assert_refused("scene", "info", *ask, words=["r.npy", "up to 80", "--scene-scale 0.01"])
+        self.assert_refused("image", *ask, "--lens", "edmund-54852", "--sensor", "4x4@6", "-o", "r.png", words=["up to 80"])
+        done = self.petzval("scene", "info", *ask, "--scene-scale", 0.01)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("100 cd/m2", done.stderr)
+        done = self.petzval("image", *ask, "--scene-scale", 0.01, "--lens", "edmund-54852", "--sensor", "4x4@6", "--method",
+                            "none", "--surround", "zero", "-o", "light.npy")
+        self.assertIn("r.npy: reflectances have no level of light", done.stderr)
+
     def test_envi_bad_bands_and_numbers_without_meaning(self):
         header, data = spectral_files.envi(3, 2, 4, lambda y, x, b: -9999 if b == 1 else self.number(y, x, b - (b > 1)),
                                            wavelength=[450, 500, 550, 650], bbl=[1, 0, 1, 1])

@@ -189,6 +189,7 @@ Scene Scene::resampled(std::span<const double> wavelengths_nm) const {
     result.illuminant = petzval::resampled(*illuminant, wavelengths_nm);  // as the radiance of a white is
   result.depth_m = depth_m;
   result.depth_from = depth_from;
+  result.notes = notes;
   parallel_for(resampling.bands(), [&](std::size_t index) {
     const std::span<float> out = result.band(static_cast<int>(index));
     constexpr std::size_t block = 1 << 16;

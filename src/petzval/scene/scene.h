@@ -106,6 +106,8 @@ class Scene {
   /// Empty, or rows·columns distances, row-major. Infinity and 0: nothing is there, at any distance.
   std::vector<float> depth_m;
   DepthFrom depth_from = DepthFrom::sensor;
+  /// What had to be assumed of a file, or looks like a mistake: a line each, for whoever asked for the scene.
+  std::vector<std::string> notes;
 
   /// Calls work(band, its radiance) for every band, one after the other, and gives the memory of each back.
   template <typename Work>

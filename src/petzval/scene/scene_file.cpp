@@ -105,6 +105,7 @@ CubeOptions cube_options(const SceneOptions& options) {
   if (!options.illuminant.empty()) cube.illuminant = illuminant(options.illuminant);
   cube.thermal = options.thermal;
   cube.negative_is_zero = options.negative_is_zero;
+  cube.level_follows = options.mean_luminance_cd_m2.has_value();
   return cube;
 }
 
@@ -198,11 +199,30 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
   return scene;
 }
 
+/// Says which bands have no light because the illuminant ends before them.
+void note_dark_bands(Scene& scene) {
+  if (!scene.illuminant) return;
+  std::vector<double> dark;
+  for (const double nm : scene.wavelengths_nm())
+    if (scene.illuminant->at(nm) == 0) dark.push_back(nm);
+  if (dark.empty()) return;
+  scene.notes.push_back(
+      fmt::format("the illuminant has no light in {} of the {} bands, {}: there the scene is dark",
+                  dark.size(), scene.bands(),
+                  dark.size() == 1 ? fmt::format("at {:g} nm", dark.front())
+                                   : fmt::format("{:g} to {:g} nm", dark.front(), dark.back())));
+}
+
+Scene finished(Scene scene, const SceneOptions& options) {
+  note_dark_bands(scene);
+  return with_depth(std::move(scene), options);
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
-  if (!options.panorama) return with_depth(read_plane(path_or_name, options), options);
+  if (!options.panorama) return finished(read_plane(path_or_name, options), options);
   if (options.horizontal_angle_deg)
     throw InputError(path_or_name, "is a panorama, 360 degrees wide; --scene-angle is for plane scenes");
   SceneOptions plane = options;
@@ -211,7 +231,7 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (!plane.distance_m) plane.distance_m = std::numeric_limits<double>::infinity();
   Scene scene = read_plane(path_or_name, plane);
   naming_file(path_or_name, [&] { scene.make_panorama(*options.panorama); });
-  return with_depth(std::move(scene), options);
+  return finished(std::move(scene), options);
 }
 
 bool is_builtin_scene(const std::string& path_or_name) {

@@ -14,6 +14,10 @@ namespace petzval {
 namespace {
 
 constexpr double reflectance_luminance_cd_m2 = 100;  // as of charts
+/// Measured reflectances exceed 1 by noise, by a reference that is not quite white, by glints.
+constexpr float usual_overshoot = 1.2F;
+/// Nothing in a scene is twice as bright as a perfect white, but per cent and counts are.
+constexpr float most_reflectance = 2;
 
 SceneQuantity quantity_of(const SpectralCube& cube, const CubeOptions& options) {
   if (options.quantity) return *options.quantity;
@@ -67,6 +71,10 @@ void check_light(const CubeOptions& options, SceneQuantity quantity, const std::
   } else if (quantity != SceneQuantity::radiance) {
     if (light) throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
     options.thermal.validate();
+    if (quantity == SceneQuantity::temperature && options.thermal.temperature_k)
+      throw InputError("is a map of temperatures; --scene-temperature is for emissivities");
+    if (quantity == SceneQuantity::emissivity && options.thermal.emissivity != 1)
+      throw InputError("holds emissivities; --scene-emissivity is for maps of temperatures");
     if (quantity == SceneQuantity::emissivity && !options.thermal.temperature_k)
       throw InputError(
           "holds emissivities; they need a temperature to shine: --scene-temperature 310, in kelvins, for "
@@ -74,14 +82,44 @@ void check_light(const CubeOptions& options, SceneQuantity quantity, const std::
   }
 }
 
+/// \param greatest  of all reflectances. \param scale  what the user has multiplied them by.
+void check_reflectances(Scene& scene, float greatest, double scale) {
+  if (greatest > most_reflectance) {
+    // A hundredth for per cent; for counts to 1,000, 10,000 … the power of ten that makes shares of them.
+    const double tens = std::max(2.0, std::ceil(std::log10(double{greatest / usual_overshoot})));
+    throw InputError(fmt::format(
+        "holds reflectances up to {:.4g}, where a perfect white has 1; --scene-scale {:.3g} would "
+        "be right for {}",
+        greatest, scale * std::pow(10, -tens), tens == 2 ? "per cent" : "counts"));
+  }
+  if (greatest > usual_overshoot)
+    scene.notes.push_back(fmt::format(
+        "holds reflectances up to {:.4g}, where a perfect white has 1: are they per cent, or counts? "
+        "(--scene-scale multiplies them)",
+        greatest));
+}
+
 /// Reflectance × illuminant.
-void put_under(Scene& scene, const Spectrum& illuminant) {
+void put_under(Scene& scene, const CubeOptions& options) {
+  const Spectrum& illuminant = *options.illuminant;
+  float greatest = 0;
   scene.for_each_band([&](std::size_t index, std::span<float> band) {
     const double factor = illuminant.at(scene.wavelengths_nm()[index]);
-    for (float& value : band) value = static_cast<float>(value * factor);
+    for (float& value : band) {
+      greatest = std::max(greatest, value);
+      value = static_cast<float>(value * factor);
+    }
   });
+  check_reflectances(scene, greatest, options.scale);
   scene.illuminant = illuminant;
-  if (scene.mean_luminance_cd_m2() > 0) scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
+  if (options.level_follows) return;
+  if (scene.mean_luminance_cd_m2() > 0) {
+    scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
+    scene.notes.push_back(
+        fmt::format("reflectances have no level of light: the scene is lit to a mean luminance of {:g} cd/m2 "
+                    "(--scene-luminance sets another)",
+                    reflectance_luminance_cd_m2));
+  }
 }
 
 double scale_of(const SpectralCube& cube, const CubeOptions& options) {
@@ -136,6 +174,7 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
           ? Scene(cube.columns, cube.rows, std::move(bands), angle, cube.distance_m)
           : Scene(cube.columns, cube.rows, std::move(bands), angle, cube.distance_m, std::move(cube.values));
   scene.name = cube.name;
+  scene.notes = std::move(cube.notes);
   scene.illuminant = cube.illuminant;
   scene.depth_m = std::move(cube.depth_m);
   scene.depth_from = cube.depth_from;
@@ -147,11 +186,14 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
   scene.validate();
   const std::string& unit = radiance_unit_of(cube, options);
   const double factor = quantity == SceneQuantity::radiance && !unit.empty() ? radiance_scale(unit) : 1;
+  if (quantity == SceneQuantity::radiance && unit.empty())
+    scene.notes.emplace_back(
+        "does not say the unit of its radiance: W.m^-2.sr^-1.nm^-1 is taken (--scene-unit sets another)");
   if (factor != 1)
     scene.for_each_band([factor](std::size_t, std::span<float> band) {
       for (float& value : band) value = static_cast<float>(value * factor);
     });
-  if (quantity == SceneQuantity::reflectance) put_under(scene, *options.illuminant);
+  if (quantity == SceneQuantity::reflectance) put_under(scene, options);
   if (quantity == SceneQuantity::radiance && options.illuminant) swap_illuminant(scene, *options.illuminant);
   if (quantity == SceneQuantity::emissivity) warm_emissivities(scene, options.thermal);
   return scene;

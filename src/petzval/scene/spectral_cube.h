@@ -37,6 +37,7 @@ struct SpectralCube {
   std::vector<float> depth_m;  ///< as Scene has it
   DepthFrom depth_from = DepthFrom::sensor;
   std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
+  std::vector<std::string> notes;        ///< as Scene has them
 
   std::size_t band_size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::span<float> plane(std::size_t index) { return values.all().subspan(index * band_size(), band_size()); }
@@ -56,15 +57,17 @@ struct CubeOptions {
   std::optional<Spectrum> illuminant;  ///< for reflectances, on any scale; swapped for that of a radiance
   ThermalOptions thermal;
   bool negative_is_zero = false;  ///< instead of an error
+  bool level_follows = false;     ///< somebody gives the scene a mean luminance: reflectances need none
 };
 
 /// Refuses what scene_of() would refuse whatever the values are: they need not be there yet.
 void check_cube(const SpectralCube& cube, const CubeOptions& options);
 
 /// Radiance is taken as it is; reflectance × illuminant is brought to a mean luminance of 100 cd/m² if it is
-/// visible; emissivities and temperatures shine by Planck's law. A temperature map has the wavelengths that
-/// are wanted, all others those of the file. \throws InputError for anything that is missing or does not fit,
-/// saying which option would help.
+/// visible, unless the level follows. Reflectances of more than 2 are per cent or counts, and refused; of
+/// more than 1.2, noted. Emissivities and temperatures shine by Planck's law. A temperature map has the
+/// wavelengths that are wanted, all others those of the file. \throws InputError for anything that is missing
+/// or does not fit, saying which option would help.
 Scene scene_of(SpectralCube cube, const CubeOptions& options);
 
 }  // namespace petzval

@@ -62,6 +62,14 @@ void warm_temperatures(Scene& scene, std::span<const float> temperatures_k, cons
   options.validate();
   check_values(temperatures_k, scene.columns(), "a temperature of", "kelvins above 0",
                [](float kelvin) { return is_temperature(kelvin); });
+  // Air is liquid below; it is what degrees Celsius look like when they are taken for kelvins.
+  constexpr float coldest_scene_k = 100;
+  const float warmest = *std::max_element(temperatures_k.begin(), temperatures_k.end());
+  if (warmest < coldest_scene_k)
+    scene.notes.push_back(
+        fmt::format("the warmest sample has {:g} K: temperatures are wanted in kelvins, which are degrees "
+                    "Celsius + 273.15",
+                    warmest));
   parallel_for(static_cast<std::size_t>(scene.bands()), [&](std::size_t index) {
     const std::span<float> band = scene.band(static_cast<int>(index));
     const double nm = scene.wavelengths_nm()[index];

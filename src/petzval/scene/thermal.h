@@ -29,7 +29,8 @@ double thermal_radiance(double wavelength_nm, double temperature_k, double emiss
 /// \throws InputError for an emissivity outside 0 to 1, or no temperature.
 void warm_emissivities(Scene& scene, const ThermalOptions& options);
 
-/// Fills all bands with the radiance of surfaces of options.emissivity at these temperatures [K], row by row.
+/// Fills all bands with the radiance of surfaces of options.emissivity at these temperatures [K], row by row;
+/// notes it where all are colder than any scene.
 /// \throws InputError for a temperature that is not positive and finite.
 void warm_temperatures(Scene& scene, std::span<const float> temperatures_k, const ThermalOptions& options);
 

@@ -39,8 +39,7 @@ struct Band {
 // ---- reading
 
 /// The bands of the file, sorted, and their kind.
-std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr::Kind& kind,
-                           const std::string& path) {
+std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr& exr, const std::string& path) {
   std::vector<Band> light, reflectance;
   std::string others;
   for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
@@ -54,7 +53,8 @@ std::vector<Band> bands_of(const Imf::ChannelList& channels, SpectralExr::Kind& 
       throw InputError(
           path, fmt::format("channel {} is subsampled; every pixel needs a value", quotable(channel.name())));
   }
-  kind = light.empty() ? SpectralExr::Kind::reflective : SpectralExr::Kind::emissive;
+  exr.kind = light.empty() ? SpectralExr::Kind::reflective : SpectralExr::Kind::emissive;
+  exr.also_reflective = !light.empty() && !reflectance.empty();
   std::vector<Band> bands = light.empty() ? reflectance : light;
   if (bands.empty())
     throw InputError(path, fmt::format("has no spectral channels such as S0.550,0nm or T.550,0nm, only {}",
@@ -112,7 +112,7 @@ int compression_threads() {
 SpectralExr read_spectra(const std::string& path, const std::function<void(const SpectralExr&)>& check) {
   Imf::InputFile file(path.c_str(), compression_threads());
   SpectralExr exr;
-  const std::vector<Band> bands = bands_of(file.header().channels(), exr.kind, path);
+  const std::vector<Band> bands = bands_of(file.header().channels(), exr, path);
   for (const Band& band : bands) exr.wavelengths_nm.push_back(band.wavelength_nm);
   const ExrWindow window(file.header());
   exr.width = window.columns;

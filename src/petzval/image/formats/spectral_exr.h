@@ -33,6 +33,7 @@ struct SpectralExr {
 
   int width = 0, height = 0;
   Kind kind = Kind::emissive;
+  bool also_reflective = false;  ///< of a file that is read: reflectances beside the light were left aside
   std::vector<double> wavelengths_nm;  ///< strictly increasing
   std::string units;         ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
   LargeFloats values;        ///< a plane a wavelength, rows from the top

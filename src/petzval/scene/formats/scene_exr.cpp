@@ -48,6 +48,11 @@ SpectralCube described_by(const SpectralExr& exr, const std::string& path) {
   const bool light = exr.kind == SpectralExr::Kind::emissive;
   cube.quantity = light ? SceneQuantity::radiance : SceneQuantity::reflectance;
   if (light) cube.radiance_unit = exr.units;
+  if (exr.also_reflective)
+    cube.notes.emplace_back(
+        "has light (S0 channels) and reflectances (T channels): the light is taken, the reflectances are "
+        "left "
+        "aside");
   if (const auto text = exr.strings.find(depth_from_attribute); text != exr.strings.end())
     cube.depth_from = naming_file(path, [&] { return parse_depth_from(text->second); });
   cube.horizontal_angle_deg = number(exr, angle_attribute);
