@@ -30,7 +30,7 @@ def envi(columns, rows, bands, value, data_type=4, interleave="bsq", big_endian=
 
 def npy(shape, numbers, kind="<f4", fortran=False, version=1):
     """A .npy file (NEP 1)."""
-    letter = {"f4": "f", "f8": "d", "u1": "B", "u2": "H", "i2": "h", "i4": "i"}[kind[1:]]
+    letter = {"f4": "f", "f8": "d", "u1": "B", "u2": "H", "i2": "h", "i4": "i", "f2": "e", "i8": "q", "u8": "Q"}[kind[1:]]
     header = f"{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {tuple(shape)}, }}".encode()
     size = 10 if version == 1 else 12
     header += b" " * (-(size + len(header) + 1) % 64) + b"\n"

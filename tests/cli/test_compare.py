@@ -5,6 +5,7 @@ import math
 import struct
 import unittest
 
+import spectral_files
 from petzval_cli import ProgramTest
 
 
@@ -44,6 +45,12 @@ class Compare(ProgramTest):
             self.assertEqual(self.json_of("compare", name, name)["relative_l2"], 0)
         self.assertEqual(self.json_of("compare", "a.exr", "a.npy")["relative_l2"], 0)
         self.assert_refused("compare", "a.exr", "a.png", words=["a.png", "display"])
+
+    def test_arrays_as_numpy_leaves_them(self):
+        """int64 in Fortran order, as numpy.asfortranarray([[1, 2, 3], [4, 5, 6]]) is saved."""
+        self.array("a.npy", 2, 3, [1, 2, 3, 4, 5, 6])
+        self.write("f.npy", spectral_files.npy((2, 3), [1, 4, 2, 5, 3, 6], "<i8", fortran=True))
+        self.assertTrue(self.json_of("compare", "f.npy", "a.npy")["identical"])
 
     def test_refuses_what_cannot_be_compared(self):
         self.array("a.npy", 2, 2, [1, 2, 3, 4])

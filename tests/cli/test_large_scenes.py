@@ -55,7 +55,10 @@ class Large(ProgramTest):
 
     def test_so_do_arrays_and_other_wavelengths(self):
         np.save(self.folder / "cube.npy", self.cube())
-        self.facts("cube.npy", "--scene-bands", "400:10:700", "--wavelengths", "400:10:690,699")
+        straight = self.facts("cube.npy", "--scene-bands", "400:10:700", "--wavelengths", "400:10:690,699")
+        np.save(self.folder / "cube.npy", np.asfortranarray(self.cube()))
+        turned = self.facts("cube.npy", "--scene-bands", "400:10:700", "--wavelengths", "400:10:690,699")
+        self.assertEqual(turned, straight)
 
 
 if __name__ == "__main__":

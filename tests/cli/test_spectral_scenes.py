@@ -133,7 +133,7 @@ class SpectralScenes(petzval_cli.ProgramTest):
         self.assertEqual(self.values(*ask[2:])["wavelengths_nm"], [450])
 
     def test_reflectances_in_per_cent(self):
-        """numpy's mean of a cube in per cent is 1 to 100; 1 is a perfect white."""
+        """A perfect white is 1, not 100; the picture would not show it, for the mean of the scene sets its level."""
         self.write("r.npy", spectral_files.npy((1, 2, 1), [80, 20]))
         ask = ("r.npy", "--scene-quantity", "reflectance", "--scene-bands", 550, "--illuminant", "D65", "--scene-angle", 20)
         self.assert_refused("scene", "info", *ask, words=["r.npy", "up to 80", "--scene-scale 0.01"])
@@ -193,10 +193,18 @@ class SpectralScenes(petzval_cli.ProgramTest):
 
     def test_numpy_arrays(self):
         numbers = [self.number(y, x, b) for y in range(2) for x in range(3) for b in range(3)]
-        for kind, version in itertools.product(("<f4", ">f4", "<f8", ">f8", "<u2", ">u2", "|u1", "<i2", ">i4"), (1, 2)):
+        for kind, version in itertools.product(("<f4", ">f4", "<f8", ">f8", "<u2", ">u2", "|u1", "<i2", ">i4", "<f2", ">f2",
+                                               "<i8", ">i8", "<u8"), (1, 2)):
             with self.subTest(kind=kind, version=version):
                 self.write("cube.npy", spectral_files.npy((2, 3, 3), numbers, kind, version=version))
                 self.assert_counts("cube.npy", "--scene-quantity", "radiance", "--scene-bands", "450:100:650")
+        # The first index fastest, as numpy.asfortranarray leaves it.
+        turned = [self.number(y, x, b) for b in range(3) for x in range(3) for y in range(2)]
+        ask = ("--scene-quantity", "radiance", "--scene-bands", "450:100:650", "--scene-angle", 10)
+        self.assert_succeeds("scene", "convert", "cube.npy", *ask, "straight.exr")
+        self.write("cube.npy", spectral_files.npy((2, 3, 3), turned, "<f8", fortran=True))
+        self.assert_succeeds("scene", "convert", "cube.npy", *ask, "turned.exr")
+        self.assertEqual(self.contents()["turned.exr"], self.contents()["straight.exr"])
         self.assert_refused("scene", "info", "cube.npy", "--scene-quantity", "radiance", "--scene-angle", 10,
                             words=["--scene-bands"])
         self.assert_refused("scene", "info", "cube.npy", "--scene-bands", "450:100:650", "--scene-angle", 10,

@@ -101,6 +101,32 @@ void write_image(const std::string& path, const SpectralImage& image,
   file.commit();
 }
 
+// ---- reading
+
+/// All values in C order, from a file that has the first index running fastest, some at a time.
+template <class Value>
+void take_fortran_order(const NpyFile& file, std::vector<Value>& values) {
+  constexpr std::size_t at_once = 1 << 20;
+  const std::vector<std::size_t>& shape = file.shape();
+  std::vector<std::size_t> steps(shape.size(), 1), index(shape.size(), 0);
+  for (std::size_t i = shape.size() - 1; i > 0; --i) steps[i - 1] = steps[i] * shape[i];
+  std::vector<Value> block;
+  std::size_t to = 0;
+  for (std::size_t first = 0; first < values.size(); first += at_once) {
+    block.resize(std::min(at_once, values.size() - first));
+    file.read(first, std::span(block));
+    for (const Value value : block) {
+      values[to] = value;
+      for (std::size_t i = 0; i < shape.size(); ++i) {  // the next index, as a counter turns
+        to += steps[i];
+        if (++index[i] < shape[i]) break;
+        to -= steps[i] * shape[i];
+        index[i] = 0;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values) {
@@ -124,7 +150,10 @@ NpyArray read_npy(const std::string& path) {
   NpyArray array{file.shape(), {}};
   const auto read = [&](auto values) {
     values.resize(file.size());
-    file.read(0, std::span(values));
+    if (file.fortran_order())
+      take_fortran_order(file, values);
+    else
+      file.read(0, std::span(values));
     array.values = std::move(values);
   };
   // Whole numbers become the smallest floating-point type that holds them all.

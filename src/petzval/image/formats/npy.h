@@ -29,8 +29,9 @@ void write_npy(const std::string& path, const SpectralImage& image);
 /// are written, so that there need not be room for both; everything else of the image stays.
 void write_npy(const std::string& path, SpectralImage&& image);
 
-/// Reads float32, float64 and whole numbers of 8 to 32 bits, of either byte order, in C order.
-/// \throws InputError for another type or order, a damaged header, or a file shorter or longer than its shape
+/// Reads floating-point numbers of 16 to 64 bits and whole numbers of 8 to 64 bits (beyond 2^53 to double
+/// precision), of either byte order, in C or Fortran order.
+/// \throws InputError for another type, a damaged header, or a file shorter or longer than its shape
 /// says.
 NpyArray read_npy(const std::string& path);
 

@@ -4,6 +4,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/image/formats/npy_file.h>
 
+#include <Imath/half.h>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -141,6 +142,17 @@ std::size_t checked_count(const std::vector<std::size_t>& shape, std::size_t val
   return count;
 }
 
+/// Sixteen bits that are a half-precision number.
+struct Half {
+  std::uint16_t bits;
+  explicit operator float() const { return imath_half_to_float(bits); }
+  explicit operator double() const { return double{imath_half_to_float(bits)}; }
+};
+
+/// NumPy's real numbers, by kind and size.
+constexpr std::array<std::string_view, 11> known_kinds = {"f2", "f4", "f8", "u1", "i1", "u2",
+                                                          "i2", "u4", "i4", "u8", "i8"};
+
 template <class Stored, class Value>
 void decode(const char* bytes, bool big_endian, std::span<Value> values) {
   for (Value& value : values) {
@@ -156,12 +168,15 @@ template <class Value>
 void decode(std::string_view kind, const char* bytes, bool big_endian, std::span<Value> values) {
   if (kind == "f8") return decode<double>(bytes, big_endian, values);
   if (kind == "f4") return decode<float>(bytes, big_endian, values);
+  if (kind == "f2") return decode<Half>(bytes, big_endian, values);
   if (kind == "u1") return decode<std::uint8_t>(bytes, big_endian, values);
   if (kind == "i1") return decode<std::int8_t>(bytes, big_endian, values);
   if (kind == "u2") return decode<std::uint16_t>(bytes, big_endian, values);
   if (kind == "i2") return decode<std::int16_t>(bytes, big_endian, values);
   if (kind == "u4") return decode<std::uint32_t>(bytes, big_endian, values);
-  decode<std::int32_t>(bytes, big_endian, values);
+  if (kind == "i4") return decode<std::int32_t>(bytes, big_endian, values);
+  if (kind == "u8") return decode<std::uint64_t>(bytes, big_endian, values);
+  decode<std::int64_t>(bytes, big_endian, values);
 }
 
 }  // namespace
@@ -178,13 +193,11 @@ NpyFile::NpyFile(const std::string& path) : path_(path), file_(path, std::ios::b
   // "<f4": byte order ('|' where there is none), kind, size.
   const std::string& type = header.type;
   kind_ = type.size() == 3 ? type.substr(1) : std::string();
-  const bool known = kind_ == "f4" || kind_ == "f8" || kind_ == "u1" || kind_ == "i1" || kind_ == "u2" ||
-                     kind_ == "i2" || kind_ == "u4" || kind_ == "i4";
+  const bool known = std::find(known_kinds.begin(), known_kinds.end(), kind_) != known_kinds.end();
   if (!known || (type[0] != '<' && type[0] != '>' && type[0] != '|'))
     throw InputError(path,
                      fmt::format("has values of type '{}'; save it as float32 or float64", quotable(type)));
-  if (*header.fortran_order && header.shape->size() > 1)
-    throw InputError(path, "is in Fortran order; save numpy.ascontiguousarray(a) instead");
+  fortran_order_ = *header.fortran_order && header.shape->size() > 1;
   shape_ = std::move(*header.shape);
   value_bytes_ = static_cast<std::size_t>(kind_[1] - '0');
   big_endian_ = type[0] == '>';
@@ -193,7 +206,7 @@ NpyFile::NpyFile(const std::string& path) : path_(path), file_(path, std::ios::b
 }
 
 bool NpyFile::needs_double() const {
-  return kind_ == "f8" || kind_ == "u4" || kind_ == "i4";
+  return value_bytes_ == 8 || kind_ == "u4" || kind_ == "i4";
 }
 
 template <class Value>

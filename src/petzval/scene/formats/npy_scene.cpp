@@ -36,11 +36,12 @@ std::vector<double> numbers_of(const nlohmann::json& value, const std::string& k
   return numbers;
 }
 
-/// From (rows, columns, bands) to planes, some rows at a time.
-void take_planes(const NpyFile& file, std::size_t bands, SpectralCube& cube) {
-  cube.values = LargeFloats(file.size());
+constexpr std::size_t values_at_once = std::size_t{1} << 22;
+
+/// From (rows, columns, bands) in C order to planes, some rows at a time.
+void take_pixels(const NpyFile& file, std::size_t bands, SpectralCube& cube) {
   const std::size_t pixels = cube.band_size();
-  const std::size_t block = std::max<std::size_t>(1, (std::size_t{1} << 22) / bands);
+  const std::size_t block = std::max<std::size_t>(1, values_at_once / bands);
   std::vector<float> values;
   for (std::size_t first = 0; first < pixels; first += block) {
     const std::size_t count = std::min(block, pixels - first);
@@ -52,6 +53,37 @@ void take_planes(const NpyFile& file, std::size_t bands, SpectralCube& cube) {
     }
     cube.values.release_memory();
   }
+}
+
+/// In Fortran order planes lie one behind the other, column by column: some columns at a time, or a part of
+/// one.
+void take_columns(const NpyFile& file, SpectralCube& cube) {
+  const auto rows = static_cast<std::size_t>(cube.rows), columns = static_cast<std::size_t>(cube.columns);
+  const std::size_t most_rows = std::min(rows, values_at_once),
+                    most_columns = std::max<std::size_t>(1, values_at_once / rows);
+  std::vector<float> values;
+  for (std::size_t band = 0; band < static_cast<std::size_t>(cube.bands); ++band) {
+    const std::span<float> plane = cube.plane(band);
+    for (std::size_t column = 0; column < columns; column += most_columns)
+      for (std::size_t row = 0; row < rows; row += most_rows) {
+        const std::size_t wide = std::min(most_columns, columns - column),
+                          high = std::min(most_rows, rows - row);
+        values.resize(wide * high);
+        file.read((band * columns + column) * rows + row, std::span(values));
+        for (std::size_t i = 0; i < high; ++i)
+          for (std::size_t j = 0; j < wide; ++j)
+            plane[(row + i) * columns + column + j] = values[j * high + i];
+      }
+    cube.values.release_memory();
+  }
+}
+
+void take_planes(const NpyFile& file, SpectralCube& cube) {
+  cube.values = LargeFloats(file.size());
+  if (file.fortran_order())
+    take_columns(file, cube);
+  else
+    take_pixels(file, static_cast<std::size_t>(cube.bands), cube);
 }
 
 }  // namespace
@@ -112,7 +144,7 @@ SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check) {
   if (fs::is_regular_file(beside, ignored))
     describe_cube(read_whole_file(beside.string(), std::size_t{1} << 24), beside.string(), cube);
   if (check) check(cube);
-  take_planes(array, bands, cube);
+  take_planes(array, cube);
   return cube;
 }
 
