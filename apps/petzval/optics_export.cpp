@@ -9,6 +9,7 @@
 #include <petzval/optics/table_file.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -23,11 +24,58 @@ struct ExportCommand {
   bool resample = false;
   std::optional<double> spacing_um;
   std::optional<int> size;
+  std::optional<double> least_light;
 };
+
+constexpr int most_samples = 4096;
+/// Of all PSFs on one grid, as floats and once more as doubles on their way into a file.
+constexpr double most_memory = 4.0 * (1 << 30), bytes_a_sample = 12;
 
 bool has_one_grid(const LensDataTable& table) {
   return std::all_of(table.psf.begin(), table.psf.end(),
                      [&](const Psf& psf) { return psf.spacing_um == table.psf.front().spacing_um; });
+}
+
+/// The grid that is asked for. \throws InputError if its PSFs would be larger than can be written.
+PsfGridSize asked_grid(const ExportCommand& command, const LensDataTable& table) {
+  PsfGridSize grid = common_grid(table);
+  const double width_um = grid.size * grid.spacing_um,
+               spacing_um = command.spacing_um.value_or(grid.spacing_um);
+  const double size = command.size ? *command.size : std::max(2.0, std::floor(width_um / spacing_um));
+  const double bytes = bytes_a_sample * static_cast<double>(table.psf.size()) * size * size;
+  if (size > most_samples || bytes > most_memory) {
+    const double fit = std::min<double>(
+        most_samples, std::sqrt(most_memory / bytes_a_sample / static_cast<double>(table.psf.size())));
+    throw InputError(
+        command.path,
+        fmt::format(
+            "{} PSFs of {:.4g} x {:.4g} samples of {:g} um would take {:.3g} GiB; up to {:g} GiB and {} "
+            "samples a side are written: --psf-size {:.0f} or less, or --psf-spacing {:.3g} or more, "
+            "would be right",
+            table.psf.size(), size, size, spacing_um, bytes / (1 << 30), most_memory / (1 << 30),
+            most_samples, std::floor(fit), 1.01 * width_um / std::floor(fit)));
+  }
+  // A grid of the same samples stays as it is, where nothing is asked.
+  if (command.spacing_um || command.size) grid = {static_cast<int>(size), spacing_um};
+  return grid;
+}
+
+/// The least share of its light that a PSF keeps on the new grid. \throws InputError if it is less than is
+/// wanted.
+void check_light(const ExportCommand& command, const LensDataTable& before, const LensDataTable& after) {
+  constexpr double usual_least = 0.99;
+  double kept = 1;
+  for (std::size_t i = 0; i < before.psf.size(); ++i)
+    kept = std::min(kept, after.psf[i].captured / before.psf[i].captured);
+  if (kept >= command.least_light.value_or(usual_least)) return;
+  const Psf& psf = after.psf.front();
+  throw InputError(
+      command.path,
+      fmt::format(
+          "PSFs of {0} x {0} samples of {1:g} um keep {2:.3g} % of the light; --psf-size {3} keeps 99 %, "
+          "and --psf-light {4:.2g} allows it",
+          psf.size, psf.spacing_um, 100 * kept, size_for_light(before, psf.spacing_um, usual_least),
+          0.99 * kept));
 }
 
 /// The table with its PSFs on one grid, if it is allowed to bring them there.
@@ -35,13 +83,10 @@ LensDataTable prepared(const ExportCommand& command, const Shared& shared) {
   LensDataTable table = read_table(command.path);
   const bool resample = command.resample || command.spacing_um || command.size;
   if (!resample || (has_one_grid(table) && !command.spacing_um && !command.size)) return table;
-  PsfGridSize grid = common_grid(table);
-  if (command.spacing_um) {
-    grid.size = std::max(2, static_cast<int>(grid.size * grid.spacing_um / *command.spacing_um));
-    grid.spacing_um = *command.spacing_um;
-  }
-  if (command.size) grid.size = *command.size;
-  table = on_common_grid(table, grid);
+  const PsfGridSize grid = asked_grid(command, table);
+  LensDataTable gridded = on_common_grid(table, grid);
+  check_light(command, table, gridded);
+  table = std::move(gridded);
   double least = 1;
   for (const Psf& psf : table.psf) least = std::min(least, psf.captured);
   note(shared,
@@ -106,10 +151,16 @@ void add_optics_export(CLI::App& optics, Shared& shared) {
                     "Bring PSFs of several grids to one, which ISET needs; light and its centre stay");
   command
       ->add_option("--psf-spacing", options->spacing_um,
-                   "Spacing of that grid [um]; default: the finest of the table")
+                   "Spacing of that grid [um], implies --resample; default: the finest of the table")
       ->check(positive_number());
-  command->add_option("--psf-size", options->size, "Samples a side of that grid; default: the widest PSF's")
-      ->check(CLI::Range(2, 4096));
+  command
+      ->add_option("--psf-size", options->size,
+                   "Samples a side of that grid, implies --resample; default: the widest PSF's")
+      ->check(CLI::Range(2, most_samples));
+  command
+      ->add_option("--psf-light", options->least_light,
+                   "Least share of its light that every PSF must keep on that grid; default: 0.99")
+      ->check(CLI::Range(0.0, 1.0));
 }
 
 }  // namespace petzval::app

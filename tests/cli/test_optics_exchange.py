@@ -345,6 +345,27 @@ class Refusals(Exchange):
         self.assert_refused("optics", "import", "z", "-o", "out.h5", words=[psf, "missing"])
         self.assert_refused("optics", "import", "nowhere", "--from", "zemax", "-o", "out.h5", words=["nowhere"])
 
+    def test_grids_that_hold_no_light_or_no_memory_holds(self):
+        self.native()
+        export = ("optics", "export", "native.h5", "--to", "iset", "-o", "t.mat")
+        # The head of the spot, half of its light, has a sigma of 2 um: four samples of 1 um hold a tenth of the light.
+        done = self.petzval(*export, "--psf-size", 2)
+        self.assert_error(done, 2, "2 x 2 samples", "of the light", "--psf-light")
+        size = int(done.stderr.split("--psf-size ")[1].split()[0])
+        self.assert_succeeds(*export, "--psf-size", size)
+        kept = iset_files.read_mat(self.folder / "t.mat")[1]["rayTrace"]["psf"]["function"]
+        self.assertLess(size, 100)  # of 128, most of which is dark
+        # What falls outside the new window is lost to the spots of the formula too.
+        native = self.table("native.h5")["psf"]
+        middle, half = iset_files.SIZE // 2, size // 2
+        inner = native[..., middle - half:middle + half, middle - half:middle + half].sum(axis=(2, 3), dtype="f8")
+        self.assertGreater(inner.min(), 0.99)
+        self.assertEqual(kept.shape[0], size + 2)
+        self.assert_succeeds(*export, "--psf-size", 2, "--psf-light", 0)
+        # Before room is made: 1e-6 um would be 10^8 samples a side.
+        self.assert_refused(*export, "--psf-spacing", 1e-6, words=["1e-06 um", "GiB", "--psf-spacing"])
+        self.assert_refused(*export, "--psf-size", 4096, words=["4096 x 4096", "GiB"])
+
     def test_wrong_usage(self):
         self.native()
         self.assert_refused("optics", "export", "native.h5", "--to", "iset", "-o", "no/t.mat", words=["no"])

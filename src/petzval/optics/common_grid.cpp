@@ -32,6 +32,22 @@ std::vector<double> shares_of(const Psf& psf, const PsfGridSize& grid) {
   return shares;
 }
 
+/// Half the width of the square about the chief ray that holds a share of a PSF's light [um].
+double half_width_of_light_um(const Psf& psf, double share) {
+  std::vector<double> rings(static_cast<std::size_t>(psf.size) + 1, 0.0);
+  double all = 0;
+  for (int i = 0; i < psf.size; ++i)
+    for (int j = 0; j < psf.size; ++j) {
+      const int ring = std::max(std::abs(i - psf.size / 2), std::abs(j - psf.size / 2));
+      rings[static_cast<std::size_t>(ring)] += double{psf.at(i, j)};
+      all += double{psf.at(i, j)};
+    }
+  std::size_t ring = 0;
+  for (double inside = rings[0]; inside < share * all && ring + 1 < rings.size(); inside += rings[ring])
+    ++ring;
+  return (static_cast<double>(ring) + 0.5) * psf.spacing_um;
+}
+
 /// At least `value`, with three digits: ISET reads no more than nine characters of a spacing.
 double rounded_up(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
@@ -50,6 +66,13 @@ PsfGridSize common_grid(const LensDataTable& table, int most_samples) {
   // Light goes up to one sample farther, and an even window reaches half a sample farther on one side.
   const int size = 2 * static_cast<int>(std::ceil(widest / spacing - 1e-9)) + 4;
   return {std::min(size, most_samples), spacing};
+}
+
+int size_for_light(const LensDataTable& table, double spacing_um, double share) {
+  double widest = 0;
+  for (const Psf& psf : table.psf) widest = std::max(widest, half_width_of_light_um(psf, share));
+  // Light goes up to one sample farther, and an even window ends one sample earlier on one side.
+  return 2 * static_cast<int>(std::ceil(widest / spacing_um + 1)) + 2;
 }
 
 Psf resampled(const Psf& psf, const PsfGridSize& grid) {

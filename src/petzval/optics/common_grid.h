@@ -15,6 +15,9 @@ struct PsfGridSize {
 /// grows where that would be more than `most_samples`.
 PsfGridSize common_grid(const LensDataTable& table, int most_samples = 256);
 
+/// Samples a side, even, of which no PSF keeps less than this share of its light at this spacing.
+int size_for_light(const LensDataTable& table, double spacing_um, double share);
+
 /// Lays a PSF on another grid: each sample is a square of light, every point of which goes to the new samples
 /// about it by nearness. Sum and centre of gravity stay; the spread grows by a sixth of the new spacing
 /// squared and a twelfth of the old. What falls outside is lost to the window: the rest is divided by its
