@@ -7,6 +7,7 @@
 
 #include "camera_option.h"
 #include "field_option.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -35,7 +36,8 @@ CLI::App* add_analysis_command(CLI::App& parent, Shared& shared, const std::stri
   options->lens.add_to(*command);
   options->fields.add_to(*command);
   options->camera.add_to(*command);
-  command->add_option("--plot", options->plot, "Also draw the result into this SVG file");
+  command->add_option("--plot", options->plot, "Also draw the result into this SVG file")
+      ->check(output_file());
   return command;
 }
 

@@ -17,7 +17,31 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "output_option.h"
+
 namespace petzval::app {
+
+std::string right_word(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  if (type.starts_with("FLOAT")) return "a number";
+  if (type.starts_with("INT") || type.starts_with("UINT")) return "a whole number";
+  return "a value";
+}
+
+namespace {
+
+/// CLI11 takes an empty word for 0.
+void refuse_empty_numbers(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options({})) {
+    const std::vector<std::string> words = option->results();
+    const bool number = right_word(*option) != "a value";
+    if (number && std::find(words.begin(), words.end(), "") != words.end())
+      throw InputError(
+          fmt::format("{}: an empty word; {} would be right", option->get_name(), right_word(*option)));
+  }
+}
+
+}  // namespace
 
 CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       const std::string& description, const std::string& example, bool prints_numbers,
@@ -29,25 +53,30 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
   command->add_option("--seed", shared.seed, "Seed of every random number")->check(whole_number());
   command->add_flag("--quiet", shared.quiet, "No notes and no progress bar");
   if (prints_numbers) command->add_flag("--json", shared.json, "Numbers as JSON on stdout");
-  command->callback([&shared, work = std::move(work)] {
+  command->callback([&shared, command, work = std::move(work)] {
+    refuse_empty_numbers(*command);
+    if (shared.parse_only) return;
+    check_outputs(*command);
     const ThreadLimit threads(shared.threads);
     work();
   });
   return command;
 }
 
-void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv) {
+void refuse_unknown_command(const CLI::App& program, const std::vector<std::string>& words) {
   const CLI::App* at = &program;
-  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+  std::string way = program.get_name();
+  for (const std::string& word : words) {
+    if (word.starts_with('-')) return;
     const std::vector<const CLI::App*> known = at->get_subcommands([](const CLI::App*) { return true; });
     if (known.empty()) return;
     std::vector<std::string> names;
     for (const CLI::App* command : known) names.push_back(command->get_name());
-    const auto found = std::find(names.begin(), names.end(), argv[i]);
+    const auto found = std::find(names.begin(), names.end(), word);
     if (found == names.end())
       throw InputError(fmt::format("{} has no command '{}'; the nearest are {} (see {} --help)",
-                                   at->get_name(), argv[i], fmt::join(nearest_names(argv[i], names), ", "),
-                                   at->get_name()));
+                                   at->get_name(), word, fmt::join(nearest_names(word, names), ", "), way));
+    way += " " + word;
     at = known[static_cast<std::size_t>(found - names.begin())];
   }
 }

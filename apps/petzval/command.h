@@ -20,6 +20,7 @@ struct Shared {
   std::uint64_t seed = 1;
   bool quiet = false;  ///< no notes, no progress
   bool json = false;
+  bool parse_only = false;  ///< the command line is checked, and nothing is done
 };
 
 /// Adds a subcommand with --threads, --seed, --quiet (and --json if it prints numbers), an example for the
@@ -28,8 +29,12 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       const std::string& description, const std::string& example, bool prints_numbers,
                       std::function<void()> work);
 
-/// \throws InputError when the command line names a subcommand that does not exist, with the nearest that do.
-void refuse_unknown_command(const CLI::App& program, int argc, const char* const* argv);
+/// \throws InputError when the words of a command line name a subcommand that does not exist, with the
+/// nearest that do.
+void refuse_unknown_command(const CLI::App& program, const std::vector<std::string>& words);
+
+/// What a word of an option has to be: "a number", "a whole number", "a value".
+std::string right_word(const CLI::Option& option);
 
 /// The user's own glass catalogues: --glass-catalogue, and the variable PETZVAL_GLASS_CATALOGUES, which holds
 /// paths parted by colons. Searched in this order, then the bundled ones.

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "demo/demo.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -100,6 +101,7 @@ void add_demo_command(CLI::App& app, Shared& shared) {
       add_command(app, shared, "demo", "The 2005 paper again, figure by figure, into one folder",
                   "petzval demo -o demo-pictures", false, [=, &shared] { run_demo(*options, shared); });
   command->add_option("-o,--output", options->folder, "Folder to write; index.html opens offline")
+      ->check(output_folder())
       ->capture_default_str();
   command->add_option("--scene", options->scene, "Scene of the multispectral figures: a chart or a file")
       ->capture_default_str();

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "develop_option.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -85,6 +86,7 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   command
       ->add_option("-o,--output", options->outputs,
                    "PICTURE.png, .tif, .exr (linear) or .npy (linear); may be given several times")
+      ->check(output_file())
       ->required()
       ->allow_extra_args(false);
   command->add_option("--bits", options->bits, "Of .png and .tif: 8 or 16")

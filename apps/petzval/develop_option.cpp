@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "develop_option.h"
+#include "output_option.h"
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
@@ -116,8 +117,10 @@ void DevelopChoice::add_to(CLI::App& command, bool after_image) {
   command.add_option("--space", space, "srgb or display-p3")
       ->check(CLI::IsMember({"srgb", "display-p3"}))
       ->capture_default_str();
-  command.add_option("--step", steps,
-                     fmt::format("NAME=FILE: write a step too: {}", fmt::join(develop_step_names(), ", ")));
+  command
+      .add_option("--step", steps,
+                  fmt::format("NAME=FILE: write a step too: {}", fmt::join(develop_step_names(), ", ")))
+      ->check(output_entry());
 }
 
 Planes DevelopChoice::develop(const RawImage& raw, DevelopReport& report,

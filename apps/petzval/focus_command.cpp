@@ -5,6 +5,7 @@
 
 #include "field_option.h"
 #include "focus_output.h"
+#include "output_option.h"
 #include "scene_focus.h"
 
 namespace petzval::app {
@@ -55,7 +56,8 @@ void add_focus_command(CLI::App& app, Shared& shared) {
       ->take_all()
       ->allow_extra_args(false);
   options->focus.add_to(*command);
-  command->add_option("--plot", options->plot, "Draw the evaluations into this SVG file");
+  command->add_option("--plot", options->plot, "Draw the evaluations into this SVG file")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
-#include <petzval/base/whole_file.h>
 
 #include <algorithm>
 
+#include "output_option.h"
 #include "sensor_option.h"
 
 namespace petzval::app {
@@ -22,7 +22,6 @@ void check_outputs(const std::vector<std::string>& outputs) {
     if (std::find(known.begin(), known.end(), extension_of(path)) == known.end())
       throw InputError(
           path, "irradiance is written as .exr or .npy, a raw file as .dng, a picture as .png or .tif");
-    WholeFile(std::string(path));  // says if there is no such folder
   }
 }
 
@@ -163,6 +162,7 @@ void ImageChoice::add_to(CLI::App& command) {
       .add_option("-o,--output", outputs,
                   "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
                   "may be given several times")
+      ->check(output_file())
       ->required()
       ->allow_extra_args(false);
   shot.add_to(command);

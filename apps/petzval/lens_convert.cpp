@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -33,7 +34,9 @@ void add_lens_convert(CLI::App& lens, Shared& shared) {
                   "petzval lens convert dgauss-50mm dgauss.zmx", false,
                   [options, &shared] { convert(*options, shared); });
   options->lens.add_to(*command);
-  command->add_option("output", options->output, "File to write; its extension tells the format")->required();
+  command->add_option("output", options->output, "File to write; its extension tells the format")
+      ->check(output_file())
+      ->required();
 }
 
 }  // namespace petzval::app

@@ -14,6 +14,7 @@
 #include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -93,7 +94,7 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
           "Of the rays from film points: in the plane of point and axis, or across it, seen from above")
       ->check(CLI::IsMember({"meridional", "sagittal"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "SVG file to write")->required();
+  command->add_option("-o,--output", options->output, "SVG file to write")->check(output_file())->required();
 }
 
 }  // namespace petzval::app

@@ -19,6 +19,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "loss_option.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -209,7 +210,8 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
   options->losses.add_to(*command);
-  command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy");
+  command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

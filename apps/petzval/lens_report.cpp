@@ -12,6 +12,7 @@
 #include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -80,7 +81,7 @@ void add_lens_report(CLI::App& lens, Shared& shared) {
       ->add_option("--highest-frequency", options->report.highest_frequency_cpmm,
                    "Where MTF curves end [cycles/mm]")
       ->check(positive_number());
-  command->add_option("-o,--output", options->output, "HTML file to write")->required();
+  command->add_option("-o,--output", options->output, "HTML file to write")->check(output_file())->required();
 }
 
 }  // namespace petzval::app

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -42,6 +43,7 @@ void add_lens_scale(CLI::App& lens, Shared& shared) {
       ->required()
       ->check(positive_number());
   command->add_option("-o,--output", options->output, "Lens file to write; its extension tells the format")
+      ->check(output_file())
       ->required();
 }
 

@@ -11,6 +11,7 @@
 #include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -90,7 +91,8 @@ void add_lens_seidel(CLI::App& lens, Shared& shared) {
                                   });
   options->lens.add_to(*command);
   options->camera.add_to(*command);
-  command->add_option("--plot", options->plot, "Also draw the coefficients into this SVG file");
+  command->add_option("--plot", options->plot, "Also draw the coefficients into this SVG file")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

@@ -11,6 +11,7 @@
 #include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
+#include "output_option.h"
 #include "table_output.h"
 
 namespace petzval::app {
@@ -87,7 +88,8 @@ void add_lens_steps(CLI::App& lens, Shared& shared) {
       ->add_option("--stop", options->stop, "Where the ray crosses the stop, X,Y in stop radii; default: 0,0")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--animate", options->animate, "Also write a page in which the light moves (.html)");
+  command->add_option("--animate", options->animate, "Also write a page in which the light moves (.html)")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

@@ -14,6 +14,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "loss_option.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -186,7 +187,8 @@ void add_lens_trace(CLI::App& lens, Shared& shared) {
   options->lens.add_to(*command);
   command->add_option("--rays", options->rays, "CSV with x_mm,y_mm,z_mm,L,M,N,wavelength_nm in lens space")
       ->required();
-  command->add_option("-o,--output", options->output, "CSV to write; default: standard output");
+  command->add_option("-o,--output", options->output, "CSV to write; default: standard output")
+      ->check(output_file());
   command->add_flag("--ignore-apertures", options->ignore_apertures, "Clip no ray");
   options->losses.add_to(*command);
 }

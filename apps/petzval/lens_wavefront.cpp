@@ -7,6 +7,7 @@
 
 #include "analysis_command.h"
 #include "lens_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -68,8 +69,10 @@ void add_lens_wavefront(CLI::App& lens, Shared& shared) {
       lens, shared, "wavefront", "Wavefront aberration and Strehl ratio by field and wavelength",
       "petzval lens wavefront double-gauss --wavelengths 587.56 --map map.svg --plot wavefront.svg", options,
       [](const WavefrontCommand& chosen, const Shared& all) { wavefront(chosen, all); });
-  command->add_option("--map", options->map,
-                      "Also write the wavefront over the stop, as pictures (.svg) or numbers (.csv)");
+  command
+      ->add_option("--map", options->map,
+                   "Also write the wavefront over the stop, as pictures (.svg) or numbers (.csv)")
+      ->check(output_file());
   command->add_option("--samples", options->samples, "Samples a side of a map")->check(CLI::Range(3, 1025));
 }
 

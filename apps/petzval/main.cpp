@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The petzval program: parses the command line and turns exceptions into exit codes.
-#include "command.h"
+#include "program.h"
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/staged_files.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -15,7 +16,7 @@
 namespace {
 
 int report(const std::string& message, int code) {
-  fmt::print(stderr, "petzval: error: {}\n", message);
+  fmt::print(stderr, "petzval: error: {}\n", petzval::with_final_names(message));
   return code;
 }
 
@@ -26,32 +27,19 @@ int main(int argc, char** argv) {
   // A limit on the size of files (ulimit -f) is a full disk like any other: an error, not a death by signal.
   std::signal(SIGXFSZ, SIG_IGN);
 #ifdef __GLIBC__
-  // Planes of large images come and go by the band: to hand each back to the system costs a quarter of the time.
+  // Planes of large images come and go by the band: to hand each back to the system costs a quarter of the
+  // time.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
   CLI::App program{"Petzval simulates a digital camera from the glass up.", "petzval"};
   app::Shared shared;
-  program.set_version_flag("--version", std::string("petzval ") + version());
-  program.require_subcommand(1);
-  app::add_lens_commands(program, shared);
-  app::add_glass_commands(program, shared);
-  app::add_scene_commands(program, shared);
-  app::add_optics_commands(program, shared);
-  app::add_image_command(program, shared);
-  app::add_render_command(program, shared);
-  app::add_focus_command(program, shared);
-  app::add_compare_command(program, shared);
-  app::add_target_command(program, shared);
-  app::add_sfr_command(program, shared);
-  app::add_sense_command(program, shared);
-  app::add_develop_command(program, shared);
-  app::add_measure_command(program, shared);
-  app::add_sweep_command(program, shared);
-  app::add_demo_command(program, shared);
+  app::add_all_commands(program, shared);
+  std::vector<std::string> words = app::with_help_option({argv + 1, argv + argc});
   try {
-    app::refuse_unknown_command(program, argc, argv);
-    program.parse(argc, argv);
+    app::refuse_unknown_command(program, words);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    program.parse(std::move(words));
     // Results on stdout are results: a full disk behind a pipe is a failure too.
     if (std::fflush(stdout) != 0) return report("standard output cannot be written", 1);
     return 0;
@@ -60,7 +48,7 @@ int main(int argc, char** argv) {
       const int code = program.exit(error);
       return std::cout.flush() ? code : report("standard output cannot be written", 1);
     }
-    return report(fmt::format("{} (see petzval --help)", error.what()), 2);
+    return report(app::usage_message(program, error), 2);
   } catch (const InputError& error) {
     return report(error.what(), 2);
   } catch (const Failure& error) {

@@ -20,6 +20,7 @@
 #include <optional>
 
 #include "measure_command.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -327,7 +328,8 @@ void add_measure_scielab(CLI::App& measure, Shared& shared) {
   command->add_option("--pixel-pitch", options->pitch_um, "Of the display [um]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--map", options->map, "Write the difference of each pixel as .npy");
+  command->add_option("--map", options->map, "Write the difference of each pixel as .npy")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

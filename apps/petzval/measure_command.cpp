@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval measure sensor | noise | matrix | shading | colour | scielab
 #include "measure_command.h"
+#include "output_option.h"
 
 #include <petzval/base/staged_files.h>
 #include <petzval/base/whole_file.h>
@@ -8,8 +9,8 @@
 namespace petzval::app {
 
 void MeasureOutputs::add_to(CLI::App& command, bool with_plot) {
-  command.add_option("--csv", csv, "Write the table as .csv");
-  if (with_plot) command.add_option("--plot", plot, "Draw it as .svg");
+  command.add_option("--csv", csv, "Write the table as .csv")->check(output_file());
+  if (with_plot) command.add_option("--plot", plot, "Draw it as .svg")->check(output_file());
 }
 
 void MeasureOutputs::check() const {

@@ -23,6 +23,7 @@
 #include "field_option.h"
 #include "loss_option.h"
 #include "optics_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -98,6 +99,7 @@ void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
 }
 
 void build(const BuildCommand& command, const Shared& shared) {
+  require_extension(command.output, table_extensions(), "a lens data table");
   TableOptions options = table_options(command);
   Camera camera(command.apertures.prepare(command.lens.read(shared), shared));
   if (command.f_number) camera.set_f_number(*command.f_number);
@@ -297,7 +299,9 @@ void add_build(CLI::App& optics, Shared& shared) {
                     build(*options, shared);
                   });
   options->lens.add_to(*command);
-  command->add_option("-o,--output", options->output, "The table, an HDF5 file")->required();
+  command->add_option("-o,--output", options->output, "The table, an HDF5 file")
+      ->check(output_file())
+      ->required();
   command->add_option("--wavelengths", options->wavelengths,
                       "In nm: 400:10:700, or a list 450,550,650; default: the lens's own");
   CLI::Option* sensor =

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/staged_files.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/optics/common_grid.h>
 #include <petzval/optics/formats/iset_mat_table.h>
 #include <petzval/optics/formats/zemax_table.h>
@@ -14,6 +15,7 @@
 #include <memory>
 
 #include "optics_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -121,6 +123,12 @@ void write_texts(const RayTraceData& data, const ExportCommand& command, const S
 }
 
 void export_table(const ExportCommand& command, const Shared& shared) {
+  if (command.to == "zemax") {
+    require_folder(command.output);
+  } else {
+    require_extension(command.output, {".mat"}, "ISETCam's optics structure");
+    require_writable(command.output);
+  }
   const LensDataTable table = prepared(command, shared);
   RayTraceData data;
   try {
@@ -146,7 +154,9 @@ void add_optics_export(CLI::App& optics, Shared& shared) {
                    "imports them")
       ->check(CLI::IsMember({"iset", "iset-mat", "zemax"}))
       ->required();
-  command->add_option("-o,--output", options->output, "The MAT file, or the folder")->required();
+  command->add_option("-o,--output", options->output, "The MAT file, or the folder")
+      ->check(output_file_or_folder())
+      ->required();
   command->add_flag("--resample", options->resample,
                     "Bring PSFs of several grids to one, which ISET needs; light and its centre stay");
   command

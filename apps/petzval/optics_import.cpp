@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "optics_commands.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -111,6 +112,7 @@ ImportedTable read(const ImportCommand& command) {
 }
 
 void import(ImportCommand command, const Shared& shared) {
+  require_extension(command.output, table_extensions(), "a lens data table");
   if (command.relative_illumination == "source")
     command.reading.illumination = RayTraceReading::Illumination::source;
   const ImportedTable imported = read(command);
@@ -164,7 +166,9 @@ void add_optics_import(CLI::App& optics, Shared& shared) {
           "damaged file). auto goes by the name")
       ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "measured", "hdf5"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")->required();
+  command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")
+      ->check(output_file())
+      ->required();
   add_ray_trace_options(*command, *options);
   add_measured_options(*command, *options);
 }

@@ -9,6 +9,7 @@
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/picture.h>
+#include <petzval/render/pbrt/scene_files.h>
 #include <petzval/render/renderer.h>
 #include <petzval/sensor/lens_facts.h>
 
@@ -17,6 +18,7 @@
 
 #include "field_option.h"
 #include "focus_output.h"
+#include "output_option.h"
 #include "render_fingerprint.h"
 #include "render_option.h"
 #include "scene_focus.h"
@@ -157,6 +159,19 @@ void write_outputs(const RenderCommand& command, render::Rendering& picture, con
   files.commit();
 }
 
+/// Outputs over what the scene's file names: meshes, textures, included files.
+void refuse_overwriting_scene(const RenderCommand& command, const PreparedScene& scene) {
+  std::vector<NamedFile> outputs, inputs;
+  for (const std::string& path : command.outputs) outputs.push_back({"--output", path});
+  for (const auto& [option, path] :
+       {NamedFile{"--depth", command.depth}, NamedFile{"--normals", command.normals},
+        NamedFile{"--albedo", command.albedo}, NamedFile{"--focus-plot", command.focus_plot},
+        NamedFile{"--checkpoint", command.checkpoint}})
+    if (!path.empty()) outputs.push_back({option, path});
+  for (const std::string& path : render::scene_files(scene.description)) inputs.push_back({"scene", path});
+  refuse_same_files(outputs, inputs);
+}
+
 /// Moves the film to where the zones are sharpest, and tells how it was found.
 void focus(const RenderCommand& command, const Shared& shared, PreparedScene& scene) {
   Shared silent = shared;
@@ -183,6 +198,7 @@ void render_scene(const RenderCommand& command, const Shared& shared) {
   };
   if (!command.focus_plot.empty()) require_extension(command.focus_plot, {".svg"}, "a plot");
   PreparedScene scene = prepare_scene(command.choice, default_wavelengths_nm(), shared);
+  refuse_overwriting_scene(command, scene);
   if (!command.focus.zones_file.empty() || !command.focus.zones.empty()) focus(command, shared, scene);
   const std::unique_ptr<const render::FilmCamera> camera = scene.camera.make(scene.world->groups);
   if (scene.world->lights.empty()) note(shared, "the scene has no lights; the picture will be black");
@@ -240,7 +256,8 @@ void add_render_command(CLI::App& app, Shared& shared) {
                    "Focus by itself on a zone: left,right,top,bottom (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--focus-plot", options->focus_plot, "Draw the evaluations of that into this SVG file");
+  command->add_option("--focus-plot", options->focus_plot, "Draw the evaluations of that into this SVG file")
+      ->check(output_file());
   options->focus.add_to(*command);
   command
       ->add_option("--spp", options->samples,
@@ -252,14 +269,20 @@ void add_render_command(CLI::App& app, Shared& shared) {
                    "End as soon as nine of ten tiles are estimated to be this close to the picture without "
                    "noise: RMS error over mean light, 0.02 for instance")
       ->check(positive_number());
-  command->add_option("--checkpoint", options->checkpoint,
-                      "A file to save to on the way and to go on from; removed when the picture is done");
+  command
+      ->add_option("--checkpoint", options->checkpoint,
+                   "A file to save to on the way and to go on from; removed when the picture is done")
+      ->check(output_file());
   command->add_option("--checkpoint-seconds", options->checkpoint_seconds, "How often")
       ->capture_default_str();
-  command->add_option("--depth", options->depth,
-                      "Also write the distance of what is seen from the film [scene units] (.npy)");
-  command->add_option("--normals", options->normals, "Also write its normals in world space (.npy)");
-  command->add_option("--albedo", options->albedo, "Also write its reflectance by band (.npy)");
+  command
+      ->add_option("--depth", options->depth,
+                   "Also write the distance of what is seen from the film [scene units] (.npy)")
+      ->check(output_file());
+  command->add_option("--normals", options->normals, "Also write its normals in world space (.npy)")
+      ->check(output_file());
+  command->add_option("--albedo", options->albedo, "Also write its reflectance by band (.npy)")
+      ->check(output_file());
   command->add_flag("--list-unsupported", options->list_unsupported,
                     "Only list what the scene has and Petzval has not, each with its place");
   command->add_option("--white", options->white,
@@ -270,6 +293,7 @@ void add_render_command(CLI::App& app, Shared& shared) {
   command
       ->add_option("-o,--output", options->outputs,
                    "Irradiance as .exr or .npy, a picture as .png; repeatable")
+      ->check(output_file())
       ->allow_extra_args(false);
 }
 

@@ -3,6 +3,7 @@
 #include "command.h"
 #include "depth_picture.h"
 #include "field_option.h"
+#include "output_option.h"
 #include "scene_option.h"
 
 #include <fmt/format.h>
@@ -153,7 +154,7 @@ void add_scene_commands(CLI::App& app, Shared& shared) {
                     convert_scene(*convert, *out, *depth, shared);
                   });
   convert->add_to(*command);
-  command->add_option("out", *out, "OUT.exr or OUT.png")->required();
+  command->add_option("out", *out, "OUT.exr or OUT.png")->check(output_file())->required();
   command->add_flag("--depth", *depth,
                     "Write the depth map instead: OUT.png in false colours, or OUT.npy [m]");
 }

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "output_option.h"
 #include "sense_option.h"
 #include "sensor_option.h"
 
@@ -115,6 +116,7 @@ void add_sense_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs, "RAW.dng, .tif, .npy or .exr; may be given several times")
+      ->check(output_file())
       ->required()
       ->allow_extra_args(false);
 }

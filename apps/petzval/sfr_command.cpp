@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 
+#include "output_option.h"
 #include "sfr_output.h"
 
 namespace petzval::app {
@@ -284,8 +285,8 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->capture_default_str();
   command->add_option("--pixel-pitch", options->pitch_um, "Pixel pitch [um], for results in lp/mm")
       ->check(positive_number());
-  command->add_option("--csv", options->csv, "Write the SFR table: .csv");
-  command->add_option("--plot", options->plot, "Draw the SFRs: .svg");
+  command->add_option("--csv", options->csv, "Write the SFR table: .csv")->check(output_file());
+  command->add_option("--plot", options->plot, "Draw the SFRs: .svg")->check(output_file());
   command
       ->add_option(
           "--against", options->against,
@@ -293,10 +294,13 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
           "--exact-sfr; its first edge (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--profile", options->profile,
-                      "Write edge and line spread: .csv, or draw the edge spread: .svg");
-  command->add_option("--annotate", options->annotate,
-                      "Draw the picture with its edges and their MTF50: .svg");
+  command
+      ->add_option("--profile", options->profile,
+                   "Write edge and line spread: .csv, or draw the edge spread: .svg")
+      ->check(output_file());
+  command
+      ->add_option("--annotate", options->annotate, "Draw the picture with its edges and their MTF50: .svg")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

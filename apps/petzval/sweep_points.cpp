@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 
 namespace petzval::app {
 
@@ -23,26 +24,74 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// FROM:TO:STEP, both ends included; nothing if the text is no such range.
-std::optional<std::vector<std::string>> range(const std::string& text) {
+/// Options whose own values may be start:step:stop.
+bool takes_lists(const std::string& key) {
+  return key == "wavelengths" || key == "scene-bands" || key == "fields" || key == "field";
+}
+
+struct Range {
+  double from = 0, to = 0, step = 0;
+
+  /// How many values it has; nothing if the step does not lead from one end to the other.
+  std::optional<double> count() const {
+    if (step == 0 || (to - from) / step < 0) return {};
+    constexpr double rounding = 1e-9;
+    return std::floor((to - from) / step + rounding) + 1;
+  }
+};
+
+/// FROM:TO:STEP, if the text is three numbers. \throws InputError if one is none.
+std::optional<Range> parse_range(const std::string& key, const std::string& text) {
+  if (text.find(',') != text.npos) return {};
   const std::vector<std::string> parts = split(text, ':');
   if (parts.size() != 3) return {};
   const auto from = parse_number(parts[0]), to = parse_number(parts[1]), step = parse_number(parts[2]);
-  if (!from || !to || !step || *step == 0 || (*to - *from) / *step < 0) return {};
-  constexpr double rounding = 1e-9;
-  const double count = std::floor((*to - *from) / *step + rounding) + 1;
-  if (count > most_points)
-    throw InputError(fmt::format("--vary {}: {} values; at most {} are right", text, count, most_points));
+  if (from && to && step) return Range{*from, *to, *step};
+  if (!from && !to && !step) return {};
+  throw InputError(
+      fmt::format("--vary {}={}: FROM:TO:STEP are three numbers, as in 0.4:0.6:0.05", key, text));
+}
+
+std::vector<std::string> values_of(const std::string& key, const Range& range, const std::string& text) {
+  const std::optional<double> count = range.count();
+  if (!count) {
+    const std::string right = range.step == 0 ? std::string("a step other than 0")
+                                              : fmt::format("{}:{}:{}", range.from, range.to, -range.step);
+    throw InputError(fmt::format("--vary {}={}: steps of {} do not lead from {} to {}; {} would be right",
+                                 key, text, range.step, range.from, range.to, right));
+  }
+  if (*count > most_points)
+    throw InputError(
+        fmt::format("--vary {}={}: {} values; at most {} are right", key, text, *count, most_points));
   std::vector<std::string> values;
   // Twelve digits: 0.1 three times is 0.3.
-  for (int i = 0; i < static_cast<int>(count); ++i)
-    values.push_back(fmt::format("{:.12g}", *from + i * *step));
+  for (int i = 0; i < static_cast<int>(*count); ++i)
+    values.push_back(fmt::format("{:.12g}", range.from + i * range.step));
   return values;
+}
+
+/// The same text for numbers that are the same.
+std::string canonical(const std::string& value) {
+  const auto number = parse_number(value);
+  return number ? fmt::format("{:.17g}", *number) : value;
+}
+
+/// Each value once, the first of those that are the same.
+std::vector<std::string> without_duplicates(const SweptParameter& parameter,
+                                            std::vector<std::string>& notes) {
+  std::vector<std::string> once;
+  std::set<std::string> known;
+  for (const std::string& value : parameter.values)
+    if (known.insert(canonical(value)).second)
+      once.push_back(value);
+    else
+      notes.push_back(fmt::format("--vary {}: {} stands there twice and is made once", parameter.key, value));
+  return once;
 }
 
 }  // namespace
 
-SweptParameter parse_swept(const std::string& text) {
+SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(
@@ -51,9 +100,21 @@ SweptParameter parse_swept(const std::string& text) {
                     text));
   SweptParameter parameter{text.substr(0, equals), {}};
   const std::string values = text.substr(equals + 1);
-  parameter.values = range(values).value_or(split(values, ','));
+  const std::optional<Range> range = parse_range(parameter.key, values);
+  const bool own = range && takes_lists(parameter.key) && range->count().value_or(1) == 1;
+  if (!range || own) {
+    parameter.values = split(values, ',');
+  } else {
+    parameter.values = values_of(parameter.key, *range, values);
+    if (parameter.values.back() != fmt::format("{:.12g}", range->to))
+      notes.push_back(fmt::format("--vary {}: the last value is {}; steps of {:g} do not meet {:g}", text,
+                                  parameter.values.back(), range->step, range->to));
+  }
   for (const std::string& value : parameter.values)
     if (value.empty()) throw InputError(fmt::format("--vary {}: a value is empty", text));
+  if (parameter.values.size() > most_points)
+    throw InputError(fmt::format("--vary {}: more than {} values", parameter.key, most_points));
+  parameter.values = without_duplicates(parameter, notes);
   return parameter;
 }
 

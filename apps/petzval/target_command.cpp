@@ -21,6 +21,7 @@
 
 #include "command.h"
 #include "field_option.h"
+#include "output_option.h"
 #include "target_optics.h"
 #include "target_output.h"
 #include "target_plot.h"
@@ -252,8 +253,9 @@ void add_target_command(CLI::App& app, Shared& shared) {
   command->add_option("--noise", options->noise,
                       "Standard deviation of Gaussian noise, on the scale of --white");
   options->sensor.add_to(*command);
-  command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv");
-  command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg");
+  command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv")
+      ->check(output_file());
+  command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg")->check(output_file());
 }
 
 }  // namespace petzval::app

@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "field_option.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
@@ -98,6 +99,7 @@ void TargetOutput::add_to(CLI::App& command) {
   command
       .add_option("-o,--output", paths,
                   "Picture to write, repeatable: .png, .tif, .npy (float64), .exr (float)")
+      ->check(output_file())
       ->required()
       ->take_all()
       ->allow_extra_args(false);

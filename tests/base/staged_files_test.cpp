@@ -80,5 +80,12 @@ TEST_F(StagedFilesTest, GoThroughLinks) {
   EXPECT_EQ(read_whole_file(target), "new");
 }
 
+TEST_F(StagedFilesTest, MessagesSpeakOfOutputs) {
+  StagedFiles files;
+  const std::string path = folder / "picture.png";
+  EXPECT_EQ(with_final_names(files.stage(path) + ": cannot be written"), path + ": cannot be written");
+  EXPECT_EQ(with_final_names("other.png: cannot be written"), "other.png: cannot be written");
+}
+
 }  // namespace
 }  // namespace petzval

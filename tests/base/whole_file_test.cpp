@@ -75,6 +75,17 @@ TEST_F(WholeFileTest, LeavesPipesAndLinksAsTheyAre) {
   EXPECT_EQ(read_whole_file(target), "new");
 }
 
+TEST_F(WholeFileTest, TryingLeavesNothing) {
+  write_whole_file(folder / "old", "old");
+  require_writable(folder / "old");
+  require_writable(folder / "new");
+  EXPECT_EQ(read_whole_file(folder / "old"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  EXPECT_THROW(require_writable(folder / "none" / "new"), InputError);
+  // A folder that takes no files from anybody, root too.
+  EXPECT_THROW(require_writable("/proc/new"), Failure);
+}
+
 TEST_F(WholeFileTest, ReadingSaysWhatIsWrong) {
   EXPECT_THROW(read_whole_file(folder / "none"), InputError);
   EXPECT_THROW(read_whole_file(folder), InputError);

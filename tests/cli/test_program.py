@@ -30,6 +30,26 @@ class Program(ProgramTest):
         for option, value in (("--threads", "-1"), ("--threads", "two"), ("--seed", "1.5"), ("--seed", "-1")):
             self.assert_refused("lens", "info", "edmund-54852", option, value, words=[option])
 
+    def test_wrong_usage_points_to_the_help_of_its_command(self):
+        image = ["image", "wall", "--lens", "edmund-54852", "-o", "x.npy"]
+        for words, command in [([*image, "--bogus"], "image"), ([*image, "--bits", "7"], "image"), (["image"], "image"),
+                               (["lens", "mtf"], "lens mtf"), (["lens", "nonsense"], "lens"), (["optics", "build", "x"], "optics build")]:
+            self.assert_refused(*words, words=[f"(see petzval {command} --help)"])
+        self.assert_refused("nonsense", words=["(see petzval --help)"])
+
+    def test_words_that_are_no_numbers(self):
+        image = ["image", "wall", "--lens", "edmund-54852", "-o", "x.npy"]
+        self.assert_refused(*image, "--tolerance", "abc", words=["--tolerance abc: a number would be right"])
+        self.assert_refused(*image, "--nodes", "1.5", words=["--nodes 1.5: a whole number would be right"])
+        self.assert_refused(*image, "--tolerance", "", words=["--tolerance", "empty", "a number would be right"])
+        self.assert_refused(*image, "--f-number", "", words=["--f-number", "empty", "a number would be right"])
+        self.assert_refused(*image, "--nodes", "", words=["--nodes", "empty", "a whole number would be right"])
+
+    def test_help_is_a_command_too(self):
+        for words in ([], ["image"], ["lens", "mtf"]):
+            self.assertEqual(self.assert_succeeds("help", *words), self.assert_succeeds(*words, "--help"))
+        self.assert_refused("help", "nonsense", words=["nonsense"])
+
     def test_a_full_disk_behind_stdout(self):
         with open("/dev/full", "w") as full:
             for arguments in (("lens", "info", "edmund-54852"), ("lens", "info", "edmund-54852", "--json")):

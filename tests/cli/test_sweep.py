@@ -34,7 +34,8 @@ class Sweep(ProgramTest):
         said = self.json_of(*IMAGE, "--vary", "f-number=2,4", "--vary", "surfaces[4].thickness_mm=0.5,0.6", "-o", "out")
         self.assertEqual((said["points"], said["failed"]), (4, 0))
         self.assertEqual([(row["f-number"], row["surfaces[4].thickness_mm"]) for row in said["rows"]],
-                         [("2", "0.5"), ("2", "0.6"), ("4", "0.5"), ("4", "0.6")])
+                         [(2, 0.5), (2, 0.6), (4, 0.5), (4, 0.6)])
+        self.assertEqual([type(row["f-number"]) for row in said["rows"]], [int] * 4, "numbers are numbers, as they were written")
         # Two stops less light.
         bright, dark = said["rows"][0]["irradiance_max"], said["rows"][2]["irradiance_max"]
         self.assertAlmostEqual(bright / dark, 4, delta=0.5)
@@ -55,7 +56,6 @@ class Sweep(ProgramTest):
         rows = self.rows()
         self.assertEqual([row["status"] for row in rows], ["failed", "ok"])
         self.assertIn("0.5", rows[0]["error"])
-        self.assert_error(self.petzval(*IMAGE, "--vary", "f-number=0.5", "-o", "none"), 1, "every point failed")
 
     def test_goes_on_where_it_was_ended(self):
         sweep = [*IMAGE, "--vary", "f-number=2,4", "-o", "out"]
@@ -80,6 +80,7 @@ class Sweep(ProgramTest):
         os.killpg(running.pid, signal.SIGKILL)  # the point that is being made, too
         running.wait()
         self.assertFalse((self.folder / "out" / "sweep.csv").exists(), "it was killed before its end")
+        self.assertFalse(json.loads((self.folder / "out" / "sweep.json").read_text())["finished"])
         stamp = first.stat().st_mtime_ns
         said = self.json_of(*sweep)
         self.assertEqual((said["points"], said["failed"]), (8, 0))
@@ -104,7 +105,7 @@ class Sweep(ProgramTest):
         said = self.json_of(*IMAGE, "--vary", "sensor.pitch_um=40:80:20", "--vary", "sensor.columns=24,48", "-o", "of")
         self.assertEqual([(row["pitch_um"], row["columns"]) for row in said["rows"]],
                          [(p, c) for p in (40, 60, 80) for c in (24, 48)])
-        self.assert_error(self.petzval(*IMAGE, "--vary", "sensor.pitch=3", "-o", "none"), 1, "pitch")
+        self.assert_refused(*IMAGE, "--vary", "sensor.pitch=3", "-o", "none", words=["pitch"])
 
     def test_refuses_what_cannot_be_swept(self):
         self.assert_refused(*IMAGE, "--vary", "f-number", "-o", "out", words=["KEY=FROM:TO:STEP"])
@@ -112,6 +113,129 @@ class Sweep(ProgramTest):
         self.assert_refused(*IMAGE, "--vary", "f-number=2", "--vary", "f-number=4", "-o", "out", words=["twice"])
         self.assert_refused(*IMAGE, "--vary", "f-number=0:1e9:1", "-o", "out", words=["10000"])
         self.assert_refused("sweep", "lens", "nonsense", "x", "--vary", "lens=a,b", "-o", "out", words=["nonsense"])
+
+    def assert_nothing_made(self, *command, words):
+        """Refused for what the user wrote, in those words; no folder, no record of it."""
+        self.assert_refused("sweep", *command, "-o", "out", words=words)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_ranges_that_lead_nowhere(self):
+        for values, right in [("4:2:1", "4:2:-1"), ("2:4:-1", "2:4:1"), ("2:4:0", "other than 0"), ("2:nan:1", "three numbers"),
+                              ("2:x:1", "three numbers")]:
+            self.assert_nothing_made(*IMAGE[1:], "--vary", f"f-number={values}", words=[f"--vary f-number={values}: ", right])
+        self.assert_nothing_made(*IMAGE[1:], "--vary", "surfaces[4].thickness_mm=0.6:0.4:0.1", words=["0.6:0.4:-0.1"])
+
+    def test_command_lines_are_checked_before_the_first_point(self):
+        for vary, words in [("f-number=abc", ["--vary f-number=abc: ", "a number would be right"]),
+                            ("method=none,foo", ["--vary method=foo: ", "product"]),
+                            ("foo=1,2", ["--vary foo=1: ", "no option --foo"]),
+                            ("surfaces[99].thickness_mm=1,2", ["--vary surfaces[99].thickness_mm=1: "]),
+                            ("scene=wall,studio", ["scene", "fixed", "varied"]),
+                            ("lens=edmund-54852,cooke-triplet", ["lens", "fixed", "varied"])]:
+            self.assert_nothing_made(*IMAGE[1:], "--vary", vary, words=words)
+        good = ["--vary", "f-number=2,4"]
+        self.assert_nothing_made(*IMAGE[1:], *good, "--bogus", words=["--bogus", "petzval image --help"])
+        self.assert_nothing_made(*IMAGE[1:], *good, "--f-number", "3", words=["f-number", "fixed", "varied"])
+        self.assert_nothing_made(*IMAGE[1:], "--set", "surfaces[4].thickness_mm=0.5", "--vary", "surfaces[4].thickness_mm=0.5,0.6",
+                                 words=["surfaces[4].thickness_mm", "fixed", "varied"])
+        self.assert_nothing_made("lens", "mtf", "edmund-54852", *good, "--plot", "mtf.svg", words=["--plot", "same file"])
+        for option in ("help", "output", "threads", "quiet", "json", "vary"):
+            self.assert_nothing_made(*IMAGE[1:], "--vary", f"{option}=1,2", words=[f"--vary {option}", f"--{option}"])
+
+    def test_a_sweep_whose_points_are_all_refused_leaves_nothing(self):
+        good = ["--vary", "f-number=2,4"]
+        self.assert_nothing_made("image", "nosuch", *IMAGE[3:], *good, words=["nosuch"])
+        self.assert_nothing_made("image", "wall", "--lens", "nosuch", *good, words=["nosuch"])
+        self.assert_nothing_made(*IMAGE[1:], "--vary", "f-number=0.5", words=["f/0.5"])
+        self.assert_refused("sweep", *IMAGE[1:], "--vary", "f-number=0.5,0.6", "-o", "a/b/c", words=["f-number 0.5: ", "other points"])
+        self.assertFalse((self.folder / "a").exists())
+        # Into the folder of another sweep: that one stays, and can go on.
+        self.assert_succeeds(*IMAGE, *good, "-o", "out")
+        self.assert_refused(*IMAGE, "--vary", "f-number=0.5", "-o", "out", words=["f/0.5"])
+        self.assert_succeeds(*IMAGE, *good, "-o", "out")
+
+    def test_values_of_other_kinds(self):
+        said = self.json_of(*IMAGE, "--vary", "seed=1,2", "--vary", "ignore-apertures=true,false", "-o", "out")
+        self.assertEqual([row["seed"] for row in said["rows"]], [1, 1, 2, 2])
+        self.assertEqual(said["failed"], 0)
+        done = self.petzval(*IMAGE[:5], *IMAGE[7:], "--vary", "wavelengths=450:100:650,550", "-o", "lists")
+        self.assertEqual((done.returncode, "2 points, 0 failed" in done.stdout), (0, True), done.stderr)
+
+    def test_says_which_values_a_range_has(self):
+        done = self.petzval(*IMAGE, "--vary", "f-number=2:3:0.3", "-o", "out")
+        self.assertIn("note: --vary f-number=2:3:0.3: the last value is 2.9", done.stderr)
+        self.assertEqual([row["f-number"] for row in self.rows()], ["2", "2.3", "2.6", "2.9"])
+        done = self.petzval(*IMAGE, "--vary", "f-number=2,4,2.0", "-o", "twice")
+        self.assertIn("note: --vary f-number: 2.0 stands there twice", done.stderr)
+        self.assertEqual([row["f-number"] for row in self.rows("twice")], ["2", "4"])
+
+
+class SweepFolders(ProgramTest):
+    SWEEP = [*IMAGE, "--vary", "f-number=2,4,8", "-o", "out"]
+
+    def names(self):
+        return sorted(path.name for path in (self.folder / "out").iterdir())
+
+    def test_damaged_points_are_made_again(self):
+        sweep = [*self.SWEEP, "--irradiance", "npy"]
+        self.assert_succeeds(*sweep)
+        whole = self.contents()
+        for damaged, said in [("point-0001.png", "not as it was written"), ("point-0002.npy", "not as it was written")]:
+            self.write(f"out/{damaged}", "broken")
+            done = self.petzval(*sweep)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"note: {damaged} is {said}", done.stderr)
+        (self.folder / "out" / "point-0000.npy").unlink()
+        self.assertIn("note: point-0000.npy is gone", self.petzval(*sweep).stderr)
+        for record in ("{", "[]", '{"version": 3}', '{"version": null, "written": []}'):
+            self.write("out/point-0001.json", record)
+            self.assert_succeeds(*sweep)
+        again = self.contents()
+        self.assertEqual(again.keys(), whole.keys())
+        for name in whole:
+            if name.endswith((".png", ".npy")):
+                self.assertEqual(again[name], whole[name], name)
+
+    def test_files_of_the_user_stay(self):
+        (self.folder / "out").mkdir()
+        for name in ("index.html", "point-0000.png", "point-0002.json", "sweep.csv", "sweep.json"):
+            path = self.write(f"out/{name}", '{"rows": []}')
+            self.assert_refused(*self.SWEEP, words=[name, "another folder"])
+            path.unlink()
+        self.write("out/notes.txt", "mine")
+        self.write("out/point-0007.png", "mine")
+        self.assert_succeeds(*self.SWEEP)
+        self.assertEqual((self.folder / "out" / "notes.txt").read_text(), "mine")
+        # A picture of the user in the place of a point of a larger sweep, in a folder of ours.
+        self.assert_refused(*IMAGE, "--vary", "f-number=2:9:1", "-o", "out", words=["point-0007.png"])
+
+    def test_a_smaller_sweep_takes_away_what_the_larger_one_left(self):
+        self.assert_succeeds(*self.SWEEP)
+        self.write("out/point-0009.png", "mine")
+        self.assert_succeeds(*IMAGE, "--vary", "f-number=2,4", "-o", "out")
+        self.assertEqual(self.names(), ["contact-sheet.png", "index.html", "point-0000.json", "point-0000.png", "point-0001.json",
+                                        "point-0001.png", "point-0009.png", "sweep.csv", "sweep.json"])
+        listed = json.loads((self.folder / "out" / "sweep.json").read_text())
+        self.assertEqual((listed["finished"], set(listed["files"])), (True, set(self.names()) - {"point-0009.png"}))
+        # A point that fails now has no picture of an older one.
+        self.petzval(*IMAGE, "--vary", "f-number=2,0.5", "-o", "out")
+        self.assertNotIn("point-0001.png", self.names())
+
+    def test_what_is_listed_is_removed_by_name_only(self):
+        """A sweep.json from somewhere else must not tell us to remove other files."""
+        self.assert_succeeds(*self.SWEEP)
+        self.write("precious.png", "mine")
+        self.write("out/notes.txt", "mine")
+        listed = json.loads((self.folder / "out" / "sweep.json").read_text())
+        listed["files"] += ["../precious.png", "notes.txt", str(self.folder / "precious.png"), 3]
+        self.write("out/sweep.json", listed)
+        self.assert_succeeds(*IMAGE, "--vary", "f-number=2", "-o", "out")
+        self.assertEqual(((self.folder / "precious.png").read_text(), (self.folder / "out" / "notes.txt").read_text()), ("mine",) * 2)
+
+    def test_a_sweep_over_what_it_reads(self):
+        self.assert_succeeds(*self.SWEEP, "--irradiance", "exr")
+        self.assert_refused("sweep", "image", "out/point-0000.png", *IMAGE[3:], "--vary", "f-number=2,4", "-o", "out",
+                            words=["would overwrite", "point-0000.png"])
 
 
 if __name__ == "__main__":

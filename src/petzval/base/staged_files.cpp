@@ -14,13 +14,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string make_staging_folder(const fs::path& beside) {
+/// What the names of this run's staging folders begin with.
+std::string staging_prefix() {
+  return fmt::format(".petzval-{}-", getpid());
+}
+
+/// \param path  of the output, for the message.
+std::string make_staging_folder(const fs::path& beside, const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  const fs::path folder = beside / fmt::format(".petzval-{}-{}", getpid(), counter++);
+  const fs::path folder = beside / fmt::format("{}{}", staging_prefix(), counter++);
   std::error_code error;
   fs::create_directory(folder, error);
-  if (error)
-    throw Failure(fmt::format("{}: cannot be made, to write in: {}", folder.string(), error.message()));
+  if (error) throw Failure(fmt::format("{}: cannot be written: {}", path, error.message()));
   return folder.string();
 }
 
@@ -38,7 +43,7 @@ std::string StagedFiles::stage(const std::string& path) {
   auto [folder, is_new] = folders_.try_emplace(beside.string());
   if (is_new) {
     try {
-      folder->second = make_staging_folder(beside);
+      folder->second = make_staging_folder(beside, path);
     } catch (...) {
       folders_.erase(folder);
       throw;
@@ -54,6 +59,15 @@ void StagedFiles::commit() {
     if (error) throw Failure(fmt::format("{}: cannot be written: {}", path, error.message()));
   }
   files_.clear();
+}
+
+std::string with_final_names(std::string message) {
+  const std::string prefix = staging_prefix();
+  for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) {
+    const std::size_t slash = message.find('/', at);
+    message.erase(at, slash == std::string::npos ? prefix.size() : slash + 1 - at);
+  }
+  return message;
 }
 
 }  // namespace petzval

@@ -35,4 +35,8 @@ class StagedFiles {
   std::map<std::string, std::string> files_;    ///< output -> staged file
 };
 
+/// A message about a staged file as one about the output that it shall become: "…/.petzval-123-0/out.png" is
+/// "…/out.png".
+std::string with_final_names(std::string message);
+
 }  // namespace petzval

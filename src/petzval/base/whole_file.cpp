@@ -68,6 +68,14 @@ void WholeFile::commit() {
   committed_ = true;
 }
 
+void require_writable(const std::string& path) {
+  const WholeFile file(path);
+  // An open that succeeds tells more than permissions do: file systems are read-only or made of something
+  // else.
+  const FileHandle handle(std::fopen(file.temporary_path().c_str(), "wb"));
+  if (!handle) throw Failure(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+}
+
 void write_whole_file(const std::string& path, std::string_view bytes) {
   WholeFile file(path);
   FileHandle handle(std::fopen(file.temporary_path().c_str(), "wb"));

@@ -34,6 +34,10 @@ class WholeFile {
   bool committed_ = false;
 };
 
+/// Tries whether `path` can be written, before work whose result is to go there. Leaves nothing behind.
+/// \throws InputError as WholeFile's constructor; Failure when the folder takes no file.
+void require_writable(const std::string& path);
+
 /// Writes `bytes` to `path`, whole or not at all. \throws InputError, Failure as WholeFile.
 void write_whole_file(const std::string& path, std::string_view bytes);
 

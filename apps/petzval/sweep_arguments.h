@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command lines of a sweep's points, and whether they are any.
+#pragma once
+
+#include "command.h"
+#include "sweep_points.h"
+
+namespace petzval::app {
+
+struct SweepCommand {
+  std::string command;             ///< image or lens
+  std::vector<std::string> words;  ///< what goes to it
+  std::vector<std::string> vary;
+  std::string folder;
+  std::string irradiance;  ///< exr, npy or nothing
+};
+
+/// The command of this program that is swept, with its options. \throws InputError if there is none.
+const CLI::App& swept_app(const CLI::App& program, const SweepCommand& options);
+
+/// Arguments of a point: an option of the command, its LENS, an entry of the sensor, or else a --set of the
+/// lens. Without outputs.
+std::vector<std::string> arguments_of(const CLI::App& app, const SweepCommand& options,
+                                      const SweepPoint& point, const Shared& shared);
+
+/// Tries the command line of every value of every parameter, without doing what it says. \throws InputError
+/// for the first that is wrong, and for parameters that cannot be varied.
+void check_command_lines(const CLI::App& app, const SweepCommand& options,
+                         const std::vector<SweptParameter>& parameters, const Shared& shared);
+
+/// A point's error in the words of the sweep: --vary KEY=VALUE where the point had --set KEY=VALUE.
+std::string in_words_of_sweep(std::string error, const SweepPoint& point);
+
+}  // namespace petzval::app

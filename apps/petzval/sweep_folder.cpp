@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_folder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace petzval::app {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::string_view maker = "petzval sweep";
+
+/// Whether a sweep writes files of such names: what a damaged sweep.json lists besides is left alone.
+bool is_name_of_sweep(const std::string& name) {
+  if (name == "index.html" || name == "sweep.csv" || name == "sweep.json" || name == "contact-sheet.png")
+    return true;
+  constexpr std::string_view prefix = "point-", figures = "0123456789";
+  if (!name.starts_with(prefix)) return false;
+  const std::size_t dot = name.find_first_not_of(figures, prefix.size());
+  if (dot == name.npos || dot == prefix.size()) return false;
+  const std::string_view extension = std::string_view(name).substr(dot);
+  return extension == ".png" || extension == ".json" || extension == ".exr" || extension == ".npy";
+}
+
+/// The files that a sweep.json lists; nothing if no sweep wrote it.
+std::set<std::string> files_of(const std::string& text) {
+  std::set<std::string> files;
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("made_by") || !json["made_by"].is_string() ||
+      !json["made_by"].get<std::string>().starts_with(maker))
+    return files;
+  files.insert("sweep.json");
+  if (json.contains("files") && json["files"].is_array())
+    for (const Json& name : json["files"])
+      if (name.is_string() && is_name_of_sweep(name.get<std::string>()))
+        files.insert(name.get<std::string>());
+  return files;
+}
+
+/// The topmost folder of a path that does not exist.
+std::string topmost_missing(const fs::path& path) {
+  std::error_code ignored;
+  fs::path missing;
+  for (fs::path at = path; !at.empty() && !fs::exists(at, ignored); at = at.parent_path()) missing = at;
+  return missing.string();
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw InputError(path, "cannot be made: " + error.message());
+}
+
+}  // namespace
+
+SweepFolder::SweepFolder(std::string path, std::set<std::string> planned)
+    : path_(std::move(path)), planned_(std::move(planned)) {
+  planned_.insert("sweep.json");
+  const std::string marked = path_ + "/sweep.json";
+  std::error_code ignored;
+  if (fs::exists(marked, ignored)) {
+    before_ = read_whole_file(marked);
+    old_ = files_of(before_);
+  }
+  std::vector<std::string> strange;
+  for (const std::string& name : planned_)
+    if (!old_.contains(name) && fs::exists(fs::path(path_) / name, ignored)) strange.push_back(name);
+  constexpr std::size_t most_named = 3;
+  const bool more = strange.size() > most_named;
+  if (more) strange.resize(most_named);
+  if (!strange.empty())
+    throw InputError(path_,
+                     fmt::format("holds {}{}, which no sweep has made here; another folder would be right",
+                                 fmt::join(strange, ", "), more ? " and more" : ""));
+  made_ = topmost_missing(fs::path(path_).lexically_normal());
+  make_folder(path_);
+  std::set<std::string> both = old_;
+  both.insert(planned_.begin(), planned_.end());
+  write(Json::array(), both, false);
+}
+
+SweepFolder::~SweepFolder() {
+  if (kept_) return;
+  std::error_code ignored;
+  try {
+    if (old_.empty())
+      fs::remove(path_ + "/sweep.json", ignored);
+    else
+      write_whole_file(path_ + "/sweep.json", before_);
+  } catch (const Error&) {  // a full disk: the files are listed still
+  }
+  if (made_.empty()) return;
+  for (fs::path at = fs::path(path_).lexically_normal(); !at.empty(); at = at.parent_path()) {
+    if (at.has_filename() && !fs::remove(at, ignored)) return;
+    if (at == made_) return;
+  }
+}
+
+bool SweepFolder::owns(const std::string& file) const {
+  std::error_code ignored;
+  const fs::path path(file), parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const std::string name = path.filename().string();
+  return (planned_.contains(name) || old_.contains(name)) && fs::equivalent(parent, path_, ignored);
+}
+
+void SweepFolder::finish(const Json& rows, const std::set<std::string>& written) {
+  std::set<std::string> files = written;
+  files.insert("sweep.json");
+  for (const std::set<std::string>* names : {&old_, &planned_})
+    for (const std::string& name : *names) {
+      std::error_code ignored;
+      if (!files.contains(name)) fs::remove(fs::path(path_) / name, ignored);
+    }
+  write(rows, files, true);
+  keep();
+}
+
+void SweepFolder::write(const Json& rows, const std::set<std::string>& files, bool finished) const {
+  const Json json = {{"made_by", fmt::format("{} {}", maker, version())},
+                     {"finished", finished},
+                     {"files", files},
+                     {"rows", rows}};
+  write_whole_file(path_ + "/sweep.json", json.dump(1) + "\n");
+}
+
+}  // namespace petzval::app

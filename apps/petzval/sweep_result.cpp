@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sweep_result.h"
+
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/render/pbrt/scene_files.h>
+
+#include <filesystem>
+
+#include "child_process.h"
+
+namespace petzval::app {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string last_line(const std::string& text) {
+  std::string_view view(text);
+  while (!view.empty() && view.back() == '\n') view.remove_suffix(1);
+  const std::size_t at = view.rfind('\n');
+  std::string line(at == std::string_view::npos ? view : view.substr(at + 1));
+  constexpr std::string_view prefix = "petzval: error: ";
+  return line.compare(0, prefix.size(), prefix) == 0 ? line.substr(prefix.size()) : line;
+}
+
+/// Checksums of the files that arguments name, as they stand or behind '=': a lens that was edited since
+/// makes another point. \param outputs  that the point writes begin so.
+Json checksums_of(const std::vector<std::string>& arguments, const std::string& outputs) {
+  Json sums = Json::object();
+  for (const std::string& argument : arguments)
+    for (const std::string& name : {argument, argument.substr(argument.find('=') + 1)}) {
+      std::error_code ignored;
+      if (!name.starts_with(outputs) && std::filesystem::is_regular_file(name, ignored))
+        sums[name] = render::hash_text(read_whole_file(name));
+    }
+  return sums;
+}
+
+std::string base_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+/// Checksums of what the point wrote, by name; null for a file that is not there.
+Json checksums_of_outputs(const std::vector<std::string>& paths) {
+  Json sums = Json::object();
+  for (const std::string& path : paths) {
+    std::error_code ignored;
+    sums[base_name(path)] = std::filesystem::is_regular_file(path, ignored)
+                                ? Json(render::hash_text(read_whole_file(path)))
+                                : Json();
+  }
+  return sums;
+}
+
+Json record_of(const PointResult& result) {
+  return {{"version", version()},
+          {"arguments", result.arguments},
+          {"files", result.checksums},
+          {"written", checksums_of_outputs(result.outputs)},
+          {"numbers", result.numbers}};
+}
+
+/// An entry of a record, which may be damaged.
+Json entry_of(const Json& record, const char* key) {
+  return record.is_object() && record.contains(key) ? record[key] : Json();
+}
+
+/// Takes the point from an earlier run of the same arguments, if it was finished then and stands as it did.
+bool recall(const std::string& record_path, PointResult& result, const Shared& shared) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(record_path, ignored)) return false;
+  const Json record = Json::parse(read_whole_file(record_path), nullptr, false);
+  if (entry_of(record, "version") != Json(version()) ||
+      entry_of(record, "arguments") != Json(result.arguments) ||
+      entry_of(record, "files") != result.checksums)
+    return false;
+  const Json written = checksums_of_outputs(result.outputs), numbers = entry_of(record, "numbers");
+  for (const auto& [name, sum] : written.items())
+    if (entry_of(entry_of(record, "written"), name.c_str()) != sum) {
+      note(shared, fmt::format("{} is {}; the point is made again", name,
+                               sum.is_null() ? "gone" : "not as it was written"));
+      return false;
+    }
+  if (!numbers.is_object()) return false;
+  result.numbers = numbers;
+  return result.done = true;
+}
+
+/// Runs the command of the point, and records what it made.
+void make(PointResult& result, const std::string& folder, const std::string& name) {
+  const std::string aside = folder + "/." + name;
+  const ChildOutcome outcome = run_again(result.arguments, aside + ".out", aside + ".err");
+  result.exit_code = outcome.exit_code;
+  result.numbers = Json::parse(outcome.out, nullptr, false);
+  result.done = outcome.exit_code == 0 && result.numbers.is_object();
+  if (result.done) return write_whole_file(folder + "/" + name + ".json", record_of(result).dump(1) + "\n");
+  result.numbers = Json::object();
+  result.picture.clear();
+  result.outputs.clear();
+  result.error = in_words_of_sweep(last_line(outcome.error), result.point);
+  if (!result.error.empty()) return;
+  result.error = outcome.exit_code == 0 ? "the command printed no numbers"
+                                        : fmt::format("ended with code {}", outcome.exit_code);
+}
+
+}  // namespace
+
+std::string name_of_point(std::size_t index) {
+  return fmt::format("point-{:04}", index);
+}
+
+PointResult run_point(const CLI::App& app, const SweepCommand& options, const SweepPoint& point,
+                      std::size_t index, const Shared& shared) {
+  PointResult result;
+  result.point = point;
+  result.arguments = arguments_of(app, options, point, shared);
+  const std::string name = name_of_point(index), stem = options.folder + "/" + name;
+  if (options.command == "image") {
+    result.outputs = {result.picture = stem + ".png"};
+    if (!options.irradiance.empty()) result.outputs.push_back(stem + "." + options.irradiance);
+  }
+  for (const std::string& path : result.outputs)
+    result.arguments.insert(result.arguments.end(), {"-o", path});
+  result.checksums = checksums_of(result.arguments, stem);
+  if (!recall(stem + ".json", result, shared)) make(result, options.folder, name);
+  return result;
+}
+
+}  // namespace petzval::app

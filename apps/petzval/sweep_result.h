@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One point of a sweep: made by this program as another process, or taken from an earlier run.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sweep_arguments.h"
+
+namespace petzval::app {
+
+/// What became of one point; kept in a file, so that a sweep can go on where it was ended.
+struct PointResult {
+  SweepPoint point;
+  std::vector<std::string> arguments;
+  bool done = false;
+  int exit_code = 0;
+  std::string error, picture;
+  std::vector<std::string> outputs;  ///< paths of what the command writes
+  nlohmann::ordered_json checksums;  ///< of the files that the arguments name
+  nlohmann::ordered_json numbers;
+};
+
+/// "point-0007", the name of its files.
+std::string name_of_point(std::size_t index);
+
+/// Takes the point from its record in the folder if that is of the same arguments, program and files, or else
+/// makes it. A point whose files are not as they were written is made again, with a note.
+PointResult run_point(const CLI::App& app, const SweepCommand& options, const SweepPoint& point,
+                      std::size_t index, const Shared& shared);
+
+}  // namespace petzval::app
