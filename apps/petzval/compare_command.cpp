@@ -46,8 +46,11 @@ void print_json_comparison(const ComparablePicture& picture, const ComparablePic
 }
 
 void compare(const CompareCommand& options, const Shared& shared) {
-  const ComparablePicture picture = read_comparable_picture(options.picture);
-  const ComparablePicture reference = read_comparable_picture(options.reference);
+  ComparablePicture picture = read_comparable_picture(options.picture);
+  ComparablePicture reference = read_comparable_picture(options.reference);
+  // Opacity that hides nothing is no reason why pictures should differ.
+  if (picture.bands == reference.bands + 1) drop_full_opacity(picture);
+  if (reference.bands == picture.bands + 1) drop_full_opacity(reference);
   const PictureComparison comparison = compare_pictures(picture, reference);
   if (shared.json) return print_json_comparison(picture, reference, comparison);
   const std::string& units = reference.units.empty() ? picture.units : reference.units;
@@ -70,7 +73,8 @@ void add_compare_command(CLI::App& app, Shared& shared) {
   CLI::App* command = add_command(
       app, shared, "compare", "How far a picture is from a reference: relative L2, max error, PSNR",
       "petzval compare picture.exr reference.exr", true, [=, &shared] { compare(*options, shared); });
-  command->add_option("picture", options->picture, "A picture: spectral .exr, .npy or .png")->required();
+  command->add_option("picture", options->picture, "A picture: spectral .exr, .npy, .png, .tif or .jpg")
+      ->required();
   command
       ->add_option("reference", options->reference,
                    "What it is compared with, of the same size, bands and units")

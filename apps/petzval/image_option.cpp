@@ -41,6 +41,7 @@ void check_sources(const ImageChoice& choice) {
   refuse(choice.focus != "auto", "--focus");
   refuse(!choice.lens.settings.empty(), "--set");
   refuse(!choice.lens.substitutions.empty(), "--substitute");
+  refuse(!choice.lens.glasses.paths.empty(), "--glass-catalogue");
   refuse(choice.apertures.from_fields, "--apertures");
   refuse(choice.apertures.ignore_apertures, "--ignore-apertures");
   refuse(choice.depth.layers != 0, "--layers");

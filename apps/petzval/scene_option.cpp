@@ -70,9 +70,15 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
       ->check(CLI::IsMember({"plane", "equirectangular"}));
   command.add_option("--scene-yaw", yaw, "Turns the camera to the right within a panorama [degrees]");
   command.add_option("--scene-pitch", pitch, "Tilts it up [degrees]");
-  command.add_option("--scene-depth", depth,
-                     "Depth map [m]: a .npy of rows and columns or an .exr with a channel Z; none: leave the "
-                     "scene's own out");
+  command
+      .add_option("--scene-depth", depth,
+                  "Depth map [m]: a .npy of rows and columns or an .exr with a channel Z; none: leave the "
+                  "scene's own out")
+      ->check(CLI::Validator(
+          [](const std::string& word) {
+            return word.empty() ? std::string("a file's name, or none, would be right") : std::string();
+          },
+          ""));
   command.add_option("--scene-depth-scale", depth_scale, "Multiplies all depths");
   command
       .add_option(

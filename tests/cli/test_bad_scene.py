@@ -2,6 +2,7 @@
 """Scenes that are no scenes, and pictures that cannot be taken."""
 
 import math
+import os
 import re
 import unittest
 
@@ -40,6 +41,19 @@ class BadScene(ProgramTest):
     def test_missing_file_and_unknown_name(self):
         self.refuse("nowhere.exr", "nowhere.exr")
         self.refuse("studioo", "studioo", "studio")
+
+    def test_what_is_there_and_no_file(self):
+        os.mkfifo(self.folder / "pipe.exr")
+        self.refuse("pipe.exr", "pipe.exr", "is a pipe or a device")
+        self.refuse("/dev/zero", "/dev/zero", "is a pipe or a device")
+        (self.folder / "scenes").mkdir()
+        self.refuse("scenes", "scenes", "is a folder")
+
+    def test_options_that_would_do_nothing(self):
+        self.refuse("wall", "--scene-depth", options=["--scene-depth", ""])
+        self.assert_succeeds("optics", "build", "edmund-54852", "--wavelengths", "550", "--fields", "3", "-o", "t.h5")
+        self.assert_refused("image", "wall", "--optics", "t.h5", "--sensor", SENSOR, "--glass-catalogue", "x.agf", "-o", "o.png",
+                            words=["--glass-catalogue has no effect on a lens data table"])
 
     def test_truncated_exr(self):
         whole = spectral_exr(40, 30, [500, 550, 600], grey)

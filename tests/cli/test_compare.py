@@ -5,6 +5,7 @@ import math
 import struct
 import unittest
 
+import picture_files
 import spectral_files
 from petzval_cli import ProgramTest
 
@@ -41,10 +42,44 @@ class Compare(ProgramTest):
     def test_every_format_that_image_writes(self):
         image = ["image", "wall", "--lens", "edmund-54852", "--wavelengths", "450,550,650", "--sensor", "32x24@25"]
         self.assert_succeeds(*image, *(word for name in ("a.exr", "a.npy", "a.png") for word in ("-o", name)))
-        for name in ("a.exr", "a.npy", "a.png"):
+        self.assert_succeeds("image", "wall", "--lens", "edmund-54852", "--sensor", "third-inch-1280x960", "--sensor-set",
+                             "columns=32", "--sensor-set", "rows=24", "--method", "none", "-o", "a.tif")
+        for name in ("a.exr", "a.npy", "a.png", "a.tif"):
             self.assertEqual(self.json_of("compare", name, name)["relative_l2"], 0)
         self.assertEqual(self.json_of("compare", "a.exr", "a.npy")["relative_l2"], 0)
         self.assert_refused("compare", "a.exr", "a.png", words=["a.png", "display"])
+
+    def test_pictures_of_every_kind(self):
+        """The same samples as PNG and TIFF, of 8 and 16 bits; 1/255 is 257/65535."""
+        samples = [0, 50, 100, 150, 200, 255] * 2
+        wide = [257 * v for v in samples]
+        self.write("8.png", picture_files.png(2, 2, 3, 8, samples))
+        self.write("16.png", picture_files.png(2, 2, 3, 16, wide))
+        self.write("8.tif", picture_files.tiff(2, 2, 3, 8, samples))
+        self.write("16.tiff", picture_files.tiff(2, 2, 3, 16, wide, ">"))
+        for name in ("16.png", "8.tif", "16.tiff"):
+            self.assertTrue(self.json_of("compare", name, "8.png")["identical"], name)
+        darker = samples[:-1] + [204]
+        self.write("dark.tif", picture_files.tiff(2, 2, 3, 8, darker))
+        said = self.json_of("compare", "dark.tif", "8.png")
+        self.assertAlmostEqual(said["max_error_over_peak"], 51 / 255, delta=1e-12)
+        # Blocks of one level; a decoder's transform rounds to one.
+        self.write("a.jpg", picture_files.grey_jpeg([64, 192]))
+        self.write("a.png", picture_files.png(16, 8, 1, 8, ([64] * 8 + [192] * 8) * 8))
+        self.assertLess(self.json_of("compare", "a.jpg", "a.png")["max_error_over_peak"], 1.5 / 255)
+        for name in ("a.jpg", "8.tif"):
+            self.write("cut" + name, (self.folder / name).read_bytes()[:40])
+            self.assert_refused("compare", "cut" + name, "8.png", words=["cut" + name])
+
+    def test_opacity_counts_only_where_something_shines_through(self):
+        rgb = [10, 20, 30, 40, 50, 60]
+        self.write("rgb.png", picture_files.png(2, 1, 3, 8, rgb))
+        self.write("rgba.png", picture_files.png(2, 1, 4, 8, [10, 20, 30, 255, 40, 50, 60, 255]))
+        self.write("glass.png", picture_files.png(2, 1, 4, 8, [10, 20, 30, 255, 40, 50, 60, 254]))
+        self.assertTrue(self.json_of("compare", "rgb.png", "rgba.png")["identical"])
+        self.assertTrue(self.json_of("compare", "rgba.png", "rgb.png")["identical"])
+        self.assertFalse(self.json_of("compare", "glass.png", "rgba.png")["identical"])
+        self.assert_refused("compare", "rgb.png", "glass.png", words=["3 bands and 4"])
 
     def test_arrays_as_numpy_leaves_them(self):
         """int64 in Fortran order, as numpy.asfortranarray([[1, 2, 3], [4, 5, 6]]) is saved."""

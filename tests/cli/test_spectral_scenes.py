@@ -157,6 +157,14 @@ class SpectralScenes(petzval_cli.ProgramTest):
         self.write("cube.bsq", data)
         facts = self.values("cube.hdr", "--scene-quantity", "radiance", "--scene-angle", 5)
         self.assertEqual((facts["min_radiance"], facts["max_radiance"]), (0, 4))
+        # GDAL's: NaN, and the least single-precision number in more or fewer digits than it has.
+        for written, number in (("nan", math.nan), ("NaN", math.nan), ("-3.40282347e+38", -(2 - 2**-23) * 2.0**127)):
+            header, data = spectral_files.envi(2, 1, 1, lambda y, x, b: (number, 4)[x], 4, wavelength=[550],
+                                               data_ignore_value=written)
+            self.write("cube.hdr", header)
+            self.write("cube.bsq", data)
+            facts = self.values("cube.hdr", "--scene-quantity", "radiance", "--scene-angle", 5)
+            self.assertEqual((facts["min_radiance"], facts["max_radiance"]), (0, 4), written)
 
     def test_envi_that_lies(self):
         good = dict(wavelength=[450, 550, 650])
@@ -179,6 +187,8 @@ class SpectralScenes(petzval_cli.ProgramTest):
         refused(header.replace("data type = 4", "data type = 6"), data, "data type 6")
         refused(header.replace("bsq", "bqs"), data, "bsq, bil or bip")
         refused(header.replace("lines   = 2\n", ""), data, "lines")
+        refused(header.replace("interleave = bsq\n", ""), data, "has no interleave; bsq, bil or bip")
+        refused(header + "Lines = 2\n", data, f"cube.hdr:{header.count(chr(10)) + 1}", "'lines' again, after line 4")
         refused(header.replace("650}", "650"), data, "brace")
         refused(header.replace("550", "450"), data, "two bands")
         refused(header + "wavelength units = Wavenumber\n", data, "nanometers")

@@ -19,7 +19,7 @@ struct ComparablePicture {
   std::vector<double> wavelengths_nm;  ///< of the bands; empty if the file does not say
   std::string units;                   ///< empty if the file does not say
   double pitch_um = 0;                 ///< 0 if the file does not say
-  bool display = false;                ///< a PNG: values are code values over full scale
+  bool display = false;                ///< PNG, TIFF, JPEG: values are code values over full scale
   /// Plane after plane, or, if `interleaved`, pixel after pixel.
   std::variant<LargeFloats, std::vector<double>> values;
   bool interleaved = false;
@@ -32,8 +32,12 @@ struct ComparablePicture {
   }
 };
 
-/// Reads .exr (spectral), .npy (rows × columns or rows × columns × bands) or .png.
+/// Reads .exr (spectral), .npy (rows × columns or rows × columns × bands), .png, .tif or .jpg.
 /// \throws InputError for another extension, another shape, values that are not finite, and as the readers.
 ComparablePicture read_comparable_picture(const std::string& path);
+
+/// Leaves the last channel of a picture for display out, if it is an opacity (of two channels or four) and
+/// full everywhere. \returns whether it did.
+bool drop_full_opacity(ComparablePicture& picture);
 
 }  // namespace petzval

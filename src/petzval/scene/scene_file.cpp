@@ -160,6 +160,15 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   return scene;
 }
 
+/// \throws InputError for what is there and cannot be read as a file.
+void refuse_other_than_files(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored))
+    throw InputError(path, "is a folder; a scene is a file or a chart's name");
+  if (fs::exists(path, ignored))
+    throw InputError(path, "is a pipe or a device; a scene is read from an ordinary file");
+}
+
 /// A bundled scene of this name, or a complaint that names the nearest ones and all charts.
 std::string find_scene_file(const std::string& name) {
   std::vector<std::string> known;
@@ -176,6 +185,7 @@ std::string find_scene_file(const std::string& name) {
 Scene read_plane(const std::string& path_or_name, const SceneOptions& options) {
   if (is_file(path_or_name)) return read_scene_file(path_or_name, options);
   if (const NamedChart* chart = find_chart(path_or_name)) return read_chart(path_or_name, *chart, options);
+  refuse_other_than_files(path_or_name);
   return read_scene_file(find_scene_file(path_or_name), options);
 }
 

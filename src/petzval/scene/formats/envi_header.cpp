@@ -70,7 +70,12 @@ Entries entries_of(std::string_view text, const std::string& file) {
       }
       entry.value = trimmed(std::string_view(entry.value).substr(1, entry.value.find('}') - 1));
     }
-    entries[plain_key(line.substr(0, equals))] = std::move(entry);
+    const std::string key = plain_key(line.substr(0, equals));
+    if (const auto before = entries.find(key); before != entries.end())
+      throw InputError(file, line_number,
+                       fmt::format("has '{}' again, after line {}; once would be right", quotable(key),
+                                   before->second.line));
+    entries[key] = std::move(entry);
   }
   return entries;
 }
@@ -107,7 +112,8 @@ class EntryReader {
     throw InputError(file_, fmt::format("has no '{}'", key));
   }
 
-  std::vector<double> numbers(const std::string& key) const {
+  /// \param finite  whether NaN and infinities are refused.
+  std::vector<double> numbers(const std::string& key, bool finite = true) const {
     std::vector<double> values;
     const Entry* const entry = find(key);
     std::string_view rest = entry ? std::string_view(entry->value) : std::string_view();
@@ -118,7 +124,7 @@ class EntryReader {
       if (word.empty() && rest.empty()) break;  // a comma after the last
       double value = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(value))
+      if (error != std::errc{} || end != word.data() + word.size() || (finite && !std::isfinite(value)))
         fail(*entry, fmt::format("{}: '{}' is no number", key, quotable(word)));
       values.push_back(value);
     }
@@ -133,8 +139,8 @@ class EntryReader {
     return values;
   }
 
-  std::optional<double> number(const std::string& key) const {
-    const std::vector<double> values = numbers(key);
+  std::optional<double> number(const std::string& key, bool finite = true) const {
+    const std::vector<double> values = numbers(key, finite);
     if (values.empty()) return std::nullopt;
     if (values.size() != 1) fail(*find(key), fmt::format("{} must be one number", key));
     return values[0];
@@ -181,8 +187,9 @@ void take_layout(const EntryReader& entries, const std::string& file, EnviHeader
                                  "read",
                                  header.data_type));
   const std::string interleave = plain_key(entries.text("interleave"));
-  if (interleave != "bsq" && interleave != "bil" && interleave != "bip" &&
-      !(interleave.empty() && header.bands == 1))
+  if (interleave.empty() && header.bands > 1)
+    throw InputError(file, "has no interleave; bsq, bil or bip would be right");
+  if (interleave != "bsq" && interleave != "bil" && interleave != "bip" && !interleave.empty())
     throw InputError(
         file, fmt::format("has interleave '{}'; bsq, bil or bip would be right", quotable(interleave)));
   header.interleave = interleave == "bil"   ? EnviInterleave::bil
@@ -247,7 +254,10 @@ void take_values(const EntryReader& entries, EnviHeader& header) {
   header.reflectance_scale = entries.number("reflectance scale factor");
   if (header.reflectance_scale && !(*header.reflectance_scale > 0))
     entries.fail(*entries.find("reflectance scale factor"), "a reflectance scale factor must be positive");
-  header.ignored = entries.number("data ignore value");
+  header.ignored = entries.number("data ignore value", false);
+  constexpr int single_precision = 4;  // the header may have the number with other digits
+  if (header.ignored && header.data_type == single_precision)
+    header.ignored = double{static_cast<float>(*header.ignored)};
   for (const double good : entries.per_band("bbl", header.bands)) header.good.push_back(good != 0);
   header.units = entries.text("data units");
   header.name = entries.text("description");

@@ -28,7 +28,7 @@ struct EnviHeader {
   std::vector<double> gains, offsets;  ///< radiance = gain · number + offset; empty: none
   std::vector<double> reflectance_gains, reflectance_offsets;
   std::optional<double> reflectance_scale;  ///< numbers are reflectances times this
-  std::optional<double> ignored;            ///< number that stands for "no data"
+  std::optional<double> ignored;            ///< number that stands for "no data"; may be NaN
   std::vector<bool> good;                   ///< bbl; empty: all bands
   std::string units;                        ///< `data units`, not part of ENVI's own list but in use
   std::string name;                         ///< `description` in one line

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace petzval {
@@ -28,6 +29,11 @@ Calibration calibration(const EnviHeader& header, std::size_t band) {
   return {of(header.gains, 1), of(header.offsets, 0)};
 }
 
+/// NaN, which equals nothing, may stand for "no data" too.
+bool is_ignored(const EnviHeader& header, double number) {
+  return header.ignored && (number == *header.ignored || (std::isnan(number) && std::isnan(*header.ignored)));
+}
+
 /// Numbers of one row and band: where the first lies in a block, how far apart they are [bytes].
 struct Run {
   const char* first;
@@ -41,9 +47,7 @@ void take(const Run& run, const EnviHeader& header, const Calibration& meant, st
     std::memcpy(bytes.data(), run.first + i * run.step, sizeof(Number));
     if (header.big_endian) std::reverse(bytes.begin(), bytes.end());
     const auto number = static_cast<double>(std::bit_cast<Number>(bytes));
-    out[i] = header.ignored && number == *header.ignored
-                 ? 0.0F
-                 : static_cast<float>(meant.gain * number + meant.offset);
+    out[i] = is_ignored(header, number) ? 0.0F : static_cast<float>(meant.gain * number + meant.offset);
   }
 }
 
