@@ -13,7 +13,7 @@ namespace petzval::app {
 namespace {
 
 constexpr int thumbnail = 320, gap = 12, label_height = 12, label_room = 24;
-constexpr std::uint16_t paper = 245, ink = 30;
+constexpr std::uint16_t paper = 245, ink = 30, shade = 225;
 
 /// An 8-bit RGB canvas.
 struct Canvas {
@@ -30,12 +30,13 @@ struct Canvas {
   }
 };
 
-/// The scale at which a picture fits a thumbnail; never enlarged.
+/// The scale at which a picture fits a thumbnail: a whole number for small ones, whose pixels become squares.
 double fitting_scale(const PngImage& picture) {
-  return std::min(1.0, double(thumbnail) / std::max(picture.columns, picture.rows));
+  const double scale = double(thumbnail) / std::max(picture.columns, picture.rows);
+  return scale > 1 ? std::floor(scale) : scale;
 }
 
-/// Draws a picture, each pixel the mean of those that fall on it.
+/// Draws a picture, each pixel the mean of those that fall on it: of one, where it is enlarged.
 void draw(Canvas& canvas, const PngImage& picture, int left, int top) {
   const double scale = fitting_scale(picture);
   const int columns = std::max(1, static_cast<int>(std::lround(picture.columns * scale))),
@@ -62,9 +63,19 @@ void draw(Canvas& canvas, const PngImage& picture, int left, int top) {
     }
 }
 
-void write_label(Canvas& canvas, std::string text, int left, int top) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return c == '_' ? '-' : static_cast<char>(std::toupper(c)); });
+/// What the letters of charts can write: capitals, and words for signs.
+std::string in_letters(const std::string& text) {
+  std::string letters;
+  for (const char c : text)
+    if (c == '@')
+      letters += " AT ";
+    else
+      letters += c == '_' ? '-' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return letters;
+}
+
+void write_label(Canvas& canvas, const std::string& label, int left, int top) {
+  const std::string text = in_letters(label);
   const double height =
       std::min<double>(label_height, label_height * thumbnail / text_width(text, label_height));
   Shape letters;
@@ -79,6 +90,15 @@ void write_label(Canvas& canvas, std::string text, int left, int top) {
         sample = static_cast<std::uint16_t>(std::lround(sample + share * (double(ink) - sample)));
       }
   }
+}
+
+/// A cell without a picture.
+void draw_failure(Canvas& canvas, int left, int top, int rows) {
+  for (int row = top; row < top + rows; ++row)
+    for (int column = left; column < left + thumbnail; ++column)
+      for (int c = 0; c < 3; ++c) canvas.at(column, row)[c] = shade;
+  const int inset = std::min(gap, rows - label_height);
+  write_label(canvas, "FAILED", left + gap, top + std::max(0, inset));
 }
 
 }  // namespace
@@ -97,9 +117,11 @@ void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>&
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const int left = gap + static_cast<int>(i) % per_row * (thumbnail + gap),
               top = gap + static_cast<int>(i) / per_row * (tallest + label_room + gap);
-    if (!entries[i].picture.empty()) draw(canvas, pictures[i], left, top);
-    write_label(canvas, entries[i].label + (entries[i].picture.empty() ? " - FAILED" : ""), left,
-                top + tallest + 6);
+    if (entries[i].picture.empty())
+      draw_failure(canvas, left, top, tallest);
+    else
+      draw(canvas, pictures[i], left, top);
+    write_label(canvas, entries[i].label, left, top + tallest + 6);
   }
   write_png(path, canvas.image);
 }

@@ -15,8 +15,8 @@ struct SheetEntry {
   std::string label;    ///< "F-NUMBER 2.8"
 };
 
-/// Thumbnails in rows of `per_row`, each with its label beneath, as one PNG. \throws InputError for a picture
-/// that cannot be read.
+/// Thumbnails in rows of `per_row`, each with its label beneath, as one PNG; small pictures are enlarged by a
+/// whole factor. \throws InputError for a picture that cannot be read.
 void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>& entries, int per_row);
 
 }  // namespace petzval::app

@@ -17,6 +17,28 @@ def png(columns, rows, channels, bits, samples):
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
+def read_png(path):
+    """Rows of pixels, tuples of samples, of a PNG of 8 bits without interlacing."""
+    data, at, compressed = path.read_bytes(), 8, b""
+    columns, rows, bits, colour = struct.unpack(">2I2B", data[16:26])
+    assert bits == 8, bits
+    while at < len(data):
+        size, name = struct.unpack(">I4s", data[at:at + 8])
+        compressed += data[at + 8:at + 8 + size] if name == b"IDAT" else b""
+        at += size + 12
+    lines, step = zlib.decompress(compressed), {0: 1, 4: 2, 2: 3, 6: 4}[colour]
+    width, above, picture = columns * step, bytes(columns * step), []
+    for row in range(rows):
+        kind, line = lines[row * (width + 1)], bytearray(lines[row * (width + 1) + 1:(row + 1) * (width + 1)])
+        for i in range(width):
+            left, up, corner = (line[i - step] if i >= step else 0), above[i], (above[i - step] if i >= step else 0)
+            nearest = min((left, up, corner), key=lambda value: abs(left + up - corner - value))
+            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) % 256
+        above = bytes(line)
+        picture.append([tuple(above[i:i + step]) for i in range(0, width, step)])
+    return picture
+
+
 def tiff(columns, rows, channels, bits, samples, order="<"):
     """A baseline TIFF 6.0 of one strip, little- ("<") or big-endian (">")."""
     pixels = struct.pack(f"{order}{len(samples)}{'B' if bits == 8 else 'H'}", *samples)

@@ -9,6 +9,7 @@ import subprocess
 import time
 import unittest
 
+import picture_files
 from petzval_cli import PROGRAM, ProgramTest
 
 IMAGE = ["sweep", "image", "checkerboard", "--lens", "edmund-54852", "--wavelengths", "550", "--sensor", "48x36@80"]
@@ -168,6 +169,26 @@ class Sweep(ProgramTest):
         done = self.petzval(*IMAGE, "--vary", "f-number=2,4,2.0", "-o", "twice")
         self.assertIn("note: --vary f-number: 2.0 stands there twice", done.stderr)
         self.assertEqual([row["f-number"] for row in self.rows("twice")], ["2", "4"])
+
+
+class ContactSheet(ProgramTest):
+    GAP, THUMBNAIL, PAPER, SHADE = 12, 320, 245, 225
+
+    def test_small_pictures_are_enlarged_and_failures_shown(self):
+        """Each pixel of a picture of 48 x 36 is a square of 6 x 6: the largest that fits 320."""
+        self.assert_succeeds(*IMAGE, "--vary", "f-number=2,0.5", "-o", "out")
+        sheet = picture_files.read_png(self.folder / "out" / "contact-sheet.png")
+        picture = picture_files.read_png(self.folder / "out" / "point-0000.png")
+        self.assertEqual((len(picture), len(picture[0])), (36, 48))
+        factor = self.THUMBNAIL // 48
+        for row in range(36 * factor):
+            for column in range(0, 48 * factor):
+                self.assertEqual(sheet[self.GAP + row][self.GAP + column], picture[row // factor][column // factor])
+        self.assertEqual(set(sheet[self.GAP + 4][self.GAP + 48 * factor]), {self.PAPER}, "the picture ends there")
+        failed = 2 * self.GAP + self.THUMBNAIL
+        self.assertEqual(set(sheet[self.GAP + 4][failed + 4]), {self.SHADE})
+        inside = {sum(pixel) for line in sheet[self.GAP + 1:self.GAP + 40] for pixel in line[failed + 1:failed + 200]}
+        self.assertLess(min(inside), 3 * 100, "it is written there that it failed")
 
 
 class SweepFolders(ProgramTest):
