@@ -125,6 +125,11 @@ void write_texts(const RayTraceData& data, const ExportCommand& command, const S
 void export_table(const ExportCommand& command, const Shared& shared) {
   if (command.to == "zemax") {
     require_folder(command.output);
+    const std::filesystem::path above =
+        (std::filesystem::path(command.output) / "").parent_path().parent_path();
+    if (!above.empty() && !std::filesystem::is_directory(above))
+      throw InputError(command.output,
+                       fmt::format("the folder {} does not exist; make it first", above.string()));
   } else {
     require_extension(command.output, {".mat"}, "ISETCam's optics structure");
     require_writable(command.output);

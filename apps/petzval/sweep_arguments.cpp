@@ -150,9 +150,11 @@ void check_command_lines(const CLI::App& app, const SweepCommand& options,
       if (options.command == "image") arguments.insert(arguments.end(), {"-o", "point.png"});
       const std::string wrong = check.complaint(arguments);
       if (wrong.empty()) continue;
-      if (is_positional(options, parameters[i].key) && wrong.find("not expected: ") != wrong.npos &&
-          wrong.find("not expected: -") == wrong.npos)
-        refuse_fixed(parameters[i].key);
+      // A word too many: the scene or lens stands there, and is varied.
+      const bool word =
+          wrong.find("not expected: ") != wrong.npos && wrong.find("not expected: -") == wrong.npos;
+      for (const SweptParameter& parameter : parameters)
+        if (word && is_positional(options, parameter.key)) refuse_fixed(parameter.key);
       const bool of_this = wrong.find("--" + parameters[i].key) != wrong.npos;
       throw InputError(of_this ? fmt::format("--vary {}={}: {}", parameters[i].key, value, wrong) : wrong);
     }

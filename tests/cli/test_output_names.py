@@ -106,7 +106,10 @@ class OutputsBeforeTheWork(ProgramTest):
         self.assert_refused("optics", "import", "table.hdf5", "--from", "hdf5", "-o", "b.mat", words=["b.mat", ".h5"])
         self.assert_refused("optics", "export", "table.hdf5", "--to", "iset", "--resample", "-o", "b.txt", words=["b.txt", ".mat"])
         self.write("taken", "")
-        self.assert_refused("optics", "export", "table.hdf5", "--to", "zemax", "--resample", "-o", "taken", words=["taken"])
+        zemax = ["optics", "export", "table.hdf5", "--to", "zemax", "--resample", "-o"]
+        self.assert_refused(*zemax, "taken", words=["taken"])
+        self.assert_refused(*zemax, "nowhere/texts", words=["nowhere/texts", "make it first"])
+        self.assert_succeeds(*zemax, "texts/")
 
     def test_no_name(self):
         self.assert_refused("image", "wall", *LENS, "-o", "", words=["--output", "empty", "would be right"])

@@ -134,6 +134,7 @@ class Sweep(ProgramTest):
                             ("scene=wall,studio", ["scene", "fixed", "varied"]),
                             ("lens=edmund-54852,cooke-triplet", ["lens", "fixed", "varied"])]:
             self.assert_nothing_made(*IMAGE[1:], "--vary", vary, words=words)
+        self.assert_nothing_made(*IMAGE[1:], "--vary", "f-number=2,4", "--vary", "scene=wall,studio", words=["scene", "fixed", "varied"])
         good = ["--vary", "f-number=2,4"]
         self.assert_nothing_made(*IMAGE[1:], *good, "--bogus", words=["--bogus", "petzval image --help"])
         self.assert_nothing_made(*IMAGE[1:], *good, "--f-number", "3", words=["f-number", "fixed", "varied"])
