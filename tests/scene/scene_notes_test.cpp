@@ -44,7 +44,7 @@ class SceneNotes : public ::testing::Test {
     return {};
   }
 
-  const test::Scratch scratch_;
+  test::Scratch scratch_;
 };
 
 TEST_F(SceneNotes, ReflectancesInPerCentOrCountsAreRefused) {
