@@ -77,7 +77,7 @@ void check_light(const ExportCommand& command, const LensDataTable& before, cons
           "PSFs of {0} x {0} samples of {1:g} um keep {2:.3g} % of the light; --psf-size {3} keeps 99 %, "
           "and --psf-light {4:.2g} allows it",
           psf.size, psf.spacing_um, 100 * kept, size_for_light(before, psf.spacing_um, usual_least),
-          0.99 * kept));
+          0.9 * kept));
 }
 
 /// The table with its PSFs on one grid, if it is allowed to bring them there.

@@ -100,13 +100,13 @@ TEST_F(SceneNotes, OptionsOfTheOtherKindOfWarmSceneAreRefused) {
   EXPECT_THROW(scene_of_one(0.5F, SceneQuantity::emissivity, options), InputError);
 }
 
-/// CIE tabulates D65 from 300 to 780 nm.
+/// Charts are lit from 380 to 780 nm.
 TEST_F(SceneNotes, BandsBeyondTheIlluminantAreNamed) {
   SceneOptions options;
   options.wavelengths_nm = {400, 500, 600, 780};
   EXPECT_TRUE(read_scene("wall", options).notes.empty());
-  options.wavelengths_nm = {400, 600, 790, 800};
-  EXPECT_TRUE(has_note(read_scene("wall", options).notes, "2 of the 4 bands, 790 to 800 nm"));
+  options.wavelengths_nm = {350, 400, 600, 790, 800};
+  EXPECT_TRUE(has_note(read_scene("wall", options).notes, "no light reaches 350, 790 to 800 nm"));
 }
 
 }  // namespace

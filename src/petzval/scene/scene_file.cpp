@@ -209,18 +209,22 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
   return scene;
 }
 
-/// Says which bands have no light because the illuminant ends before them.
+/// Says which bands have no light because the illuminant does not reach them.
 void note_dark_bands(Scene& scene) {
   if (!scene.illuminant) return;
-  std::vector<double> dark;
-  for (const double nm : scene.wavelengths_nm())
-    if (scene.illuminant->at(nm) == 0) dark.push_back(nm);
-  if (dark.empty()) return;
-  scene.notes.push_back(
-      fmt::format("the illuminant has no light in {} of the {} bands, {}: there the scene is dark",
-                  dark.size(), scene.bands(),
-                  dark.size() == 1 ? fmt::format("at {:g} nm", dark.front())
-                                   : fmt::format("{:g} to {:g} nm", dark.front(), dark.back())));
+  const std::vector<double>& bands = scene.wavelengths_nm();
+  const auto is_dark = [&](double nm) { return scene.illuminant->at(nm) == 0; };
+  std::vector<std::string> runs;  // of bands side by side
+  for (auto first = std::find_if(bands.begin(), bands.end(), is_dark); first != bands.end();) {
+    const auto lit = std::find_if_not(first, bands.end(), is_dark);
+    runs.push_back(lit - first == 1 ? fmt::format("{:g}", *first)
+                                    : fmt::format("{:g} to {:g}", *first, *(lit - 1)));
+    first = std::find_if(lit, bands.end(), is_dark);
+  }
+  if (!runs.empty())
+    scene.notes.push_back(
+        fmt::format("no light reaches {} nm, beyond the illuminant of the scene: these bands are dark",
+                    fmt::join(runs, ", ")));
 }
 
 Scene finished(Scene scene, const SceneOptions& options) {
