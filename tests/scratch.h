@@ -15,6 +15,7 @@ namespace petzval::test {
 /// two of them share is a file that one removes while the other reads it.
 class Scratch {
  public:
+  Scratch() {}  // not defaulted: members of fixtures are const
   std::filesystem::path folder() const { return folder_.path(); }
   std::string path(const std::string& file) const { return (folder() / file).string(); }
   /// Writes a file. \returns its path.

@@ -247,10 +247,13 @@ TEST(PsfKernel, MixesFieldsAndWavelengths) {
   TableRecipe recipe;
   recipe.wavelengths_nm = {500, 600};
   recipe.height_mm = [](double field, double nm) { return field / 10 * (1 + (nm - 500) / 1000); };
-  recipe.psf = [](double field, double nm) {  // two spots, ever farther apart and ever narrower
+  const auto spots = [](double field, int size, double spacing_um) {  // ever farther apart and ever narrower
     const double apart_um = field / 10, sigma_s_um = std::sqrt(4 - apart_um * apart_um);
-    return psf_of_spots({{-apart_um, 0, sigma_s_um, 2, 1}, {apart_um, 0, sigma_s_um, 2, 1}},
-                        nm < 550 ? 65 : 91, nm < 550 ? 0.5 : 0.6);
+    return psf_of_spots({{-apart_um, 0, sigma_s_um, 2, 1}, {apart_um, 0, sigma_s_um, 2, 1}}, size,
+                        spacing_um);
+  };
+  recipe.psf = [&](double field, double nm) {
+    return spots(field, nm < 550 ? 65 : 91, nm < 550 ? 0.5 : 0.6);
   };
   recipe.fields = {0, 5, 10, 15};
   const LensDataTable table = make_table(recipe);
@@ -259,8 +262,8 @@ TEST(PsfKernel, MixesFieldsAndWavelengths) {
   const Kernel kernel = between.kernel_at(0, height_mm);
   Kernel expected(kernel.radius);
   for (const FieldShare& share : field_shares(std::vector<double>{0, 0.5, 1, 1.5}, height_mm))
-    add(table.psf[table.index(share.field, 0)], 0.75 * share.weight, {0, 1}, 2.0, expected);
-  add(table.psf[table.index(2, 1)], 0.25, {0, 1}, 2.0, expected);
+    add(spots(table.fields[share.field], 325, 0.1), 0.75 * share.weight, {0, 1}, 2.0, expected);
+  add(spots(table.fields[2], 455, 0.12), 0.25, {0, 1}, 2.0, expected);
   expected.match(kernel.moments());
   // 2 ‰ of the peak: eight steps between fields, on samples of half a micrometre. A linear mixture of two
   // fields is 7 ‰ off.

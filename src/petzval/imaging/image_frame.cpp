@@ -60,6 +60,12 @@ void note_result(const ImagingOptions& options, ImagingReport& report) {
         fmt::format("light may come in from {} cells around the frame; light that leaves the frame "
                     "is lost",
                     report.margin_cells));
+  constexpr int wide_cells = 112;  // beyond it transforms have hardly room for a tile
+  if (options.method == BlurMethod::product && report.margin_cells > wide_cells)
+    report.notes.push_back(fmt::format(
+        "PSFs reach {} cells, more than fast transforms hold: larger pixels or a larger --tolerance "
+        "would be much quicker",
+        report.margin_cells));
 }
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/otf_interpolation.h>
 #include <petzval/imaging/psf_kernel.h>
+#include <petzval/imaging/psf_refinement.h>
 #include <petzval/numeric/interpolation.h>
 
 #include <algorithm>
@@ -126,7 +127,11 @@ double needed_spacing_um(const LightMoments& light, double cell_um, double heigh
   return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
 }
 
-MergedPsf merged_psf(const Psf& psf, double origin_um, double cell_um, double height_mm) {
+MergedPsf merged_psf(const Psf& table, double origin_um, double cell_um, double height_mm) {
+  // Of samples as fine as a sixteenth of a cell it does not matter what lies between them.
+  constexpr double parts_of_cell = 4, fine_parts = 16;
+  const Psf psf =
+      table.spacing_um * fine_parts > cell_um ? refined_psf(table, cell_um / parts_of_cell) : table;
   const LightMoments light = light_moments(psf, origin_um);
   const int merged = static_cast<int>(needed_spacing_um(light, cell_um, height_mm) / psf.spacing_um);
   return MergedPsf(psf, origin_um, merged < 3 ? 1 : merged - (merged + 1) % 2, light);
