@@ -3,6 +3,7 @@
 
 import os
 import shutil
+import subprocess
 import unittest
 
 from petzval_cli import ProgramTest
@@ -10,9 +11,9 @@ from sample_files import SINGLET
 
 LENS = ["--lens", "edmund-54852", "--sensor", "16x12@100", "--wavelengths", "550"]
 TABLE = ["--fields", "2", "--wavelengths", "550", "--image-height", "1", "--quiet"]
-# So much work that a refusal which comes after it would not be in time.
+# Hours of work: a refusal that comes after it does not come.
 SLOW = ["image", "studio", "--lens", "dgauss-50mm", "--sensor", "3000x2000@10", "--wavelengths", "400:10:700", "--method", "exact"]
-IN_TIME_S = 20
+IN_TIME_S = 600
 NOBODY = 65534
 
 TEXTURED = """
@@ -127,12 +128,22 @@ class OutputsBeforeTheWork(ProgramTest):
         locked = self.folder / "locked"
         locked.mkdir(mode=0o755)
         os.chmod(self.folder, 0o755)
+
+        def as_nobody(*command):
+            return self.petzval(*command, timeout=IN_TIME_S, preexec_fn=lambda: os.setuid(NOBODY))
+
+        try:
+            reachable = as_nobody("lens", "info", "edmund-54852").returncode == 0
+        except (OSError, subprocess.SubprocessError):
+            reachable = False
+        if not reachable:
+            self.skipTest("others may not come to where the program, its data or temporary files are")
         for command, named in [([*SLOW, "-o", "locked/x.npy"], "locked/x.npy"),
                                ([*SLOW, "-o", "locked/x.dng", "-o", "locked/x.png"], "locked/x.dng"),
                                (["demo", "-o", "locked/demo"], "locked/demo"),
                                (["sweep", *SLOW, "--vary", "f-number=2,4", "-o", "locked/sweep"], "locked/sweep"),
                                (["optics", "build", "edmund-54852", "-o", "locked/t.h5"], "locked/t.h5")]:
-            done = self.petzval(*command, timeout=IN_TIME_S, preexec_fn=lambda: os.setuid(NOBODY))
+            done = as_nobody(*command)
             self.assert_error(done, 1, named)
             self.assertNotIn(".petzval", done.stderr)
         self.assertEqual(list(locked.iterdir()), [])
