@@ -12,6 +12,9 @@
 namespace petzval {
 namespace {
 
+using testing::make_table;
+using testing::TableRecipe;
+
 constexpr double lambda_n_um = 4;
 
 /// Airy's pattern at the spacing that tables have.
