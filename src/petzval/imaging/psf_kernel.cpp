@@ -47,17 +47,32 @@ Extent extent_of(const Psf& psf, double origin_um) {
   return {std::sqrt(farthest_squared) * psf.spacing_um, half_side * psf.spacing_um};
 }
 
+/// Whether all samples that have a mirrored partner are as bright as it: the first column of a window of even
+/// size has none.
 bool is_mirror_symmetric(const Psf& psf) {
   // A few units in the last place of the brightest sample: what float storage leaves of an exact symmetry.
   const float tolerance = 1e-6F * *std::max_element(psf.values.begin(), psf.values.end());
+  const int middle = psf.size / 2;
   for (int i = 0; i < psf.size; ++i)
-    for (int j = 0; j <= psf.size / 2; ++j) {
-      const int mirrored =
-          2 * (psf.size / 2) - j;  // a window of even size has no partner for its first column
-      const float partner = mirrored < psf.size ? psf.at(i, mirrored) : 0.0F;
-      if (std::abs(psf.at(i, j) - partner) > tolerance) return false;
-    }
+    for (int j = 1 - psf.size % 2; j < middle; ++j)
+      if (std::abs(psf.at(i, j) - psf.at(i, 2 * middle - j)) > tolerance) return false;
   return true;
+}
+
+/// In a window of odd size. The column that had no partner shares its light with one: as a centred lens has
+/// it, and as a discrete Fourier transform reads it.
+Psf with_partner(const Psf& psf) {
+  Psf odd = psf;
+  odd.size = psf.size + 1;
+  odd.values.clear();
+  for (int i = 0; i < psf.size; ++i) {
+    const float* row = psf.values.data() + static_cast<std::ptrdiff_t>(i) * psf.size;
+    odd.values.push_back(row[0] / 2);
+    odd.values.insert(odd.values.end(), row + 1, row + psf.size);
+    odd.values.push_back(row[0] / 2);
+  }
+  odd.values.resize(static_cast<std::size_t>(odd.size) * static_cast<std::size_t>(odd.size));
+  return odd;
 }
 
 bool has_light(const Psf& psf) {
@@ -167,7 +182,9 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       const Psf& psf = table.psf[entry];
       const double height_mm = layer.height_mm[field], origin_um = centres.offset_mm(entry) * um_per_mm;
       symmetric[field] = is_mirror_symmetric(psf);
-      merged[field] = merged_psf(height_mm == 0 ? within_circle(psf) : psf, origin_um, cell_um, height_mm);
+      const Psf whole = symmetric[field] != 0 && psf.size % 2 == 0 ? with_partner(psf) : psf;
+      merged[field] =
+          merged_psf(height_mm == 0 ? within_circle(whole) : whole, origin_um, cell_um, height_mm);
     });
     for (std::size_t field = 0; field < fields; ++field) {
       mirror_symmetric_ = mirror_symmetric_ && symmetric[field] != 0;
