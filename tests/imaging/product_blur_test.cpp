@@ -56,7 +56,9 @@ TEST(ProductBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
                                                  {16, 2, 32},
                                                  {20, 4, 32},
                                                  {50, 2, 64},
+                                                 {60, 3, 96},
                                                  {40, 5, 128},
+                                                 {130, 2, 192},
                                                  {200, 2, 256}})
       EXPECT_LT(relative_l2(blurred(psfs, source, 0, {tile, nodes, transform}), expected), 5e-7)
           << grid.columns << " x " << grid.rows << " in tiles of " << tile << ", " << nodes << " nodes";
@@ -92,6 +94,18 @@ TEST_P(ProductAgainstExact, GathersWhatTransformsMake) {
                 5e-7)
           << tile << ", " << nodes;
   }
+}
+
+// Tiles that fill some of a transform, most of it or, with the kernels about them, all.
+TEST_P(ProductAgainstExact, GathersWhatTransformsOfAnySizeMake) {
+  const PsfField psfs(make_table(comatic_recipe(GetParam())), 550, 12.5);
+  const CellPlane source = random_plane({230, 174, 12.5});
+  for (const int transform : TileTransform::sizes)
+    for (const int tile : {transform / 5, transform / 2, transform - 2 * psfs.radius()})
+      EXPECT_LT(relative_l2(blurred(psfs, source, 3, {tile, 2, 0, true}),
+                            blurred(psfs, source, 3, {tile, 2, transform})),
+                5e-7)
+          << tile << " of " << transform;
 }
 
 // Cells of a ring have kernels of their own: all cells, and it is the exact method; the outer half, and the
@@ -201,7 +215,8 @@ TEST(ProductBlur, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(ProductBlur, IsTheSameOnEveryInstructionSet) {
   const PsfField psfs(make_table(comatic_recipe(0.6)), 550, grid_um);
   const CellPlane source = random_plane({131, 90, grid_um});
-  const ProductPlan plans[] = {{12, 3, 32}, {30, 2, 64}, {70, 4, 128}, {100, 2, 256}, {12, 3, 0, true}};
+  const ProductPlan plans[] = {{12, 3, 32},   {30, 2, 64},   {50, 3, 96},     {70, 4, 128},
+                               {130, 2, 192}, {100, 2, 256}, {12, 3, 0, true}};
   std::vector<CellPlane> expected;
   for (const ProductPlan& plan : plans) expected.push_back(blurred(psfs, source, 3, plan));
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -214,6 +229,27 @@ TEST(ProductBlur, IsTheSameOnEveryInstructionSet) {
   }
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+// The plan of a band serves the next, by the error at a few places; that must be the error at all of them,
+// to a tenth, even where PSFs have changed by a fifth.
+TEST(ProductPlan, IsKeptByANeighbourWhoseErrorIsKnown) {
+  const SensorGeometry grid{411, 260, grid_um};
+  TableRecipe recipe = comatic_recipe();
+  recipe.wavelengths_nm = {450, 550, 650};
+  recipe.psf = [](double field, double nm) { return comatic_psf(field / 20 * nm / 550); };
+  const LensDataTable table = make_table(recipe);
+  const PsfField here(table, 550, grid_um);
+  const std::optional<ProductPlan> plan = plan_product(here, grid, {1e-3});
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->error_at_places.rms, kernel_error(here, grid, plan->tile, plan->nodes).rms);
+  for (const double nm : {540.0, 500.0, 620.0}) {
+    const PsfField there(table, nm, grid_um);
+    const KernelError exact = kernel_error(there, grid, plan->tile, plan->nodes);
+    const KernelError alike = kernel_error_like(plan->error_at_places, there, grid, plan->tile, plan->nodes);
+    EXPECT_NEAR(alike.rms / exact.rms, 1, 0.1) << nm;
+    EXPECT_EQ(alike.of_first, exact.of_first) << nm;
+  }
 }
 
 TEST(ProductBlur, LeavesWhatIsTooLargeForItsTransformsToSections) {

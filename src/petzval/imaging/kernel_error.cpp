@@ -113,24 +113,48 @@ double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places
 
 }  // namespace
 
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
-                    int looked_at) {
-  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  const auto error_at = [&](int place) {
-    return errors.square(static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
-                         static_cast<int>(radical_inverse(place, 3) * errors.down().count()));
-  };
-  constexpr int at_once = 8;
-  double total = 0;
-  for (int first = 1; first <= looked_at && !(total > limit * limit * looked_at); first += at_once) {
-    std::array<double, at_once> squares{};
-    parallel_for(at_once, [&](std::size_t i) { squares[i] = error_at(first + static_cast<int>(i)); });
-    for (const double square : squares) total += square;
-  }
-  return std::sqrt(total / looked_at);
+namespace {
+
+/// Evenly over the grid, in an order in which any number of first places is spread over it.
+double square_at(const ErrorAtPlaces& errors, int place) {
+  return errors.square(static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
+                       static_cast<int>(radical_inverse(place, 3) * errors.down().count()));
 }
 
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit) {
+}  // namespace
+
+KernelError kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
+                         double limit) {
+  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
+  constexpr int at_once = KernelError::first_places;
+  KernelError error;
+  double total = 0;
+  for (int first = 1; first <= KernelError::places; first += at_once) {
+    std::array<double, at_once> squares{};
+    parallel_for(at_once,
+                 [&](std::size_t i) { squares[i] = square_at(errors, first + static_cast<int>(i)); });
+    for (const double square : squares) total += square;
+    if (first == 1) error.of_first = std::sqrt(total / at_once);
+    if (total > limit * limit * KernelError::places) break;
+  }
+  error.rms = std::sqrt(total / KernelError::places);
+  return error;
+}
+
+KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SensorGeometry& grid,
+                              int tile, int nodes) {
+  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
+  std::array<double, KernelError::first_places> squares{};
+  parallel_for(squares.size(),
+               [&](std::size_t i) { squares[i] = square_at(errors, static_cast<int>(i) + 1); });
+  double total = 0;
+  for (const double square : squares) total += square;
+  const double of_first = std::sqrt(total / double(squares.size()));
+  return {known.of_first > 0 ? known.rms * (of_first / known.of_first) : of_first, of_first};
+}
+
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
+                   bool expected) {
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
   const double last_cells = psfs.last_height_mm() / (psfs.cell_um() * mm_per_um);
   const Places sampled = places_within(errors, last_cells + 1);
@@ -157,7 +181,7 @@ RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, i
     from = to;
     // Where the outermost are not worse than others, there is nothing about the rim.
     constexpr double usual = 4;
-    if (k == 1 && worst < usual * limit * limit) return rim;
+    if (k == (expected ? 1 : 0) && worst < usual * limit * limit) return rim;
   }
   for (const Shell& shell : shells) {
     if (rest <= limit * limit) break;

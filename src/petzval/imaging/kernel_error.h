@@ -11,10 +11,22 @@ namespace petzval {
 
 /// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
 /// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
-/// kernels differs from it. \param limit  no more is added up once the error is sure to be above it: then
-/// what is returned is above it, but not the error. \param looked_at  places, a multiple of 8.
-double kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
-                    double limit = std::numeric_limits<double>::infinity(), int looked_at = 64);
+/// kernels differs from it.
+struct KernelError {
+  static constexpr int places = 64, first_places = 8;
+  double rms = 0;       ///< over all places looked at
+  double of_first = 0;  ///< over the first few of them
+};
+
+/// \param limit  no more is added up once the error is sure to be above it: then what is returned is above
+/// it, but not the error.
+KernelError kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
+                         double limit = std::numeric_limits<double>::infinity());
+
+/// The same for PSFs that differ little from others of which it is known: places are alike, so a few tell by
+/// how much all have changed.
+KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SensorGeometry& grid,
+                              int tile, int nodes);
 
 /// Cells whose distance from the axis lies between two radii [cells].
 struct CellRing {
@@ -34,6 +46,9 @@ struct RimError {
 };
 
 /// \param limit  for the RMS error of the rim, as a part of the whole grid's.
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit);
+/// \param expected  false: the rim of PSFs that differ little from these was like the rest, so that a first
+/// look may do.
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
+                   bool expected = true);
 
 }  // namespace petzval

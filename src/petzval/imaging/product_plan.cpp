@@ -17,10 +17,9 @@ namespace petzval {
 namespace {
 
 constexpr int most_nodes = 6;
-/// Places at which the error of kernels is looked at, and what their mean may miss of the whole grid's: the
-/// estimate must stay below the tolerance by this factor.
-constexpr int places = 64, places_of_hint = 24;
-constexpr double caution = 0.4;
+/// What the mean over places may miss of the whole grid's: the estimate must stay below the tolerance by this
+/// factor. A band may come somewhat closer before the plan of its neighbour is given up.
+constexpr double caution = 0.4, caution_of_hint = 0.5;
 /// Kernels of a band may take this much memory.
 constexpr double most_kernel_bytes = 400e6;
 
@@ -112,7 +111,7 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
   if (options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
     each_layout(std::min(TileTransform::largest, widest), options,
                 [&](int tile, int nodes) { plans.push_back(direct_candidate(psfs, grid, tile, nodes)); });
-  for (int transform = TileTransform::smallest; transform <= TileTransform::largest; transform *= 2)
+  for (const int transform : TileTransform::sizes)
     if (!options.direct.value_or(false))
       each_layout(std::min(transform - 2 * psfs.radius(), widest), options, [&](int tile, int nodes) {
         plans.push_back(candidate(psfs, grid, transform, tile, nodes));
@@ -126,9 +125,10 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
 
 /// Gives the plan what cells at the rim need kernels of their own, and the error that it has then. Whether
 /// that keeps it within the limit.
-bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, double limit, ProductPlan& plan) {
+bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, double limit, bool expected,
+              ProductPlan& plan) {
   constexpr double scatter_ns = 1;  // of exact_blur, per weight
-  const RimError rim = rim_error(psfs, grid, plan.tile, plan.nodes, limit);
+  const RimError rim = rim_error(psfs, grid, plan.tile, plan.nodes, limit, expected);
   const double size = 2.0 * psfs.radius() + 1, cells = double(grid.columns) * grid.rows;
   plan.exact = rim.ring;
   plan.exact_ns = rim.ring_share * cells * (kernel_ns(psfs) + scatter_ns * size * size);
@@ -154,18 +154,22 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
   const bool given = options.tile != 0 && options.nodes != 0;
-  const double limit = caution * options.tolerance;
-  const auto serves = [&](ProductPlan& plan, int looked_at) {
-    plan.estimated_error =
-        kernel_error(psfs, grid, plan.tile, plan.nodes, given ? INFINITY : limit, looked_at);
-    if (given) return true;
-    return plan.estimated_error <= limit && mend_rim(psfs, grid, limit, plan);
-  };
   if (hint && (hint->direct || hint->tile + 2 * psfs.radius() <= hint->transform)) {
     ProductPlan plan = hint->direct ? direct_candidate(psfs, grid, hint->tile, hint->nodes)
                                     : candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
-    if (serves(plan, places_of_hint)) return plan;
+    plan.error_at_places = kernel_error_like(hint->error_at_places, psfs, grid, plan.tile, plan.nodes);
+    plan.estimated_error = plan.error_at_places.rms;
+    const double limit = caution_of_hint * options.tolerance;
+    if (given || (plan.estimated_error <= limit && mend_rim(psfs, grid, limit, !hint->exact.empty(), plan)))
+      return plan;
   }
+  const double limit = caution * options.tolerance;
+  const auto serves = [&](ProductPlan& plan) {
+    plan.error_at_places = kernel_error(psfs, grid, plan.tile, plan.nodes, given ? INFINITY : limit);
+    plan.estimated_error = plan.error_at_places.rms;
+    if (given) return true;
+    return plan.estimated_error <= limit && mend_rim(psfs, grid, limit, true, plan);
+  };
   std::vector<ProductPlan> failed;
   std::optional<ProductPlan> best;
   for (ProductPlan& plan : candidates(psfs, grid, options)) {
@@ -175,7 +179,7 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
       return plan.tile >= other.tile && plan.nodes <= other.nodes;
     });
     if (hopeless) continue;
-    if (!serves(plan, places))
+    if (!serves(plan))
       failed.push_back(plan);
     else if (!best || plan.total_ns() < best->total_ns())
       best = plan;
@@ -189,7 +193,8 @@ ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const
   plan.tile = std::max(TileTransform::largest, psfs.radius());
   while (true) {
     const double limit = caution * options.tolerance;
-    plan.estimated_error = kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit);
+    plan.estimated_error =
+        kernel_error(psfs, grid, plan.tile, plan.nodes, plan.tile == 1 ? INFINITY : limit).rms;
     if (plan.estimated_error <= limit || plan.tile == 1) return plan;
     plan.tile /= 2;
   }

@@ -21,6 +21,7 @@ struct ProductPlan {
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
   double estimated_error = 0;
+  KernelError error_at_places = {};  ///< of the kernels: what the estimate goes by, apart from the rim's
   /// By the cost model [ns of one core of the machine that it was measured on]: filtering, and making the
   /// transfer functions.
   double filter_ns = 0, kernels_ns = 0;
@@ -43,7 +44,7 @@ struct ProductOptions {
 
 /// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
 /// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the
-/// source. \param hint  what served a neighbouring band: it is kept if it serves at fewer places.
+/// source. \param hint  what served a neighbouring band: it is kept if, by a few places, it still serves.
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint = {});

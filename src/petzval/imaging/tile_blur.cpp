@@ -16,35 +16,34 @@ HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
 namespace {
 
-/// sums += otf · spectrum, or sums = otf · spectrum.
-HWY_ATTR HWY_INLINE void filter(const float* spectrum, const float* otf, int size, bool first, float* sums) {
+/// Takes the transform of a line: sums += otf · element, or sums = otf · element.
+template <bool first>
+HWY_ATTR HWY_INLINE void filter(const PaddedLine& line, const TileTransform& transform, const float* otf,
+                                float* data, float* sums) {
   const std::size_t element = element_floats();
-  for (int k = 0; k < size; ++k, spectrum += element, sums += element, otf += element) {
-    const Complex product = multiply(load(spectrum), load(otf));
-    store(first ? product : add(load(sums), product), sums);
-  }
+  forward(line, transform.size(), transform.twiddles(), data, [&](std::size_t k, const Complex& x) HWY_ATTR {
+    const Complex product = multiply(x, load(otf + k * element));
+    store(first ? product : add(load(sums + k * element), product), sums + k * element);
+  });
 }
 
 /// The same for the block that holds −k where the transfer functions kept are those at k. \param last  that
 /// of the last lane; null: as the others.
-HWY_ATTR HWY_INLINE void filter_mirrored(const float* spectrum, const float* otf,
-                                         const std::vector<int>& mirrored, const float* last, bool first,
-                                         float* sums) {
+template <bool first>
+HWY_ATTR HWY_INLINE void filter_mirrored(const PaddedLine& line, const TileTransform& transform,
+                                         const float* otf, const float* last, float* data, float* sums) {
   const Lanes d;
   const std::size_t element = element_floats();
+  const int* mirrored = transform.mirrored().data();
   const auto last_lane = hn::Eq(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(hn::Lanes(d) - 1)));
-  for (const int partner : mirrored) {
-    Complex h = load(otf + static_cast<std::size_t>(partner) * element);
-    if (last != nullptr) {
-      h = {hn::IfThenElse(last_lane, hn::Set(d, last[0]), h.re),
-           hn::IfThenElse(last_lane, hn::Set(d, last[1]), h.im)};
-      last += 2;
-    }
-    const Complex product = multiply_conjugate(load(spectrum), h);
-    store(first ? product : add(load(sums), product), sums);
-    spectrum += element;
-    sums += element;
-  }
+  forward(line, transform.size(), transform.twiddles(), data, [&](std::size_t k, const Complex& x) HWY_ATTR {
+    Complex h = load(otf + static_cast<std::size_t>(mirrored[k]) * element);
+    if (last != nullptr)
+      h = {hn::IfThenElse(last_lane, hn::Set(d, last[2 * k]), h.re),
+           hn::IfThenElse(last_lane, hn::Set(d, last[2 * k + 1]), h.im)};
+    const Complex product = multiply_conjugate(x, h);
+    store(first ? product : add(load(sums + k * element), product), sums + k * element);
+  });
 }
 
 /// What a tile becomes on the way.
@@ -96,8 +95,8 @@ HWY_ATTR void transform_rows(const TileTransform& transform, const TileMixture& 
     }
     rows_to_elements(pass);
     for (int a = 0; a < mixture.nodes; ++a) {
-      forward_padded(pass.elements, mixture.weights + a * mixture.tile, mixture.tile, n, transform.twiddles(),
-                     pass.line);
+      forward({pass.elements, mixture.weights + a * mixture.tile, mixture.tile}, n, transform.twiddles(),
+              pass.line);
       float* turned = work.turned + static_cast<std::size_t>(a) * work.turned_node + block * lanes * element;
       for (std::size_t b = 0; b < transform.columns().size(); b += lanes, turned += work.turned_block)
         turn_columns(pass.line, transform.columns().data() + b, turned);
@@ -115,16 +114,19 @@ HWY_ATTR void filter_block(const TileTransform& transform, const TileMixture& mi
   float* line = work.pass.line;
   for (std::size_t a = 0; a < nodes; ++a)
     for (std::size_t b = 0; b < nodes; ++b) {
-      forward_padded(work.turned + a * work.turned_node + block * work.turned_block,
-                     mixture.weights + b * static_cast<std::size_t>(mixture.tile), mixture.tile, n,
-                     transform.twiddles(), line);
+      const PaddedLine column{work.turned + a * work.turned_node + block * work.turned_block,
+                              mixture.weights + b * static_cast<std::size_t>(mixture.tile), mixture.tile};
       const float *otf = mixture.otfs[b * nodes + a], *of_block = otf + kept * side * element;
-      if (mirrored)
-        filter_mirrored(line, of_block, transform.mirrored(),
-                        kept + 1 == transform.kept_blocks() ? otf + side * side : nullptr, a + b == 0,
-                        work.sums);
+      const float* last = kept + 1 == transform.kept_blocks() ? otf + side * side : nullptr;
+      const bool first = a + b == 0;
+      if (mirrored && first)
+        filter_mirrored<true>(column, transform, of_block, last, line, work.sums);
+      else if (mirrored)
+        filter_mirrored<false>(column, transform, of_block, last, line, work.sums);
+      else if (first)
+        filter<true>(column, transform, of_block, line, work.sums);
       else
-        filter(line, of_block, n, a + b == 0, work.sums);
+        filter<false>(column, transform, of_block, line, work.sums);
     }
   inverse(work.sums, n, transform.twiddles());
   for (std::size_t rows = 0; rows < whole_vectors(mixture.extent); ++rows)
@@ -171,10 +173,9 @@ std::size_t lane_count() {
 namespace {
 
 /// Where decimation in frequency puts a frequency.
-int place_of(int frequency, int size) {
-  if (size == 1) return 0;
-  const int radix = size == 2 ? 2 : 4;
-  return frequency % radix * (size / radix) + place_of(frequency / radix, size / radix);
+int place_of(int frequency, int size, int shortest) {
+  if (size == shortest) return frequency;
+  return frequency % 4 * (size / 4) + place_of(frequency / 4, size / 4, shortest);
 }
 
 }  // namespace
@@ -183,10 +184,11 @@ TileTransform::TileTransform(int size)
     : size_(size),
       mirrored_(static_cast<std::size_t>(size)),
       kept_blocks_(static_cast<std::size_t>(size) / 2 / lane_count()) {
-  if (size < smallest || size > largest || (size & (size - 1)) != 0)
-    throw InputError(fmt::format("transforms of {0} x {0}: a power of two, {1} to {2}, is right", size,
-                                 smallest, largest));
-  for (int length = size; length >= 4; length /= 4)
+  if (std::find(sizes.begin(), sizes.end(), size) == sizes.end())
+    throw InputError(
+        fmt::format("transforms of {0} x {0}: one of {1} is right", size, fmt::join(sizes, ", ")));
+  const int shortest = shortest_block(size);
+  for (int length = size; length > shortest; length /= 4)
     for (int j = 0; j < length / 4; ++j)
       for (int power = 1; power <= 3; ++power) {
         const double angle = -2 * std::numbers::pi * power * j / length;
@@ -194,16 +196,17 @@ TileTransform::TileTransform(int size)
         twiddles_.push_back(static_cast<float>(std::sin(angle)));
       }
   for (int k = 0; k < size; ++k)
-    mirrored_[static_cast<std::size_t>(place_of(k, size))] = place_of((size - k) % size, size);
+    mirrored_[static_cast<std::size_t>(place_of(k, size, shortest))] =
+        place_of((size - k) % size, size, shortest);
   std::vector<int> partners;
   for (int place = 0; place < size; ++place)
     if (const int partner = mirrored_[static_cast<std::size_t>(place)]; place < partner) {
       columns_.push_back(place);
       partners.push_back(partner);
     }
-  columns_.push_back(place_of(0, size));
+  columns_.push_back(place_of(0, size, shortest));
   columns_.insert(columns_.end(), partners.begin(), partners.end());
-  columns_.push_back(place_of(size / 2, size));
+  columns_.push_back(place_of(size / 2, size, shortest));
 }
 
 std::size_t blurred_floats(const TileTransform& transform, const TileMixture& mixture) {

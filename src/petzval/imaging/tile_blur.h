@@ -14,6 +14,13 @@ namespace petzval {
 /// once.
 std::size_t lane_count();
 
+/// The blocks that a line of so many elements comes down to when it is divided by four as often as may be: 2,
+/// 3, 4 or 6 elements.
+constexpr int shortest_block(int size) {
+  while (size % 4 == 0 && size > 4) size /= 4;
+  return size;
+}
+
 /// What the transforms of one size share. Frequencies come out in a scrambled order (decimation in frequency,
 /// radix 4), which is the same for tiles and kernels and is undone on the way back.
 ///
@@ -24,8 +31,9 @@ std::size_t lane_count();
 /// the second one, conjugate, follows the blocks: [row of frequencies]{re, −im}.
 class TileTransform {
  public:
-  static constexpr int smallest = 32, largest = 256;
-  /// \param size  of a side: a power of two from `smallest` to `largest`. \throws InputError for another.
+  static constexpr std::array sizes = {32, 64, 96, 128, 192, 256};
+  static constexpr int largest = sizes.back();
+  /// \param size  of a side, one of `sizes`. \throws InputError for another.
   explicit TileTransform(int size);
   int size() const { return size_; }
   const float* twiddles() const { return twiddles_.data(); }

@@ -9,6 +9,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <petzval/imaging/tile_blur.h>
 
 #include <algorithm>
 #include <array>
@@ -62,30 +63,27 @@ HWY_ATTR HWY_INLINE Complex broadcast(const float* twiddle) {
   return {hn::Set(d, twiddle[0]), hn::Set(d, twiddle[1])};
 }
 
-/// Decimation in frequency: four elements a quarter of a block apart, and the twiddles behind them.
-template <bool twiddled>
-HWY_ATTR HWY_INLINE void butterfly_forward(float* at, std::size_t quarter, const Complex& w1,
-                                           const Complex& w2, const Complex& w3) {
-  const Complex x0 = load(at), x1 = load(at + quarter), x2 = load(at + 2 * quarter),
-                x3 = load(at + 3 * quarter);
+/// Decimation in frequency. \param x  of a stage whose blocks fall into four. \param out  four elements that
+/// far apart. \param w  twiddles {re, im} of the last three; null: all 1.
+HWY_ATTR HWY_INLINE void butterfly_forward(const Complex& x0, const Complex& x1, const Complex& x2,
+                                           const Complex& x3, const float* w, float* out,
+                                           std::size_t quarter) {
   const Complex t0 = add(x0, x2), t1 = subtract(x0, x2), t2 = add(x1, x3), t3 = turned_difference(x1, x3);
   const Complex y1 = subtract(t1, t3), y2 = subtract(t0, t2), y3 = add(t1, t3);
-  store(add(t0, t2), at);
-  store(twiddled ? multiply(y1, w1) : y1, at + quarter);
-  store(twiddled ? multiply(y2, w2) : y2, at + 2 * quarter);
-  store(twiddled ? multiply(y3, w3) : y3, at + 3 * quarter);
+  store(add(t0, t2), out);
+  store(w != nullptr ? multiply(y1, broadcast(w)) : y1, out + quarter);
+  store(w != nullptr ? multiply(y2, broadcast(w + 2)) : y2, out + 2 * quarter);
+  store(w != nullptr ? multiply(y3, broadcast(w + 4)) : y3, out + 3 * quarter);
 }
 
 /// Its inverse, times four.
-template <bool twiddled>
-HWY_ATTR HWY_INLINE void butterfly_inverse(float* at, std::size_t quarter, const Complex& w1,
-                                           const Complex& w2, const Complex& w3) {
+HWY_ATTR HWY_INLINE void butterfly_inverse(float* at, std::size_t quarter, const float* w) {
   const Complex y0 = load(at);
   Complex y1 = load(at + quarter), y2 = load(at + 2 * quarter), y3 = load(at + 3 * quarter);
-  if (twiddled) {
-    y1 = multiply_conjugate(y1, w1);
-    y2 = multiply_conjugate(y2, w2);
-    y3 = multiply_conjugate(y3, w3);
+  if (w != nullptr) {
+    y1 = multiply_conjugate(y1, broadcast(w));
+    y2 = multiply_conjugate(y2, broadcast(w + 2));
+    y3 = multiply_conjugate(y3, broadcast(w + 4));
   }
   const Complex t0 = add(y0, y2), t1 = subtract(y0, y2), t2 = add(y1, y3), t3 = turned_difference(y1, y3);
   store(add(t0, t2), at);
@@ -100,92 +98,164 @@ HWY_ATTR HWY_INLINE void stage(float* data, int size, int length, const float* t
   const auto quarter = static_cast<std::size_t>(length / 4) * element,
              block = static_cast<std::size_t>(length) * element,
              end = static_cast<std::size_t>(size) * element;
-  const Complex one{hn::Zero(Lanes()), hn::Zero(Lanes())};
-  for (std::size_t at = 0; at < end; at += block)
+  const auto butterfly = [&](float* at, const float* w) HWY_ATTR {
     if constexpr (forward)
-      butterfly_forward<false>(data + at, quarter, one, one, one);
+      butterfly_forward(load(at), load(at + quarter), load(at + 2 * quarter), load(at + 3 * quarter), w, at,
+                        quarter);
     else
-      butterfly_inverse<false>(data + at, quarter, one, one, one);
-  for (int j = 1; j < length / 4; ++j) {
-    const float* w = twiddles + static_cast<std::size_t>(j) * 6;
-    const Complex w1 = broadcast(w), w2 = broadcast(w + 2), w3 = broadcast(w + 4);
+      butterfly_inverse(at, quarter, w);
+  };
+  for (std::size_t at = 0; at < end; at += block) butterfly(data + at, nullptr);
+  for (int j = 1; j < length / 4; ++j)
     for (std::size_t at = static_cast<std::size_t>(j) * element; at < end; at += block)
-      if constexpr (forward)
-        butterfly_forward<true>(data + at, quarter, w1, w2, w3);
-      else
-        butterfly_inverse<true>(data + at, quarter, w1, w2, w3);
-  }
+      butterfly(data + at, twiddles + static_cast<std::size_t>(j) * 6);
 }
 
-HWY_ATTR HWY_INLINE void pairs(float* data, int size) {
+/// Transforms of the shortest blocks, in place: two, three, four or six elements, in order.
+template <bool forward>
+HWY_ATTR HWY_INLINE void short_transform(std::array<Complex, 2>& x) {
+  x = {add(x[0], x[1]), subtract(x[0], x[1])};
+}
+template <bool forward>
+HWY_ATTR HWY_INLINE void short_transform(std::array<Complex, 3>& x) {
+  const Vector half = hn::Set(Lanes(), 0.5F), sine = hn::Set(Lanes(), 0.866025403784438647F);
+  const Complex sum = add(x[1], x[2]), difference = subtract(x[1], x[2]);
+  const Complex middle{hn::NegMulAdd(half, sum.re, x[0].re), hn::NegMulAdd(half, sum.im, x[0].im)};
+  // −i·√3/2·difference.
+  const Complex turned{hn::Mul(sine, difference.im), hn::Neg(hn::Mul(sine, difference.re))};
+  const Complex with = add(middle, turned), against = subtract(middle, turned);
+  x = {add(x[0], sum), forward ? with : against, forward ? against : with};
+}
+template <bool forward>
+HWY_ATTR HWY_INLINE void short_transform(std::array<Complex, 4>& x) {
+  const Complex t0 = add(x[0], x[2]), t1 = subtract(x[0], x[2]), t2 = add(x[1], x[3]),
+                t3 = turned_difference(x[1], x[3]);
+  const Complex with = add(t1, t3), against = subtract(t1, t3);
+  x = {add(t0, t2), forward ? against : with, subtract(t0, t2), forward ? with : against};
+}
+template <bool forward>
+HWY_ATTR HWY_INLINE void short_transform(std::array<Complex, 6>& x) {
+  // By prime factors: element 3a + 2b (mod 6), frequency ≡ c (mod 2), ≡ d (mod 3); no twiddles.
+  std::array<Complex, 3> even{add(x[0], x[3]), add(x[2], x[5]), add(x[4], x[1])},
+      odd{subtract(x[0], x[3]), subtract(x[2], x[5]), subtract(x[4], x[1])};
+  short_transform<forward>(even);
+  short_transform<forward>(odd);
+  x = {even[0], odd[1], even[2], odd[0], even[1], odd[2]};
+}
+
+/// The shortest blocks of a line. \param use  (place, element) of what comes out.
+template <bool forward, std::size_t length, typename Use>
+HWY_ATTR HWY_INLINE void short_blocks(const float* data, int size, const Use& use) {
   const std::size_t element = element_floats();
-  for (int i = 0; i < size; i += 2, data += 2 * element) {
-    const Complex a = load(data), b = load(data + element);
-    store(add(a, b), data);
-    store(subtract(a, b), data + element);
+  for (std::size_t at = 0; at < static_cast<std::size_t>(size); at += length) {
+    std::array<Complex, length> x;
+    HWY_UNROLL(6)
+    for (std::size_t i = 0; i < length; ++i) x[i] = load(data + (at + i) * element);
+    short_transform<forward>(x);
+    HWY_UNROLL(6)
+    for (std::size_t i = 0; i < length; ++i) use(at + i, x[i]);
   }
 }
-
-/// The stages of a transform whose blocks have come down to `length`.
-HWY_ATTR inline void forward_from(float* data, int size, int length, const float* twiddles) {
-  for (; length >= 4; length /= 4) {
-    stage<true>(data, size, length, twiddles);
-    twiddles += static_cast<std::size_t>(length / 4) * 6;
+template <bool forward, typename Use>
+HWY_ATTR HWY_INLINE void short_blocks(const float* data, int size, const Use& use) {
+  switch (shortest_block(size)) {
+    case 2:
+      return short_blocks<forward, 2>(data, size, use);
+    case 3:
+      return short_blocks<forward, 3>(data, size, use);
+    case 4:
+      return short_blocks<forward, 4>(data, size, use);
+    default:
+      return short_blocks<forward, 6>(data, size, use);
   }
-  if (length == 2) pairs(data, size);
 }
 
 HWY_ATTR inline void inverse(float* data, int size, const float* twiddles) {
+  const std::size_t element = element_floats();
   std::array<const float*, 8> at{};
-  int stages = 0, length = size;
-  for (; length >= 4; length /= 4) {
+  int stages = 0;
+  for (int length = size; length > shortest_block(size); length /= 4) {
     at[static_cast<std::size_t>(stages++)] = twiddles;
     twiddles += static_cast<std::size_t>(length / 4) * 6;
   }
-  if (length == 2) pairs(data, size);
-  for (length = length == 2 ? 8 : 4; stages > 0; length *= 4)
+  short_blocks<false>(data, size,
+                      [&](std::size_t i, const Complex& x) HWY_ATTR { store(x, data + i * element); });
+  for (int length = 4 * shortest_block(size); stages > 0; length *= 4)
     stage<false>(data, size, length, at[static_cast<std::size_t>(--stages)]);
 }
 
-/// Elements [from, size) become zero.
-HWY_ATTR HWY_INLINE void pad(float* data, int from, int size) {
-  const std::size_t element = element_floats();
-  std::fill(data + static_cast<std::size_t>(from) * element, data + static_cast<std::size_t>(size) * element,
-            0.0F);
-}
+/// Elements of a line whose places behind `count` are zero.
+struct PaddedLine {
+  const float* elements;
+  const float* weights;  ///< of each; null: all 1
+  int count;
+};
 
-/// The transform of `count` elements, each times its weight, and zeros behind them. \param weights  null:
-/// all 1.
-HWY_ATTR inline void forward_padded(const float* elements, const float* weights, int count, int size,
-                                    const float* twiddles, float* data) {
+/// The first stage, of elements [from, to) of each quarter, of which `quarters` are not zero.
+template <int quarters, bool weighted>
+HWY_ATTR HWY_INLINE void first_stage(const PaddedLine& line, int from, int to, int quarter,
+                                     const float* twiddles, float* data) {
   const Lanes d;
-  const std::size_t element = element_floats();
+  const std::size_t element = element_floats(), step = static_cast<std::size_t>(quarter) * element;
+  const Complex none{hn::Zero(d), hn::Zero(d)};
   const auto at = [&](int i) HWY_ATTR {
-    const Complex value = load(elements + static_cast<std::size_t>(i) * element);
-    if (weights == nullptr) return value;
-    const Vector weight = hn::Set(d, weights[i]);
+    const Complex value = load(line.elements + static_cast<std::size_t>(i) * element);
+    if (!weighted) return value;
+    const Vector weight = hn::Set(d, line.weights[i]);
     return Complex{hn::Mul(weight, value.re), hn::Mul(weight, value.im)};
   };
-  const int quarter = size / 4;
-  if (count > 2 * quarter) {
-    for (int i = 0; i < count; ++i) store(at(i), data + static_cast<std::size_t>(i) * element);
-    pad(data, count, size);
-    return forward_from(data, size, size, twiddles);
+  for (int j = from; j < to; ++j)
+    butterfly_forward(at(j), quarters > 1 ? at(j + quarter) : none, quarters > 2 ? at(j + 2 * quarter) : none,
+                      quarters > 3 ? at(j + 3 * quarter) : none, twiddles + static_cast<std::size_t>(j) * 6,
+                      data + static_cast<std::size_t>(j) * element, step);
+}
+template <bool weighted>
+HWY_ATTR inline void first_stage(const PaddedLine& line, int quarter, const float* twiddles, float* data) {
+  const int full = std::min(line.count / quarter, 4), rest = full < 4 ? line.count - full * quarter : 0;
+  const auto run = [&](int quarters, int from, int to) HWY_ATTR {
+    switch (quarters) {
+      case 0: {
+        const Complex none{hn::Zero(Lanes()), hn::Zero(Lanes())};
+        for (int j = from; j < to; ++j)
+          for (int k = 0; k < 4; ++k)
+            store(none, data + static_cast<std::size_t>(j + k * quarter) * element_floats());
+        return;
+      }
+      case 1:
+        return first_stage<1, weighted>(line, from, to, quarter, twiddles, data);
+      case 2:
+        return first_stage<2, weighted>(line, from, to, quarter, twiddles, data);
+      case 3:
+        return first_stage<3, weighted>(line, from, to, quarter, twiddles, data);
+      default:
+        return first_stage<4, weighted>(line, from, to, quarter, twiddles, data);
+    }
+  };
+  run(full + 1, 0, rest);
+  run(full, rest, quarter);
+}
+
+/// The transform of a padded line. \param data  room for `size` elements. \param use  (place, element) of
+/// what comes out, once for each place.
+template <typename Use>
+HWY_ATTR HWY_INLINE void forward(const PaddedLine& line, int size, const float* twiddles, float* data,
+                                 const Use& use) {
+  if (line.weights != nullptr)
+    first_stage<true>(line, size / 4, twiddles, data);
+  else
+    first_stage<false>(line, size / 4, twiddles, data);
+  for (int length = size / 4; length > shortest_block(size); length /= 4) {
+    twiddles += static_cast<std::size_t>(length) * 6;
+    stage<true>(data, size, length, twiddles);
   }
-  // The first stage knows that at least half of what it takes is zero.
-  const std::size_t step = static_cast<std::size_t>(quarter) * element;
-  const float* w = twiddles;
-  for (int j = 0; j < quarter; ++j, w += 6) {
-    float* out = data + static_cast<std::size_t>(j) * element;
-    const Complex none{hn::Zero(d), hn::Zero(d)};
-    const Complex x0 = j < count ? at(j) : none, x1 = j + quarter < count ? at(j + quarter) : none;
-    const Complex turned = turned_difference(x1, none);
-    store(add(x0, x1), out);
-    store(multiply(subtract(x0, turned), broadcast(w)), out + step);
-    store(multiply(subtract(x0, x1), broadcast(w + 2)), out + 2 * step);
-    store(multiply(add(x0, turned), broadcast(w + 4)), out + 3 * step);
-  }
-  forward_from(data, size, quarter, w);
+  short_blocks<true>(data, size, use);
+}
+
+/// The same where all of what comes out stays in `data`.
+HWY_ATTR inline void forward(const PaddedLine& line, int size, const float* twiddles, float* data) {
+  const std::size_t element = element_floats();
+  forward(line, size, twiddles, data,
+          [&](std::size_t i, const Complex& x) HWY_ATTR { store(x, data + i * element); });
 }
 
 /// A square of floats, as many as a vector has: vector i of what comes out holds what the vectors that go in

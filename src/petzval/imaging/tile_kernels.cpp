@@ -59,13 +59,13 @@ HWY_ATTR void kernel_otfs(const TileTransform& transform, const std::array<const
       lay(kernels[1], pass.imaginary + lane * pass.width);
     }
     rows_to_elements(pass);
-    forward_padded(pass.elements, nullptr, size, n, transform.twiddles(), line);
+    forward({pass.elements, nullptr, size}, n, transform.twiddles(), line);
     for (std::size_t b = 0; b < blocks; ++b)
       turn_columns(line, transform.columns().data() + b * lanes,
                    turned + b * turned_block + block * lanes * element);
   }
   const auto columns_of = [&](std::size_t block, float* out) HWY_ATTR {
-    forward_padded(turned + block * turned_block, nullptr, size, n, transform.twiddles(), out);
+    forward({turned + block * turned_block, nullptr, size}, n, transform.twiddles(), out);
   };
   const auto last_lane = hn::Eq(hn::Iota(d, 0.0F), hn::Set(d, static_cast<float>(lanes - 1)));
   for (std::size_t block = 0; block < blocks / 2; ++block) {
