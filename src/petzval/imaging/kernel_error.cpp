@@ -153,17 +153,40 @@ KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, co
   return {known.of_first > 0 ? known.rms * (of_first / known.of_first) : of_first, of_first};
 }
 
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
-                   bool expected) {
-  const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  const double last_cells = psfs.last_height_mm() / (psfs.cell_um() * mm_per_um);
-  const Places sampled = places_within(errors, last_cells + 1);
-  const std::vector<Place>& places = sampled.inside;
-  RimError rim;
-  constexpr std::size_t fewest_places = 64;
-  if (places.size() < fewest_places) return rim;
+namespace {
 
-  // Shells from the rim inwards, each as large as all outside it: a thousandth of the cells to an eighth.
+/// Cells inside the last height of a table, the outermost first, and shells of them.
+class Rim {
+ public:
+  Rim(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes)
+      : errors_(psfs, grid, tile, nodes),
+        sampled_(places_within(errors_, psfs.last_height_mm() / (psfs.cell_um() * mm_per_um) + 1)) {}
+
+  const std::vector<Place>& places() const { return sampled_.inside; }
+  bool is_too_small() const {
+    constexpr std::size_t fewest_places = 64;
+    return places().size() < fewest_places;
+  }
+  /// The first place behind shell k, from the rim inwards: each is as large as all outside it, a thousandth
+  /// of the cells to an eighth.
+  std::size_t end_of_shell(int k) const { return (places().size() << k) / 1024; }
+  double share(std::size_t from, std::size_t to) const {
+    return sampled_.share * double(to - from) / double(places().size());
+  }
+  double square(std::size_t from, std::size_t to) const { return mean_square(errors_, places(), from, to); }
+
+ private:
+  ErrorAtPlaces errors_;
+  Places sampled_;
+};
+
+}  // namespace
+
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit) {
+  const Rim cells(psfs, grid, tile, nodes);
+  RimError rim;
+  if (cells.is_too_small()) return rim;
+
   constexpr int most_shells = 8;
   struct Shell {
     double inner_radius, share, square;  ///< of the whole grid
@@ -172,25 +195,41 @@ RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, i
   std::size_t from = 0;
   double rest = 0, worst = 0;
   for (int k = 0; k < most_shells; ++k) {
-    const std::size_t to = std::max(from + 1, (places.size() << k) / 1024);
-    const double share = sampled.share * double(to - from) / double(places.size());
-    const double square = mean_square(errors, places, from, to);
-    shells.push_back({places[to].radius, share, share * square});
+    const std::size_t to = std::max(from + 1, cells.end_of_shell(k));
+    const double share = cells.share(from, to), square = cells.square(from, to);
+    shells.push_back({cells.places()[to].radius, share, share * square});
     rest += share * square;
     worst = std::max(worst, square);
     from = to;
+    if (k == 0) rim.outermost = square;
     // Where the outermost are not worse than others, there is nothing about the rim.
     constexpr double usual = 4;
-    if (k == (expected ? 1 : 0) && worst < usual * limit * limit) return rim;
+    if (k == 1 && worst < usual * limit * limit) return rim;
   }
   for (const Shell& shell : shells) {
     if (rest <= limit * limit) break;
     rest -= shell.square;
     rim.ring_share += shell.share;
-    rim.ring = {shell.inner_radius, places.front().radius + 2.0 * tile};  // a tile that begins inside
+    rim.ring = {shell.inner_radius, cells.places().front().radius + 2.0 * tile};  // a tile that begins inside
   }
   rim.within = rest <= limit * limit;
   rim.mean_square = std::max(0.0, rest);
+  return rim;
+}
+
+RimError rim_error_like(const RimError& known, const PsfField& psfs, const SensorGeometry& grid, int tile,
+                        int nodes, double limit) {
+  if (!known.ring.empty()) return rim_error(psfs, grid, tile, nodes, limit);
+  const Rim cells(psfs, grid, tile, nodes);
+  RimError rim;
+  if (cells.is_too_small()) return rim;
+  rim.outermost = cells.square(0, std::max<std::size_t>(1, cells.end_of_shell(0)));
+  const double change = known.outermost > 0 ? rim.outermost / known.outermost : 1;
+  // The rest of a rim need not follow its outermost cells that far.
+  constexpr double far = 2;
+  if (change > far) return rim_error(psfs, grid, tile, nodes, limit);
+  rim.mean_square = known.mean_square * change;
+  rim.within = rim.mean_square <= limit * limit;
   return rim;
 }
 

@@ -42,13 +42,16 @@ struct RimError {
   CellRing ring;           ///< that must be left out for the error of the rest to stay within the limit
   double ring_share = 0;   ///< of the cells of the grid
   double mean_square = 0;  ///< of the error of the rim without the ring, as a part of the whole grid's
+  double outermost = 0;    ///< mean square error in its outermost thousandth
   bool within = true;      ///< false: even without the largest ring that is looked at it is beyond the limit
 };
 
 /// \param limit  for the RMS error of the rim, as a part of the whole grid's.
-/// \param expected  false: the rim of PSFs that differ little from these was like the rest, so that a first
-/// look may do.
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit,
-                   bool expected = true);
+RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit);
+
+/// The same for PSFs that differ little from others of which it is known: unless that found a ring, the
+/// outermost cells tell by how much all have changed.
+RimError rim_error_like(const RimError& known, const PsfField& psfs, const SensorGeometry& grid, int tile,
+                        int nodes, double limit);
 
 }  // namespace petzval

@@ -125,15 +125,29 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
 
 /// Gives the plan what cells at the rim need kernels of their own, and the error that it has then. Whether
 /// that keeps it within the limit.
-bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, double limit, bool expected,
-              ProductPlan& plan) {
+bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, const RimError& rim, ProductPlan& plan) {
   constexpr double scatter_ns = 1;  // of exact_blur, per weight
-  const RimError rim = rim_error(psfs, grid, plan.tile, plan.nodes, limit, expected);
   const double size = 2.0 * psfs.radius() + 1, cells = double(grid.columns) * grid.rows;
+  plan.rim_error = rim;
   plan.exact = rim.ring;
   plan.exact_ns = rim.ring_share * cells * (kernel_ns(psfs) + scatter_ns * size * size);
   plan.estimated_error = std::hypot(plan.estimated_error, std::sqrt(rim.mean_square));
   return rim.within;
+}
+
+/// The plan of a neighbouring band, if it serves.
+std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs,
+                                     const SensorGeometry& grid, const ProductOptions& options) {
+  if (!hint.direct && hint.tile + 2 * psfs.radius() > hint.transform) return {};
+  ProductPlan plan = hint.direct ? direct_candidate(psfs, grid, hint.tile, hint.nodes)
+                                 : candidate(psfs, grid, hint.transform, hint.tile, hint.nodes);
+  plan.error_at_places = kernel_error_like(hint.error_at_places, psfs, grid, plan.tile, plan.nodes);
+  plan.estimated_error = plan.error_at_places.rms;
+  if (options.layout_given()) return plan;
+  const double limit = caution_of_hint * options.tolerance;
+  if (plan.estimated_error > limit) return {};
+  const RimError rim = rim_error_like(hint.rim_error, psfs, grid, plan.tile, plan.nodes, limit);
+  return mend_rim(psfs, grid, rim, plan) ? std::optional(plan) : std::nullopt;
 }
 
 }  // namespace
@@ -153,22 +167,15 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
-  const bool given = options.tile != 0 && options.nodes != 0;
-  if (hint && (hint->direct || hint->tile + 2 * psfs.radius() <= hint->transform)) {
-    ProductPlan plan = hint->direct ? direct_candidate(psfs, grid, hint->tile, hint->nodes)
-                                    : candidate(psfs, grid, hint->transform, hint->tile, hint->nodes);
-    plan.error_at_places = kernel_error_like(hint->error_at_places, psfs, grid, plan.tile, plan.nodes);
-    plan.estimated_error = plan.error_at_places.rms;
-    const double limit = caution_of_hint * options.tolerance;
-    if (given || (plan.estimated_error <= limit && mend_rim(psfs, grid, limit, !hint->exact.empty(), plan)))
-      return plan;
-  }
-  const double limit = caution * options.tolerance;
+  if (hint)
+    if (std::optional<ProductPlan> plan = kept_plan(*hint, psfs, grid, options)) return plan;
+  const double limit = options.layout_given() ? INFINITY : caution * options.tolerance;
   const auto serves = [&](ProductPlan& plan) {
-    plan.error_at_places = kernel_error(psfs, grid, plan.tile, plan.nodes, given ? INFINITY : limit);
+    plan.error_at_places = kernel_error(psfs, grid, plan.tile, plan.nodes, limit);
     plan.estimated_error = plan.error_at_places.rms;
-    if (given) return true;
-    return plan.estimated_error <= limit && mend_rim(psfs, grid, limit, true, plan);
+    if (options.layout_given()) return true;
+    return plan.estimated_error <= limit &&
+           mend_rim(psfs, grid, rim_error(psfs, grid, plan.tile, plan.nodes, limit), plan);
   };
   std::vector<ProductPlan> failed;
   std::optional<ProductPlan> best;

@@ -21,7 +21,8 @@ struct ProductPlan {
   /// frequency: noise with a standard deviation as large as its mean. Edges and smoother pictures come out
   /// better; an image of single points in darkness up to 1/√Σh² worse, h the kernel.
   double estimated_error = 0;
-  KernelError error_at_places = {};  ///< of the kernels: what the estimate goes by, apart from the rim's
+  KernelError error_at_places = {};  ///< what the estimate goes by,
+  RimError rim_error = {};           ///< and what it adds for the rim
   /// By the cost model [ns of one core of the machine that it was measured on]: filtering, and making the
   /// transfer functions.
   double filter_ns = 0, kernels_ns = 0;
@@ -38,6 +39,8 @@ struct ProductOptions {
   int tile = 0;                     ///< cells along a side; 0: chosen
   std::optional<bool> direct = {};  ///< gathered or by transforms; absent: as the cost model says
 
+  /// Nothing is left to be chosen.
+  bool layout_given() const { return tile != 0 && nodes != 0; }
   /// \throws InputError saying what would be right.
   void validate() const;
 };
