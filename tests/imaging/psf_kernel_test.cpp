@@ -116,9 +116,35 @@ TEST(PsfKernel, IsTheRotatedPsfIntegratedOverCells) {
     }
 }
 
-// Windows of even size begin with a column that has no mirrored partner. Cut where there is light, as listings
-// of other programs and our own tables are, they are PSFs of a centred lens all the same: four tiles share
-// kernels.
+// Where rows of samples begin and end to be lit makes no difference.
+TEST(PsfKernel, IsTheSameInAWindowWithDarkMargins) {
+  const Psf small = psf_of_spots({{2, 3, 1.5, 2.5, 1}}, 61, 0.4);
+  Psf large;
+  large.size = 141;
+  large.spacing_um = small.spacing_um;
+  large.values.resize(141 * 141);
+  for (int i = 0; i < small.size; ++i)
+    for (int j = 0; j < small.size; ++j)
+      if (std::hypot(i - 38, j - 35) < 20)
+        large.values[static_cast<std::size_t>((i + 40) * 141 + j + 40)] = small.at(i, j);
+  Psf round = small;  // the same samples, dark ones as far as its window goes
+  for (int i = 0; i < small.size; ++i)
+    for (int j = 0; j < small.size; ++j)
+      round.values[static_cast<std::size_t>(i * small.size + j)] = large.at(i + 40, j + 40);
+  for (const double degrees : {0.0, 20.0, 137.0, 300.0}) {
+    const std::array<double, 2> direction{std::cos(radians(degrees)), std::sin(radians(degrees))};
+    Kernel of_small(12), of_large(12);
+    add(round, 1, direction, 2.2, of_small);
+    add(large, 1, direction, 2.2, of_large);
+    EXPECT_GT(of_small.sum(), 0.9);
+    for (std::size_t i = 0; i < of_small.weights.size(); ++i)
+      ASSERT_NEAR(of_small.weights[i], of_large.weights[i], 2e-7) << degrees << "°, " << i;
+  }
+}
+
+// Windows of even size begin with a column that has no mirrored partner. Cut where there is light, as
+// listings of other programs and our own tables are, they are PSFs of a centred lens all the same: four tiles
+// share kernels.
 TEST(PsfKernel, AnEvenWindowOfASymmetricPsfIsSymmetric) {
   const auto kernel_of = [](const Spot& spot, bool& symmetric) {
     TableRecipe recipe;

@@ -97,6 +97,33 @@ TEST(PsfRefinement, IsThePatternBetweenItsSamples) {
 }
 
 // One bright sample, and a disc with a sharp edge: whatever lies between such samples, they do not say it.
+// A lit disc in a dark window: no light comes where no rays are, and none is lost.
+TEST(PsfRefinement, KeepsDarkWhatIsDark) {
+  Psf cut = airy_psf(64);
+  constexpr double lit = 15.5;
+  const auto from_middle = [](const Psf& psf, int i, int j) {
+    return std::hypot(i - psf.size / 2, j - psf.size / 2);
+  };
+  for (int i = 0; i < cut.size; ++i)
+    for (int j = 0; j < cut.size; ++j)
+      if (from_middle(cut, i, j) > lit) cut.values[static_cast<std::size_t>(i * cut.size + j)] = 0;
+  const Psf fine = refined_psf(cut, 0.06 * lambda_n_um);
+  const double factor = cut.spacing_um / fine.spacing_um;
+  ASSERT_GT(factor, 2);
+  std::size_t beside = 0;
+  for (int i = 0; i < fine.size; ++i)
+    for (int j = 0; j < fine.size; ++j)
+      if (from_middle(fine, i, j) > (lit + 2) * factor)
+        ASSERT_EQ(fine.at(i, j), 0) << i << ", " << j;
+      else if (from_middle(fine, i, j) > (lit + 0.5) * factor && fine.at(i, j) != 0)
+        ++beside;
+  EXPECT_GT(beside, 0U);  // the slope down to it is there
+  const auto light = [](const Psf& psf) {
+    return std::accumulate(psf.values.begin(), psf.values.end(), 0.0);
+  };
+  EXPECT_NEAR(light(fine) / light(refined_psf(airy_psf(64), 0.06 * lambda_n_um)), light(cut), 1e-3);
+}
+
 TEST(PsfRefinement, LeavesWhatIsNotBandLimited) {
   const Psf point{1, 4.0, {1.0F}, 1.0};
   EXPECT_EQ(refined_psf(point, 0.5).values, point.values);

@@ -184,6 +184,7 @@ MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged, const LightMo
       std::fill(sums.begin(), sums.end(), 0.0);
     }
   }
+  find_light();
 }
 
 MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
@@ -193,6 +194,21 @@ MergedPsf::MergedPsf(const Kernel& fine, double spacing_um)
   for (int row = -fine.radius; row <= fine.radius; ++row)
     for (int column = fine.radius; column >= -fine.radius; --column)
       samples_.push_back(static_cast<float>(fine.at(row, column)));
+  find_light();
+}
+
+void MergedPsf::find_light() {
+  const auto size = static_cast<std::size_t>(size_);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::span<const float> samples(row(i), size);
+    const auto has_light = [](float value) { return value != 0; };
+    const auto first = std::find_if(samples.begin(), samples.end(), has_light);
+    const auto last = std::find_if(samples.rbegin(), samples.rend(), has_light);
+    const bool dark = first == samples.end();
+    lit_.push_back(dark ? LitSamples{}
+                        : LitSamples{static_cast<std::size_t>(first - samples.begin()),
+                                     static_cast<std::size_t>(samples.rend() - last)});
+  }
 }
 
 namespace {
@@ -228,8 +244,7 @@ void scatter(std::span<const WeightedPsf> psfs, const PlacedLattice& lattice, Ke
   const int parts = std::max(1, static_cast<int>(std::ceil(2 * blob_radius(longest) - 1e-9)));
   std::vector<SampleSquare> squares;
   for (const WeightedPsf& part : psfs)
-    squares.push_back({part.psf->row(0), static_cast<std::size_t>(part.psf->size()),
-                       static_cast<float>(part.weight / (double(parts) * parts))});
+    squares.push_back(part.psf->square(part.weight / (double(parts) * parts)));
   const int radius = kernel.radius;
   Canvas canvas(2 * radius + 4);
   for (int a = 0; a < parts; ++a)
@@ -252,8 +267,7 @@ void deposit(const MergedPsf& psf, const Placement& placement, const std::array<
   const Moments& moments = psf.moments();
   const Vector centre_um{moments.mean[0] / psf.sum(), moments.mean[1] / psf.sum()};
   const PlacedLattice lattice = lattice_on_cells(psf, placement, centre_um, direction, cell_um);
-  const SampleSquare square{psf.row(0), static_cast<std::size_t>(psf.size()),
-                            static_cast<float>(placement.weight)};
+  const SampleSquare square = psf.square(placement.weight);
   if (direction[0] == 0)
     deposit_along_axes(square, lattice, kernel);
   else

@@ -2,6 +2,7 @@
 // Integrating finely sampled PSFs over the cells of an image.
 #pragma once
 
+#include <petzval/imaging/sample_scatter.h>
 #include <petzval/wave/psf.h>
 
 #include <array>
@@ -80,12 +81,19 @@ class MergedPsf {
   const float* row(std::size_t index) const {
     return samples_.data() + index * static_cast<std::size_t>(size_);
   }
+  /// What is lit of it.
+  SampleSquare square(double weight) const {
+    return {samples_.data(), lit_.data(), static_cast<std::size_t>(size_), static_cast<float>(weight)};
+  }
 
  private:
+  void find_light();
+
   int size_;
   double spacing_um_, origin_um_, first_um_;
   LightMoments light_;
-  std::vector<float> samples_;  ///< row-major
+  std::vector<float> samples_;   ///< row-major
+  std::vector<LitSamples> lit_;  ///< of every row
 };
 
 /// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.

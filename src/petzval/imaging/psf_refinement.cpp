@@ -7,6 +7,8 @@
 #include <complex>
 #include <cstddef>
 #include <numbers>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -61,6 +63,35 @@ std::vector<float> squares_share(int count, int side) {
   return shares;
 }
 
+/// Where rays do not come near, samples are zero, and stay so, but for one sample about those that are lit.
+/// The light stays what it was.
+void keep_dark(const Psf& psf, int factor, Psf& fine) {
+  const auto first_and_last = [&](int row) {
+    int first = 0, last = psf.size - 1;
+    while (first <= last && psf.at(row, first) == 0) ++first;
+    while (last >= first && psf.at(row, last) == 0) --last;
+    return first <= last ? std::pair(first, last) : std::pair(psf.size, -1);
+  };
+  const int middle = psf.size / 2, reach = fine.size / 2;
+  const double before = std::accumulate(fine.values.begin(), fine.values.end(), 0.0);
+  for (int i = 0; i < fine.size; ++i) {
+    int first = psf.size, last = -1;
+    const double row = middle + double(i - reach) / factor;
+    for (int near = std::max(0, static_cast<int>(std::ceil(row)) - 1);
+         near <= std::min(psf.size - 1, static_cast<int>(std::floor(row)) + 1); ++near) {
+      const auto [from, to] = first_and_last(near);
+      first = std::min(first, from);
+      last = std::max(last, to);
+    }
+    float* values = fine.values.data() + static_cast<std::ptrdiff_t>(i) * fine.size;
+    const int from = reach + (first - 1 - middle) * factor, to = reach + (last + 1 - middle) * factor;
+    for (int j = 0; j < fine.size; ++j)
+      if (j < from || j > to) values[j] = 0;
+  }
+  const double after = std::accumulate(fine.values.begin(), fine.values.end(), 0.0);
+  for (float& value : fine.values) value = static_cast<float>(value * (before / after));
+}
+
 }  // namespace
 
 Psf refined_psf(const Psf& psf, double widest_um) {
@@ -96,6 +127,7 @@ Psf refined_psf(const Psf& psf, double widest_um) {
       fine.values.push_back(
           image[static_cast<std::size_t>((i + side) % side) * static_cast<std::size_t>(side) +
                 static_cast<std::size_t>((j + side) % side)]);
+  keep_dark(psf, factor, fine);
   return fine;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/imaging/sample_scatter.cpp"
@@ -36,17 +37,54 @@ HWY_ATTR HWY_INLINE void add_scaled_row(const float* row, float weight, std::siz
   for (; i < count; ++i) sums[i] += weight * row[i];
 }
 
-/// The samples of a row, padded to full vectors. \param size  of the largest square.
+/// The lit samples of a row, padded to full vectors. \param size  of the largest square.
 HWY_ATTR HWY_INLINE void mix_row(std::span<const SampleSquare> squares, std::size_t size, std::size_t row,
-                                 std::size_t padded, float* values) {
-  std::fill_n(values, padded, 0.0F);
+                                 const LitSamples& lit, float* values) {
+  const std::size_t lanes = hn::Lanes(Lanes());
+  std::fill_n(values, (lit.end - lit.first + lanes - 1) / lanes * lanes, 0.0F);
   for (const SampleSquare& square : squares) {
     const std::size_t before = (size - square.size) / 2;
     if (row < before || row >= before + square.size) continue;
-    add_scaled_row(square.samples + (row - before) * square.size, square.weight, square.size,
-                   values + before);
+    const LitSamples& own = square.lit[row - before];
+    add_scaled_row(square.samples + (row - before) * square.size + own.first, square.weight,
+                   own.end - own.first, values + before + own.first - lit.first);
   }
 }
+
+/// What is lit of the rows of a mixture.
+class LitRows {
+ public:
+  /// \param size  of the largest square.
+  LitRows(std::span<const SampleSquare> squares, std::size_t size, std::size_t lanes)
+      : lit_(size), before_(size + 1) {
+    for (const SampleSquare& square : squares) {
+      const std::size_t before = (size - square.size) / 2;
+      for (std::size_t row = 0; row < square.size; ++row) {
+        const LitSamples& own = square.lit[row];
+        LitSamples& lit = lit_[before + row];
+        if (own.first == own.end) continue;
+        const bool dark = lit.first == lit.end;
+        lit = {dark ? before + own.first : std::min(lit.first, before + own.first),
+               dark ? before + own.end : std::max(lit.end, before + own.end)};
+      }
+    }
+    for (std::size_t row = 0; row < size; ++row)
+      before_[row + 1] = before_[row] + (lit_[row].end - lit_[row].first + lanes - 1) / lanes;
+  }
+  const LitSamples& lit(std::size_t row) const { return lit_[row]; }
+  /// The first row of the k-th of so many parts, with about as many vectors each.
+  std::size_t border(std::size_t k, std::size_t parts) const {
+    const std::size_t wanted = before_.back() * k / parts;
+    if (k == parts) return lit_.size();
+    return static_cast<std::size_t>(std::upper_bound(before_.begin(), before_.end(), wanted) -
+                                    before_.begin()) -
+           1;
+  }
+
+ private:
+  std::vector<LitSamples> lit_;
+  std::vector<std::size_t> before_;  ///< vectors in the rows before each
+};
 
 /// Where blobs go: their cells, and what these and their neighbours get.
 struct Blobs {
@@ -134,10 +172,19 @@ HWY_ATTR HWY_INLINE void add_four(const float* parts, float* cell) {
     hn::Store(hn::Add(hn::Load(d, cell + i), hn::Load(d, parts + i)), d, cell + i);
 }
 
+/// Where one strand has come to.
+struct Strand {
+  std::size_t row = 0, end_row = 0;  ///< the next one, and the one behind its last
+  std::size_t from = 0, end = 0;     ///< samples of the row at hand
+  std::array<double, 2> start{};     ///< of that row, half a cell before its first sample
+  const float* next = nullptr;       ///< values of the samples from `from` on
+};
+
 HWY_ATTR void scatter(std::span<const SampleSquare> squares, const PlacedLattice& lattice, Canvas& canvas) {
   const std::size_t lanes = hn::Lanes(Lanes());
   std::size_t size = 0;
   for (const SampleSquare& square : squares) size = std::max(size, square.size);
+  const LitRows rows(squares, size, lanes);
   const std::size_t padded = (size + lanes - 1) / lanes * lanes;
   AlignedVector<float> values(strands * padded);
   Geometry geometry{};
@@ -146,26 +193,43 @@ HWY_ATTR void scatter(std::span<const SampleSquare> squares, const PlacedLattice
   for (std::size_t axis = 0; axis < 2; ++axis)
     geometry.inverse_radius[axis] = static_cast<float>(
         1 / std::max(1e-6, blob_radius(std::hypot(lattice.per_row[axis], lattice.per_column[axis]))));
+
+  std::array<Strand, strands> all{};
+  for (std::size_t k = 0; k < strands; ++k) {
+    all[k].row = rows.border(k, strands);
+    all[k].end_row = rows.border(k + 1, strands);
+  }
+  /// Whether there is anything left to do for it.
+  const auto go_on = [&](std::size_t k) HWY_ATTR {
+    Strand& strand = all[k];
+    for (; strand.from >= strand.end; ++strand.row) {
+      if (strand.row == strand.end_row) return false;
+      const LitSamples& lit = rows.lit(strand.row);
+      strand.from = lit.first;
+      strand.end = lit.end;
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        strand.start[axis] = lattice.first[axis] + double(strand.row) * lattice.per_row[axis] - 0.5;
+      float* row = values.data() + k * padded;
+      mix_row(squares, size, strand.row, lit, row);
+      strand.next = row;
+    }
+    return true;
+  };
   std::array<Blobs, strands> blobs;
   float* cells = canvas.cells();
-  const std::size_t turns = (size + strands - 1) / strands;
-  for (std::size_t turn = 0; turn < turns; ++turn) {
-    std::array<std::array<double, 2>, strands> row_start{};
-    std::size_t active = 0;
-    for (; active < strands && turn + active * turns < size; ++active) {
-      const std::size_t row = turn + active * turns;
-      for (std::size_t axis = 0; axis < 2; ++axis)
-        row_start[active][axis] = lattice.first[axis] + double(row) * lattice.per_row[axis] - 0.5;
-      mix_row(squares, size, row, padded, values.data() + active * padded);
+  std::size_t active = strands;
+  while (active != 0) {
+    active = 0;
+    for (std::size_t k = 0; k < strands; ++k) {
+      if (!go_on(k)) continue;
+      Strand& strand = all[k];
+      make_blobs(geometry, start_of(strand.start, geometry, strand.from), strand.next, blobs[active++]);
+      strand.from += lanes;
+      strand.next += lanes;
     }
-    for (std::size_t from = 0; from < size; from += lanes) {
-      for (std::size_t strand = 0; strand < active; ++strand)
-        make_blobs(geometry, start_of(row_start[strand], geometry, from),
-                   values.data() + strand * padded + from, blobs[strand]);
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        for (std::size_t strand = 0; strand < active; ++strand)
-          add_four(blobs[strand].parts.data() + 4 * lane, cells + blobs[strand].cell[lane]);
-    }
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      for (std::size_t i = 0; i < active; ++i)
+        add_four(blobs[i].parts.data() + 4 * lane, cells + blobs[i].cell[lane]);
   }
 }
 

@@ -10,9 +10,15 @@
 
 namespace petzval {
 
+/// Samples [first, end) of a row: outside them it is dark.
+struct LitSamples {
+  std::size_t first = 0, end = 0;
+};
+
 /// Samples of one PSF of a mixture.
 struct SampleSquare {
-  const float* samples;  ///< size × size, row-major
+  const float* samples;   ///< size × size, row-major
+  const LitSamples* lit;  ///< of every row
   std::size_t size;
   float weight;
 };
