@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <petzval/imaging/distortion.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace petzval {
 namespace {
 
@@ -160,6 +163,40 @@ TEST(IdealIrradiance, ShowsTheSurroundThatIsAskedFor) {
   EXPECT_EQ(zero.row(100)[0], 0);
   EXPECT_FLOAT_EQ(zero.row(100)[150], 1);
   for (const float value : extended.values) EXPECT_FLOAT_EQ(value, 1);
+}
+
+// Every cell has the light of its own place, whether it is done with others or alone: on grids of odd and
+// even sizes, up to the edge of the scene and into the dark corners, of a scene that is nowhere symmetric.
+TEST(IdealIrradiance, IsThatOfEachCellsOwnPlace) {
+  Scene scene(401, 299, {550}, 60, std::nullopt);
+  for (std::size_t i = 0; i < scene.band_size(); ++i)
+    scene.band(0)[i] = 1 + static_cast<float>((i * 2654435761U >> 7) % 1000) / 1000;
+  const auto radiance = [&](double column, double row) {
+    const double x = std::clamp(column - 0.5, 0.0, 400.0), y = std::clamp(row - 0.5, 0.0, 298.0);
+    const auto left = static_cast<std::size_t>(x), top = static_cast<std::size_t>(y);
+    const auto sample = [&](std::size_t i, std::size_t j) {
+      return double(scene.band(0)[std::min<std::size_t>(i, 298) * 401 + std::min<std::size_t>(j, 400)]);
+    };
+    const double right = x - double(left), down = y - double(top);
+    return std::lerp(std::lerp(sample(top, left), sample(top, left + 1), right),
+                     std::lerp(sample(top + 1, left), sample(top + 1, left + 1), right), down);
+  };
+  const LensDataTable table = make_table(barrel_recipe());
+  for (const auto& [columns, rows] : {std::pair{600, 400}, {601, 401}, {33, 20}, {17, 9}, {15, 1}, {7, 5}}) {
+    const SensorGeometry grid{columns, rows, 10};
+    const SceneMap map = map_of(table, scene, grid);
+    ASSERT_LE(map.finest_samples_per_mm() * 0.010, 1.3);
+    const CellPlane image = ideal_irradiance(scene, 0, map, grid, 1, Surround::extend);
+    std::size_t dark = 0;
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const SceneMap::Place place = map.place(grid.x_mm(column + 0.5), grid.y_mm(row + 0.5));
+        const double wanted = place.g_source_sr * radiance(place.column, place.row);
+        if (wanted == 0) ++dark;
+        ASSERT_NEAR(image.row(static_cast<std::size_t>(row))[column], wanted, 1e-6) << row << ", " << column;
+      }
+    EXPECT_EQ(dark > 0, columns >= 600) << columns;
+  }
 }
 
 }  // namespace

@@ -9,13 +9,19 @@
 
 namespace petzval {
 
-CellPlane::CellPlane(const SensorGeometry& geometry) : grid(geometry) {
+CellPlane CellPlane::unset(const SensorGeometry& grid) {
   constexpr double max_cells = 2147483648.0;  // 8 GB of floats
   if (grid.columns < 1 || grid.rows < 1 || !(grid.pitch_um > 0) || !std::isfinite(grid.pitch_um) ||
       double(grid.columns) * grid.rows > max_cells)
     throw InputError(fmt::format("{} × {} cells at {} µm: 1 to 2^31 cells of a positive pitch are right",
                                  grid.columns, grid.rows, grid.pitch_um));
-  values.resize(columns() * rows());
+  CellPlane plane;
+  plane.grid = grid;
+  plane.values.resize(plane.columns() * plane.rows());
+  return plane;
+}
+
+CellPlane::CellPlane(const SensorGeometry& geometry) : CellPlane(unset(geometry)) {
   // Memory that is new to the process costs more to touch than to fill.
   parallel_for(rows(), [&](std::size_t index) { std::fill_n(row(index), columns(), 0.0F); });
 }

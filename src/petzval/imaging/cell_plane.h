@@ -18,6 +18,8 @@ struct CellPlane {
   CellPlane() = default;
   /// All zero. \throws InputError for sizes below 1, more than 2^31 cells or a pitch that is not positive.
   explicit CellPlane(const SensorGeometry& grid);
+  /// The same, but holding anything: for who writes every cell.
+  static CellPlane unset(const SensorGeometry& grid);
 
   std::size_t columns() const { return static_cast<std::size_t>(grid.columns); }
   std::size_t rows() const { return static_cast<std::size_t>(grid.rows); }

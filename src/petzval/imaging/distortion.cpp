@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace petzval {
 
@@ -119,18 +120,19 @@ SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid) {
 namespace {
 
 /// Takes the scene at several points of each cell. \param seen  radiance at the place of a point, given the
-/// place of its cell's centre. \param quick  (row, from, irradiance) ↦ the first cell that it leaves to do.
-template <typename Seen, typename Quick>
+/// place of its cell's centre. \param quick_at  a row of the upper half ↦ (row, from, irradiance) ↦ the first
+/// cell that it leaves to do, for that row and its mirror image below.
+template <typename Seen, typename QuickAt>
 CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, const Seen& seen,
-                   const Quick& quick) {
-  CellPlane plane(grid);
+                   const QuickAt& quick_at) {
+  CellPlane plane = CellPlane::unset(grid);
   const double pitch_mm = grid.pitch_um * mm_per_um;
   constexpr double rounding = 1e-6;
   std::vector<std::vector<double>> offsets_mm(static_cast<std::size_t>(parts) + 1);
   for (int count = 1; count <= parts; ++count)
     for (int part = 0; part < count; ++part)
       offsets_mm[static_cast<std::size_t>(count)].push_back(((part + 0.5) / count - 0.5) * pitch_mm);
-  parallel_for(plane.rows(), [&](std::size_t row) {
+  const auto form_row = [&](std::size_t row, const auto& quick) {
     const double y_mm = grid.y_mm(double(row) + 0.5);
     const std::size_t slow_at_once = sampled_at_once();
     for (std::size_t column = 0, slow = 0; column < plane.columns(); ++column) {
@@ -152,6 +154,12 @@ CellPlane averaged(const SceneMap& map, const SensorGeometry& grid, int parts, c
         }
       plane.row(row)[column] = static_cast<float>(sum / double(count * count));
     }
+  };
+  parallel_for((plane.rows() + 1) / 2, [&](std::size_t row) {
+    const auto quick = quick_at(row);
+    const std::size_t mirrored = plane.rows() - 1 - row;
+    form_row(row, quick);
+    if (mirrored != row) form_row(mirrored, quick);
   });
   return plane;
 }
@@ -161,12 +169,16 @@ CellPlane ideal_of_plane(const Scene& scene, int band, const SceneMap& map, cons
   const std::span<const float> radiance = scene.band(band);
   // From a cell's centre to its farthest point, in samples, and one more for the bilinear neighbours.
   const double room = map.finest_samples_per_mm() * grid.pitch_um * mm_per_um + 1.5;
-  const PlaneView view = map.view_of(scene, band, room);
-  const auto quick = [&](std::size_t row, std::size_t from, float* irradiance) {
-    if (parts > 1) return from;
-    const CellRow cells{grid.x_mm(0.5), grid.pitch_um * mm_per_um, grid.y_mm(double(row) + 0.5),
-                        static_cast<std::size_t>(grid.columns)};
-    return sample_row(view, cells, from, irradiance);
+  const PlaneView view{radiance.data(), double(scene.columns()), double(scene.rows()), room};
+  const auto quick_at = [&](std::size_t upper) {
+    RowView cells;
+    if (parts == 1)
+      cells.look(map.steps(), {grid.pitch_um * mm_per_um, grid.y_mm(double(upper) + 0.5),
+                               static_cast<std::size_t>(grid.columns)});
+    return [&view, parts, upper, cells = std::move(cells)](std::size_t row, std::size_t from,
+                                                           float* irradiance) {
+      return parts > 1 ? from : sample_row(view, cells, row == upper ? 1 : -1, from, irradiance);
+    };
   };
   const auto seen = [&](const SceneMap::Place& centre) {
     const bool inside = centre.column > room && centre.column < scene.columns() - room && centre.row > room &&
@@ -176,7 +188,7 @@ CellPlane ideal_of_plane(const Scene& scene, int band, const SceneMap& map, cons
                     : radiance_at(radiance, scene, place.column, place.row, surround);
     };
   };
-  return averaged(map, grid, parts, seen, quick);
+  return averaged(map, grid, parts, seen, quick_at);
 }
 
 CellPlane ideal_of_panorama(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
@@ -188,7 +200,10 @@ CellPlane ideal_of_panorama(const Scene& scene, int band, const SceneMap& map, c
       return panorama.radiance(place.column - middle_column, place.row - middle_row);
     };
   };
-  return averaged(map, grid, parts, seen, [](std::size_t, std::size_t from, float*) { return from; });
+  const auto nothing_quick = [](std::size_t) {
+    return [](std::size_t, std::size_t from, float*) { return from; };
+  };
+  return averaged(map, grid, parts, seen, nothing_quick);
 }
 
 }  // namespace

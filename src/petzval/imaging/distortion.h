@@ -63,16 +63,8 @@ class SceneMap {
     }
   };
   Surroundings around(double x_mm, double y_mm) const;
-  /// For sample_row(): a band of a scene seen through this map.
-  PlaneView view_of(const Scene& scene, int band, double room) const {
-    return {steps_.data(),
-            steps_per_square_,
-            last_height_squared_,
-            scene.band(band).data(),
-            double(scene.columns()),
-            double(scene.rows()),
-            room};
-  }
+  /// For RowView.
+  SceneMapSteps steps() const { return {steps_.data(), steps_per_square_, last_height_squared_}; }
   /// Beyond it every place is dark.
   double last_height_mm() const { return last_height_mm_; }
   /// The most samples of the scene that a millimetre of the image spans, radially or tangentially.

@@ -156,7 +156,8 @@ int cells_for(const Photosite& site, int boxes, int least) {
 CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
   if (taps.size() == 1) return plane;
   const SensorGeometry inner = grown(plane.grid, -taps.reach);
-  CellPlane result({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});
+  CellPlane result =
+      CellPlane::unset({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});
   const auto step = static_cast<std::size_t>(taps.cells), size = static_cast<std::size_t>(taps.size());
   parallel_for(result.rows(), [&](std::size_t row) {
     for (std::size_t column = 0; column < result.columns(); ++column) {
