@@ -6,6 +6,8 @@
 #include <petzval/base/progress.h>
 
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "image_depth.h"
 #include "image_option.h"
@@ -37,15 +39,31 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
 
   DepthReport deep;
   ImagingReport& report = deep.image;
-  SpectralImage light =
-      depth ? form_depth_image(scene, *depth, frame, options, choice.depth, bar.callback(), &deep)
-            : form_image(scene, table, frame, options, bar.callback(), &report);
-  const std::string method = method_text(options, report);
-  light.provenance =
-      fmt::format("petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
-                  distance_text(scene), table.lens_name, table.first_order.working_f_number, method);
+  FormedImage formed = {.frame = frame,
+                        .light = {},
+                        .file = {},
+                        .scene = std::move(scene),
+                        .table = std::move(table),
+                        .report = {},
+                        .method = {}};
+  if (!depth) formed.file = large_file(choice.outputs, frame, formed.scene);
+  if (depth)
+    formed.light =
+        form_depth_image(formed.scene, *depth, frame, options, choice.depth, bar.callback(), &deep);
+  else if (formed.file)
+    form_bands(
+        formed.scene, formed.table, frame, options,
+        [&](std::span<const float> pixels) { formed.file->bands().add(pixels); }, bar.callback(), &report);
+  else
+    formed.light = form_image(formed.scene, formed.table, frame, options, bar.callback(), &report);
+  formed.method = method_text(options, report);
+  if (formed.light)
+    formed.light->provenance =
+        fmt::format("petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(),
+                    formed.scene.name, distance_text(formed.scene), formed.table.lens_name,
+                    formed.table.first_order.working_f_number, formed.method);
   for (const std::string& line : report.notes) note(shared, line);
-  FormedImage formed = {std::move(light), std::move(scene), std::move(table), std::move(report), method};
+  formed.report = std::move(report);
   const std::optional<Shot> shot = write_outputs(choice, formed, sensor, shared);
   if (shared.json) return print_json(with_layers(summary_json(formed, shot, choice.outputs), deep));
   if (shared.quiet) return;

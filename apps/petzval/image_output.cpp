@@ -64,9 +64,26 @@ std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& sc
 
 }  // namespace
 
+std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, const SensorGeometry& frame,
+                                      const Scene& scene) {
+  if (outputs.size() != 1 || extension_of(outputs.front()) != ".npy") return {};
+  SpectralImage::check(frame.columns, frame.rows, scene.wavelengths_nm(), frame.pitch_um);
+  const NpyImageShape shape = {static_cast<std::size_t>(frame.rows), static_cast<std::size_t>(frame.columns),
+                               static_cast<std::size_t>(scene.bands())};
+  if (!is_large_npy(shape)) return {};
+  NpyBandFile file(outputs.front(), shape);
+  return file ? std::optional(std::move(file)) : std::nullopt;
+}
+
 std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
                                   const std::optional<Sensor>& sensor, const Shared& shared) {
   StagedFiles files;
+  if (image.file) {
+    image.file->put_at(files.stage(choice.outputs.front()));
+    files.commit();
+    return {};
+  }
+  SpectralImage& light = *image.light;
   std::vector<std::string> of_light;
   for (const std::string& path : choice.outputs) {
     const std::string extension = extension_of(path);
@@ -74,20 +91,20 @@ std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
       of_light.push_back(path);
     } else if (extension == ".png" && !choice.shot.develops(sensor)) {
       PictureOptions options;
-      options.scene_white = usable_white(image.light, image.scene, shared);
+      options.scene_white = usable_white(light, image.scene, shared);
       options.false_colour = true;
-      note(shared, fmt::format("{}: {}", path,
-                               write_picture(files.stage(path), image.light, options, choice.shot.bits)));
+      note(shared,
+           fmt::format("{}: {}", path, write_picture(files.stage(path), light, options, choice.shot.bits)));
     }
   }
-  std::optional<Shot> shot = choice.shot.shoot(image.light, sensor, choice.outputs, files, shared);
+  std::optional<Shot> shot = choice.shot.shoot(light, sensor, choice.outputs, files, shared);
   // Whole images come last: the last of them may use the room that the light takes.
   for (std::size_t i = 0; i < of_light.size(); ++i) {
     const std::string staged = files.stage(of_light[i]);
     if (i + 1 < of_light.size())
-      write_irradiance(staged, image.light);
+      write_irradiance(staged, light);
     else
-      write_irradiance(staged, std::move(image.light));
+      write_irradiance(staged, std::move(light));
   }
   files.commit();
   return shot;
@@ -96,10 +113,10 @@ std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
 nlohmann::ordered_json summary_json(const FormedImage& image, const std::optional<Shot>& shot,
                                     const std::vector<std::string>& outputs) {
   nlohmann::ordered_json json = {
-      {"columns", image.light.columns()},
-      {"rows", image.light.rows()},
-      {"pitch_um", image.light.pitch_um()},
-      {"wavelengths_nm", image.light.wavelengths_nm()},
+      {"columns", image.frame.columns},
+      {"rows", image.frame.rows},
+      {"pitch_um", image.frame.pitch_um},
+      {"wavelengths_nm", image.scene.wavelengths_nm()},
       {"scene", image.scene.name},
       {"scene_angle_deg", image.scene.horizontal_angle_deg()},
       {"scene_distance_m", number_or_null(image.scene.distance_m().value_or(INFINITY))},
@@ -131,9 +148,8 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const std::optiona
 }
 
 void print_summary(const FormedImage& image, const std::optional<Shot>& shot) {
-  const auto& bands = image.light.wavelengths_nm();
-  fmt::print("{} x {} pixels of {:.5g} um, ", image.light.columns(), image.light.rows(),
-             image.light.pitch_um());
+  const auto& bands = image.scene.wavelengths_nm();
+  fmt::print("{} x {} pixels of {:.5g} um, ", image.frame.columns, image.frame.rows, image.frame.pitch_um);
   if (bands.size() == 1)
     fmt::print("1 band at {:g} nm\n", bands.front());
   else

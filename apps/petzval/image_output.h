@@ -2,12 +2,14 @@
 // What `image` writes and tells.
 #pragma once
 
+#include <petzval/image/formats/npy_bands.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/optics/lens_data_table.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image_option.h"
 
@@ -15,7 +17,9 @@ namespace petzval::app {
 
 /// An image, and what it was made of.
 struct FormedImage {
-  SpectralImage light;
+  SensorGeometry frame;
+  std::optional<SpectralImage> light;  ///< where the file does not hold it already
+  std::optional<NpyBandFile> file;     ///< as large_file() made it
   Scene scene;
   LensDataTable table;
   ImagingReport report;
@@ -27,6 +31,11 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
 
 /// Where the scene stands.
 std::string distance_text(const Scene& scene);
+
+/// A file for the bands of a large image whose one output it is, while they are made: where that cannot be,
+/// absent. \throws Failure if there is no room for it.
+std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, const SensorGeometry& frame,
+                                      const Scene& scene);
 
 /// Writes all outputs or none of them, and gives up the values of the light, but nothing else of the image.
 /// \return what the sensor made of the light, if it was asked to.

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Outputs appear whole or not at all: a full disk, a folder that is not there, a name that is taken."""
 
+import filecmp
 import os
 import resource
 import shutil
@@ -95,6 +96,21 @@ class OutputFiles(ProgramTest):
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), before)
         self.assert_succeeds(*wall)
         self.assertLess((self.folder / "small.png").stat().st_size, 1024, "or the test above proves nothing")
+
+    def test_a_large_array_is_the_same_alone_and_with_others(self):
+        """Alone it is written while it is formed; no room for it shows before the work, and leaves nothing."""
+        wall = ["image", "wall", "--lens", "edmund-54852", "--sensor", "4200x4000@1", "--wavelengths", "480:20:620", "--method", "none"]
+        before = sorted(path.name for path in self.folder.iterdir())
+        self.assert_refused(*wall, "-o", "alone.npy", code=1, words=["alone.npy"], preexec_fn=one_kilobyte_at_most)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), before)
+        self.assert_succeeds(*wall, "-o", "alone.npy")
+        self.assertGreater((self.folder / "alone.npy").stat().st_size, 1 << 29, "or it is no large array")
+        self.assert_succeeds(*wall, "-o", "one.npy", "-o", "other.npy")
+        for name in ("one.npy", "other.npy"):
+            self.assertTrue(filecmp.cmp(self.folder / "alone.npy", self.folder / name, shallow=False), name)
+            (self.folder / name).unlink()
+        (self.folder / "alone.npy").unlink()
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), before)
 
     def test_a_killed_run_leaves_what_was_there(self):
         """Killed at twelve moments from before its work to after it: the outputs are old or new, both whole."""

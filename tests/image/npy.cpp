@@ -3,7 +3,11 @@
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npy_bands.h>
 #include <petzval/image/formats/npy_file.h>
+
+#include <filesystem>
+#include <iterator>
 
 #include "hostile.h"
 #include "python_program.h"
@@ -51,33 +55,89 @@ TEST(Npy, DataStartAtAMultipleOf64) {
   }
 }
 
-// Kept in a file, whose room is given back while the pixels are written.
+/// Whole numbers of a float, hardly ever twice.
+float large_value(std::size_t band, std::size_t pixel) {
+  return static_cast<float>((8 * pixel + band) % 16777213);
+}
+
+constexpr std::size_t large_rows = 4111, large_columns = 4099, large_bands = 8;
+
+std::vector<float> large_plane(std::size_t band) {
+  std::vector<float> plane(large_rows * large_columns);
+  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = large_value(band, i);
+  return plane;
+}
+
+void expect_large_image(const std::string& path) {
+  const NpyFile file(path);
+  ASSERT_EQ(file.shape(), (std::vector<std::size_t>{large_rows, large_columns, large_bands}));
+  EXPECT_TRUE(file.fortran_order());
+  std::vector<float> column(large_rows);
+  std::size_t wrong = 0;
+  for (std::size_t band = 0; band < large_bands; ++band)
+    for (std::size_t x = 0; x < large_columns; ++x) {
+      file.read((band * large_columns + x) * large_rows, std::span(column));
+      for (std::size_t y = 0; y < large_rows; ++y)
+        if (column[y] != large_value(band, y * large_columns + x)) ++wrong;
+    }
+  EXPECT_EQ(wrong, 0U);
+}
+
+// Kept in a file, whose room is given back while the bands are written.
 TEST(Npy, AnImageMayBeGivenUpWhileItIsWritten) {
   const test::Scratch scratch;
-  SpectralImage image(4099, 4111, {400, 450, 500, 550, 600, 650, 700, 750}, 5);
+  SpectralImage image(large_columns, large_rows, {400, 450, 500, 550, 600, 650, 700, 750}, 5);
   ASSERT_GT(image.values().size(), LargeFloats::most_in_memory);
   image.provenance = "stays";
-  const auto value = [](std::size_t band, std::size_t pixel) {
-    return static_cast<float>((8 * pixel + band) % 16777213);  // whole numbers of a float, hardly ever twice
-  };
-  std::vector<float> plane(image.band_size());
-  for (std::size_t band = 0; band < 8; ++band) {
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = value(band, i);
-    image.store_band(static_cast<int>(band), plane);
-  }
+  for (std::size_t band = 0; band < large_bands; ++band)
+    image.store_band(static_cast<int>(band), large_plane(band));
   write_npy(scratch.path("i.npy"), std::move(image));
   EXPECT_EQ(image.provenance, "stays");
-  EXPECT_EQ(image.rows(), 4111);
-  const NpyFile file(scratch.path("i.npy"));
-  EXPECT_EQ(file.shape(), (std::vector<std::size_t>{4111, 4099, 8}));
-  std::vector<float> row(std::size_t{4099} * 8);
-  std::size_t wrong = 0;
-  for (std::size_t y = 0; y < 4111; ++y) {
-    file.read(y * row.size(), std::span(row));
-    for (std::size_t i = 0; i < row.size(); ++i)
-      if (row[i] != value(i % 8, y * 4099 + i / 8)) ++wrong;
-  }
-  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(image.rows(), static_cast<int>(large_rows));
+  EXPECT_EQ(image.at(3, 5, 7), 0.0F) << "its room was not given back";
+  expect_large_image(scratch.path("i.npy"));
+}
+
+TEST(NpyBands, TakeAnImageBandByBand) {
+  const test::Scratch scratch;
+  const NpyImageShape shape = {large_rows, large_columns, large_bands};
+  ASSERT_TRUE(is_large_npy(shape));
+  NpyBandFile file(scratch.path("i.npy"), shape);
+  if (!file) GTEST_SKIP() << "no files without a name here";
+  for (std::size_t band = 0; band < large_bands; ++band) file.bands().add(large_plane(band));
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.folder())) << "nothing may be left of it yet";
+  write_whole_file(scratch.path("i.npy"), "before");
+  file.put_at(scratch.path("i.npy"));
+  expect_large_image(scratch.path("i.npy"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.folder()), {}), 1);
+}
+
+TEST(NpyBands, RefuseWhatIsNoBandOfTheirs) {
+  const test::Scratch scratch;
+  NpyBandFile file(scratch.path("i.npy"), {2, 3, 2});
+  if (!file) GTEST_SKIP() << "no files without a name here";
+  EXPECT_THROW(file.bands().add(std::vector<float>(5)), InputError);
+  file.bands().add(std::vector<float>(6));
+  EXPECT_THROW(file.put_at(scratch.path("i.npy")), InputError);
+  file.bands().add(std::vector<float>(6));
+  EXPECT_THROW(file.bands().add(std::vector<float>(6)), InputError);
+  EXPECT_FALSE(std::filesystem::exists(scratch.path("i.npy")));
+}
+
+TEST(NpyBands, OpenInNumpy) {
+  if (!test::python_runs("import numpy")) GTEST_SKIP() << "no Python with numpy here";
+  const test::Scratch scratch;
+  NpyBandFile file(scratch.path("a.npy"), {2, 3, 2});
+  if (!file) GTEST_SKIP() << "no files without a name here";
+  file.bands().add(std::vector<float>{0, 10, 20, 100, 110, 120});
+  file.bands().add(std::vector<float>{1, 11, 21, 101, 111, 121});
+  file.put_at(scratch.path("a.npy"));
+  const std::string script =
+      "import numpy, sys\n"
+      "a = numpy.load(sys.argv[1])\n"
+      "assert a.dtype == numpy.float32 and a.shape == (2, 3, 2) and a.flags.f_contiguous\n"
+      "for i, j, k in numpy.ndindex(a.shape): assert a[i, j, k] == 100 * i + 10 * j + k\n";
+  EXPECT_EQ(test::run_python(scratch, script, scratch.path("a.npy")), 0);
 }
 
 TEST(Npy, AnImageIsRowsColumnsBands) {
@@ -161,6 +221,35 @@ TEST(Npy, ReadsFortranOrder) {
       "f.npy", npy_bytes(1, "{'descr': '|u1', 'fortran_order': True, 'shape': (2, 3, 4)}", data)));
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{2, 3, 4}));
   EXPECT_EQ(std::get<std::vector<float>>(array.values), wanted);
+}
+
+/// The same where it takes several looks at the file; also with sizes of 1, which say nothing about the
+/// order, and more than three of them.
+TEST(Npy, ReadsLargeArraysInFortranOrder) {
+  const test::Scratch scratch;
+  for (const std::vector<std::size_t>& shape : std::vector<std::vector<std::size_t>>{
+           {2100, 5, 900}, {7, 300001, 3}, {3000000, 2}, {2, 1, 3000001}, {17, 1500, 1, 201}, {6, 5, 4, 3}}) {
+    std::size_t count = 1;
+    std::string sizes;
+    for (const std::size_t size : shape) count *= size, sizes += std::to_string(size) + ", ";
+    std::string data(count, '\0');
+    for (std::size_t i = 0; i < count; ++i) data[i] = static_cast<char>((i * 2654435761U) >> 20);
+    const NpyArray array = read_npy(scratch.with(
+        "f.npy", npy_bytes(1, "{'descr': '|u1', 'fortran_order': True, 'shape': (" + sizes + ")}", data)));
+    const auto& values = std::get<std::vector<float>>(array.values);
+    std::vector<std::size_t> index(shape.size(), 0);
+    std::size_t wrong = 0;
+    for (std::size_t at = 0; at < count; ++at) {  // in C order: the last index runs fastest
+      std::size_t in_file = 0;
+      for (std::size_t i = shape.size(); i-- > 0;) in_file = in_file * shape[i] + index[i];
+      if (values[at] != float(static_cast<unsigned char>(data[in_file]))) ++wrong;
+      for (std::size_t i = shape.size(); i-- > 0;) {
+        if (++index[i] < shape[i]) break;
+        index[i] = 0;
+      }
+    }
+    EXPECT_EQ(wrong, 0U) << sizes;
+  }
 }
 
 TEST(Npy, RefusesWhatItCannotHold) {

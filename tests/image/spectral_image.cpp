@@ -37,11 +37,10 @@ TEST(SpectralImage, RefusesWhatIsNoImage) {
   EXPECT_THROW(SpectralImage(2147483647, 2147483647, {450}, 1), InputError);
 }
 
-TEST(SpectralImage, GivesUpNoRowsThatItHasNot) {
+TEST(SpectralImage, GivesUpNoBandThatItHasNot) {
   SpectralImage image(3, 4, {450, 550}, 6.25);
-  EXPECT_NO_THROW(image.give_up_rows(1, 3));
-  for (const auto& [first, count] : {std::pair{-1, 2}, {2, 3}, {0, -1}, {2147483647, 2}})
-    EXPECT_THROW(image.give_up_rows(first, count), InputError) << first << ", " << count;
+  EXPECT_NO_THROW(image.give_up_band(1));
+  for (const int band : {-1, 2, 2147483647}) EXPECT_THROW(image.give_up_band(band), InputError) << band;
 }
 
 TEST(SpectralImage, SaysWhereItIsNotFinite) {

@@ -6,9 +6,12 @@
 #include <petzval/base/parallel.h>
 #include <petzval/imaging/image_formation.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace petzval {
 namespace {
@@ -177,6 +180,29 @@ TEST(FormImage, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 // Bands are formed side by side where there are threads for them.
+TEST(FormImage, HandsOverTheBandsOfTheSameImageInOrder) {
+  TableRecipe recipe;
+  recipe.wavelengths_nm = {450, 650};
+  const LensDataTable table = make_table(recipe);
+  Scene scene = wall(1, {450, 550, 650});
+  add_star(scene, 1, 90, 70, 3);
+  const ImagingOptions options = with_method(BlurMethod::product);
+  ImagingReport whole_says, says;
+  const SpectralImage whole = form_image(scene, table, sensor, options, {}, &whole_says);
+  std::vector<float> values;
+  const auto take = [&](std::span<const float> pixels) {
+    values.insert(values.end(), pixels.begin(), pixels.end());
+  };
+  form_bands(scene, table, sensor, options, take, {}, &says);
+  ASSERT_EQ(values.size(), whole.values().size());
+  EXPECT_TRUE(std::equal(values.begin(), values.end(), whole.values().begin()));
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  EXPECT_EQ(says.darkest, double(*low));
+  EXPECT_EQ(says.brightest, double(*high));
+  EXPECT_EQ(says.notes, whole_says.notes);
+  EXPECT_THROW(form_bands(scene, table, {0, 90, 10}, options, take), InputError);
+}
+
 TEST(FormImage, SaysTheSameOfManyBandsForAnyNumberOfThreads) {
   TableRecipe recipe = comatic_recipe(0.3);
   recipe.wavelengths_nm = {500, 600};

@@ -32,15 +32,20 @@ SpectralImage::SpectralImage(int columns, int rows, std::vector<double> waveleng
       wavelengths_nm_(std::move(wavelengths_nm)),
       pitch_um_(pitch_um),
       aperture_(aperture) {
+  check(columns, rows, wavelengths_nm_, pitch_um);
+  values_ = LargeFloats(band_size() * wavelengths_nm_.size());
+}
+
+void SpectralImage::check(int columns, int rows, const std::vector<double>& wavelengths_nm, double pitch_um) {
   if (columns < 1 || rows < 1)
     throw InputError(fmt::format("an image of {} x {} pixels; both sizes must be at least 1", columns, rows));
-  check_wavelengths(wavelengths_nm_);
+  check_wavelengths(wavelengths_nm);
   if (!(pitch_um > 0) || std::isinf(pitch_um))
     throw InputError(fmt::format("a pixel pitch of {} um; it must be positive", pitch_um));
-  if (wavelengths_nm_.size() > max_values / band_size())
+  if (wavelengths_nm.size() >
+      max_values / (static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)))
     throw InputError(fmt::format("an image of {} x {} pixels and {} bands is more than {} values", columns,
-                                 rows, wavelengths_nm_.size(), max_values));
-  values_ = LargeFloats(band_size() * wavelengths_nm_.size());
+                                 rows, wavelengths_nm.size(), max_values));
 }
 
 std::span<float> SpectralImage::band(int index) {
@@ -58,13 +63,10 @@ void SpectralImage::store_band(int index, std::span<const float> plane) {
   values_.store(static_cast<std::size_t>(index) * band_size(), plane);
 }
 
-void SpectralImage::give_up_rows(int first, int count) {
-  if (first < 0 || count < 0 || first > rows_ - count)
-    throw InputError(fmt::format("{} rows from row {} on of an image of {} rows", count, first, rows_));
-  const auto columns = static_cast<std::size_t>(columns_);
-  for (std::size_t index = 0; index < wavelengths_nm_.size(); ++index)
-    values_.give_up(index * band_size() + static_cast<std::size_t>(first) * columns,
-                    static_cast<std::size_t>(count) * columns);
+void SpectralImage::give_up_band(int index) {
+  if (index < 0 || index >= bands())
+    throw InputError(fmt::format("band {} of an image of {} bands", index, bands()));
+  values_.give_up(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
 float& SpectralImage::at(int band_index, int row, int column) {

@@ -38,6 +38,9 @@ class SpectralImage {
   SpectralImage(int columns, int rows, std::vector<double> wavelengths_nm, double pitch_um,
                 PixelAperture aperture = PixelAperture::box);
 
+  /// \throws InputError for sizes and wavelengths that no image has: what the constructor refuses.
+  static void check(int columns, int rows, const std::vector<double>& wavelengths_nm, double pitch_um);
+
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   int bands() const { return static_cast<int>(wavelengths_nm_.size()); }
@@ -54,9 +57,9 @@ class SpectralImage {
   /// Puts a plane in its place, without the memory that band() takes of a large image.
   /// \throws InputError if it has another size.
   void store_band(int index, std::span<const float> plane);
-  /// Gives up rows of all bands of a large image, whose values are kept in a file, and the room that they
-  /// take; they are not to be looked at again. \throws InputError for rows that the image has not.
-  void give_up_rows(int first, int count);
+  /// Gives up a band of a large image, whose values are kept in a file, and the room that it takes; it is not
+  /// to be looked at again. \throws InputError for a band that the image has not.
+  void give_up_band(int index);
   float& at(int band_index, int row, int column);
   float at(int band_index, int row, int column) const;
   /// All planes, one after the other.

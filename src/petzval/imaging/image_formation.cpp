@@ -63,7 +63,7 @@ class BandByBand {
  public:
   BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
              const ImagingOptions& options, const std::vector<BandPlan>& plans, const PixelTaps& taps,
-             const ProgressCallback& progress, ImagingReport& report, SpectralImage& image)
+             const ProgressCallback& progress, ImagingReport& report, const TakeBand& take)
       : scene_(scene),
         table_(table),
         centres_(table),
@@ -73,7 +73,7 @@ class BandByBand {
         taps_(taps),
         progress_(scene.bands(), progress),
         report_(report),
-        image_(image) {}
+        take_(take) {}
 
   void form() {
     const auto start = std::chrono::steady_clock::now();
@@ -138,7 +138,8 @@ class BandByBand {
 
   void end(std::size_t band, Place& place) {
     const auto start = std::chrono::steady_clock::now();
-    put_band(place.pixels, static_cast<int>(band), image_, report_);
+    note_extremes(place.pixels, static_cast<int>(band), report_);
+    take_(place.pixels.values);
     place.pixels = {};
     scene_.release_memory();
     place.says.margin_cells = plans_[band].margin;
@@ -163,7 +164,7 @@ class BandByBand {
   const PixelTaps& taps_;
   BandProgress progress_;
   ImagingReport& report_;
-  SpectralImage& image_;
+  const TakeBand& take_;
   std::deque<Place> places_;
   std::optional<ProductPlan> last_plan_;
   double seconds_ = 0;  ///< of all bands
@@ -199,9 +200,9 @@ std::optional<double> object_to_sensor_mm(const LensDataTable& table) {
   return *table.object_distance_mm + table.vertex_to_sensor_mm;
 }
 
-SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                         const ImagingOptions& options, const ProgressCallback& progress,
-                         ImagingReport* report) {
+void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
+                ImagingReport* report) {
   ImagingReport own;
   ImagingReport& says = report != nullptr ? *report : own;
   says = {};
@@ -211,7 +212,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
   scene.validate();
   table.validate();
   check_distances(scene, table);
-  SpectralImage image = blank_image(scene, sensor, options);
+  SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   check_coverage(scene, plans, frame, options.surround, says.notes);
@@ -220,10 +221,24 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
 
   const PixelTaps taps = image_taps(options, says);
 
-  BandByBand(scene, table, frame, options, plans, taps, progress, says, image).form();
-  image.lens = lens_facts(table.lens_name, table.first_order);
+  BandByBand(scene, table, frame, options, plans, taps, progress, says, take).form();
   note_result(options, says);
-  return image;
+}
+
+SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                         const ImagingOptions& options, const ProgressCallback& progress,
+                         ImagingReport* report) {
+  // What does not fit is refused before there is room for an image.
+  std::optional<SpectralImage> image;
+  int bands = 0;
+  const auto put = [&](std::span<const float> pixels) {
+    if (!image) image = blank_image(scene, sensor, options);
+    image->store_band(bands++, pixels);
+    image->release_memory();
+  };
+  form_bands(scene, table, sensor, options, put, progress, report);
+  image->lens = lens_facts(table.lens_name, table.first_order);
+  return std::move(*image);
 }
 
 }  // namespace petzval

@@ -13,6 +13,8 @@
 #include <petzval/scene/scene.h>
 #include <petzval/sensor/sensor.h>
 
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,14 @@ struct ImagingReport {
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress = {},
                          ImagingReport* report = nullptr);
+
+/// What is done with the pixels of a band, row by row.
+using TakeBand = std::function<void(std::span<const float> pixels)>;
+
+/// The same without keeping the bands: each is handed over as it is ready, in order.
+void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress = {},
+                ImagingReport* report = nullptr);
 
 /// From the object plane to the sensor plane [mm]; absent: infinity.
 std::optional<double> object_to_sensor_mm(const LensDataTable& table);

@@ -3,6 +3,7 @@
 #include <petzval/imaging/image_frame.h>
 
 #include <algorithm>
+#include <array>
 
 namespace petzval {
 
@@ -33,11 +34,32 @@ PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report) {
   return taps;
 }
 
-void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report) {
-  const auto [low, high] = std::minmax_element(pixels.values.begin(), pixels.values.end());
-  const double darkest = double(*low), brightest = double(*high);
+void note_extremes(const CellPlane& pixels, int band, ImagingReport& report) {
+  // Several side by side, as vector registers hold them.
+  constexpr std::size_t lanes = 16;
+  const auto& values = pixels.values;
+  std::array<float, lanes> low, high;
+  low.fill(values.front());
+  high.fill(values.front());
+  std::size_t at = 0;
+  for (; at + lanes <= values.size(); at += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const float value = values[at + lane];
+      low[lane] = value < low[lane] ? value : low[lane];
+      high[lane] = value > high[lane] ? value : high[lane];
+    }
+  for (; at < values.size(); ++at) {
+    low[0] = std::min(low[0], values[at]);
+    high[0] = std::max(high[0], values[at]);
+  }
+  const double darkest = double(*std::min_element(low.begin(), low.end())),
+               brightest = double(*std::max_element(high.begin(), high.end()));
   report.darkest = band == 0 ? darkest : std::min(report.darkest, darkest);
   report.brightest = band == 0 ? brightest : std::max(report.brightest, brightest);
+}
+
+void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report) {
+  note_extremes(pixels, band, report);
   image.store_band(band, pixels.values);
   image.release_memory();
 }

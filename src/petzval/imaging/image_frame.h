@@ -14,8 +14,10 @@ SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, cons
 /// \param report  knows already how many points of the scene a cell sees.
 PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report);
 
-/// Puts the pixels of a band into the image, and how dark and how bright they are into the report. Bands come
-/// in order.
+/// Puts into the report how dark and how bright the pixels of a band are. Bands come in order.
+void note_extremes(const CellPlane& pixels, int band, ImagingReport& report);
+
+/// The same, and puts the pixels into the image.
 void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report);
 
 /// Adds to the report what a user should know of the image whose bands were put.

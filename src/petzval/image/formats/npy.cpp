@@ -2,41 +2,24 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/base/transpose.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npy_bands.h>
 #include <petzval/image/formats/npy_file.h>
+#include <petzval/image/formats/npy_header.h>
 #include <petzval/image/formats/output_file.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <string_view>
 
 namespace petzval {
 
-static_assert(std::endian::native == std::endian::little, "the .npy writer writes memory as it is");
-
 namespace {
 
 // ---- writing
-
-/// Magic, version 1.0 and the header, padded with spaces so that the data start at a multiple of 64.
-std::string header_bytes(std::string_view type, std::span<const std::size_t> shape) {
-  std::string sizes;
-  for (const std::size_t size : shape) sizes += fmt::format("{}, ", size);
-  if (shape.size() > 1) sizes.resize(sizes.size() - 2);
-  std::string dictionary =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
-  constexpr std::size_t before = 10;  // magic, two bytes of version, two of length
-  dictionary.append(63 - (before + dictionary.size()) % 64, ' ');
-  dictionary += '\n';
-  std::string bytes(npy_magic);
-  bytes += '\x01';
-  bytes += '\x00';
-  bytes += static_cast<char>(dictionary.size() & 0xff);
-  bytes += static_cast<char>(dictionary.size() >> 8);
-  return bytes + dictionary;
-}
 
 template <class Value>
 void write_array(const std::string& path, std::string_view type, std::span<const std::size_t> shape,
@@ -47,7 +30,7 @@ void write_array(const std::string& path, std::string_view type, std::span<const
   if (count != values.size())
     throw InputError(path, fmt::format("{} values for an array of {}", values.size(), count));
   OutputFile file(path);
-  const std::string header = header_bytes(type, shape);
+  const std::string header = npy_header(type, shape, NpyOrder::c);
   file.write(header.data(), header.size());
   file.write(values.data(), values.size_bytes());
   file.commit();
@@ -66,48 +49,74 @@ void interleave(const SpectralImage& image, std::size_t first, std::size_t end, 
     }
 }
 
-/// \param done  told of rows that have been written; may be empty.
-void write_image(const std::string& path, const SpectralImage& image,
-                 const std::function<void(int first, int count)>& done) {
-  const auto rows = static_cast<std::size_t>(image.rows());
-  const std::size_t shape[] = {rows, static_cast<std::size_t>(image.columns()),
-                               static_cast<std::size_t>(image.bands())};
+/// Pixel by pixel.
+void write_pixels(const std::string& path, const SpectralImage& image, const NpyImageShape& shape) {
   OutputFile file(path);
-  const std::string header = header_bytes("<f4", shape);
+  const std::string header =
+      npy_header("<f4", std::array{shape.rows, shape.columns, shape.bands}, NpyOrder::c);
   file.write(header.data(), header.size());
 
-  // Some rows are turned into pixels while those before them are written. What is given up in pieces as
-  // large as these the system uses at once for what is written next.
-  constexpr std::size_t rows_at_once = 8, bytes_given_up = std::size_t{4} << 20;
-  const std::size_t blocks = (rows + rows_at_once - 1) / rows_at_once;
-  const std::size_t rows_given_up = std::max(rows_at_once, bytes_given_up / (shape[1] * sizeof(float)));
+  // Some rows are turned into pixels while those before them are written.
+  constexpr std::size_t rows_at_once = 8;
+  const std::size_t blocks = (shape.rows + rows_at_once - 1) / rows_at_once;
   const auto slots = static_cast<std::size_t>(thread_count()) + 1;
   std::vector<std::vector<float>> pixels(slots);
-  std::size_t written = 0, given_up = 0;
-  const auto end_of = [&](std::size_t block) { return std::min(rows, (block + 1) * rows_at_once); };
   parallel_stages(blocks, slots,
                   {[](std::size_t, std::size_t) {},
                    [&](std::size_t block, std::size_t slot) {
-                     interleave(image, block * rows_at_once, end_of(block), pixels[slot]);
+                     const std::size_t first = block * rows_at_once;
+                     interleave(image, first, std::min(shape.rows, first + rows_at_once), pixels[slot]);
                    },
-                   [&](std::size_t block, std::size_t slot) {
+                   [&](std::size_t, std::size_t slot) {
                      file.write(pixels[slot].data(), pixels[slot].size() * sizeof(float));
-                     written = end_of(block);
-                     if (written - given_up < rows_given_up && written < rows) return;
-                     image.release_memory();
-                     if (done) done(static_cast<int>(given_up), static_cast<int>(written - given_up));
-                     given_up = written;
                    }});
+  file.commit();
+}
+
+/// \param done  told of bands that have been written.
+void write_image(const std::string& path, const SpectralImage& image,
+                 const std::function<void(int band)>& done) {
+  const NpyImageShape shape = {static_cast<std::size_t>(image.rows()),
+                               static_cast<std::size_t>(image.columns()),
+                               static_cast<std::size_t>(image.bands())};
+  if (!is_large_npy(shape)) return write_pixels(path, image, shape);
+  OutputFile file(path);
+  NpyBands bands(file.descriptor(), path, shape);
+  for (int band = 0; band < image.bands(); ++band) {
+    bands.add(image.band(band));
+    image.release_memory();
+    done(band);
+  }
+  bands.finish();
   file.commit();
 }
 
 // ---- reading
 
-/// All values in C order, from a file that has the first index running fastest, some at a time.
+/// From (n0, n1, n2) with the first index running fastest to C order: some of n1 at a time, or a part of n0.
 template <class Value>
-void take_fortran_order(const NpyFile& file, std::vector<Value>& values) {
+void take_turned(const NpyFile& file, const std::array<std::size_t, 3>& sizes, std::vector<Value>& values) {
+  constexpr std::size_t at_once = std::size_t{1} << 22, fewest = 16;
+  const auto [n0, n1, n2] = sizes;
+  const std::size_t most_high = std::min(n0, std::max(fewest, at_once / n2)),
+                    most_wide = most_high < n0 ? 1 : std::max<std::size_t>(1, at_once / (n0 * n2));
+  std::vector<Value> block;
+  for (std::size_t second = 0; second < n1; second += most_wide)
+    for (std::size_t first = 0; first < n0; first += most_high) {
+      const std::size_t wide = std::min(most_wide, n1 - second), high = std::min(most_high, n0 - first);
+      block.resize(wide * high * n2);
+      for (std::size_t k = 0; k < n2; ++k)
+        file.read((k * n1 + second) * n0 + first, std::span(block).subspan(k * wide * high, wide * high));
+      for (std::size_t j = 0; j < wide; ++j)
+        transpose<Value>({block.data() + j * high, wide * high}, n2, high,
+                         {values.data() + (first * n1 + second + j) * n2, n1 * n2});
+    }
+}
+
+/// The same for any number of indices.
+template <class Value>
+void take_one_by_one(const NpyFile& file, const std::vector<std::size_t>& shape, std::vector<Value>& values) {
   constexpr std::size_t at_once = 1 << 20;
-  const std::vector<std::size_t>& shape = file.shape();
   std::vector<std::size_t> steps(shape.size(), 1), index(shape.size(), 0);
   for (std::size_t i = shape.size() - 1; i > 0; --i) steps[i - 1] = steps[i] * shape[i];
   std::vector<Value> block;
@@ -127,6 +136,17 @@ void take_fortran_order(const NpyFile& file, std::vector<Value>& values) {
   }
 }
 
+template <class Value>
+void take_fortran_order(const NpyFile& file, std::vector<Value>& values) {
+  if (values.empty()) return;
+  std::vector<std::size_t> shape = file.shape();
+  std::erase(shape, std::size_t{1});  // says nothing about the order
+  if (shape.size() < 2) return file.read(0, std::span(values));
+  if (shape.size() == 2) return take_turned(file, {shape[0], 1, shape[1]}, values);
+  if (shape.size() == 3) return take_turned(file, {shape[0], shape[1], shape[2]}, values);
+  take_one_by_one(file, shape, values);
+}
+
 }  // namespace
 
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values) {
@@ -138,11 +158,11 @@ void write_npy(const std::string& path, std::span<const std::size_t> shape, std:
 }
 
 void write_npy(const std::string& path, const SpectralImage& image) {
-  write_image(path, image, {});
+  write_image(path, image, [](int) {});
 }
 
 void write_npy(const std::string& path, SpectralImage&& image) {
-  write_image(path, image, [&](int first, int count) { image.give_up_rows(first, count); });
+  write_image(path, image, [&](int band) { image.give_up_band(band); });
 }
 
 NpyArray read_npy(const std::string& path) {

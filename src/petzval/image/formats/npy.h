@@ -23,7 +23,8 @@ struct NpyArray {
 /// \throws InputError if `values` does not fill `shape`, and as WholeFile; Failure.
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values);
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const double> values);
-/// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹].
+/// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹]; a large one (is_large_npy) in Fortran
+/// order.
 void write_npy(const std::string& path, const SpectralImage& image);
 /// The same for an image whose values nobody needs any more. Those of a large image are given up while they
 /// are written, so that there need not be room for both; everything else of the image stays.

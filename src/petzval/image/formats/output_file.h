@@ -23,6 +23,8 @@ class OutputFile {
   void seek(std::uint64_t position);
   /// Closes and puts the file in its place. \throws Failure when the disk is full.
   void commit();
+  /// To be written to in other ways than write(), not both.
+  int descriptor() const { return fileno(file_.get()); }
   const std::string& path() const { return whole_.path(); }
 
  private:

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/transpose.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy_file.h>
 #include <petzval/scene/formats/name_file.h>
@@ -70,9 +71,7 @@ void take_columns(const NpyFile& file, SpectralCube& cube) {
                           high = std::min(most_rows, rows - row);
         values.resize(wide * high);
         file.read((band * columns + column) * rows + row, std::span(values));
-        for (std::size_t i = 0; i < high; ++i)
-          for (std::size_t j = 0; j < wide; ++j)
-            plane[(row + i) * columns + column + j] = values[j * high + i];
+        transpose<float>({values.data(), high}, wide, high, {&plane[row * columns + column], columns});
       }
     cube.values.release_memory();
   }
