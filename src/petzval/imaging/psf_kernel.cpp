@@ -116,17 +116,39 @@ std::vector<Extent> extents_of(const LensDataTable& table, std::size_t wavelengt
   return found;
 }
 
-/// Without the corners of its window. The PSF on the axis of a centred lens is the same at every azimuth; a
-/// square window is not, and next to the axis, where azimuths change from cell to cell, its corners would
-/// show.
-Psf within_circle(const Psf& psf) {
-  Psf round = psf;
-  const double radius = psf.size / 2;
+/// With the light in the corners of its window spread evenly about the middle. The PSF on the axis of a
+/// centred lens is the same at every azimuth; a square window is not, and next to the axis, where azimuths
+/// change from cell to cell, its corners would show. To leave them out would make the PSF narrower than those
+/// of the fields about it, whose corners count.
+Psf turned_about_axis(const Psf& psf) {
+  const int middle = psf.size / 2, reach = static_cast<int>(std::ceil(std::hypot(middle, middle)));
+  const auto ring_of = [&](int row, int column) {  // −1: within the circle that the window holds
+    return std::max(-1, static_cast<int>(std::ceil(std::hypot(row, column))) - 1 - middle);
+  };
+  std::vector<double> light(static_cast<std::size_t>(reach - middle) + 1), cells(light.size());
   for (int i = 0; i < psf.size; ++i)
     for (int j = 0; j < psf.size; ++j)
-      if (std::hypot(i - psf.size / 2, j - psf.size / 2) > radius)
-        round.values[static_cast<std::size_t>(i) * static_cast<std::size_t>(psf.size) +
-                     static_cast<std::size_t>(j)] = 0;
+      if (const int ring = ring_of(i - middle, j - middle); ring >= 0)
+        light[static_cast<std::size_t>(ring)] += double(psf.at(i, j));
+  if (std::all_of(light.begin(), light.end(), [](double of_ring) { return of_ring == 0; })) return psf;
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j)
+      if (const int ring = ring_of(i, j); ring >= 0 && static_cast<std::size_t>(ring) < cells.size())
+        ++cells[static_cast<std::size_t>(ring)];
+  Psf round = psf;
+  round.size = 2 * reach + 1;
+  round.values.clear();
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach; j <= reach; ++j) {
+      const int ring = ring_of(i, j);
+      if (ring < 0)
+        round.values.push_back(i + middle < psf.size && j + middle < psf.size ? psf.at(i + middle, j + middle)
+                                                                              : 0);
+      else if (const auto at = static_cast<std::size_t>(ring); at < light.size())
+        round.values.push_back(static_cast<float>(light[at] / cells[at]));
+      else
+        round.values.push_back(0);
+    }
   return round;
 }
 
@@ -172,8 +194,11 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
     const std::vector<Extent> extents = extents_of(table, wavelength, cell_um, centres, reach_);
     for (std::size_t field = 0; field < fields; ++field) {
       const std::size_t entry = table.index(field, wavelength);
-      layer.half_side_um.push_back(extents[field].half_side_um + table.psf[entry].spacing_um);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + centres.offset_mm(entry));
+      const Extent& extent = extents[field];
+      const bool on_axis = layer.height_mm.back() == 0;  // its corners go all round
+      layer.half_side_um.push_back((on_axis ? extent.reach_um : extent.half_side_um) +
+                                   table.psf[entry].spacing_um);
     }
     std::vector<std::optional<MergedPsf>> merged(fields);
     std::vector<char> symmetric(fields);
@@ -184,7 +209,7 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       symmetric[field] = is_mirror_symmetric(psf);
       const Psf whole = symmetric[field] != 0 && psf.size % 2 == 0 ? with_partner(psf) : psf;
       merged[field] =
-          merged_psf(height_mm == 0 ? within_circle(whole) : whole, origin_um, cell_um, height_mm);
+          merged_psf(height_mm == 0 ? turned_about_axis(whole) : whole, origin_um, cell_um, height_mm);
     });
     for (std::size_t field = 0; field < fields; ++field) {
       mirror_symmetric_ = mirror_symmetric_ && symmetric[field] != 0;
@@ -201,13 +226,18 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
 
 SampleLattice PsfField::lattice_of(std::size_t interval) const {
   SampleLattice lattice{std::numeric_limits<double>::infinity(), 0};
-  for (const Layer& layer : layers_)
-    for (std::size_t field = interval; field < std::min(interval + 2, layer.psfs.size()); ++field) {
+  for (const Layer& layer : layers_) {
+    const std::size_t fields = layer.psfs.size();
+    for (std::size_t field = interval; field < std::min(interval + 2, fields); ++field) {
       const MergedPsf& psf = layer.psfs[field];
       const double needed = needed_spacing_um(psf.light(), cell_um_, layer.height_mm[field]);
       lattice.spacing_um = std::min(lattice.spacing_um, std::max(psf.spacing_um(), needed));
-      lattice.half_side_um = std::max(lattice.half_side_um, layer.half_side_um[field]);
     }
+    // All four that go into what lies between two fields.
+    for (std::size_t field = interval - std::min<std::size_t>(interval, 1);
+         field < std::min(interval + 3, fields); ++field)
+      lattice.half_side_um = std::max(lattice.half_side_um, layer.half_side_um[field]);
+  }
   // The nearest on a ladder from the cell down, so that neighbouring intervals mostly have the same.
   const double octaves = std::log2(cell_um_ / lattice.spacing_um);
   lattice.spacing_um = cell_um_ / std::exp2(std::round(2 * octaves) / 2);
