@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Subcommands of `petzval optics` with files of their own.
+// The subcommands of `petzval optics`, each in its own file.
 #pragma once
 
 #include "command.h"
@@ -11,7 +11,9 @@ inline std::vector<std::string> table_extensions() {
   return {".h5", ".hdf5"};
 }
 
+void add_optics_build(CLI::App& optics, Shared& shared);
 void add_optics_import(CLI::App& optics, Shared& shared);
 void add_optics_export(CLI::App& optics, Shared& shared);
+void add_optics_info(CLI::App& optics, Shared& shared);
 
 }  // namespace petzval::app

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// petzval optics build: the lens data table of a lens.
+#include <fmt/format.h>
+#include <petzval/analysis/point_spread.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/base/progress.h>
+#include <petzval/base/units.h>
+#include <petzval/camera/camera.h>
+#include <petzval/optics/build.h>
+#include <petzval/optics/table_file.h>
+#include <petzval/scene/wavelength_list.h>
+#include <petzval/sensor/sensor.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+#include "field_option.h"
+#include "loss_option.h"
+#include "optics_commands.h"
+#include "output_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+struct BuildCommand {
+  LensChoice lens;
+  FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
+  LossChoice losses;
+  std::string output, wavelengths, sensor;
+  std::string focus = "design";
+  std::optional<double> f_number, image_height_mm;
+  int field_count = TableOptions{}.field_count;
+};
+
+/// "design", "infinity", or a distance from the sensor [mm].
+void take_focus(Camera& camera, const std::string& focus) {
+  if (focus == "design") return;
+  if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
+  double distance_mm = 0;
+  const auto [end, error] = std::from_chars(focus.data(), focus.data() + focus.size(), distance_mm);
+  if (error != std::errc() || end != focus.data() + focus.size() || !(distance_mm > 0))
+    throw InputError(fmt::format(
+        "--focus {}: design, infinity or a distance from the sensor in mm would be right", focus));
+  camera.focus_at_m(distance_mm / mm_per_m);
+}
+
+TableOptions table_options(const BuildCommand& command) {
+  TableOptions options;
+  options.field_count = command.field_count;
+  if (!command.wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(command.wavelengths);
+  if (command.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  if (command.image_height_mm && !(*command.image_height_mm > 0))
+    throw InputError(
+        fmt::format("--image-height {}: a positive number of mm would be right", *command.image_height_mm));
+  if (command.image_height_mm) options.max_image_height_mm = *command.image_height_mm;
+  if (!command.sensor.empty())
+    options.max_image_height_mm = read_sensor(command.sensor).geometry.half_diagonal_mm();
+  options.validate();
+  return options;
+}
+
+/// A table that ends before the height asked for is useful, but the user should know.
+void note_short_table(const LensDataTable& table, double wanted_mm, const Shared& shared) {
+  const std::size_t last = table.fields.size() - 1;
+  double reached_mm = INFINITY;
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+    reached_mm = std::min(reached_mm, table.real_image_height_mm[table.index(last, w)]);
+  if (reached_mm < wanted_mm)
+    note(
+        shared,
+        fmt::format("{}: no ray passes beyond an image height of {:.4g} mm, short of the {:.4g} mm asked for",
+                    table.lens_name, reached_mm, wanted_mm));
+}
+
+/// Windows that lose light are said: they were widened as far as they go.
+void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
+  std::size_t cut = 0;
+  double least = 1;
+  for (const Psf& psf : table.psf) {
+    if (psf.captured < PsfOptions{}.wanted_share) ++cut;
+    least = std::min(least, psf.captured);
+  }
+  if (cut > 0)
+    note(shared,
+         fmt::format("{}: {} of {} PSFs hold less than {:g} % of their light, the least {:.3g} %",
+                     table.lens_name, cut, table.psf.size(), 100 * PsfOptions{}.wanted_share, 100 * least));
+}
+
+void build(const BuildCommand& command, const Shared& shared) {
+  require_extension(command.output, table_extensions(), "a lens data table");
+  TableOptions options = table_options(command);
+  Camera camera(command.apertures.prepare(command.lens.read(shared), shared));
+  if (command.f_number) camera.set_f_number(*command.f_number);
+  take_focus(camera, command.focus);
+  options.losses = command.losses.losses(camera.lens(), shared);
+  ProgressBar bar(!shared.quiet);
+  const LensDataTable table = build_lens_data_table(camera.lens(), options, bar.callback());
+  note_short_table(table, options.max_image_height_mm, shared);
+  note_cut_psfs(table, shared);
+  write_table(table, command.output);
+}
+
+}  // namespace
+
+void add_optics_build(CLI::App& optics, Shared& shared) {
+  auto options = std::make_shared<BuildCommand>();
+  CLI::App* command =
+      add_command(optics, shared, "build", "Compute the lens data table of a lens",
+                  "petzval optics build edmund-54852 --sensor 768x576@6.25 --wavelengths 400:50:700 "
+                  "-o edmund.h5",
+                  false, [options, &shared] {
+                    const ThreadLimit limit(shared.threads);
+                    build(*options, shared);
+                  });
+  options->lens.add_to(*command);
+  command->add_option("-o,--output", options->output, "The table, an HDF5 file")
+      ->check(output_file())
+      ->required();
+  command->add_option("--wavelengths", options->wavelengths,
+                      "In nm: 400:10:700, or a list 450,550,650; default: the lens's own");
+  CLI::Option* sensor =
+      command->add_option("--sensor", options->sensor,
+                          "Reach the corner of this sensor: 768x576@6.25 (pitch in um), file or name");
+  command->add_option("--image-height", options->image_height_mm, "Reach this real image height [mm]")
+      ->excludes(sensor);
+  command->add_option("--fields", options->field_count, "Number of fields, the axis included")
+      ->capture_default_str();
+  command->add_option("--focus", options->focus, "design, infinity, or a distance from the sensor [mm]")
+      ->capture_default_str();
+  command->add_option("--f-number", options->f_number, "Stop down to this paraxial f-number at infinity");
+  command
+      ->add_option_function<std::string>(
+          "--apertures",
+          [options](const std::string& choice) { options->apertures.from_fields = choice == "from-fields"; },
+          "Clear apertures that the file leaves out: unbounded (file), or what the lens's fields need "
+          "(from-fields)")
+      ->check(CLI::IsMember({"file", "from-fields"}));
+  command->add_flag("--ignore-apertures", options->apertures.ignore_apertures,
+                    "Let nothing but the stop clip the rays");
+  options->losses.add_to(*command);
+}
+
+}  // namespace petzval::app
