@@ -5,7 +5,6 @@
 #include <petzval/scene/lettering.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 namespace petzval::app {
@@ -63,25 +62,14 @@ void draw(Canvas& canvas, const PngImage& picture, int left, int top) {
     }
 }
 
-/// What the letters of charts can write: capitals, and words for signs.
-std::string in_letters(const std::string& text) {
-  std::string letters;
-  for (const char c : text)
-    if (c == '@')
-      letters += " AT ";
-    else
-      letters += c == '_' ? '-' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return letters;
-}
-
-void write_label(Canvas& canvas, const std::string& label, int left, int top) {
-  const std::string text = in_letters(label);
+void write_label(Canvas& canvas, const std::string& text, int left, int top) {
   const double height =
       std::min<double>(label_height, label_height * thumbnail / text_width(text, label_height));
   Shape letters;
   add_text(letters, text, left, top, height);
   std::vector<double> coverage(static_cast<std::size_t>(canvas.image.columns));
-  for (int row = top - 1; row <= top + label_height + 1; ++row) {
+  const int bottom = top + static_cast<int>(std::ceil(label_height + text_descent(label_height)));
+  for (int row = top - 1; row <= bottom; ++row) {
     letters.coverage(row, coverage);
     for (int column = 0; column < canvas.image.columns; ++column)
       for (int c = 0; c < 3; ++c) {
@@ -98,7 +86,7 @@ void draw_failure(Canvas& canvas, int left, int top, int rows) {
     for (int column = left; column < left + thumbnail; ++column)
       for (int c = 0; c < 3; ++c) canvas.at(column, row)[c] = shade;
   const int inset = std::min(gap, rows - label_height);
-  write_label(canvas, "FAILED", left + gap, top + std::max(0, inset));
+  write_label(canvas, "failed", left + gap, top + std::max(0, inset));
 }
 
 }  // namespace

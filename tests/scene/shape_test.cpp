@@ -129,6 +129,50 @@ TEST(Lettering, StaysInItsBox) {
   EXPECT_LT(ink, 0.6 * box);
 }
 
+/// How much of each pixel a character covers.
+std::vector<double> ink_of(char character) {
+  Shape shape;
+  add_text(shape, std::string(1, character), 4, 4, 14);
+  std::vector<double> ink;
+  for (int row = 0; row < 26; ++row)
+    for (const double share : row_of(shape, row, 18)) ink.push_back(share);
+  return ink;
+}
+
+TEST(Lettering, EveryCharacterOfALabelIsDrawnAndLooksLikeNoOther) {
+  const std::string drawn =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,:=+-_/%@()[]";
+  for (const char a : drawn) {
+    const std::vector<double> one = ink_of(a);
+    EXPECT_GT(std::accumulate(one.begin(), one.end(), 0.0), 0) << a;
+    for (const char b : drawn) {
+      if (b <= a) continue;
+      double apart = 0;
+      const std::vector<double> other = ink_of(b);
+      for (std::size_t i = 0; i < one.size(); ++i) apart += std::abs(one[i] - other[i]);
+      constexpr double a_dot = 3;  // of strokes 1.8 pixels wide
+      EXPECT_GT(apart, a_dot) << a << " and " << b;
+    }
+  }
+}
+
+TEST(Lettering, SmallLettersAreLowerAndReachBelowAsFarAsSaid) {
+  const double height = 69, step = 10, slant = 2;
+  for (const char letter : std::string("acegmnopqrsuvwxyz")) {
+    Shape shape;
+    add_text(shape, std::string(1, letter), 0, 0, height);
+    EXPECT_GE(shape.top(), 2 * step - slant) << letter;
+  }
+  const std::string tails = "gjpqy_";
+  for (char letter = 'a'; letter <= 'z'; ++letter) {
+    Shape shape;
+    add_text(shape, std::string(1, letter), 0, 0, height);
+    EXPECT_LE(shape.bottom(), height + text_descent(height) + slant) << letter;
+    EXPECT_EQ(shape.bottom() > height + slant, tails.find(letter) != tails.npos) << letter;
+  }
+  EXPECT_NEAR(text_descent(height), 2 * step, 1e-9);
+}
+
 TEST(Lettering, LetterIIsThreeBars) {
   // 7 grid steps high less the rounding of the box: strokes of 0.9 steps, two level ones of 2.9, one upright
   // of 6.9 that overlaps them by 0.9 each.

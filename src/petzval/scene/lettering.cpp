@@ -9,14 +9,15 @@ namespace petzval {
 
 namespace {
 
-// Letters stand on a grid of 5 × 7 points; strokes are 0.9 of a grid step wide, with square ends.
+// Letters stand on a grid of 5 × 7 points, small ones on its lower five rows and with their tails on two rows
+// below; strokes are 0.9 of a grid step wide, with square ends.
 constexpr double stroke = 0.9;
 constexpr double box_width = 4 + stroke, box_height = 6 + stroke;
 constexpr double advance = box_width + 1.3;
 
 /// The strokes of a letter: points "xy" (y down), a bar lifts the pen. Empty for what has no letter.
 std::string_view strokes_of(char letter) {
-  constexpr std::array<std::pair<char, std::string_view>, 39> letters = {{
+  constexpr std::array<std::pair<char, std::string_view>, 76> letters = {{
       {'A', "06 20 46|14 34"},
       {'B', "00 06 36 45 44 33 03|33 42 41 30 00"},
       {'C', "41 30 10 01 05 16 36 45"},
@@ -56,6 +57,43 @@ std::string_view strokes_of(char letter) {
       {'.', "26 26"},
       {'-', "13 33"},
       {'/', "06 40"},
+      {'a', "12 32 43 46 16 05 14 44"},
+      {'b', "00 06 36 45 43 32 02"},
+      {'c', "42 12 03 05 16 46"},
+      {'d', "40 46 16 05 03 12 42"},
+      {'e', "04 44 43 32 12 03 05 16 46"},
+      {'f', "40 30 21 26|03 33"},
+      {'g', "46 16 05 03 12 42 47 38 08"},
+      {'h', "00 06|02 32 43 46"},
+      {'i', "12 22 26|16 36|20 20"},
+      {'j', "22 32 37 28 08|30 30"},
+      {'k', "00 06|42 04 46"},
+      {'l', "10 20 25 36"},
+      {'m', "06 02 12 23 26|23 32 43 46"},
+      {'n', "06 02 32 43 46"},
+      {'o', "12 32 43 45 36 16 05 03 12"},
+      {'p', "08 02 32 43 45 36 06"},
+      {'q', "48 42 12 03 05 16 46"},
+      {'r', "06 02|04 22 42"},
+      {'s', "42 12 03 14 34 45 36 06"},
+      {'t', "10 15 26 46|02 32"},
+      {'u', "02 05 16 46|42 46"},
+      {'v', "02 26 42"},
+      {'w', "02 16 23 36 42"},
+      {'x', "02 46|42 06"},
+      {'y', "02 05 16 46|42 47 38 08"},
+      {'z', "02 42 06 46"},
+      {':', "22 22|26 26"},
+      {',', "25 26 17"},
+      {'=', "02 42|04 44"},
+      {'+', "04 44|22 26"},
+      {'_', "07 47"},
+      {'%', "06 40|00 10 11 01 00|35 45 46 36 35"},
+      {'@', "46 16 05 01 10 30 41 44 24 22 42"},
+      {'(', "30 21 25 36"},
+      {')', "10 21 25 16"},
+      {'[', "30 10 16 36"},
+      {']', "10 30 36 16"},
   }};
   for (const auto& [known, strokes] : letters)
     if (known == letter) return strokes;
@@ -88,6 +126,11 @@ void add_text(Shape& shape, std::string_view text, double left, double top, doub
     for (std::size_t at = 0; at + 5 <= strokes.size(); at += 3)
       if (strokes[at + 2] == ' ') add_stroke(shape, point(at), point(at + 3), step * stroke);
   }
+}
+
+double text_descent(double height) {
+  constexpr double rows_below = 2;
+  return height / box_height * rows_below;
 }
 
 double text_width(std::string_view text, double height) {
