@@ -2,8 +2,10 @@
 #include "output_option.h"
 
 #include <fmt/format.h>
+#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/scene/scene_file.h>
 
 #include <filesystem>
 
@@ -22,6 +24,23 @@ CLI::Validator mark(const char* name, const char* right) {
     return word.empty() ? fmt::format("an empty name; {} would be right", right) : std::string();
   };
   return CLI::Validator(complaint, "", name);
+}
+
+bool is_file(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+/// Whether a path is that of a bundled file of this name.
+bool is_bundled(const std::string& path, const std::string& name) {
+  if (!is_file(path) || fs::path(path).stem() != name) return false;
+  std::error_code ignored;
+  const fs::path folder = fs::weakly_canonical(fs::path(path), ignored).parent_path().parent_path();
+  try {
+    return fs::equivalent(folder, data_directory(), ignored);
+  } catch (const InputError&) {  // there are no bundled files
+    return false;
+  }
 }
 
 /// The mark of an option, or nothing.
@@ -49,11 +68,6 @@ bool same_file(const std::string& a, const std::string& b) {
   return !path_a.empty() && path_a == path_b;
 }
 
-bool is_file(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
 }  // namespace
 
 CLI::Validator output_file() {
@@ -73,7 +87,8 @@ void refuse_same_files(const std::vector<NamedFile>& outputs, const std::vector<
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const auto& [option, path] = outputs[i];
     for (const NamedFile& input : inputs)
-      if (is_file(path) && is_file(input.path) && same_file(path, input.path))
+      if ((is_file(path) && is_file(input.path) && same_file(path, input.path)) ||
+          is_bundled(path, input.path))
         throw InputError(fmt::format(
             "{} {}: this would overwrite {}, which the command reads; another name would be right", option,
             path, input.path));
@@ -107,6 +122,17 @@ std::vector<std::string> output_options(const CLI::App& command) {
   return names;
 }
 
+namespace {
+
+/// Adds a word that may name a file, and what is read with that.
+void add_input(const std::string& option, const std::string& word, std::vector<NamedFile>& inputs) {
+  inputs.push_back({option, word});
+  const std::string companion = scene_companion(word);
+  if (!companion.empty()) inputs.push_back({option, companion});
+}
+
+}  // namespace
+
 void check_outputs(const CLI::App& command) {
   std::vector<NamedFile> outputs, inputs;
   std::vector<std::string> files, folders;
@@ -116,8 +142,8 @@ void check_outputs(const CLI::App& command) {
     for (const std::string& word : option->results()) {
       const std::string name = marked == entry_mark ? behind_equals(word) : word;
       if (marked.empty()) {
-        inputs.push_back({option->get_name(), word});
-        if (word.find('=') != word.npos) inputs.push_back({option->get_name(), behind_equals(word)});
+        add_input(option->get_name(), word, inputs);
+        if (word.find('=') != word.npos) add_input(option->get_name(), behind_equals(word), inputs);
       } else if (marked == folder_mark) {
         folders.push_back(name);
       } else {

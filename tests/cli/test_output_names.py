@@ -57,6 +57,25 @@ class OutputOverInput(ProgramTest):
         self.assert_keeps("depth.npy", "image", "wall.exr", "--scene-depth", "depth.npy", *LENS, "-o", "depth.npy")
         self.assert_keeps("wall.exr", "scene", "convert", "wall.exr", "wall.exr")
 
+    def test_what_is_read_with_a_scene(self):
+        self.write("cube.hdr", "ENVI\nsamples = 2\nlines = 2\nbands = 1\ndata type = 4\ninterleave = bsq\nwavelength = {550}\n")
+        self.write("cube.img", bytes(16))
+        self.write("array.npy", (self.folder / "depth.npy").read_bytes())
+        self.write("array.json", {"wavelengths_nm": [550]})
+        for scene, output in [("cube.hdr", "cube.img"), ("cube.img", "cube.hdr"), ("array.npy", "array.json")]:
+            self.assert_keeps(output, "image", scene, *LENS, "-o", output)
+        self.assert_refused("image", "cube.hdr", *LENS, "-o", "cube.dat", words=["irradiance is written as"])
+
+    def test_bundled_files_by_name(self):
+        (self.folder / "data" / "lenses").mkdir(parents=True)
+        os.symlink(os.path.join(os.environ["PETZVAL_DATA"], "glass"), self.folder / "data" / "glass")
+        self.write("data/lenses/mine.json", SINGLET)
+        bundled = {"env": dict(os.environ, PETZVAL_DATA=str(self.folder / "data"))}
+        scale = ["lens", "scale", "mine", "--factor", "2", "-o"]
+        self.assert_refused(*scale, "data/lenses/mine.json", words=["would overwrite", "mine"], **bundled)
+        self.assert_succeeds(*scale, "data/lenses/twice.json", **bundled)
+        self.assert_succeeds(*scale, "mine.json", **bundled)
+
     def test_light_and_shapes(self):
         self.assert_succeeds("image", "wall", "--lens", "edmund-54852", "--sensor", "third-inch-1280x960", "--sensor-set",
                              "columns=16", "--sensor-set", "rows=12", "--wavelengths", "550", "-o", "light.exr")

@@ -212,19 +212,11 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
 /// Says which bands have no light because the illuminant does not reach them.
 void note_dark_bands(Scene& scene) {
   if (!scene.illuminant) return;
-  const std::vector<double>& bands = scene.wavelengths_nm();
-  const auto is_dark = [&](double nm) { return scene.illuminant->at(nm) == 0; };
-  std::vector<std::string> runs;  // of bands side by side
-  for (auto first = std::find_if(bands.begin(), bands.end(), is_dark); first != bands.end();) {
-    const auto lit = std::find_if_not(first, bands.end(), is_dark);
-    runs.push_back(lit - first == 1 ? fmt::format("{:g}", *first)
-                                    : fmt::format("{:g} to {:g}", *first, *(lit - 1)));
-    first = std::find_if(lit, bands.end(), is_dark);
-  }
-  if (!runs.empty())
-    scene.notes.push_back(
-        fmt::format("no light reaches {} nm, beyond the illuminant of the scene: these bands are dark",
-                    fmt::join(runs, ", ")));
+  const std::string dark = runs_of_bands(scene.wavelengths_nm(),
+                                         [&](double nm) { return scene.illuminant->at(nm) == 0; });
+  if (!dark.empty())
+    scene.notes.push_back(fmt::format(
+        "no light reaches {} nm, beyond the illuminant of the scene: these bands are dark", dark));
 }
 
 Scene finished(Scene scene, const SceneOptions& options) {

@@ -48,6 +48,10 @@ struct SceneOptions {
 /// \throws InputError for an unknown name, a bad parameter, a damaged file, an option that does not apply.
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options = {});
 
+/// The file that read_scene reads with this one: of an ENVI header its numbers, of such numbers their header,
+/// of a .npy the .json of its name. Empty if there is none.
+std::string scene_companion(const std::string& path);
+
 /// A chart that read_scene makes from its name.
 struct BuiltinScene {
   std::string name;         ///< "checkerboard[:N]"

@@ -43,16 +43,23 @@ std::string header_of(const fs::path& data) {
   return {};
 }
 
-/// The file of numbers beside a header.
-std::string data_of(const fs::path& header) {
+/// The file of numbers beside a header, or nothing.
+std::string data_beside(const fs::path& header) {
   const fs::path stem = fs::path(header).replace_extension();
   for (const char* extension :
        {"", ".img", ".dat", ".raw", ".bsq", ".bil", ".bip", ".bin", ".cube", ".IMG", ".DAT", ".RAW"}) {
     const fs::path data = stem.string() + extension;
     if (is_file(data)) return data.string();
   }
-  throw InputError(header.string(),
-                   fmt::format("has no data beside it; {}.img or the like would be right", stem.string()));
+  return {};
+}
+
+std::string data_of(const std::string& header) {
+  std::string data = data_beside(header);
+  if (data.empty())
+    throw InputError(header, fmt::format("has no data beside it; {}.img or the like would be right",
+                                         fs::path(header).replace_extension().string()));
+  return data;
 }
 
 /// Bands to keep, by wavelength.

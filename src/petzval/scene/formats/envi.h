@@ -21,6 +21,10 @@ SpectralCube read_envi(const std::string& path, const CubeCheck& check = {});
 /// Whether a path is read_envi()'s: a header, or a file with a header beside it.
 bool is_envi_path(const std::string& path);
 
+/// The file that read_envi() reads with this one: the numbers of a header, the header of a file of numbers.
+/// Empty if there is none.
+std::string envi_companion(const std::string& path);
+
 /// The numbers of a header's data as they are in memory. \param file  for messages. \throws as read_envi.
 SpectralCube decode_envi(std::string_view header_text, std::string_view data, const std::string& header_file,
                          const std::string& data_file);

@@ -117,6 +117,12 @@ void describe_cube(std::string_view json, const std::string& file, SpectralCube&
   }
 }
 
+std::string npy_companion(const std::string& path) {
+  const fs::path beside = fs::path(path).replace_extension(".json");
+  std::error_code ignored;
+  return fs::is_regular_file(beside, ignored) ? beside.string() : std::string();
+}
+
 SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check) {
   const NpyFile array(path);
   const std::vector<std::size_t>& shape = array.shape();
@@ -138,10 +144,8 @@ SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check) {
   SpectralCube cube;
   cube.rows = static_cast<int>(shape[0]), cube.columns = static_cast<int>(shape[1]);
   cube.bands = static_cast<int>(bands);
-  const fs::path beside = fs::path(path).replace_extension(".json");
-  std::error_code ignored;
-  if (fs::is_regular_file(beside, ignored))
-    describe_cube(read_whole_file(beside.string(), std::size_t{1} << 24), beside.string(), cube);
+  if (const std::string beside = npy_companion(path); !beside.empty())
+    describe_cube(read_whole_file(beside, std::size_t{1} << 24), beside, cube);
   if (check) check(cube);
   take_planes(array, cube);
   return cube;

@@ -19,6 +19,9 @@ namespace petzval {
 /// read_npy, for another shape, and for a bad JSON file.
 SpectralCube read_npy_scene(const std::string& path, const CubeCheck& check = {});
 
+/// The JSON file that read_npy_scene() reads with a .npy file. Empty if there is none.
+std::string npy_companion(const std::string& path);
+
 /// Puts what a JSON text says into the cube. \param file  for messages. \throws InputError for an unknown key
 /// or a value of another kind.
 void describe_cube(std::string_view json, const std::string& file, SpectralCube& cube);
