@@ -22,6 +22,14 @@ COLORCHECKER = [  # row by row from the top left, as the chart is held
 # tests/colour/colorchecker.cpp holds the result against the published colours of the chart.
 COLORCHECKER_ORDER = [4 * (patch % 6) + patch // 6 for patch in range(24)]
 
+# The source table of the daylight components goes from 380 to 780 nm; CIE 15 tabulates them from 300 to 830, every 10 nm,
+# and lets them run straight in between. tests/colour/illuminants.cpp holds the ends against tables of D50 and D65.
+DAYLIGHT_ENDS = {
+    300: (0.04, 0.02, 0.0), 310: (6.0, 4.5, 2.0), 320: (29.6, 22.4, 4.0), 330: (55.3, 42.0, 8.5), 340: (57.3, 40.6, 7.8),
+    350: (61.8, 41.6, 6.7), 360: (61.5, 38.0, 5.3), 370: (68.8, 42.4, 6.1), 380: (63.4, 38.5, 3.0),
+    780: (65.0, -10.4, 6.8), 790: (66.0, -10.6, 7.0), 800: (61.0, -9.7, 6.4), 810: (53.3, -8.3, 5.5),
+    820: (58.9, -9.3, 6.1), 830: (61.9, -9.8, 6.5)}
+
 RELATIVE = "relative spectral power"
 # output: (input, name, source, unit, columns, order of the input's columns)
 TABLES = {
@@ -31,7 +39,7 @@ TABLES = {
         ["x_bar", "y_bar", "z_bar"], None),
     "daylight_basis": (
         "cie_daylight_basis", "CIE daylight: mean and two components",
-        "CIE 15 (components S0, S1, S2 of the D illuminants), as distributed with ISETCam (MIT), cieDaylightBasis",
+        "CIE 15 (components S0, S1, S2 of the D illuminants); 380 to 780 nm as distributed with ISETCam (MIT), cieDaylightBasis",
         RELATIVE, ["s0", "s1", "s2"], None),
     "illuminant_a": (
         "illuminant_a", "CIE standard illuminant A (tungsten, 2856 K)",
@@ -68,11 +76,27 @@ def read_rows(path):
     return [line.split(",") for line in lines if line and not line.startswith(("#", "wavelength_nm"))]
 
 
+def with_daylight_ends(rows):
+    """The rows, and those of DAYLIGHT_ENDS outside of them every 5 nm."""
+    first, last = int(rows[0][0]), int(rows[-1][0])
+    for end in (first, last):
+        fields, = (row for row in rows if int(row[0]) == end)
+        if tuple(map(float, fields[1:])) != DAYLIGHT_ENDS[end]:
+            raise SystemExit(f"the daylight components at {end} nm are not those of CIE 15")
+
+    def row(nm):
+        known = [DAYLIGHT_ENDS[nm]] if nm in DAYLIGHT_ENDS else [DAYLIGHT_ENDS[nm - 5], DAYLIGHT_ENDS[nm + 5]]
+        return [str(nm)] + [f"{sum(values) / len(known):.6g}" for values in zip(*known)]
+
+    return [row(nm) for nm in range(300, first, 5)] + rows + [row(nm) for nm in range(last + 5, 835, 5)]
+
+
 def converted(folder, table):
     source_file, name, source, unit, columns, order = table
     order = order or range(len(columns))
     lines = [f"# name: {name}", f"# source: {source}", f"# unit: {unit}", ",".join(["wavelength_nm"] + columns)]
-    for fields in read_rows(folder / f"{source_file}.csv"):
+    rows = read_rows(folder / f"{source_file}.csv")
+    for fields in with_daylight_ends(rows) if source_file == "cie_daylight_basis" else rows:
         if len(fields) != len(columns) + 1:
             raise SystemExit(f"{source_file}.csv: {len(fields)} fields in a line, not {len(columns) + 1}")
         lines.append(",".join([fields[0]] + [fields[1 + column] for column in order]))

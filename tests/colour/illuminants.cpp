@@ -24,9 +24,11 @@ TEST(Illuminants, AIsThePlanckianCurveThatDefinesIt) {
 
 TEST(Illuminants, D65IsThatOfTheStandard) {
   // CIE standard illuminant D65 (ISO 11664-2), six digits.
-  const std::pair<double, double> published[] = {{380, 49.9755}, {400, 82.7549}, {450, 117.008},
+  const std::pair<double, double> published[] = {{320, 20.2360}, {350, 44.9117}, {370, 52.0891},
+                                                 {380, 49.9755}, {400, 82.7549}, {450, 117.008},
                                                  {500, 109.354}, {550, 104.046}, {600, 90.0062},
-                                                 {650, 80.0268}, {700, 71.6091}, {780, 63.3828}};
+                                                 {650, 80.0268}, {700, 71.6091}, {780, 63.3828},
+                                                 {800, 59.4519}, {830, 60.3125}};
   const Spectrum d65 = illuminant("D65");
   for (const auto& [nm, power] : published) EXPECT_NEAR(d65.at(nm), power, 6e-6 * power) << nm;
 }
@@ -36,7 +38,7 @@ TEST(Illuminants, TheTablesOfDaylightAreThoseOf6500And5000K) {
   // components reach 63 and 27 here: half a unit of the third decimal of each makes up to 0.05.
   for (const auto& [table, kelvins] : {std::pair{"illuminant_d65", 6500.0}, {"illuminant_d50", 5000.0}}) {
     const Spectrum given = read_spectrum_set(table).spectra[0].spectrum, computed = daylight(kelvins);
-    for (double nm = 380; nm <= 780; nm += 5)
+    for (double nm = 300; nm <= 830; nm += 5)
       EXPECT_NEAR(computed.at(nm), given.at(nm), 0.05) << table << ' ' << nm;
   }
 }

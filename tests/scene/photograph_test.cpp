@@ -129,7 +129,7 @@ TEST(Photograph, HasTheLuminanceAskedForAndGreysAreFlat) {
   for (const float level : {0.0f, 0.2f, 1.0f, 0.6f}) greys.rgb.insert(greys.rgb.end(), 3, level);
   PhotographOptions options;
   options.mean_luminance_cd_m2 = 45;
-  options.wavelengths_nm = parse_wavelengths_nm("380:5:780");
+  options.wavelengths_nm = parse_wavelengths_nm("370:5:780");
   const Scene scene = photograph_scene(greys, options);
   EXPECT_NEAR(scene.mean_luminance_cd_m2(), 45, 45 * 1e-6);
   for (int band = 0; band < scene.bands(); ++band) {

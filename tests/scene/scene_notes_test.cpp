@@ -100,13 +100,33 @@ TEST_F(SceneNotes, OptionsOfTheOtherKindOfWarmSceneAreRefused) {
   EXPECT_THROW(scene_of_one(0.5F, SceneQuantity::emissivity, options), InputError);
 }
 
-/// Charts are lit from 380 to 780 nm.
+/// Charts are lit by D65, from 300 to 830 nm; F11 is known from 380 to 780.
 TEST_F(SceneNotes, BandsBeyondTheIlluminantAreNamed) {
   SceneOptions options;
-  options.wavelengths_nm = {400, 500, 600, 780};
-  EXPECT_TRUE(read_scene("wall", options).notes.empty());
-  options.wavelengths_nm = {350, 400, 600, 790, 800};
-  EXPECT_TRUE(has_note(read_scene("wall", options).notes, "no light reaches 350, 790 to 800 nm"));
+  options.wavelengths_nm = {300, 500, 600, 830};
+  Scene lit = read_scene("wall", options);
+  EXPECT_TRUE(lit.notes.empty());
+  EXPECT_GT(lit.band(0)[0], 0);
+  EXPECT_GT(lit.band(3)[0], 0);
+  options.wavelengths_nm = {350, 400, 600, 840, 850};
+  EXPECT_TRUE(has_note(read_scene("wall", options).notes, "no light reaches 840 to 850 nm"));
+  options.illuminant = "F11";
+  EXPECT_TRUE(has_note(read_scene("wall", options).notes, "no light reaches 350, 840 to 850 nm"));
+}
+
+/// The patches of the ColorChecker were measured from 380 to 1068 nm.
+TEST_F(SceneNotes, BandsBeyondMeasuredReflectancesAreNamed) {
+  SceneOptions options;
+  options.wavelengths_nm = {340, 360, 380, 400, 600, 830};
+  for (const char* chart : {"colorchecker", "studio"})
+    EXPECT_TRUE(has_note(read_scene(chart, options).notes, "measured from 380 to 1068 nm; at 340 to 360 nm"));
+  for (const char* chart : {"wall", "checkerboard", "slanted-edge"})
+    EXPECT_TRUE(read_scene(chart, options).notes.empty()) << chart;
+  options.wavelengths_nm = {380, 830};
+  EXPECT_TRUE(read_scene("colorchecker", options).notes.empty());
+  options.illuminant = "F11";  // where it is dark, reflectances are of no account
+  options.wavelengths_nm = {360, 500};
+  EXPECT_FALSE(has_note(read_scene("colorchecker", options).notes, "measured"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/chart_canvas.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +65,7 @@ Paint ChartCanvas::paint(const Spectrum& reflectance) const {
   for (std::size_t i = 0; i < seen_.values().size(); ++i)
     luminance += seen_.values()[i] * std::max(0.0, reflectance.at_extended(seen_.wavelengths_nm()[i]));
   result.luminous_reflectance = static_cast<float>(luminance / sum(seen_.values()));
+  if (reflectance.values().size() > 1) result.known_nm = {reflectance.front_nm(), reflectance.back_nm()};
   return result;
 }
 
@@ -71,11 +73,16 @@ Paint ChartCanvas::flat_paint(double reflectance) const {
   return paint(Spectrum({555.0}, {reflectance}));
 }
 
+void ChartCanvas::use(const Paint& paint) {
+  known_nm_ = {std::max(known_nm_.from, paint.known_nm.from), std::min(known_nm_.to, paint.known_nm.to)};
+}
+
 void ChartCanvas::fill(const Paint& paint) {
   modulate(paint, [](int, std::span<double> factors) { std::fill(factors.begin(), factors.end(), 1.0); });
 }
 
 void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
+  use(paint);
   const int first = static_cast<int>(std::clamp(std::floor(shape.top()), 0.0, static_cast<double>(rows())));
   const int end = static_cast<int>(std::clamp(std::ceil(shape.bottom()), 0.0, static_cast<double>(rows())));
   if (first >= end) return;
@@ -101,6 +108,7 @@ void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
 
 void ChartCanvas::modulate(const Paint& paint,
                            const std::function<void(int row, std::span<double> factors)>& factor) {
+  use(paint);
   const std::size_t width = static_cast<std::size_t>(columns());
   parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t row) {
     std::vector<double> factors(width);
@@ -112,6 +120,17 @@ void ChartCanvas::modulate(const Paint& paint,
       set(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
     set(luminous_reflectance_, paint.luminous_reflectance);
   });
+}
+
+void ChartCanvas::note_unmeasured_bands() {
+  const std::string unmeasured = runs_of_bands(scene_.wavelengths_nm(), [&](double nm) {
+    return (nm < known_nm_.from || nm > known_nm_.to) && illuminant_.at(nm) > 0;
+  });
+  if (!unmeasured.empty())
+    scene_.notes.push_back(
+        fmt::format("the chart's reflectances were measured from {:g} to {:g} nm; at {} nm they are taken to "
+                    "be those of the nearer end",
+                    known_nm_.from, known_nm_.to, unmeasured));
 }
 
 Scene ChartCanvas::lit() && {
@@ -126,6 +145,7 @@ Scene ChartCanvas::lit() && {
     for (float& value : scene_.band(static_cast<int>(band))) value = static_cast<float>(value * light);
   });
   scene_.illuminant = illuminant_.scaled(level);
+  note_unmeasured_bands();
   return std::move(scene_);
 }
 

@@ -6,6 +6,7 @@
 #include <petzval/scene/shape.h>
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,10 +23,16 @@ struct ChartOptions {
   double mean_luminance_cd_m2 = 100;  ///< of the whole chart, over its whole spectrum
 };
 
+/// Wavelengths from one to another [nm]; all unless told.
+struct WavelengthRange {
+  double from = 0, to = std::numeric_limits<double>::infinity();
+};
+
 /// A reflectance at the wavelengths of a canvas, and what the eye sees of it under the canvas's light.
 struct Paint {
   std::vector<float> reflectance;
   float luminous_reflectance = 0;
+  WavelengthRange known_nm;  ///< where the reflectance was measured; beyond it is that of the nearest end
 };
 
 /// A chart in the making: a scene whose bands hold reflectances until it is lit. Shapes are painted one over
@@ -50,15 +57,20 @@ class ChartCanvas {
 
   /// The scene: reflectance × illuminant, the illuminant so strong that the mean luminance is what the
   /// options say. The level is found from the whole visible spectrum: which wavelengths are asked for does
-  /// not change the radiance at any of them. \throws InputError if all is black.
+  /// not change the radiance at any of them. A note names the bands for which a reflectance was not measured.
+  /// \throws InputError if all is black.
   Scene lit() &&;
 
  private:
+  void use(const Paint& paint);
+  void note_unmeasured_bands();
+
   ChartOptions options_;
   Spectrum illuminant_;
   Spectrum seen_;  ///< the illuminant times ȳ, every nanometre
   Scene scene_;
   std::vector<float> luminous_reflectance_;
+  WavelengthRange known_nm_;  ///< of all paints used
 };
 
 }  // namespace petzval

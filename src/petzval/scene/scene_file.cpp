@@ -14,6 +14,7 @@
 #include <petzval/scene/named_chart.h>
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
+#include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
 #include <cmath>
@@ -238,6 +239,11 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   Scene scene = read_plane(path_or_name, plane);
   naming_file(path_or_name, [&] { scene.make_panorama(*options.panorama); });
   return finished(std::move(scene), options);
+}
+
+std::string scene_companion(const std::string& path) {
+  if (!is_file(path)) return {};
+  return lower_extension(path) == ".npy" ? npy_companion(path) : envi_companion(path);
 }
 
 bool is_builtin_scene(const std::string& path_or_name) {

@@ -51,5 +51,6 @@ std::vector<double> parse_wavelengths_nm(const std::string& text) {
       throw InputError(fmt::format("wavelengths {}: they must increase", text));
   return wavelengths;
 }
+  if (!wavelengths.empty()) require_wavelength(wavelengths.front(), "wavelengths " + text);
 
 }  // namespace petzval

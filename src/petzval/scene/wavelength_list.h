@@ -8,7 +8,7 @@
 namespace petzval {
 
 /// "400:10:700" (from, step, to), "450,550,650", "587.5618", and mixtures. \returns nm, strictly increasing.
-/// \throws InputError saying what would be right.
+/// \throws InputError, for µm too, saying what would be right.
 std::vector<double> parse_wavelengths_nm(const std::string& text);
 
 }  // namespace petzval
