@@ -5,6 +5,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ray_fan.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,15 +27,13 @@ const std::map<std::string, Fields::Kind>& field_kinds() {
   return kinds;
 }
 
+}  // namespace
+
 std::vector<double> parse_wavelength_list(const std::string& text) {
   std::vector<double> wavelengths_nm = parse_number_list("--wavelengths", text);
-  for (const double wavelength_nm : wavelengths_nm)
-    if (!(wavelength_nm > 0))
-      throw InputError(fmt::format("--wavelengths {}: a wavelength must be above 0, in nm", text));
+  for (const double nm : wavelengths_nm) require_wavelength(nm, "--wavelengths " + text);
   return wavelengths_nm;
 }
-
-}  // namespace
 
 void FieldChoice::add_to(CLI::App& command) {
   command.add_option_function<std::string>(

@@ -14,6 +14,9 @@
 
 namespace petzval::app {
 
+/// The words of --wavelengths, as parse_number_list() takes them. \throws InputError for what is no nm.
+std::vector<double> parse_wavelength_list(const std::string& text);
+
 struct FieldChoice {
   std::vector<double> fields, wavelengths_nm;
   std::string field_type;  ///< empty: the lens's own

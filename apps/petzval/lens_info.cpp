@@ -2,6 +2,7 @@
 // petzval lens info.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/lens/first_order.h>
 
 #include <cmath>
@@ -103,8 +104,7 @@ void print_surfaces(const Lens& lens) {
 
 void info(const InfoCommand& options, const Shared& shared) {
   const auto wavelength_nm = options.wavelength_nm;
-  if (wavelength_nm && !(std::isfinite(*wavelength_nm) && *wavelength_nm > 0))
-    throw InputError(fmt::format("--wavelength {}: must be a positive number of nm", *wavelength_nm));
+  if (wavelength_nm) require_wavelength(*wavelength_nm, fmt::format("--wavelength {:g}", *wavelength_nm));
   const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   const FirstOrder data = first_order(lens, wavelength_nm);
   if (shared.json) return print_json(info_json(lens, data));

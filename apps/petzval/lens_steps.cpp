@@ -2,6 +2,7 @@
 // petzval lens steps: one ray from surface to surface, and light on its way as a moving drawing.
 #include <fmt/format.h>
 #include <petzval/analysis/field_rows.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/report/colours.h>
 #include <petzval/report/ray_animation.h>
@@ -42,6 +43,8 @@ void steps(const StepsCommand& options, const Shared& shared) {
   if (!options.animate.empty()) require_extension(options.animate, {".html", ".htm"}, "a moving drawing");
   const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   const double field = options.field.value_or(even_fields(lens.fields.values, 2).back());
+  if (options.wavelength_nm)
+    require_wavelength(*options.wavelength_nm, fmt::format("--wavelength {:g}", *options.wavelength_nm));
   FieldTracer tracer(lens, options.wavelength_nm.value_or(lens.reference_wavelength_nm));
   const double wavelength_nm = tracer.tracer().wavelength_nm();
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field(lens, lens.fields.kind, field));

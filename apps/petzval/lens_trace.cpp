@@ -2,6 +2,7 @@
 // petzval lens trace: explicit rays from a CSV file.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/trace/tracer.h>
 
@@ -74,6 +75,8 @@ RayLine parse_ray(const std::vector<std::string_view>& cells, const std::array<s
       throw InputError(file, line,
                        fmt::format("{} is '{}'; a finite number would be right", ray_columns[c], cell));
   }
+  if (const std::string wrong = wavelength_fault(value[6]); !wrong.empty())
+    throw InputError(file, line, wrong);
   const double length = std::hypot(value[3], value[4], value[5]);
   if (!(length > 0))
     throw InputError(file, line, "L, M, N are all zero; direction cosines of unit length would be right");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
 
 #include <charconv>
@@ -64,6 +65,8 @@ void read_coating(const std::string& file, Losses& losses) {
         throw InputError(
             file, line,
             fmt::format("'{}' at '{}' nm; a reflectance from 0 to 1 would be right", cells[c], cells[0]));
+      if (const std::string wrong = wavelength_fault(*wavelength); !wrong.empty())
+        throw InputError(file, line, wrong);
       auto& table = column(losses, header[c], file, line).table;
       if (!table.empty() && !(*wavelength > table.back().first))
         throw InputError(file, line, "the wavelengths of a coating must increase");

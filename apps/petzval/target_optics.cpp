@@ -7,6 +7,7 @@
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/wave/sampled_otf.h>
 
 #include <charconv>
@@ -72,6 +73,7 @@ void TargetOptics::validate() const {
     throw InputError(fmt::format(
         "--psf {} brings its own pupil; --blades and --obstruction belong to airy and wavefront", psf));
   if (wavelengths_nm.empty()) throw InputError("--wavelength: at least one is needed");
+  for (const double nm : wavelengths_nm) require_wavelength(nm, fmt::format("--wavelength {:g}", nm));
   if (!weights.empty() && weights.size() != wavelengths_nm.size())
     throw InputError(fmt::format("--weights: {} for {} wavelengths; give one a wavelength", weights.size(),
                                  wavelengths_nm.size()));

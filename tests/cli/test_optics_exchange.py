@@ -291,7 +291,7 @@ class Refusals(Exchange):
                 (lambda t: t.pop("fNumber"), ["does not say the f-number"]),
                 (lambda t: t.update(objectDistance=-100.0), ["object distance is -100 mm"]),
                 (lambda t: [t[axes].update(wavelength=[[0.5], [0.6]]) for axes in ("geometry", "relIllum", "psf")],
-                 ["0.5 µm are 500 nm"]),
+                 ["500 would be right for 0.5"]),
                 (lambda t: t["relIllum"].update(function=[[1, 1]] + 12 * [[50, 50]]), ["π"]),
                 (lambda t: t.update(petzval="{"), ["kept"]),
         ):

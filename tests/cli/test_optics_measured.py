@@ -165,7 +165,7 @@ class Refusals(Measured):
                 (psf_csv([(f, w, x, y, math.nan) for f, w, x, y, v in good]), [":5", "value", "nan"]),
                 (psf_csv(good).replace("value", "light"), ["bad.csv: has no column value"]),
                 (mtf_csv(contrast).replace("tangential", "radial"), ["bad.csv: has no column tangential"]),
-                (psf_csv([(f, 0.55, x, y, v) for f, w, x, y, v in good]), ["0.55 µm are 550 nm"]),
+                (psf_csv([(f, 0.55, x, y, v) for f, w, x, y, v in good]), ["550 would be right for 0.55"]),
                 (psf_csv(good, HEAD.replace("f_number", "number")), ["does not say the f-number"]),
                 (psf_csv(good, HEAD + "# object_distance_mm: -100\n"), ["object distance is -100 mm"]),
                 (psf_csv(good) + "0,550,1\n", [":23", "3 values"]),

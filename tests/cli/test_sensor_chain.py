@@ -6,15 +6,7 @@ import math
 import unittest
 
 from petzval_cli import ProgramTest
-
-
-SMALL_BAYER = {
-    "format": "petzval-sensor/1", "name": "small", "source": "made up", "columns": 96, "rows": 64, "pitch_um": 3.75,
-    "channels": [{"name": name, "quantum_efficiency": [{"set": "nikon_d100", "spectrum": name, "scale": 0.5}]}
-                 for name in ("red", "green", "blue")],
-    "mosaic": [["red", "green"], ["green", "blue"]],
-    "gain_modes": [{"name": "base", "full_well_e": 10000, "dn_per_e": 0.4, "read_noise_e": 3}],
-    "adc": {"bits": 12, "black_level_dn": 64}, "dsnu_e": 1, "prnu_percent": 1}
+from sample_files import SMALL_BAYER
 
 
 class SensorChain(ProgramTest):

@@ -122,7 +122,7 @@ TEST(TableOfRayTraceData, SaysWhatIsMissingOrImpossible) {
        }},
       {"does not say the f-number", [](RayTraceData& data) { data.f_number = RayTraceData::unknown; }},
       {"f-number is -2", [](RayTraceData& data) { data.f_number = -2; }},
-      {"0.55 µm are 550 nm",
+      {"550 would be right for 0.55",
        [](RayTraceData& data) {
          data.wavelengths_nm = {0.55, 0.65};
        }},

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/colour/spectra_files.h>
 
@@ -46,6 +47,8 @@ class SpectrumSetParser {
   SpectrumSet finish() {
     if (wavelengths_nm_.empty())
       throw InputError(file_, "holds no spectrum; see the files in data/spectra for the form");
+    // Tables of metals may begin in the far ultraviolet; one that ends there is in µm.
+    if (wavelengths_nm_.back() < shortest_wavelength_nm) fail(wavelength_fault(wavelengths_nm_.back()));
     for (std::size_t i = 0; i < names_.size(); ++i)
       set_.spectra.push_back({names_[i], Spectrum(wavelengths_nm_, std::move(values_[i]))});
     return std::move(set_);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/image/spectral_image.h>
 
 #include <algorithm>
@@ -14,9 +15,7 @@ namespace {
 void check_wavelengths(const std::vector<double>& wavelengths_nm) {
   if (wavelengths_nm.empty()) throw InputError("an image needs at least one wavelength");
   for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
-    if (!(wavelengths_nm[i] > 0) || std::isinf(wavelengths_nm[i]))
-      throw InputError(
-          fmt::format("a wavelength of {} nm; it must be positive and finite", wavelengths_nm[i]));
+    require_wavelength(wavelengths_nm[i], "an image's bands");
     if (i > 0 && wavelengths_nm[i] <= wavelengths_nm[i - 1])
       throw InputError(fmt::format("the wavelengths of an image must increase, but {} nm comes after {} nm",
                                    wavelengths_nm[i], wavelengths_nm[i - 1]));

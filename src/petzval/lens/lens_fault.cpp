@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/lens/lens_fault.h>
 
 #include <cmath>
@@ -94,13 +95,16 @@ Fault fields_fault(const Lens& lens) {
 }
 
 Fault wavelengths_fault(const Lens& lens) {
-  const char* wanted = "must be a positive wavelength in nm";
   if (lens.wavelengths_nm.empty())
     return LensFault{"wavelengths_nm", "is empty; give at least one wavelength"};
+  const auto fault_of = [](const std::string& path, double nm) -> Fault {
+    if (!positive(nm)) return LensFault{path, "must be a positive wavelength in nm"};
+    const std::string wrong = wavelength_fault(nm);
+    return wrong.empty() ? Fault() : LensFault{path, fmt::format("is {:g}: {}", nm, wrong)};
+  };
   for (std::size_t i = 0; i < lens.wavelengths_nm.size(); ++i)
-    if (!positive(lens.wavelengths_nm[i])) return LensFault{fmt::format("wavelengths_nm[{}]", i), wanted};
-  if (!positive(lens.reference_wavelength_nm)) return LensFault{"reference_wavelength_nm", wanted};
-  return {};
+    if (Fault fault = fault_of(fmt::format("wavelengths_nm[{}]", i), lens.wavelengths_nm[i])) return fault;
+  return fault_of("reference_wavelength_nm", lens.reference_wavelength_nm);
 }
 
 }  // namespace

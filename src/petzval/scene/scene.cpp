@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/colour/band_resampling.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/scene.h>
@@ -19,6 +20,7 @@ void check_wavelengths(std::span<const double> wavelengths_nm) {
   if (wavelengths_nm.empty()) throw InputError("a scene needs at least one wavelength");
   double previous = 0;
   for (double wavelength : wavelengths_nm) {
+    require_wavelength(wavelength, "a scene's bands");
     if (!(wavelength > previous) || !std::isfinite(wavelength))
       throw InputError(fmt::format("wavelength {} nm after {} nm; positive, increasing ones would be right",
                                    wavelength, previous));

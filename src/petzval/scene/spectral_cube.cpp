@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/scene/illuminant_swap.h>
 #include <petzval/scene/radiance_unit.h>
 #include <petzval/scene/spectral_cube.h>
@@ -53,6 +54,7 @@ std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& option
                     cube.bands));
   if (bands.size() != static_cast<std::size_t>(cube.bands))
     throw InputError(fmt::format("has {} bands, but {} wavelengths are given", cube.bands, bands.size()));
+  for (const double nm : bands) require_wavelength(nm, "bands");
   return bands;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/colour/spectra_files.h>
 #include <petzval/lens/formats/json_document.h>
 #include <petzval/sensor/sensor_reader.h>
@@ -82,7 +83,10 @@ Spectrum read_factor(const JsonEntry& entry) {
   }
   entry.allow_only({"wavelengths_nm", "values"});
   std::vector<double> nm, values;
-  read_curve(entry, "wavelengths_nm", 1, 1e5, "values", 0, 1e6, nm, values);
+  read_curve(entry, "wavelengths_nm", 0, 1e5, "values", 0, 1e6, nm, values);
+  for (const double wavelength : nm)
+    if (const std::string wrong = wavelength_fault(wavelength); !wrong.empty())
+      entry.at("wavelengths_nm").fail(wrong);
   return {nm, values};
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/lens_fault.h>
@@ -29,6 +30,7 @@ Material index_table(const JsonEntry& entry) {
   for (const auto& [wavelength, index] : entry.members("an object of \"wavelength in nm\": index")) {
     const auto wavelength_nm = parse_number(wavelength);
     if (!wavelength_nm) index.fail("must have a wavelength in nm for its key");
+    if (const std::string wrong = wavelength_fault(*wavelength_nm); !wrong.empty()) index.fail(wrong);
     table.emplace_back(*wavelength_nm, index.number("a refractive index"));
   }
   std::sort(table.begin(), table.end());

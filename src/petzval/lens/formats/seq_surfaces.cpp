@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/glass/packed_catalogue.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_surfaces.h>
@@ -87,6 +88,8 @@ bool SeqSurfaces::apply_private(const SeqCommand& command, const SeqContext& con
     in_private_ = false;
   } else if (command.name == "PWL") {
     private_wavelengths_nm_ = context.numbers(command);
+    for (const double nm : private_wavelengths_nm_)
+      if (const std::string wrong = wavelength_fault(nm); !wrong.empty()) context.fail(command, wrong);
   } else {
     std::vector<double> indices;
     for (const std::string& word : command.words) {

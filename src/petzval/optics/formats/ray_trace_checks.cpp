@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/optics/formats/ray_trace_checks.h>
 
 #include <cmath>
@@ -14,7 +15,6 @@ constexpr double infinity_mm = 1e9;
 /// At infinity the magnification is 0, or f over those 10^10 mm.
 constexpr double magnification_at_infinity = 1e-6;
 /// Numbers below are micrometres: no lens refracts light of 100 nm, and infrared ends before 100 µm.
-constexpr double shortest_nm = 100;
 
 void require_size(std::size_t size, std::size_t expected, const RayTraceData& data, const char* what) {
   if (size != expected)
@@ -36,9 +36,7 @@ void require_whole(const RayTraceData& data) {
     if (!(std::isfinite(height) && height >= 0))
       throw InputError(fmt::format("a field height is {} mm; heights are finite and start at 0", height));
   for (const double nm : data.wavelengths_nm)
-    if (!(nm >= shortest_nm))
-      throw InputError(fmt::format("a wavelength is {0:g} nm; nanometres are wanted{1}", nm,
-                                   nm > 0 ? fmt::format(" ({:g} µm are {:g} nm)", nm, 1000 * nm) : ""));
+    require_wavelength(nm, "the wavelengths");
 }
 
 bool has_finite_object(const RayTraceData& data, std::vector<std::string>& notes) {

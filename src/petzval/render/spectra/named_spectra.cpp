@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
@@ -76,6 +77,8 @@ SceneSpectrum from_pairs(const Location& at, const std::vector<double>& numbers,
     nm.push_back(numbers[i]), values.push_back(numbers[i + 1]);
   if (numbers.size() % 2 != 0)
     throw scene_error(at, "a spectrum of an odd number of values; pairs of nm and value would be right");
+  if (!nm.empty() && nm.back() < shortest_wavelength_nm)
+    throw scene_error(at, "a spectrum of pairs of nm and value: " + wavelength_fault(nm.back()));
   try {
     return tabulated(Spectrum(nm, values), role);
   } catch (const InputError& error) {

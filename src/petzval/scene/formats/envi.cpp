@@ -112,6 +112,10 @@ bool is_envi_path(const std::string& path) {
   return is_header(path) || !header_of(path).empty();
 }
 
+std::string envi_companion(const std::string& path) {
+  return is_header(path) ? data_beside(path) : header_of(path);
+}
+
 namespace {
 
 SpectralCube cube_of(const EnviHeader& header, const std::string& header_file, const EnviBytes& bytes,
@@ -122,6 +126,10 @@ SpectralCube cube_of(const EnviHeader& header, const std::string& header_file, c
   cube.bands = static_cast<int>(order.size());
   if (!header.wavelengths_nm.empty())
     for (const std::size_t band : order) cube.wavelengths_nm.push_back(header.wavelengths_nm[band]);
+  if (header.wavelengths_seem_um)
+    cube.notes.push_back(fmt::format(
+        "does not say the unit of its wavelengths: {:g} to {:g} nm are taken, for numbers in micrometres",
+        cube.wavelengths_nm.front(), cube.wavelengths_nm.back()));
   say_what_it_is(header, cube);
   if (check) check(cube);
   cube.values = LargeFloats(order.size() * cube.band_size());

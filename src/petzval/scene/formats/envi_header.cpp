@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/scene/formats/envi_header.h>
 
 #include <algorithm>
@@ -205,16 +206,8 @@ void take_layout(const EntryReader& entries, const std::string& file, EnviHeader
       if (frame != 0) throw InputError(file, fmt::format("has {}; data without frames can be read", key));
 }
 
-/// Nanometres in the unit of the wavelengths.
-double wavelength_unit_nm(const EntryReader& entries, const std::vector<double>& wavelengths) {
-  const Entry* const entry = entries.find("wavelength units");
-  if (wavelengths.empty()) return 1;
-  const std::string unit = entry ? plain_key(entry->value) : "unknown";
-  if (unit == "unknown") {
-    constexpr double shortest_in_nm = 100;
-    const auto longest = std::max_element(wavelengths.begin(), wavelengths.end());
-    return *longest < shortest_in_nm ? 1e3 : 1;
-  }
+/// Nanometres in a unit of wavelengths.
+double nanometres_in(const EntryReader& entries, const Entry& entry, const std::string& unit) {
   static const std::map<std::string, double> units = {{"nanometers", 1},
                                                       {"nanometres", 1},
                                                       {"nanometer", 1},
@@ -238,15 +231,27 @@ double wavelength_unit_nm(const EntryReader& entries, const std::vector<double>&
                                                       {"angstroms", 0.1}};
   const auto found = units.find(unit);
   if (found == units.end())
-    entries.fail(*entry, fmt::format("wavelength units = {}; nanometers or micrometers would be right",
+    entries.fail(entry, fmt::format("wavelength units = {}; nanometers or micrometers would be right",
                                      quotable(unit)));
   return found->second;
 }
 
+void take_wavelengths(const EntryReader& entries, EnviHeader& header) {
+  std::vector<double>& wavelengths = header.wavelengths_nm;
+  wavelengths = entries.per_band("wavelength", header.bands);
+  if (wavelengths.empty()) return;
+  const Entry* const entry = entries.find("wavelength units");
+  const std::string unit = entry ? plain_key(entry->value) : "unknown";
+  const double longest = *std::max_element(wavelengths.begin(), wavelengths.end());
+  header.wavelengths_seem_um = unit == "unknown" && longest < shortest_wavelength_nm;
+  const double unit_nm = header.wavelengths_seem_um ? 1e3
+                         : unit == "unknown"        ? 1
+                                                    : nanometres_in(entries, *entry, unit);
+  for (double& wavelength : wavelengths) wavelength *= unit_nm;
+}
+
 void take_values(const EntryReader& entries, EnviHeader& header) {
-  header.wavelengths_nm = entries.per_band("wavelength", header.bands);
-  const double unit_nm = wavelength_unit_nm(entries, header.wavelengths_nm);
-  for (double& wavelength : header.wavelengths_nm) wavelength *= unit_nm;
+  take_wavelengths(entries, header);
   header.gains = entries.per_band("data gain values", header.bands);
   header.offsets = entries.per_band("data offset values", header.bands);
   header.reflectance_gains = entries.per_band("data reflectance gain values", header.bands);

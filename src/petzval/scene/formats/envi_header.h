@@ -25,6 +25,7 @@ struct EnviHeader {
   bool big_endian = false;
   std::uint64_t offset = 0;            ///< bytes before the data
   std::vector<double> wavelengths_nm;  ///< in the order of the file; empty: not said
+  bool wavelengths_seem_um = false;    ///< their unit is not said, and they are too small for nm
   std::vector<double> gains, offsets;  ///< radiance = gain · number + offset; empty: none
   std::vector<double> reflectance_gains, reflectance_offsets;
   std::optional<double> reflectance_scale;  ///< numbers are reflectances times this
