@@ -2,6 +2,7 @@
 // petzval image: a planar scene through a lens, onto a sensor.
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
 
@@ -21,6 +22,10 @@ namespace {
 
 void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared) {
   choice.check();
+  if (choice.scene_angle_least && !fills_frame(choice))
+    throw InputError(
+        "--scene-angle-least is for a chart or a photograph that fills the frame of a --sensor; --scene-angle "
+        "would be right");
   ImagingOptions options = choice.imaging_options();
   std::optional<Sensor> sensor;
   std::optional<SensorGeometry> wanted;

@@ -22,7 +22,7 @@ struct ImageChoice {
   std::string optics, sensor;
   std::vector<std::string> sensor_settings;
   std::string focus = "auto", method = "product", interpolate = "psf", fit = "monotone", surround = "error";
-  std::optional<double> f_number;
+  std::optional<double> f_number, scene_angle_least;
   SectionOptions sections;
   ProductOptions product;
   int supersample = 1;

@@ -16,6 +16,7 @@
 #include <string>
 
 #include "image_depth.h"
+#include "sensor_option.h"
 
 namespace petzval::app {
 
@@ -80,8 +81,28 @@ std::optional<double> object_in_focus_m(const ImageChoice& choice, const Scene& 
   return std::isinf(*asked_mm) ? std::nullopt : std::optional(*asked_mm / mm_per_m);
 }
 
+/// Every `step`th of the wavelengths, and the last.
+std::vector<double> thinned(const std::vector<double>& wavelengths_nm, std::size_t step) {
+  std::vector<double> few;
+  for (std::size_t i = 0; i < wavelengths_nm.size(); i += step) few.push_back(wavelengths_nm[i]);
+  if (few.back() != wavelengths_nm.back()) few.push_back(wavelengths_nm.back());
+  return few;
+}
+
+TableOptions table_options(const ImageChoice& choice, const Scene& scene, TableDetail detail) {
+  TableOptions options;
+  options.wavelengths_nm = scene.wavelengths_nm();
+  if (detail == TableDetail::outline) {
+    constexpr std::size_t step = 5;
+    options.wavelengths_nm = thinned(options.wavelengths_nm, step);
+    options.field_count = 11;
+  }
+  if (choice.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  return options;
+}
+
 SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
-                        const ProgressCallback& progress, const Shared& shared) {
+                        const ProgressCallback& progress, const Shared& shared, TableDetail detail) {
   focus_distance_mm(choice.focus);  // refuses nonsense before anything is read
   Camera camera(choice.apertures.prepare(choice.lens.read(shared), shared));
   if (choice.f_number) camera.set_f_number(*choice.f_number);
@@ -94,9 +115,7 @@ SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeo
   }
   const Lens lens =
       focused(camera, choice.focus, deep ? object_in_focus_m(choice, scene, camera) : scene.distance_m());
-  TableOptions options;
-  options.wavelengths_nm = scene.wavelengths_nm();
-  if (choice.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  TableOptions options = table_options(choice, scene, detail);
   if (deep) {
     options.max_image_height_mm = depth_image_height_mm(scene, lens, sensor);
     return {std::move(scene), facts_alone(lens),
@@ -109,8 +128,35 @@ SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeo
 }  // namespace
 
 SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
-                          const ProgressCallback& progress, const Shared& shared) {
-  return choice.optics.empty() ? from_lens(choice, sensor, progress, shared) : from_stored_table(choice);
+                          const ProgressCallback& progress, const Shared& shared, TableDetail detail) {
+  return choice.optics.empty() ? from_lens(choice, sensor, progress, shared, detail)
+                               : from_stored_table(choice);
+}
+
+namespace {
+
+double filling_angle_deg(const ImageChoice& choice, const ImagingOptions& options, const Scene& scene,
+                         const LensDataTable& table, const std::optional<DepthCamera>& depth,
+                         const SensorGeometry& sensor) {
+  return depth ? covering_depth_angle_deg(scene, *depth, sensor, options, choice.depth)
+               : covering_angle_deg(scene, table, sensor, options);
+}
+
+}  // namespace
+
+bool fills_frame(const ImageChoice& choice) {
+  return !choice.sensor.empty() && choice.scene.is_open() && choice.scene.angle.empty() &&
+         choice.imaging_options().surround == Surround::error;
+}
+
+std::optional<double> filling_angle_deg(const ImageChoice& choice, const Shared& shared) {
+  choice.check();
+  if (!fills_frame(choice)) return {};
+  const Sensor sensor = read_sensor(choice.sensor, choice.sensor_settings);
+  ImagingOptions options = choice.imaging_options();
+  options.photosite = sensor.photosite;
+  const auto [scene, table, depth] = read_source(choice, sensor.geometry, {}, shared, TableDetail::outline);
+  return filling_angle_deg(choice, options, scene, table, depth, sensor.geometry);
 }
 
 SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions& options, Scene& scene,
@@ -125,10 +171,9 @@ SensorGeometry fit_to_each_other(const ImageChoice& choice, const ImagingOptions
                      frame.columns, frame.rows, frame.pitch_um));
     return frame;
   }
-  if (choice.scene.is_open() && choice.scene.angle.empty() && options.surround == Surround::error) {
-    scene.set_horizontal_angle_deg(
-        depth ? covering_depth_angle_deg(scene, *depth, *sensor, options, choice.depth)
-              : covering_angle_deg(scene, table, *sensor, options));
+  if (fills_frame(choice)) {
+    const double fills_deg = filling_angle_deg(choice, options, scene, table, depth, *sensor);
+    scene.set_horizontal_angle_deg(std::max(fills_deg, choice.scene_angle_least.value_or(0)));
     note(shared,
          fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
                      "(--scene-angle sets another)",

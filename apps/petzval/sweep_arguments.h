@@ -13,6 +13,7 @@ struct SweepCommand {
   std::vector<std::string> vary;
   std::string folder;
   std::string irradiance;  ///< exr, npy or nothing
+  std::string scene_width = "same";  ///< of all points, or each as its frame needs
 };
 
 /// The command of this program that is swept, with its options. \throws InputError if there is none.

@@ -15,6 +15,7 @@
 #include "output_option.h"
 #include "sweep_folder.h"
 #include "sweep_result.h"
+#include "sweep_scene.h"
 #include "sweep_sheet.h"
 #include "sweep_tables.h"
 
@@ -125,13 +126,16 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   SweepFolder folder(options.folder, planned_files(options, points.size()));
   check_inputs(options, parameters, folder);
 
+  const std::vector<std::string> angles = scene_angles(app, options, points, folder, shared);
   std::vector<PointResult> results;
   std::set<std::string> written;
   std::vector<std::string> held;
   std::size_t failed = 0;
   for (const SweepPoint& point : points) {
-    results.push_back(run_point(app, options, point, results.size(), shared));
+    const std::size_t index = results.size();
+    results.push_back(run_point(app, options, point, index, angles[index], shared));
     const PointResult& result = results.back();
+    check_scene_angle(result, angles[index], shared);
     if (!result.done) {
       ++failed;
       held.push_back(fmt::format("{}: {}", label_of(point), result.error));
@@ -181,11 +185,16 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   command->add_option("-o,--output", options->folder, "Folder for pictures, tables and index.html")
       ->check(output_folder())
       ->required();
-  if (name == "image")
-    command
-        ->add_option("--irradiance", options->irradiance,
-                     "Keep the irradiance of every point too: exr or npy")
-        ->check(CLI::IsMember({"exr", "npy"}));
+  if (name != "image") return;
+  command
+      ->add_option("--irradiance", options->irradiance, "Keep the irradiance of every point too: exr or npy")
+      ->check(CLI::IsMember({"exr", "npy"}));
+  command
+      ->add_option("--scene-width", options->scene_width,
+                   "A chart or a photograph without --scene-angle is as wide at all points as the widest "
+                   "frame needs (same), or fills each frame (each)")
+      ->check(CLI::IsMember({"same", "each"}))
+      ->capture_default_str();
 }
 
 }  // namespace

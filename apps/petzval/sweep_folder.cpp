@@ -70,6 +70,8 @@ SweepFolder::SweepFolder(std::string path, std::set<std::string> planned)
   if (fs::exists(marked, ignored)) {
     before_ = read_whole_file(marked);
     old_ = files_of(before_);
+    const Json json = old_.empty() ? Json() : Json::parse(before_, nullptr, false);
+    if (json.is_object() && json.contains("scene")) scene_ = json["scene"];
   }
   std::vector<std::string> strange;
   for (const std::string& name : planned_)
@@ -83,9 +85,7 @@ SweepFolder::SweepFolder(std::string path, std::set<std::string> planned)
                                  fmt::join(strange, ", "), more ? " and more" : ""));
   made_ = topmost_missing(fs::path(path_).lexically_normal());
   make_folder(path_);
-  std::set<std::string> both = old_;
-  both.insert(planned_.begin(), planned_.end());
-  write(Json::array(), both, false);
+  write_unfinished();
 }
 
 SweepFolder::~SweepFolder() {
@@ -103,6 +103,17 @@ SweepFolder::~SweepFolder() {
     if (at.has_filename() && !fs::remove(at, ignored)) return;
     if (at == made_) return;
   }
+}
+
+void SweepFolder::remember_scene(Json scene) {
+  scene_ = std::move(scene);
+  write_unfinished();
+}
+
+void SweepFolder::write_unfinished() const {
+  std::set<std::string> both = old_;
+  both.insert(planned_.begin(), planned_.end());
+  write(Json::array(), both, false);
 }
 
 bool SweepFolder::owns(const std::string& file) const {
@@ -125,10 +136,9 @@ void SweepFolder::finish(const Json& rows, const std::set<std::string>& written)
 }
 
 void SweepFolder::write(const Json& rows, const std::set<std::string>& files, bool finished) const {
-  const Json json = {{"made_by", fmt::format("{} {}", maker, version())},
-                     {"finished", finished},
-                     {"files", files},
-                     {"rows", rows}};
+  Json json = {{"made_by", fmt::format("{} {}", maker, version())}, {"finished", finished}, {"files", files}};
+  if (!scene_.is_null()) json["scene"] = scene_;
+  json["rows"] = rows;
   write_whole_file(path_ + "/sweep.json", json.dump(1) + "\n");
 }
 

@@ -24,6 +24,9 @@ class SweepFolder {
 
   /// Whether a file is one of those that this sweep or the one before it wrote here, or will write.
   bool owns(const std::string& file) const;
+  /// What remember_scene() was given, by this sweep or the one before it.
+  const nlohmann::ordered_json& scene() const { return scene_; }
+  void remember_scene(nlohmann::ordered_json scene);
   /// There is a point to keep.
   void keep() { kept_ = true; }
   /// Writes sweep.json with the rows, and removes files of this sweep and of the one before it that are not
@@ -31,10 +34,12 @@ class SweepFolder {
   void finish(const nlohmann::ordered_json& rows, const std::set<std::string>& written);
 
  private:
+  void write_unfinished() const;
   void write(const nlohmann::ordered_json& rows, const std::set<std::string>& files, bool finished) const;
 
   std::string path_, before_, made_;  ///< before_: sweep.json as it was; made_: the topmost folder made
   std::set<std::string> planned_, old_;
+  nlohmann::ordered_json scene_;
   bool kept_ = false;
 };
 

@@ -26,19 +26,6 @@ std::string last_line(const std::string& text) {
   return line.compare(0, prefix.size(), prefix) == 0 ? line.substr(prefix.size()) : line;
 }
 
-/// Checksums of the files that arguments name, as they stand or behind '=': a lens that was edited since
-/// makes another point. \param outputs  that the point writes begin so.
-Json checksums_of(const std::vector<std::string>& arguments, const std::string& outputs) {
-  Json sums = Json::object();
-  for (const std::string& argument : arguments)
-    for (const std::string& name : {argument, argument.substr(argument.find('=') + 1)}) {
-      std::error_code ignored;
-      if (!name.starts_with(outputs) && std::filesystem::is_regular_file(name, ignored))
-        sums[name] = render::hash_text(read_whole_file(name));
-    }
-  return sums;
-}
-
 std::string base_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
@@ -112,11 +99,23 @@ std::string name_of_point(std::size_t index) {
   return fmt::format("point-{:04}", index);
 }
 
+Json checksums_of_files(const std::vector<std::string>& arguments, const std::string& outputs) {
+  Json sums = Json::object();
+  for (const std::string& argument : arguments)
+    for (const std::string& name : {argument, argument.substr(argument.find('=') + 1)}) {
+      std::error_code ignored;
+      if (!name.starts_with(outputs) && std::filesystem::is_regular_file(name, ignored))
+        sums[name] = render::hash_text(read_whole_file(name));
+    }
+  return sums;
+}
+
 PointResult run_point(const CLI::App& app, const SweepCommand& options, const SweepPoint& point,
-                      std::size_t index, const Shared& shared) {
+                      std::size_t index, const std::string& scene_angle, const Shared& shared) {
   PointResult result;
   result.point = point;
   result.arguments = arguments_of(app, options, point, shared);
+  if (!scene_angle.empty()) result.arguments.insert(result.arguments.end(), {"--scene-angle-least", scene_angle});
   const std::string name = name_of_point(index), stem = options.folder + "/" + name;
   if (options.command == "image") {
     result.outputs = {result.picture = stem + ".png"};
@@ -124,7 +123,7 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   }
   for (const std::string& path : result.outputs)
     result.arguments.insert(result.arguments.end(), {"-o", path});
-  result.checksums = checksums_of(result.arguments, stem);
+  result.checksums = checksums_of_files(result.arguments, stem);
   if (!recall(stem + ".json", result, shared)) make(result, options.folder, name);
   return result;
 }

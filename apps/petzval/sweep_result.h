@@ -25,9 +25,15 @@ struct PointResult {
 /// "point-0007", the name of its files.
 std::string name_of_point(std::size_t index);
 
+/// Checksums of the files that arguments name, as they stand or behind '=': a lens that was edited since
+/// makes another point. \param outputs  that the point writes begin so.
+nlohmann::ordered_json checksums_of_files(const std::vector<std::string>& arguments,
+                                          const std::string& outputs);
+
 /// Takes the point from its record in the folder if that is of the same arguments, program and files, or else
-/// makes it. A point whose files are not as they were written is made again, with a note.
+/// makes it. A point whose files are not as they were written is made again, with a note. \param scene_angle
+/// the least of it; "": none is given.
 PointResult run_point(const CLI::App& app, const SweepCommand& options, const SweepPoint& point,
-                      std::size_t index, const Shared& shared);
+                      std::size_t index, const std::string& scene_angle, const Shared& shared);
 
 }  // namespace petzval::app

@@ -105,6 +105,16 @@ class Image(ProgramTest):
         _, values = read_npy(self.folder / "a.npy")
         self.assertLess(abs(values[0]), 1e-6 * max(values))
 
+    def test_a_least_width_of_what_fills_the_frame(self):
+        image = ["image", "wall", "--lens", "edmund-54852", *SMALL, "-o", "a.npy"]
+        fills = self.json_of(*image)["scene_angle_deg"]
+        self.assertEqual(self.json_of(*image, "--scene-angle-least", f"{fills - 1}")["scene_angle_deg"], fills)
+        self.assertEqual(self.json_of(*image, "--scene-angle-least", f"{fills + 1}")["scene_angle_deg"], fills + 1)
+        for fixed in (["--scene-angle", "60"], ["--surround", "zero"]):
+            self.assert_refused(*image, *fixed, "--scene-angle-least", "50", words=["--scene-angle-least", "--scene-angle"])
+        self.assert_refused(*image, "--scene-angle-least", "0", words=["--scene-angle-least", "above 0"])
+        self.assert_refused(*image, "--scene-angle-least", "180", words=["180"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -108,6 +108,80 @@ class Sweep(ProgramTest):
                          [(p, c) for p in (40, 60, 80) for c in (24, 48)])
         self.assert_refused(*IMAGE, "--vary", "sensor.pitch=3", "-o", "none", words=["pitch"])
 
+    STOPS = ["sweep", "image", "points:5", "--lens", "edmund-54852", "--wavelengths", "450,550,650", "--sensor", "64x48@60"]
+
+    def angles(self, *command):
+        said = self.json_of(*command)
+        self.assertEqual(said["failed"], 0)
+        return [row["scene_angle_deg"] for row in said["rows"]]
+
+    def test_one_scene_for_all_points(self):
+        """PSFs of 1.9 and 22 need margins of different width; the scene is as wide as the wider one needs."""
+        sweep = [*self.STOPS, "--vary", "f-number=1.9,22"]
+        each = self.angles(*sweep, "--scene-width", "each", "-o", "each")
+        self.assertGreater(max(each) / min(each), 1.05)
+        done = self.petzval(*sweep, "-o", "same", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        first, second = [row["scene_angle_deg"] for row in json.loads(done.stdout)["rows"]]
+        self.assertEqual(first, second)
+        self.assertAlmostEqual(first, 1.01 * max(each), delta=0.01 * max(each))
+        self.assertGreater(first, max(each))
+        self.assertIn(f"the scene is made {first:.4g} degrees wide at all points", done.stderr)
+        self.assertIn(f"the narrowest would need {min(each):.3g}", done.stderr)
+        # The points of the chart lie where they do at the other stop.
+        brightest = [self.brightest_rows(f"same/point-000{i}.png") for i in (0, 1)]
+        self.assertEqual(*brightest)
+        self.assertNotEqual(*[self.brightest_rows(f"each/point-000{i}.png") for i in (0, 1)])
+
+    def brightest_rows(self, name):
+        """The five rows of pixels in which the points of the chart lie: brighter than those beside them."""
+        sums = [sum(sum(pixel) for pixel in row) for row in picture_files.read_png(self.folder / name)]
+        peaks = [at for at in range(1, len(sums) - 1) if sums[at - 1] <= sums[at] > sums[at + 1]]
+        return sorted(sorted(peaks, key=lambda at: -sums[at])[:5])
+
+    def test_scenes_with_a_width_of_their_own_keep_it(self):
+        self.assertEqual(self.angles(*self.STOPS, "--vary", "scene-angle=60,70", "-o", "own"), [60, 70])
+        self.assertEqual(self.angles(*self.STOPS, "--scene-angle", "65", "--vary", "f-number=2,22", "-o", "fixed"), [65, 65])
+        natural = [word for word in self.STOPS if word not in ("--sensor", "64x48@60")]
+        self.assertEqual(self.angles(*natural, "--scene-size", "40x30", "--vary", "f-number=4,8", "-o", "natural"), [40, 40])
+        # Of two scenes only the chart follows the frame.
+        self.assert_succeeds("scene", "convert", "wall", "wall.exr", "--scene-angle", "66", "--scene-size", "32x24",
+                             "--wavelengths", "450,550,650")
+        words = [word for word in self.STOPS if word != "points:5"]
+        wall, chart, other = self.angles(*words, "--vary", "scene=wall.exr,points:5,checkerboard", "-o", "scenes")
+        self.assertEqual((wall, chart), (66, other))
+
+    def test_lenses_of_other_focal_lengths_see_one_scene(self):
+        words = [word for word in self.STOPS if word not in ("--lens", "edmund-54852")]
+        sweep = [*words, "--vary", "lens=edmund-54852,cooke-triplet"]
+        wide, narrow = self.angles(*sweep, "-o", "same")
+        self.assertEqual(wide, narrow)
+        wide, narrow = self.angles(*sweep, "--scene-width", "each", "-o", "each")
+        self.assertGreater(wide / narrow, 5)
+
+    def test_a_point_that_fails_has_no_say_in_the_width(self):
+        done = self.petzval(*self.STOPS, "--vary", "f-number=0.5,2,4", "-o", "out", "--json")
+        rows = json.loads(done.stdout)["rows"]
+        self.assertEqual([row["status"] for row in rows], ["failed", "ok", "ok"])
+        self.assertEqual(rows[1]["scene_angle_deg"], rows[2]["scene_angle_deg"])
+
+    def test_the_width_is_found_once(self):
+        sweep = [*self.STOPS, "--vary", "f-number=2,22", "-o", "out"]
+        self.assert_succeeds(*sweep)
+        record = self.folder / "out" / "sweep.json"
+        kept = json.loads(record.read_text())
+        stamp = (self.folder / "out" / "point-0000.json").stat().st_mtime_ns
+        # Nothing but the record could make it wider now.
+        kept["scene"]["greatest_deg"] *= 1.2
+        record.write_text(json.dumps(kept))
+        wider = self.angles(*sweep)
+        self.assertAlmostEqual(wider[0], 1.01 * kept["scene"]["greatest_deg"], delta=0.01)
+        for damaged in ({}, [], 3, {"points": 3, "least_deg": "x"}, {**kept["scene"], "greatest_deg": None}):
+            kept["scene"] = damaged
+            record.write_text(json.dumps(kept))
+            self.assertLess(self.angles(*sweep)[0], wider[0])
+        self.assertNotEqual((self.folder / "out" / "point-0000.json").stat().st_mtime_ns, stamp)
+
     def test_refuses_what_cannot_be_swept(self):
         self.assert_refused(*IMAGE, "--vary", "f-number", "-o", "out", words=["KEY=FROM:TO:STEP"])
         self.assert_refused(*IMAGE, "--vary", "f-number=2,,4", "-o", "out", words=["empty"])
