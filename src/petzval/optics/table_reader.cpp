@@ -3,12 +3,15 @@
 #include <fmt/ranges.h>
 #include <petzval/base/child_process.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/scratch_folder.h>
+#include <petzval/optics/psf_squares.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_layout.h>
 #include <petzval/optics/table_seal.h>
 #include <petzval/scene/formats/hdf5_handle.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -183,34 +186,40 @@ hsize_t psf_side(const TableFile& file, const Hdf5Handle& data, const Sizes& siz
   return sizes[2];
 }
 
-void read_psfs(const TableFile& file, LensDataTable& table) {
+void read_psfs(const TableFile& file, bool sealed, LensDataTable& table) {
   const Sizes both{table.fields.size(), table.wavelengths_nm.size()};
   const std::vector<double> size = file.matrix(table_layout::psf_size, both);
   const std::vector<double> spacing = file.matrix(table_layout::psf_spacing, both);
   const std::vector<double> captured = file.matrix(table_layout::psf_captured, both);
   const auto [data, sizes] = file.dataset(table_layout::psf);
   const hsize_t side = psf_side(file, data, sizes, both);
-  const Hdf5Handle source(H5Dget_space(data.id()), H5Sclose);
+  for (const double own : size)
+    if (!(own >= 1 && own <= static_cast<double>(side)) || own != std::floor(own))
+      file.refuse(fmt::format("psf_size {} does not fit into squares of {} samples", own, side));
+
+  const PsfSquares squares(data, side, sealed);
+  std::vector<char> good(size.size());
   table.psf.resize(size.size());
-  for (std::size_t i = 0; i < size.size(); ++i) {
-    if (!(size[i] >= 1 && size[i] <= static_cast<double>(side)) || size[i] != std::floor(size[i]))
-      file.refuse(fmt::format("psf_size {} does not fit into squares of {} samples", size[i], side));
+  const auto read = [&](std::size_t i) {
     Psf& psf = table.psf[i];
     psf.size = static_cast<int>(size[i]);
     psf.spacing_um = spacing[i];
     psf.captured = captured[i];
-    const auto own = static_cast<hsize_t>(psf.size), offset = side / 2 - own / 2;
-    psf.values.resize(own * own);
-    const Sizes start{i / both[1], i % both[1], offset, offset}, count{1, 1, own, own};
-    const Hdf5Handle memory(H5Screate_simple(4, count.data(), nullptr), H5Sclose);
-    if (H5Sselect_hyperslab(source.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-        H5Dread(data.id(), H5T_NATIVE_FLOAT, memory.id(), source.id(), H5P_DEFAULT, psf.values.data()) < 0)
-      file.refuse(fmt::format("the PSF of field {} and wavelength {} cannot be read; the file is damaged",
-                              start[0], start[1]));
+    good[i] = squares.read(i / both[1], i % both[1], static_cast<hsize_t>(psf.size), psf.values) ? 1 : 0;
+  };
+  if (squares.inflates_itself())
+    parallel_for(size.size(), read);
+  else
+    for (std::size_t i = 0; i < size.size(); ++i) read(i);
+  if (const auto bad = std::find(good.begin(), good.end(), 0); bad != good.end()) {
+    const auto i = static_cast<std::size_t>(bad - good.begin());
+    file.refuse(fmt::format("the PSF of field {} and wavelength {} cannot be read; the file is damaged",
+                            i / both[1], i % both[1]));
   }
 }
 
-LensDataTable read_unsealed(const std::string& path) {
+/// \param sealed  whether the file is as a writer of ours left it.
+LensDataTable read_file(const std::string& path, bool sealed) {
   const Hdf5Silence silence;
   const TableFile file(path);
   LensDataTable table;
@@ -221,7 +230,7 @@ LensDataTable read_unsealed(const std::string& path) {
   table.real_image_height_mm = file.matrix(table_layout::height, both);
   table.g_source_sr = file.matrix(table_layout::g_source, both);
   table.g_sensor_sr = file.matrix(table_layout::g_sensor, both);
-  read_psfs(file, table);
+  read_psfs(file, sealed, table);
   try {
     table.validate();
   } catch (const InputError& error) {
@@ -234,7 +243,7 @@ LensDataTable read_unsealed(const std::string& path) {
 LensDataTable read_apart(const std::string& path) {
   const ScratchFolder folder;
   const std::string sealed = folder.path() + "/sealed.h5";
-  const ChildEnd end = run_in_child([&] { write_table(read_unsealed(path), sealed); });
+  const ChildEnd end = run_in_child([&] { write_table(read_file(path, false), sealed); });
   if (end == ChildEnd::crashed) throw InputError(path, "is damaged: the HDF5 library crashes on it");
   if (end == ChildEnd::endless) throw InputError(path, "is damaged: the HDF5 library finds no end");
   return read_table(sealed);
@@ -245,7 +254,7 @@ LensDataTable read_apart(const std::string& path) {
 LensDataTable read_table(const std::string& path, TableOrigin origin) {
   if (origin == TableOrigin::elsewhere) return read_apart(path);
   check_table_seal(path);
-  return read_unsealed(path);
+  return read_file(path, true);
 }
 
 }  // namespace petzval
