@@ -220,9 +220,7 @@ void add_glass_commands(CLI::App& app, Shared& shared) {
       ->required();
   show_command->add_option_function<std::string>(
       "--wavelengths",
-      [wavelengths_nm](const std::string& text) {
-        *wavelengths_nm = parse_wavelength_list(text);
-      },
+      [wavelengths_nm](const std::string& text) { *wavelengths_nm = parse_wavelength_list(text); },
       "Wavelengths in nm, 450,550 or 400:50:700 (default: the lines g F e d C)");
 
   const auto wanted = std::make_shared<Wanted>();

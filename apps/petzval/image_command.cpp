@@ -24,7 +24,8 @@ void image(const ImageChoice& choice, const CLI::App& app, const Shared& shared)
   choice.check();
   if (choice.scene_angle_least && !fills_frame(choice))
     throw InputError(
-        "--scene-angle-least is for a chart or a photograph that fills the frame of a --sensor; --scene-angle "
+        "--scene-angle-least is for a chart or a photograph that fills the frame of a --sensor; "
+        "--scene-angle "
         "would be right");
   ImagingOptions options = choice.imaging_options();
   std::optional<Sensor> sensor;

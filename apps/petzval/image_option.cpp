@@ -154,9 +154,10 @@ void ImageChoice::add_method_options(CLI::App& command) {
 void ImageChoice::add_to(CLI::App& command) {
   scene.add_to(command);
   command
-      .add_option("--scene-angle-least", scene_angle_least,
-                  "The least width of a chart or a photograph that fills the frame [degrees]: of one scale in "
-                  "several images")
+      .add_option(
+          "--scene-angle-least", scene_angle_least,
+          "The least width of a chart or a photograph that fills the frame [degrees]: of one scale in "
+          "several images")
       ->check(positive_number());
   add_lens_options(command);
   add_depth_options(command, depth);

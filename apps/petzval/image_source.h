@@ -30,9 +30,9 @@ SceneAndTable read_source(const ImageChoice& choice, const std::optional<SensorG
                           const ProgressCallback& progress, const Shared& shared,
                           TableDetail detail = TableDetail::full);
 
-/// How wide [degrees] a chart or a photograph without an angle of its own is made, to fill the frame, to about
-/// a per cent and in a fraction of the time of an image; nothing for other scenes, and without a sensor.
-/// \throws as read_source().
+/// How wide [degrees] a chart or a photograph without an angle of its own is made, to fill the frame, to
+/// about a per cent and in a fraction of the time of an image; nothing for other scenes, and without a
+/// sensor. \throws as read_source().
 std::optional<double> filling_angle_deg(const ImageChoice& choice, const Shared& shared);
 
 /// Whether the scene is one that filling_angle_deg() has an angle for.

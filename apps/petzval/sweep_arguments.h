@@ -12,7 +12,7 @@ struct SweepCommand {
   std::vector<std::string> words;  ///< what goes to it
   std::vector<std::string> vary;
   std::string folder;
-  std::string irradiance;  ///< exr, npy or nothing
+  std::string irradiance;            ///< exr, npy or nothing
   std::string scene_width = "same";  ///< of all points, or each as its frame needs
 };
 

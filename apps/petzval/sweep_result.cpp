@@ -115,7 +115,8 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   PointResult result;
   result.point = point;
   result.arguments = arguments_of(app, options, point, shared);
-  if (!scene_angle.empty()) result.arguments.insert(result.arguments.end(), {"--scene-angle-least", scene_angle});
+  if (!scene_angle.empty())
+    result.arguments.insert(result.arguments.end(), {"--scene-angle-least", scene_angle});
   const std::string name = name_of_point(index), stem = options.folder + "/" + name;
   if (options.command == "image") {
     result.outputs = {result.picture = stem + ".png"};

@@ -36,10 +36,9 @@ void with_choice(std::vector<std::string> arguments,
 
 bool fills_frame(const std::vector<std::string>& arguments) {
   bool fills = false;
-  with_choice(arguments,
-              [&](const ImageChoice& choice, const Shared&) {
-                fills = !choice.scene_angle_least && app::fills_frame(choice);
-              });
+  with_choice(arguments, [&](const ImageChoice& choice, const Shared&) {
+    fills = !choice.scene_angle_least && app::fills_frame(choice);
+  });
   return fills;
 }
 
@@ -89,10 +88,11 @@ void note_width(const Widths& widths, const std::string& angle, const Shared& sh
     return note(shared, fmt::format("the scene is made {} degrees wide, to fill the frame and the margin of "
                                     "the PSF (--scene-angle sets another)",
                                     angle));
-  note(shared, fmt::format("the scene is made {} degrees wide at all points, to fill the widest frame and the "
-                           "margin of its PSF; the narrowest would need {:.3g} (--scene-width each fits the "
-                           "scene to each frame, --scene-angle sets another width)",
-                           angle, widths.least_deg));
+  note(shared,
+       fmt::format("the scene is made {} degrees wide at all points, to fill the widest frame and the "
+                   "margin of its PSF; the narrowest would need {:.3g} (--scene-width each fits the "
+                   "scene to each frame, --scene-angle sets another width)",
+                   angle, widths.least_deg));
 }
 
 }  // namespace
@@ -126,9 +126,10 @@ void check_scene_angle(const PointResult& result, const std::string& angle, cons
   if (angle.empty() || made == result.numbers.end() || !made->is_number()) return;
   constexpr double rounding = 1 + 1e-9;
   if (made->get<double>() > std::stod(angle) * rounding)
-    note(shared, fmt::format("{}: this frame needs a scene {:.4g} degrees wide, so that its scale is not that of "
-                             "the others; --scene-angle {:.4g} would be right for all",
-                             result.picture, made->get<double>(), std::ceil(made->get<double>())));
+    note(shared,
+         fmt::format("{}: this frame needs a scene {:.4g} degrees wide, so that its scale is not that of "
+                     "the others; --scene-angle {:.4g} would be right for all",
+                     result.picture, made->get<double>(), std::ceil(made->get<double>())));
 }
 
 }  // namespace petzval::app

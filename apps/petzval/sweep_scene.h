@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How wide the scene of a sweep is: a chart or a photograph that fills each point's frame and the margin of its
-// PSF would be of another scale wherever the PSF is of another size.
+// How wide the scene of a sweep is: a chart or a photograph that fills each point's frame and the margin of
+// its PSF would be of another scale wherever the PSF is of another size.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace petzval::app {
 
-/// The --scene-angle-least of each point; "" where none is right: a per cent more than any point's frame needs,
-/// for all points whose scene fills the frame. Found once, kept in the folder, and said in a note.
+/// The --scene-angle-least of each point; "" where none is right: a per cent more than any point's frame
+/// needs, for all points whose scene fills the frame. Found once, kept in the folder, and said in a note.
 std::vector<std::string> scene_angles(const CLI::App& app, const SweepCommand& options,
                                       const std::vector<SweepPoint>& points, SweepFolder& folder,
                                       const Shared& shared);

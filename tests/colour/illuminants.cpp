@@ -24,11 +24,10 @@ TEST(Illuminants, AIsThePlanckianCurveThatDefinesIt) {
 
 TEST(Illuminants, D65IsThatOfTheStandard) {
   // CIE standard illuminant D65 (ISO 11664-2), six digits.
-  const std::pair<double, double> published[] = {{320, 20.2360}, {350, 44.9117}, {370, 52.0891},
-                                                 {380, 49.9755}, {400, 82.7549}, {450, 117.008},
-                                                 {500, 109.354}, {550, 104.046}, {600, 90.0062},
-                                                 {650, 80.0268}, {700, 71.6091}, {780, 63.3828},
-                                                 {800, 59.4519}, {830, 60.3125}};
+  const std::pair<double, double> published[] = {
+      {320, 20.2360}, {350, 44.9117}, {370, 52.0891}, {380, 49.9755}, {400, 82.7549},
+      {450, 117.008}, {500, 109.354}, {550, 104.046}, {600, 90.0062}, {650, 80.0268},
+      {700, 71.6091}, {780, 63.3828}, {800, 59.4519}, {830, 60.3125}};
   const Spectrum d65 = illuminant("D65");
   for (const auto& [nm, power] : published) EXPECT_NEAR(d65.at(nm), power, 6e-6 * power) << nm;
 }

@@ -140,8 +140,7 @@ std::vector<double> ink_of(char character) {
 }
 
 TEST(Lettering, EveryCharacterOfALabelIsDrawnAndLooksLikeNoOther) {
-  const std::string drawn =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,:=+-_/%@()[]";
+  const std::string drawn = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789.,:=+-_/%@()[]";
   for (const char a : drawn) {
     const std::vector<double> one = ink_of(a);
     EXPECT_GT(std::accumulate(one.begin(), one.end(), 0.0), 0) << a;

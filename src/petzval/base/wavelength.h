@@ -9,8 +9,8 @@ namespace petzval {
 /// Below it no lens lets light through and air swallows it; 0.1 to 100 µm are all the light there is.
 inline constexpr double shortest_wavelength_nm = 100;
 
-/// What is wrong with a number that is to be a wavelength of light in nm, and what would be right: "wavelengths
-/// are in nm; 550 would be right for 0.55". Empty if nothing is.
+/// What is wrong with a number that is to be a wavelength of light in nm, and what would be right:
+/// "wavelengths are in nm; 550 would be right for 0.55". Empty if nothing is.
 std::string wavelength_fault(double nm);
 
 /// \throws InputError with wavelength_fault(). \param what  stands before it: "--wavelengths 0.4,0.5".

@@ -213,8 +213,8 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
 /// Says which bands have no light because the illuminant does not reach them.
 void note_dark_bands(Scene& scene) {
   if (!scene.illuminant) return;
-  const std::string dark = runs_of_bands(scene.wavelengths_nm(),
-                                         [&](double nm) { return scene.illuminant->at(nm) == 0; });
+  const std::string dark =
+      runs_of_bands(scene.wavelengths_nm(), [&](double nm) { return scene.illuminant->at(nm) == 0; });
   if (!dark.empty())
     scene.notes.push_back(fmt::format(
         "no light reaches {} nm, beyond the illuminant of the scene: these bands are dark", dark));

@@ -35,8 +35,7 @@ void require_whole(const RayTraceData& data) {
   for (const double height : data.field_height_mm)
     if (!(std::isfinite(height) && height >= 0))
       throw InputError(fmt::format("a field height is {} mm; heights are finite and start at 0", height));
-  for (const double nm : data.wavelengths_nm)
-    require_wavelength(nm, "the wavelengths");
+  for (const double nm : data.wavelengths_nm) require_wavelength(nm, "the wavelengths");
 }
 
 bool has_finite_object(const RayTraceData& data, std::vector<std::string>& notes) {

@@ -232,7 +232,7 @@ double nanometres_in(const EntryReader& entries, const Entry& entry, const std::
   const auto found = units.find(unit);
   if (found == units.end())
     entries.fail(entry, fmt::format("wavelength units = {}; nanometers or micrometers would be right",
-                                     quotable(unit)));
+                                    quotable(unit)));
   return found->second;
 }
 
