@@ -143,7 +143,7 @@ TEST(PsfRefinement, KeepsDarkWhatIsDark) {
   const auto light = [](const Psf& psf) {
     return std::accumulate(psf.values.begin(), psf.values.end(), 0.0);
   };
-  EXPECT_NEAR(light(fine) / light(refined_psf(airy_psf(64), 0.06 * lambda_n_um)), light(cut), 1e-3);
+  EXPECT_NEAR(light(fine) / light(cut), 1, 1e-5);  // sums of a quarter of a million floats
 }
 
 TEST(PsfRefinement, LeavesWhatIsNotBandLimited) {
