@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/parallel.h>
-#include <petzval/base/parallel_tasks.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/scene_camera.h>
 #include <petzval/render/renderer.h>

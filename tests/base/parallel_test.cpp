@@ -3,7 +3,6 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/base/parallel_tasks.h>
 
 #include <atomic>
 #include <stdexcept>

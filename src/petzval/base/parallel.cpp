@@ -1,17 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/parallel.h>
-
+#include <petzval/base/stop.h>
+#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace petzval {
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { body(i); });
+  Listener* const listener = current_listener();
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const ListenerScope scope(listener);
+    check_stop();
+    body(i);
+  });
+}
+
+void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& body) {
+  Listener* const listener = current_listener();
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, count),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        const ListenerScope scope(listener);
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          check_stop();
+          body(i);
+        }
+      },
+      tbb::simple_partitioner());
 }
 
 void parallel_stages(std::size_t count, std::size_t slots, const Stages& stages) {
+  Listener* const listener = current_listener();
   // Items end in order, so that the one that had a slot before has ended when the next begins.
   std::size_t next = 0;
   const auto begin = [&](tbb::flow_control& control) {
@@ -19,14 +43,20 @@ void parallel_stages(std::size_t count, std::size_t slots, const Stages& stages)
       control.stop();
       return count;
     }
+    const ListenerScope scope(listener);
+    check_stop();
     stages.begin(next, next % slots);
     return next++;
   };
   const auto work = [&](std::size_t item) {
+    const ListenerScope scope(listener);
     stages.work(item, item % slots);
     return item;
   };
-  const auto end = [&](std::size_t item) { stages.end(item, item % slots); };
+  const auto end = [&](std::size_t item) {
+    const ListenerScope scope(listener);
+    stages.end(item, item % slots);
+  };
   tbb::parallel_pipeline(slots,
                          tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
                              tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, work) &
@@ -46,7 +76,8 @@ ThreadLimit::ThreadLimit(int threads) {
 ThreadLimit::~ThreadLimit() = default;
 
 int thread_count() {
-  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const auto of_process = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(static_cast<int>(of_process), tbb::this_task_arena::max_concurrency());
 }
 
 }  // namespace petzval

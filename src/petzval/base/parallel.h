@@ -10,8 +10,14 @@ namespace petzval {
 
 /// Calls `body(i)` once for each i in [0, count), on any thread, in any order. Bodies must write to places of
 /// their own: sums over i are made afterwards, in order, so that the bytes do not depend on the schedule.
-/// An exception of a body ends the loop and is rethrown.
+/// An exception of a body ends the loop and is rethrown. Before every item the context that the loop runs in
+/// is asked whether to go on (base/context.h). \throws Cancelled.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
+
+/// The same for bodies of a millisecond or more: they are handed out one by one. parallel_for() hands out
+/// pieces of many, which costs less, but at the end one thread may have a piece left and the others nothing
+/// to do.
+void parallel_tasks(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// What is done with every item, in a slot of its own [0, slots).
 struct Stages {
@@ -24,7 +30,8 @@ struct Stages {
 /// item has its slot to itself from its beginning to its end. An exception ends everything and is rethrown.
 void parallel_stages(std::size_t count, std::size_t slots, const Stages& stages);
 
-/// While it lives, at most `threads` threads work in parallel_for (0: as many as the machine has).
+/// While it lives, at most `threads` threads work in parallel loops anywhere in this process (0: as many as
+/// the machine has): for tests and benchmarks. Callers of the library say it in their Context.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/base/parallel_tasks.h>
 #include <petzval/render/film/noise.h>
 #include <petzval/render/renderer.h>
 #include <petzval/render/tile_renderer.h>
