@@ -6,7 +6,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 
 #include <cmath>
 
@@ -22,8 +22,8 @@ std::optional<double> positive_value(std::string_view text) {
 
 constexpr std::string_view by_mtf = "best-mtf@";
 
-void focus_camera(Camera& camera, const std::string& focus, const std::optional<FieldTableRequest>& request,
-                  const Shared& shared) {
+void focus_camera(MountedLens& camera, const std::string& focus,
+                  const std::optional<FieldTableRequest>& request, const Shared& shared) {
   if (focus == "design") return;
   if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
   if (const std::optional<double> distance_mm = positive_value(focus))
@@ -77,7 +77,7 @@ Lens CameraChoice::used(const Lens& lens, const std::optional<FieldTableRequest>
                         const Shared& shared) const {
   if (image_distance_mm && focus != "design")
     throw InputError("--image-distance and --focus both place the sensor; give one of them");
-  Camera camera(lens);
+  MountedLens camera(lens);
   if (f_number) camera.set_f_number(*f_number);
   if (image_distance_mm) camera.set_image_distance_mm(*image_distance_mm);
   if (move_lens_mm) camera.move_lens_mm(*move_lens_mm);

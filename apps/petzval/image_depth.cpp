@@ -30,7 +30,7 @@ void check_depth(const Scene& scene, bool used, const DepthOptions& options, con
 
 namespace {
 
-std::optional<double> middle_from_sensor_m(const Scene& scene, Camera& camera) {
+std::optional<double> middle_from_sensor_m(const Scene& scene, MountedLens& camera) {
   const double depth_m = middle_depth_m(scene);
   if (std::isinf(depth_m)) return std::nullopt;
   if (scene.depth_from == DepthFrom::sensor) return depth_m;
@@ -46,7 +46,7 @@ std::optional<double> middle_from_sensor_m(const Scene& scene, Camera& camera) {
 
 }  // namespace
 
-std::optional<double> depth_focus_m(const Scene& scene, Camera camera) {
+std::optional<double> depth_focus_m(const Scene& scene, MountedLens camera) {
   try {
     const std::optional<double> middle_m = middle_from_sensor_m(scene, camera);
     camera.focus_at_m(middle_m);

@@ -2,7 +2,7 @@
 // petzval image of scenes with depth: options, focus, what there is to say.
 #pragma once
 
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/depth_field.h>
 #include <petzval/imaging/depth_image.h>
 
@@ -21,7 +21,7 @@ void check_depth(const Scene& scene, bool used, const DepthOptions& options, con
 
 /// Where --focus auto focuses: on the depth in the middle of the picture, from the sensor plane (absent:
 /// infinity).
-std::optional<double> depth_focus_m(const Scene& scene, Camera camera);
+std::optional<double> depth_focus_m(const Scene& scene, MountedLens camera);
 
 /// How far from the axis light will be wanted [mm].
 double depth_image_height_mm(const Scene& scene, const Lens& lens,

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
@@ -46,7 +46,7 @@ Scene read_scene(const ImageChoice& choice, std::optional<double> expected_m, bo
 }
 
 /// The lens as it is used: focused as asked, the object where the scene is.
-Lens focused(Camera camera, const std::string& focus, std::optional<double> scene_distance_m) {
+Lens focused(MountedLens camera, const std::string& focus, std::optional<double> scene_distance_m) {
   if (focus == "auto") {
     camera.focus_at_m(scene_distance_m);
     return camera.lens();
@@ -54,7 +54,7 @@ Lens focused(Camera camera, const std::string& focus, std::optional<double> scen
   if (const std::optional<double> distance_mm = focus_distance_mm(focus))
     camera.focus_at_m(*distance_mm / mm_per_m);
   // The sensor stays; only the object moves.
-  Camera here(camera.lens());
+  MountedLens here(camera.lens());
   if (here.object_distance_from_sensor_m() != scene_distance_m) here.place_object_at_m(scene_distance_m);
   return here.lens();
 }
@@ -74,7 +74,8 @@ SceneAndTable from_stored_table(const ImageChoice& choice) {
 }
 
 /// What a scene with depth is focused on: the object of the lens, though each layer will have its own.
-std::optional<double> object_in_focus_m(const ImageChoice& choice, const Scene& scene, const Camera& camera) {
+std::optional<double> object_in_focus_m(const ImageChoice& choice, const Scene& scene,
+                                        const MountedLens& camera) {
   if (choice.focus == "auto") return depth_focus_m(scene, camera);
   const std::optional<double> asked_mm = focus_distance_mm(choice.focus);
   if (!asked_mm) return camera.object_distance_from_sensor_m();
@@ -104,12 +105,12 @@ TableOptions table_options(const ImageChoice& choice, const Scene& scene, TableD
 SceneAndTable from_lens(const ImageChoice& choice, const std::optional<SensorGeometry>& sensor,
                         const ProgressCallback& progress, const Shared& shared, TableDetail detail) {
   focus_distance_mm(choice.focus);  // refuses nonsense before anything is read
-  Camera camera(choice.apertures.prepare(choice.lens.read(shared), shared));
+  MountedLens camera(choice.apertures.prepare(choice.lens.read(shared), shared));
   if (choice.f_number) camera.set_f_number(*choice.f_number);
   Scene scene = read_scene(choice, camera.object_distance_from_sensor_m(), choice.focus == "design");
   const bool deep = !scene.depth_m.empty();
   if (scene.distance_m() && !deep) {
-    Camera placed = camera;
+    MountedLens placed = camera;
     placed.place_object_at_m(scene.distance_m());
     if (!placed.lens().object_distance_mm) scene.set_distance_m({});  // so far away that this is infinity
   }

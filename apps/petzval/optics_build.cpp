@@ -6,7 +6,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/scene/wavelength_list.h>
@@ -37,7 +37,7 @@ struct BuildCommand {
 };
 
 /// "design", "infinity", or a distance from the sensor [mm].
-void take_focus(Camera& camera, const std::string& focus) {
+void take_focus(MountedLens& camera, const std::string& focus) {
   if (focus == "design") return;
   if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
   double distance_mm = 0;
@@ -93,7 +93,7 @@ void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
 void build(const BuildCommand& command, const Shared& shared) {
   require_extension(command.output, table_extensions(), "a lens data table");
   TableOptions options = table_options(command);
-  Camera camera(command.apertures.prepare(command.lens.read(shared), shared));
+  MountedLens camera(command.apertures.prepare(command.lens.read(shared), shared));
   if (command.f_number) camera.set_f_number(*command.f_number);
   take_focus(camera, command.focus);
   options.losses = command.losses.losses(camera.lens(), shared);

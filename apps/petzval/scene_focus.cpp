@@ -5,7 +5,7 @@
 #include <petzval/analysis/best_focus.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/colour/display.h>
 #include <petzval/colour/observer.h>
 #include <petzval/focus/focus_scan.h>
@@ -31,7 +31,7 @@ constexpr double depths_beyond = 4;
 /// Where the film stands for an object at infinity: at the paraxial focus, or where the spot on the axis is
 /// smallest, whichever is nearer to the lens (spherical aberration parts them).
 double infinity_focus_mm(const Lens& lens) {
-  Camera camera(lens);
+  MountedLens camera(lens);
   camera.focus_at_m({});
   FieldTableRequest axis = FieldTableRequest::of(camera.lens());
   axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};

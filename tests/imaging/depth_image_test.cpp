@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/depth_image.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
@@ -24,7 +24,7 @@ const SensorGeometry frame{96, 64, 60};
 
 /// The double Gauss, focused; its image reaches the corners of the frame.
 DepthCamera camera_at(std::optional<double> focus_m, double f_number = 2.1) {
-  Camera camera(read_lens("dgauss-50mm").lens);
+  MountedLens camera(read_lens("dgauss-50mm").lens);
   camera.set_f_number(f_number);
   camera.focus_at_m(focus_m);
   TableOptions table;
@@ -92,7 +92,7 @@ TEST(DepthImage, OfOneDepthIsThatOfThePlane) {
     const DepthCamera camera = camera_at(focus_m);
     Scene scene = blank_scene(1.25);
     fill_noise(scene);
-    Camera at(camera.lens);
+    MountedLens at(camera.lens);
     at.place_object_at_m(1.25);
     const SpectralImage plane =
         form_image(scene, build_lens_data_table(at.lens(), camera.table), frame, edges_go_on());
@@ -172,7 +172,7 @@ TEST(DepthImage, BlursEachDepthAsTheLensDoesAtThatDistance) {
       1e6 * std::abs(first_order(camera.lens).magnification) * scene.tangent_per_sample();
   for (int star = 0; star < 3; ++star) {
     const double depth_m = depth_of(96.0 * (star - 1));
-    Camera at(camera.lens);
+    MountedLens at(camera.lens);
     at.place_object_at_m(depth_m);
     FieldTracer tracer(at.lens(), 550);
     // The line of sight, from the entrance pupil.

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/depth_layers.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
@@ -16,7 +16,7 @@ namespace petzval {
 namespace {
 
 Lens focused(const char* name, std::optional<double> distance_m) {
-  Camera camera(read_lens(name).lens);
+  MountedLens camera(read_lens(name).lens);
   camera.focus_at_m(distance_m);
   return camera.lens();
 }
@@ -47,7 +47,7 @@ TEST(DefocusLaw, IsTheShadowOfTheExitPupil) {
       const Lens lens = focused(name, focus_m);
       const DefocusLaw law(lens);
       for (const double object_m : {0.6, 1.0, 2.0, 20.0}) {
-        Camera at(lens);
+        MountedLens at(lens);
         at.place_object_at_m(object_m);
         const FirstOrder first = first_order(at.lens());
         const double to_sensor_mm = lens.surfaces.back().thickness_mm;

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
@@ -30,7 +30,7 @@ class ImageWall : public ::testing::TestWithParam<Wall> {};
 
 TEST_P(ImageWall, ComesOutAsTheBackwardTraceSays) {
   const Wall& at = GetParam();
-  Camera camera(read_lens(at.lens).lens);
+  MountedLens camera(read_lens(at.lens).lens);
   if (at.at_infinity) camera.focus_at_m({});
   TableOptions table_options;
   table_options.wavelengths_nm = {587.5618};

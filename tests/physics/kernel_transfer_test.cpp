@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
@@ -23,7 +23,7 @@ class KernelTransfer : public ::testing::TestWithParam<Case> {};
 
 TEST_P(KernelTransfer, IsThatOfThePupilTimesTheCell) {
   const auto [name, f_number, cell_um] = GetParam();
-  Camera camera(read_lens(name).lens);
+  MountedLens camera(read_lens(name).lens);
   camera.focus_at_m({});
   camera.set_f_number(f_number);
   TableOptions options;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/render/camera/lens_camera.h>
@@ -113,7 +113,7 @@ TEST(RenderedEdge, HasTheContrastOfPhotositeAndLowPassFilter) {
 /// Where wavelengths share their paths and land apart, photosite and filter take the same share of contrast
 /// from each.
 TEST(RenderedEdge, LosesTheSameContrastWhereWavelengthsPart) {
-  Camera lens(read_lens("edmund-54852").lens);
+  MountedLens lens(read_lens("edmund-54852").lens);
   lens.set_f_number(4);
   lens.focus_at_m(1.5);
   const std::vector<double> wavelengths{430, 550, 660};
@@ -204,7 +204,7 @@ void expect_geometric_mtf(const Lens& lens, double distance_m, double height_mm,
 }
 
 TEST(RenderedEdge, HasTheGeometricMtfOfTheLens) {
-  Camera camera(read_lens("dgauss-50mm").lens);
+  MountedLens camera(read_lens("dgauss-50mm").lens);
   camera.focus_at_m(1.5);
   expect_geometric_mtf(camera.lens(), 1.5, 0, MtfDirection::sagittal);
   expect_geometric_mtf(camera.lens(), 1.5, 5, MtfDirection::sagittal);

@@ -2,7 +2,7 @@
 // What the shape and size of the stop do to pictures.
 #include <gtest/gtest.h>
 #include <petzval/analysis/pupil_rays.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/renderer.h>
@@ -74,7 +74,7 @@ struct Spot {
 
 /// A far point of light on a film `beyond_mm` behind its image.
 Spot spot(const StopBlades& blades, double beyond_mm) {
-  Camera camera(stopped_down(2));
+  MountedLens camera(stopped_down(2));
   camera.focus_at_m(20);
   camera.move_sensor_mm(beyond_mm);
   const auto world = world_of(far_point);
@@ -131,7 +131,7 @@ TEST(Stop, BladesShowInTheSpreadOfADefocusedPoint) {
 /// same sense of rotation, same light.
 TEST(Stop, BladedSpotsOfLensAndRendererAgree) {
   const StopBlades blades{3, 25};
-  Camera camera(stopped_down(2));
+  MountedLens camera(stopped_down(2));
   camera.focus_at_m(20);
   camera.move_sensor_mm(2.5);
   camera.set_blades(blades);

@@ -5,7 +5,7 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/ray_count.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/lens_camera.h>
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(CourseLenses, WallThroughLens,
 
 /// Real glass: the wavelengths of a group share their paths and land apart.
 TEST(WallThroughLens, IsGSensorWithDispersion) {
-  Camera camera(read_lens("edmund-54852").lens);
+  MountedLens camera(read_lens("edmund-54852").lens);
   for (const double height : {0.0, 1.4, 2.7})
     expect_wall_is_g_sensor(camera.lens(), height, {430, 550, 660}, 256);
 }
@@ -182,7 +182,7 @@ TEST(WallThroughLens, AgreesWithPbrt) {
         Figure{"telephoto-250mm", 40.5, 10, 0.02335}, Figure{"fisheye-10mm", 6.08, 1.75, 0.04903}}) {
     Lens lens = read_lens(figure.lens).lens;
     lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, figure.stop_mm / 2};
-    Camera camera(lens);
+    MountedLens camera(lens);
     camera.focus_at_m(figure.distance_m);
     const double g = counted_g_sensor_sr(Tracer(camera.lens(), 550), 0, 3000);
     EXPECT_NEAR(g / figure.ratio, 1, 1e-3) << figure.lens;

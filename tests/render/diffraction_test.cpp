@@ -3,7 +3,7 @@
 // stays so.
 #include <gtest/gtest.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/numeric/quadrature.h>
@@ -25,7 +25,7 @@ struct Landed {
 };
 
 std::vector<Landed> spread_of(const StopBlades& blades, bool diffraction, double scale = 1) {
-  Camera camera(read_lens("dgauss-50mm").lens);
+  MountedLens camera(read_lens("dgauss-50mm").lens);
   camera.set_f_number(f_number);
   camera.focus_at_m({});
   LensCameraOptions options;

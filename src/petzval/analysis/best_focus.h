@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the sensor would best stand. (Camera::move_sensor_mm puts it there.)
+// Where the sensor would best stand. (MountedLens::move_sensor_mm puts it there.)
 #pragma once
 
 #include <petzval/analysis/field_tables.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/layer_plan.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/trace/tracer.h>
@@ -47,7 +47,7 @@ LayerLens layer_lens(const DepthCamera& camera, const DepthLayers& layers, std::
   // The real stop follows from the paraxial pupil and where the object is; it must not differ by the layer.
   if (const double stop_mm = stop_radius_mm(lens); layers.layers.size() > 1 && std::isfinite(stop_mm))
     lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, stop_mm};
-  Camera at_layer(std::move(lens));
+  MountedLens at_layer(std::move(lens));
   at_layer.place_object_at_m(layers.layers[layer].distance_m);
   TableOptions options = camera.table;
   options.largest_psf_size = largest_psf_size(layers, layer, pixel_um, options.largest_psf_size);

@@ -27,12 +27,12 @@ struct TableOptions {
   void validate() const;
 };
 
-/// The table of a lens as it stands (Camera::lens()): chief rays aimed at the real stop, g_source, g_sensor
-/// and diffraction PSFs through the vignetted pupil, at every field and wavelength. Deterministic for any
-/// number of threads. Every PSF holds 99 % of its light or says in `captured` what it does hold. Memory: at
-/// most fields × wavelengths × largest_psf_size² × 4 bytes. \throws InputError if no ray passes on the axis,
-/// if the stop has blades (tables turn with the azimuth of the field, polygons do not), or an index is not
-/// known at a wavelength.
+/// The table of a lens as it stands (MountedLens::lens()): chief rays aimed at the real stop, g_source,
+/// g_sensor and diffraction PSFs through the vignetted pupil, at every field and wavelength. Deterministic
+/// for any number of threads. Every PSF holds 99 % of its light or says in `captured` what it does hold.
+/// Memory: at most fields × wavelengths × largest_psf_size² × 4 bytes. \throws InputError if no ray passes on
+/// the axis, if the stop has blades (tables turn with the azimuth of the field, polygons do not), or an index
+/// is not known at a wavelength.
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& options,
                                     const ProgressCallback& progress = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/scene_camera.h>
 
@@ -121,7 +121,7 @@ std::optional<double> film_distance(const CameraChoice& choice, const Parameters
   return parameters.number("filmdistance", 0);
 }
 
-void focus(Camera& camera, const CameraChoice& choice, const Parameters& parameters, bool realistic,
+void focus(MountedLens& camera, const CameraChoice& choice, const Parameters& parameters, bool realistic,
            SceneCamera& result) {
   const double m_per_unit = 1 / (choice.options.scene_units_per_mm * mm_per_m);
   if (film_distance(choice, parameters, realistic)) return;
@@ -146,7 +146,7 @@ Lens lens_in_use(const CameraChoice& choice, const Parameters& parameters, bool 
     set_stop(lens, *choice.aperture_diameter_mm, result.notes);
   else if (!choice.f_number && !choice.lens && scene_stop > 0)
     set_stop(lens, scene_stop, result.notes);
-  Camera camera(std::move(lens));
+  MountedLens camera(std::move(lens));
   if (choice.f_number) camera.set_f_number(*choice.f_number);
   if (choice.film_distance_mm && choice.focus_distance_m)
     throw InputError("give the film either a distance from the lens or a distance to focus on");

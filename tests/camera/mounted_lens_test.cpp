@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 
@@ -46,12 +46,12 @@ Lens thick_lens() {
   return lens;
 }
 
-double last_thickness(const Camera& camera) {
+double last_thickness(const MountedLens& camera) {
   return camera.lens().surfaces.back().thickness_mm;
 }
 
 /// From the paraxial image of the camera's object to its sensor.
-double defocus_mm(const Camera& camera) {
+double defocus_mm(const MountedLens& camera) {
   const Lens& lens = camera.lens();
   return last_thickness(camera) -
          paraxial_image_distance_mm(lens, lens.object_distance_mm, lens.reference_wavelength_nm);
@@ -59,9 +59,9 @@ double defocus_mm(const Camera& camera) {
 
 // Thin lens: 1/s + 1/i = 1/f and s + i = D, so s = D/2 + √(D²/4 − fD). 1e-10 mm is rounding of a root of
 // numbers of order 1e3.
-TEST(Camera, FocusesAThinLensByTheLensEquation) {
+TEST(MountedLens, FocusesAThinLensByTheLensEquation) {
   for (const double distance_m : {0.2001, 0.3, 1.0, 7.0}) {
-    Camera camera(thin_lens());
+    MountedLens camera(thin_lens());
     camera.focus_at_m(distance_m);
     const double d = distance_m * 1000, s = d / 2 + std::sqrt(d * d / 4 - 50 * d);
     ASSERT_TRUE(camera.lens().object_distance_mm.has_value());
@@ -71,8 +71,8 @@ TEST(Camera, FocusesAThinLensByTheLensEquation) {
   }
 }
 
-TEST(Camera, StatesTheShortestDistance) {
-  Camera camera(thin_lens());
+TEST(MountedLens, StatesTheShortestDistance) {
+  MountedLens camera(thin_lens());
   try {
     camera.focus_at_m(0.19);
     FAIL() << "an image nearer than four focal lengths";
@@ -82,9 +82,9 @@ TEST(Camera, StatesTheShortestDistance) {
   EXPECT_NO_THROW(camera.focus_at_m(0.2000001));
 }
 
-TEST(Camera, MovesNothingAtTheDesignsOwnDistance) {
+TEST(MountedLens, MovesNothingAtTheDesignsOwnDistance) {
   for (const Lens& lens : {thin_lens(), thick_lens()}) {
-    Camera camera(lens);
+    MountedLens camera(lens);
     const std::optional<double> designed = camera.object_distance_from_sensor_m();
     camera.focus_at_m(1.7);
     camera.focus_at_m(designed);
@@ -95,24 +95,24 @@ TEST(Camera, MovesNothingAtTheDesignsOwnDistance) {
   }
 }
 
-TEST(Camera, KeepsTheDesignersDefocusAndHitsTheDistanceAskedFor) {
+TEST(MountedLens, KeepsTheDesignersDefocusAndHitsTheDistanceAskedFor) {
   for (const double distance_m : {0.3, 0.5, 2.0, 50.0}) {
-    Camera camera(thick_lens());
+    MountedLens camera(thick_lens());
     camera.focus_at_m(distance_m);
     EXPECT_NEAR(defocus_mm(camera), 0.2, 1e-10) << distance_m;
     EXPECT_NEAR(*camera.object_distance_from_sensor_m(), distance_m, 1e-13 * distance_m) << distance_m;
   }
-  Camera at_infinity(thick_lens());
+  MountedLens at_infinity(thick_lens());
   at_infinity.focus_at_m({});
   EXPECT_FALSE(at_infinity.object_distance_from_sensor_m().has_value());
   EXPECT_NEAR(defocus_mm(at_infinity), 0.2, 1e-10);
-  Camera infinite_number(thick_lens());
+  MountedLens infinite_number(thick_lens());
   infinite_number.focus_at_m(std::numeric_limits<double>::infinity());
   EXPECT_EQ(last_thickness(infinite_number), last_thickness(at_infinity));
 }
 
-TEST(Camera, FocusDoesNotDependOnWhatCameBefore) {
-  Camera straight(thick_lens()), wandering(thick_lens());
+TEST(MountedLens, FocusDoesNotDependOnWhatCameBefore) {
+  MountedLens straight(thick_lens()), wandering(thick_lens());
   straight.focus_at_m(0.6);
   wandering.focus_at_m({});
   wandering.set_f_number(8);
@@ -126,17 +126,17 @@ TEST(Camera, FocusDoesNotDependOnWhatCameBefore) {
 }
 
 // A lens designed to magnify keeps magnifying: of the two conjugates with D = 250 mm it takes the near one.
-TEST(Camera, StaysOnItsSideOfUnitMagnification) {
+TEST(MountedLens, StaysOnItsSideOfUnitMagnification) {
   Lens macro = thin_lens();
   macro.object_distance_mm = 60;  // i = 300 mm, five times magnified
   macro.surfaces.back().thickness_mm = 300;
-  Camera camera(macro);
+  MountedLens camera(macro);
   camera.focus_at_m(0.25);
   EXPECT_NEAR(*camera.lens().object_distance_mm, 125 - std::sqrt(125.0 * 125 - 50 * 250), 1e-10);
 }
 
-TEST(Camera, PlacesTheObjectWithoutMovingTheSensor) {
-  Camera camera(thick_lens());
+TEST(MountedLens, PlacesTheObjectWithoutMovingTheSensor) {
+  MountedLens camera(thick_lens());
   camera.place_object_at_m(2.0);
   EXPECT_EQ(last_thickness(camera), thick_lens().surfaces.back().thickness_mm);
   EXPECT_NEAR(*camera.object_distance_from_sensor_m(), 2.0, 1e-13);
@@ -145,8 +145,8 @@ TEST(Camera, PlacesTheObjectWithoutMovingTheSensor) {
   EXPECT_FALSE(camera.lens().object_distance_mm.has_value());
 }
 
-TEST(Camera, RefusesObjectsInsideTheLens) {
-  Camera camera(thick_lens());
+TEST(MountedLens, RefusesObjectsInsideTheLens) {
+  MountedLens camera(thick_lens());
   EXPECT_THROW(camera.place_object_at_m(0.03), InputError);
   EXPECT_THROW(camera.place_object_at_m(0), InputError);
   EXPECT_THROW(camera.focus_at_m(-1), InputError);
@@ -154,16 +154,16 @@ TEST(Camera, RefusesObjectsInsideTheLens) {
   EXPECT_THROW(camera.focus_at_m(0.001), InputError);
 }
 
-TEST(Camera, RefusesLensesWithoutARealImage) {
+TEST(MountedLens, RefusesLensesWithoutARealImage) {
   Lens negative = thin_lens();
   for (Surface& s : negative.surfaces) s.curvature_per_mm *= -1;
-  Camera camera(negative);
+  MountedLens camera(negative);
   EXPECT_THROW(camera.focus_at_m({}), InputError);
   EXPECT_THROW(camera.focus_at_m(1), InputError);
 }
 
-TEST(Camera, StopsDownButNotUp) {
-  Camera camera(thin_lens());
+TEST(MountedLens, StopsDownButNotUp) {
+  MountedLens camera(thin_lens());
   camera.set_f_number(5.6);
   EXPECT_NEAR(first_order(camera.lens()).f_number, 5.6, 1e-12);
   EXPECT_NEAR(first_order(camera.lens()).entrance_pupil.diameter_mm, 50 / 5.6, 1e-11);
@@ -180,8 +180,8 @@ TEST(Camera, StopsDownButNotUp) {
 }
 
 // Working f-number 4 at 250 mm is a certain hole; refocusing must not open or close it.
-TEST(Camera, RefocusingKeepsTheEntrancePupil) {
-  Camera camera(thick_lens());
+TEST(MountedLens, RefocusingKeepsTheEntrancePupil) {
+  MountedLens camera(thick_lens());
   const double diameter = first_order(camera.lens()).entrance_pupil.diameter_mm;
   camera.focus_at_m(1.0);
   EXPECT_NEAR(first_order(camera.lens()).entrance_pupil.diameter_mm, diameter, 1e-12);
@@ -192,8 +192,8 @@ TEST(Camera, RefocusingKeepsTheEntrancePupil) {
 }
 
 // The stop stands at vertex 1, so the angle from the entrance pupil is atan(40/250) whatever the distance.
-TEST(Camera, RefocusingKeepsFieldAngles) {
-  Camera camera(thick_lens());
+TEST(MountedLens, RefocusingKeepsFieldAngles) {
+  MountedLens camera(thick_lens());
   camera.focus_at_m(2.0);
   EXPECT_NEAR(camera.lens().fields.values[1] / *camera.lens().object_distance_mm, 0.16, 1e-12);
   camera.focus_at_m({});
@@ -201,8 +201,8 @@ TEST(Camera, RefocusingKeepsFieldAngles) {
   EXPECT_NEAR(camera.lens().fields.values[1], 9.0902769208223, 1e-9);  // atan 0.16
 }
 
-TEST(Camera, MovesTheSensorAndNothingElse) {
-  Camera camera(read_lens("double-gauss").lens);
+TEST(MountedLens, MovesTheSensorAndNothingElse) {
+  MountedLens camera(read_lens("double-gauss").lens);
   const double design = camera.lens().surfaces.back().thickness_mm;
   camera.move_sensor_mm(0.25);
   EXPECT_DOUBLE_EQ(camera.lens().surfaces.back().thickness_mm, design + 0.25);
@@ -218,8 +218,8 @@ TEST(Camera, MovesTheSensorAndNothingElse) {
   EXPECT_THROW(camera.set_image_distance_mm(std::nan("")), InputError);
 }
 
-TEST(Camera, MovingTheWholeLensKeepsObjectAndSensor) {
-  Camera camera(read_lens("edmund-54852").lens);
+TEST(MountedLens, MovingTheWholeLensKeepsObjectAndSensor) {
+  MountedLens camera(read_lens("edmund-54852").lens);
   const double total = *camera.object_distance_from_sensor_m();
   const double object = *camera.lens().object_distance_mm, image = camera.lens().surfaces.back().thickness_mm;
   camera.move_lens_mm(0.1);
@@ -230,17 +230,17 @@ TEST(Camera, MovingTheWholeLensKeepsObjectAndSensor) {
   EXPECT_THROW(camera.move_lens_mm(-1e4), InputError);
 }
 
-TEST(Camera, AHelicoidFocusesAThinLensByNewtonsEquation) {
+TEST(MountedLens, AHelicoidFocusesAThinLensByNewtonsEquation) {
   // x x' = f²: an object at distance x in front of the front focus is sharp x' = f²/x behind the rear one.
   // Focused at infinity, the lens is moved towards an object until the paraxial image falls on the sensor.
-  Camera camera(read_lens("double-gauss").lens);
+  MountedLens camera(read_lens("double-gauss").lens);
   Lens near = camera.lens();
   near.object_distance_mm = 2000;
   const FirstOrder data = first_order(near);
   double low = 0, high = 50;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    Camera moved(near);
+    MountedLens moved(near);
     moved.move_lens_mm(middle);
     const FirstOrder at = first_order(moved.lens());
     (at.paraxial_image_mm > moved.lens().surfaces.back().thickness_mm ? low : high) = middle;
@@ -251,8 +251,8 @@ TEST(Camera, AHelicoidFocusesAThinLensByNewtonsEquation) {
 }
 
 // Flat to a thousandth of a wave over the pupil (25 mm: from 156 km on), and ten million focal lengths away.
-TEST(Camera, TakesWhatIsFarAwayForInfinity) {
-  Camera camera(thin_lens());
+TEST(MountedLens, TakesWhatIsFarAwayForInfinity) {
+  MountedLens camera(thin_lens());
   for (const double distance_m : {1e3, 1e5, 4e5}) {
     camera.place_object_at_m(distance_m);
     EXPECT_NEAR(camera.object_distance_from_sensor_m().value_or(0), distance_m, 1e-9 * distance_m);
@@ -267,7 +267,7 @@ TEST(Camera, TakesWhatIsFarAwayForInfinity) {
   Lens lens = thin_lens();
   lens.object_distance_mm = 1e20;
   lens.fields = {Fields::Kind::object_height_mm, {0, 1e20}};
-  const Camera far(lens);
+  const MountedLens far(lens);
   EXPECT_FALSE(far.lens().object_distance_mm);
   EXPECT_EQ(far.lens().fields.kind, Fields::Kind::angle_deg);
   EXPECT_NEAR(far.lens().fields.values[1], 45, 1e-9);

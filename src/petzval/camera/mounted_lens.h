@@ -11,7 +11,7 @@ namespace petzval {
 /// A lens as it is used: where the object is, where the sensor is, how far the stop is closed. Refocusing and
 /// stopping down are written here and nowhere else.
 ///
-///     Camera camera(read_lens("dgauss-50mm").lens);
+///     MountedLens camera(read_lens("dgauss-50mm").lens);
 ///     camera.set_f_number(4);
 ///     camera.focus_at_m(1.5);
 ///     Tracer tracer(camera.lens(), 550);
@@ -21,10 +21,10 @@ namespace petzval {
 /// field points stated as object heights keep their angle from the entrance pupil. An object whose waves are
 /// flat over the entrance pupil to a thousandth of a wave, and ten million times as far away as the lens is
 /// large, is at infinity.
-class Camera {
+class MountedLens {
  public:
   /// The lens as its prescription has it.
-  explicit Camera(Lens lens);
+  explicit MountedLens(Lens lens);
 
   /// The lens with object distance, last thickness and aperture as this camera uses them; everything
   /// downstream traces this one.

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/camera.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 
 #include <cmath>
@@ -112,13 +112,13 @@ void keep_aperture_and_angles(const Lens& lens, Lens& moved) {
 
 }  // namespace
 
-Camera::Camera(Lens lens) : prescription_(std::move(lens)) {
+MountedLens::MountedLens(Lens lens) : prescription_(std::move(lens)) {
   prescription_.validate();
   focus_as_designed();
 }
 
 /// Rebuilds the lens in use from the prescription.
-void Camera::use(std::optional<double> object_distance_mm, double last_thickness_mm) {
+void MountedLens::use(std::optional<double> object_distance_mm, double last_thickness_mm) {
   Lens lens = prescription_;
   if (object_distance_mm && as_good_as_infinite(prescription_, *object_distance_mm))
     object_distance_mm.reset();
@@ -129,7 +129,7 @@ void Camera::use(std::optional<double> object_distance_mm, double last_thickness
   lens_ = std::move(lens);
 }
 
-void Camera::focus_at_m(std::optional<double> distance_from_sensor_m) {
+void MountedLens::focus_at_m(std::optional<double> distance_from_sensor_m) {
   const std::optional<double> distance_m = checked_distance(distance_from_sensor_m);
   const LensMatrix matrix(prescription_);
   const double design_mm = prescription_.surfaces.back().thickness_mm;
@@ -162,7 +162,7 @@ void Camera::focus_at_m(std::optional<double> distance_from_sensor_m) {
   use(object_mm, image_mm + offset_mm);
 }
 
-void Camera::place_object_at_m(std::optional<double> distance_from_sensor_m) {
+void MountedLens::place_object_at_m(std::optional<double> distance_from_sensor_m) {
   const std::optional<double> distance_m = checked_distance(distance_from_sensor_m);
   const double track_mm = prescription_.total_track_mm();
   if (distance_m && *distance_m * mm_per_m <= track_mm)
@@ -175,11 +175,11 @@ void Camera::place_object_at_m(std::optional<double> distance_from_sensor_m) {
   use(object_mm, prescription_.surfaces.back().thickness_mm);
 }
 
-void Camera::focus_as_designed() {
+void MountedLens::focus_as_designed() {
   use(prescription_.object_distance_mm, prescription_.surfaces.back().thickness_mm);
 }
 
-void Camera::set_image_distance_mm(double distance_mm) {
+void MountedLens::set_image_distance_mm(double distance_mm) {
   if (!(std::isfinite(distance_mm) && distance_mm > 0))
     throw InputError(
         fmt::format("the sensor would stand {:g} mm behind the last surface of lens {}; it must be behind it",
@@ -187,11 +187,11 @@ void Camera::set_image_distance_mm(double distance_mm) {
   use(lens_.object_distance_mm, distance_mm);
 }
 
-void Camera::move_sensor_mm(double shift_mm) {
+void MountedLens::move_sensor_mm(double shift_mm) {
   set_image_distance_mm(lens_.surfaces.back().thickness_mm + shift_mm);
 }
 
-void Camera::move_lens_mm(double towards_object_mm) {
+void MountedLens::move_lens_mm(double towards_object_mm) {
   std::optional<double> object_mm = lens_.object_distance_mm;
   if (object_mm) *object_mm -= towards_object_mm;
   if (object_mm && !(*object_mm > 0))
@@ -204,12 +204,12 @@ void Camera::move_lens_mm(double towards_object_mm) {
   use(object_mm, image_mm);
 }
 
-std::optional<double> Camera::object_distance_from_sensor_m() const {
+std::optional<double> MountedLens::object_distance_from_sensor_m() const {
   if (!lens_.object_distance_mm) return {};
   return (*lens_.object_distance_mm + lens_.total_track_mm()) / mm_per_m;
 }
 
-void Camera::set_f_number(double f_number) {
+void MountedLens::set_f_number(double f_number) {
   if (!(std::isfinite(f_number) && f_number > 0))
     throw InputError(fmt::format("f/{} is no f-number; give a positive one", f_number));
   const double open = first_order(prescription_).f_number;
@@ -222,7 +222,7 @@ void Camera::set_f_number(double f_number) {
   use(lens_.object_distance_mm, lens_.surfaces.back().thickness_mm);
 }
 
-void Camera::set_blades(const StopBlades& blades) {
+void MountedLens::set_blades(const StopBlades& blades) {
   blades.validate();
   for (Lens* lens : {&prescription_, &lens_}) lens->surfaces[lens->stop_index()].blades = blades;
 }
