@@ -7,15 +7,16 @@
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
 #include <petzval/base/number_text.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 
 #include "output_option.h"
 
@@ -30,6 +31,9 @@ std::string right_word(const CLI::Option& option) {
 
 namespace {
 
+/// Set by SIGINT and SIGTERM.
+volatile std::sig_atomic_t interrupted = 0;
+
 /// CLI11 takes an empty word for 0.
 void refuse_empty_numbers(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options({})) {
@@ -42,6 +46,23 @@ void refuse_empty_numbers(const CLI::App& command) {
 }
 
 }  // namespace
+
+Context context_of(const Shared& shared) {
+  Context context;
+  context.threads = shared.threads;
+  context.seed = shared.seed;
+  context.note = [&shared](const std::string& text) { note(shared, text); };
+  const auto bar = std::make_shared<ProgressBar>(!shared.quiet);
+  context.progress = [bar](double fraction, const std::string& what) {
+    bar->update(fraction, what);
+    return true;  // the context around the command hears of Ctrl-C
+  };
+  return context;
+}
+
+void stop_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { interrupted = 1; });
+}
 
 CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       const std::string& description, const std::string& example, bool prints_numbers,
@@ -57,8 +78,11 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
     refuse_empty_numbers(*command);
     if (shared.parse_only) return;
     check_outputs(*command);
-    const ThreadLimit threads(shared.threads);
-    work();
+    // Whatever the command does, its threads are limited and Ctrl-C ends it.
+    Context context;
+    context.threads = shared.threads;
+    context.progress = [](double, const std::string&) { return interrupted == 0; };
+    run_within(context, [&](const ProgressCallback&) { work(); });
   });
   return command;
 }

@@ -2,6 +2,7 @@
 // What all subcommands share: the options of the whole program, and the way a lens is named.
 #pragma once
 
+#include <petzval/base/context.h>
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
 
@@ -22,6 +23,12 @@ struct Shared {
   bool json = false;
   bool parse_only = false;  ///< the command line is checked, and nothing is done
 };
+
+/// The context of a command: its notes go to stderr, its progress to a bar there, and Ctrl-C stops it.
+Context context_of(const Shared& shared);
+
+/// From now on SIGINT and SIGTERM end a command by Cancelled: what it has begun to write is taken away.
+void stop_on_signals();
 
 /// Adds a subcommand with --threads, --seed, --quiet (and --json if it prints numbers), an example for the
 /// help text, and the work to do once the command line has been parsed.

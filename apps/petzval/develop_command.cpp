@@ -2,7 +2,6 @@
 // petzval develop: from a raw file to a picture.
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/isp/display_picture.h>
 #include <petzval/sensor/formats/dng.h>
@@ -77,10 +76,8 @@ void develop(const DevelopCommand& command, const Shared& shared) {
 void add_develop_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<DevelopCommand>();
   CLI::App* command = add_command(app, shared, "develop", "Develop a raw file: a picture",
-                                  "petzval develop raw.dng -o picture.png", true, [options, &shared] {
-                                    const ThreadLimit limit(shared.threads);
-                                    develop(*options, shared);
-                                  });
+                                  "petzval develop raw.dng -o picture.png", true,
+                                  [options, &shared] { develop(*options, shared); });
   command->add_option("raw", options->raw, "RAW.dng")->required();
   options->choice.add_to(*command);
   command

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
 
 #include <memory>
@@ -85,10 +84,7 @@ void add_image_command(CLI::App& app, Shared& shared) {
       add_command(app, shared, "image", "Image a scene through a lens onto a sensor",
                   "petzval image studio --lens edmund-54852 --sensor 320x240@15 -o studio.png "
                   "-o studio.exr",
-                  true, [options, &shared, &app] {
-                    const ThreadLimit limit(shared.threads);
-                    image(*options, *app.get_subcommand("image"), shared);
-                  });
+                  true, [options, &shared, &app] { image(*options, *app.get_subcommand("image"), shared); });
   options->add_to(*command);
 }
 

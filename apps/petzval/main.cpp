@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <petzval/base/error.h>
+#include <petzval/base/context.h>
 #include <petzval/base/staged_files.h>
 
 #include <algorithm>
@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   using namespace petzval;
   // A limit on the size of files (ulimit -f) is a full disk like any other: an error, not a death by signal.
   std::signal(SIGXFSZ, SIG_IGN);
+  app::stop_on_signals();
 #ifdef __GLIBC__
   // Planes of large images come and go by the band: to hand each back to the system costs a quarter of the
   // time.
@@ -51,6 +52,9 @@ int main(int argc, char** argv) {
     return report(app::usage_message(program, error), 2);
   } catch (const InputError& error) {
     return report(error.what(), 2);
+  } catch (const Cancelled&) {
+    constexpr int ended_by_interrupt = 130;  // what shells expect of a program that Ctrl-C ends
+    return report("stopped; nothing was written", ended_by_interrupt);
   } catch (const Failure& error) {
     return report(error.what(), 1);
   } catch (const std::bad_alloc&) {

@@ -2,7 +2,6 @@
 // petzval measure matrix, shading, colour, scielab.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/formats/npy.h>
@@ -314,12 +313,10 @@ void add_measure_colour(CLI::App& measure, Shared& shared) {
 
 void add_measure_scielab(CLI::App& measure, Shared& shared) {
   auto options = std::make_shared<ScielabCommand>();
-  CLI::App* command = add_command(
-      measure, shared, "scielab", "Difference of two pictures as an eye at a distance sees it (S-CIELAB)",
-      "petzval measure scielab a.png b.png --distance 600 --pixel-pitch 250", true, [options, &shared] {
-        const ThreadLimit limit(shared.threads);
-        measure_scielab(*options, shared);
-      });
+  CLI::App* command = add_command(measure, shared, "scielab",
+                                  "Difference of two pictures as an eye at a distance sees it (S-CIELAB)",
+                                  "petzval measure scielab a.png b.png --distance 600 --pixel-pitch 250",
+                                  true, [options, &shared] { measure_scielab(*options, shared); });
   command->add_option("a", options->a, "A picture: .png, .tif")->required();
   command->add_option("b", options->b, "Another of its size")->required();
   command->add_option("--distance", options->distance_mm, "Of the eye from the display [mm]")

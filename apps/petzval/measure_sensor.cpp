@@ -2,7 +2,6 @@
 // petzval measure sensor, noise: gain, full well, noise and non-uniformities by photon transfer.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/measure/photon_transfer.h>
 #include <petzval/sensor/exposure.h>
@@ -178,12 +177,10 @@ void measure_noise(const NoiseCommand& command, const Shared& shared) {
 
 void add_measure_sensor(CLI::App& measure, Shared& shared) {
   auto options = std::make_shared<SensorCommand>();
-  CLI::App* command = add_command(
-      measure, shared, "sensor", "Test a sensor as EMVA 1288 and ISO 12232 do: gain, noise, range, speed",
-      "petzval measure sensor third-inch-1280x960 --plot transfer.svg", true, [options, &shared] {
-        const ThreadLimit limit(shared.threads);
-        measure_sensor(*options, shared);
-      });
+  CLI::App* command = add_command(measure, shared, "sensor",
+                                  "Test a sensor as EMVA 1288 and ISO 12232 do: gain, noise, range, speed",
+                                  "petzval measure sensor third-inch-1280x960 --plot transfer.svg", true,
+                                  [options, &shared] { measure_sensor(*options, shared); });
   command->add_option("sensor", options->sensor, "A sensor file or the name of a bundled one")->required();
   command->add_option("--conversion-gain", options->conversion_gain,
                       "Of a sensor with several: its name; default: the first");
@@ -197,10 +194,7 @@ void add_measure_noise(CLI::App& measure, Shared& shared) {
   CLI::App* command =
       add_command(measure, shared, "noise", "Gain, noise and range from pairs of raw files of uniform light",
                   "petzval measure noise dark1.dng dark2.dng dim1.dng dim2.dng bright1.dng bright2.dng", true,
-                  [options, &shared] {
-                    const ThreadLimit limit(shared.threads);
-                    measure_noise(*options, shared);
-                  });
+                  [options, &shared] { measure_noise(*options, shared); });
   command->add_option("raws", options->raws, "RAW.dng, in pairs of the same light: the dark pair first")
       ->required();
   command->add_option("--channel", options->channel, "Default: green, or the first");

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/progress.h>
 #include <petzval/base/units.h>
 #include <petzval/camera/mounted_lens.h>
@@ -112,10 +111,7 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
       add_command(optics, shared, "build", "Compute the lens data table of a lens",
                   "petzval optics build edmund-54852 --sensor 768x576@6.25 --wavelengths 400:50:700 "
                   "-o edmund.h5",
-                  false, [options, &shared] {
-                    const ThreadLimit limit(shared.threads);
-                    build(*options, shared);
-                  });
+                  false, [options, &shared] { build(*options, shared); });
   options->lens.add_to(*command);
   command->add_option("-o,--output", options->output, "The table, an HDF5 file")
       ->check(output_file())

@@ -10,7 +10,6 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
-#include <petzval/base/parallel.h>
 #include <petzval/image/picture.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/scene/formats/scene_exr.h>
@@ -137,7 +136,6 @@ void add_scene_commands(CLI::App& app, Shared& shared) {
   auto info = std::make_shared<SceneChoice>();
   info->add_to(*add_command(*scene, shared, "info", "Say what a scene is", "petzval scene info studio --json",
                             true, [&shared, info] {
-                              const ThreadLimit limit(shared.threads);
                               const Scene read = info->read(shared);
                               if (shared.json) return fmt::print("{}\n", facts(read).dump(2));
                               print_facts(read);
@@ -149,10 +147,7 @@ void add_scene_commands(CLI::App& app, Shared& shared) {
   CLI::App* command =
       add_command(*scene, shared, "convert", "Write a scene as spectral OpenEXR or as a picture",
                   "petzval scene convert checkerboard:24 --scene-size 1024x768 board.exr", false,
-                  [&shared, convert, out, depth] {
-                    const ThreadLimit limit(shared.threads);
-                    convert_scene(*convert, *out, *depth, shared);
-                  });
+                  [&shared, convert, out, depth] { convert_scene(*convert, *out, *depth, shared); });
   convert->add_to(*command);
   command->add_option("out", *out, "OUT.exr or OUT.png")->check(output_file())->required();
   command->add_flag("--depth", *depth,

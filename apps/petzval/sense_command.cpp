@@ -2,7 +2,6 @@
 // petzval sense: irradiance onto a sensor, a raw image out.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/sensor/raw_file.h>
@@ -104,10 +103,7 @@ void add_sense_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<SenseCommand>();
   CLI::App* command = add_command(app, shared, "sense", "Expose a sensor to an irradiance: a raw image",
                                   "petzval sense light.exr --sensor third-inch-1280x960 -o raw.dng", true,
-                                  [options, &shared] {
-                                    const ThreadLimit limit(shared.threads);
-                                    sense(*options, shared);
-                                  });
+                                  [options, &shared] { sense(*options, shared); });
   command
       ->add_option("irradiance", options->irradiance, "Spectral irradiance, .exr, as petzval image writes it")
       ->required();

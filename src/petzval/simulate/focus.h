@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the sensor stands, for every command and every way to the sensor.
+#pragma once
+
+#include <petzval/lens/lens.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace petzval {
+
+/// What a camera is focused on.
+struct Focus {
+  enum class Kind {
+    automatic,  ///< what is in front of the camera: the scene's distance, or the middle of its depths
+    design,     ///< the sensor stays where the prescription has it
+    infinity,
+    distance,   ///< an object this far from the sensor plane
+    best_spot,  ///< the least RMS spot over the lens's fields and wavelengths
+    best_mtf    ///< the greatest mean MTF over them
+  };
+  Kind kind = Kind::automatic;
+  double distance_m = 0;      ///< of Kind::distance, from the sensor plane
+  double frequency_cpmm = 0;  ///< of Kind::best_mtf [cycles/mm]
+
+  static Focus automatic() { return {}; }
+  static Focus design() { return {Kind::design}; }
+  static Focus infinity() { return {Kind::infinity}; }
+  /// At infinity if the distance is. \throws InputError unless it is positive.
+  static Focus at_m(double distance_m);
+
+  /// "auto", "design", "infinity", a distance with its unit ("1.2m", "250mm"), "best-spot" or "best-mtf@40".
+  /// \throws InputError saying what would be right.
+  static Focus parse(std::string_view text);
+  /// What parse() takes.
+  std::string text() const;
+
+  bool operator==(const Focus&) const = default;
+};
+
+/// The object distance that a focus asks for [m], infinite for infinity; nothing for the other kinds.
+std::optional<double> asked_distance_m(const Focus& focus);
+
+}  // namespace petzval

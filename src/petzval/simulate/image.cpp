@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/sensor/lens_facts.h>
+#include <petzval/simulate/image.h>
+
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+std::string product_text(const ImagingOptions& options, const ProductPlan& plan, const std::string& between) {
+  const std::string rim = plan.exact.empty()
+                              ? ""
+                              : fmt::format("every cell its own PSF {:.0f} to {:.0f} cells from the axis, ",
+                                            plan.exact.from, plan.exact.to);
+  const std::string error = fmt::format("{}estimated error {:.1e} of {:g}; {} interpolated", rim,
+                                        plan.estimated_error, options.product.tolerance, between);
+  if (plan.direct)
+    return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,
+                       plan.tile, error);
+  if (plan.transform == 0) return fmt::format("blended sections of {0} x {0} cells, {1}", plan.tile, error);
+  return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, transforms of {2} x {2}, {3}",
+                     plan.nodes, plan.tile, plan.transform, error);
+}
+
+std::string method_text(const ImagingOptions& options, const ImagingReport& report) {
+  if (options.method == BlurMethod::none) return "distortion and illumination, no blur";
+  const std::string between = options.interpolation == PsfInterpolation::otf ? "OTFs" : "PSFs";
+  if (options.method == BlurMethod::exact)
+    return fmt::format("exact, every cell its own PSF; {} interpolated", between);
+  if (options.method == BlurMethod::product) return product_text(options, report.product, between);
+  return fmt::format("{3}sections of {0} x {0} cells, transforms of {1} x {1}; {2} interpolated",
+                     options.sections.section, report.transform_size, between,
+                     options.method == BlurMethod::blended ? "blended " : "");
+}
+
+ImageReport& finish(const ImagePlan& plan, const Context& context, ImageReport& report) {
+  report.method = method_text(plan.options.imaging, report.imaging);
+  for (const std::string& line : report.imaging.notes) send_note(context, line);
+  return report;
+}
+
+}  // namespace
+
+SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* report) {
+  ImageReport unwanted;
+  ImageReport& says = report ? *report : unwanted;
+  SpectralImage light = result_within(context, [&](const ProgressCallback& progress) {
+    if (!plan.depth)
+      return form_image(plan.scene, plan.table, plan.frame, plan.options.imaging, progress, &says.imaging);
+    DepthReport deep;
+    SpectralImage formed = form_depth_image(plan.scene, *plan.depth, plan.frame, plan.options.imaging,
+                                            plan.options.depth, progress, &deep);
+    says.imaging = std::move(deep.image);
+    says.layers = std::move(deep.layers);
+    says.pupil_to_sensor_mm = deep.pupil_to_sensor_mm;
+    return formed;
+  });
+  finish(plan, context, says);
+  const Scene& scene = plan.scene;
+  light.provenance = fmt::format(
+      "petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
+      scene.distance_m() ? fmt::format("{:g} m from the sensor", *scene.distance_m()) : "at infinity",
+      plan.table.lens_name, plan.table.first_order.working_f_number, says.method);
+  return light;
+}
+
+void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& context, ImageReport* report) {
+  if (plan.depth)
+    throw InputError("the layers of a scene with depth are added up, not handed over band by band");
+  ImageReport unwanted;
+  ImageReport& says = report ? *report : unwanted;
+  run_within(context, [&](const ProgressCallback& progress) {
+    form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging);
+  });
+  finish(plan, context, says);
+}
+
+SpectralImage image(const SceneRequest& scene, Optics optics, const ImageOptions& options,
+                    const Context& context, ImageReport* report) {
+  return image(plan_image(scene, std::move(optics), options, context), context, report);
+}
+
+SpectralImage image(Scene scene, Optics optics, const ImageOptions& options, const Context& context,
+                    ImageReport* report) {
+  return image(plan_image(std::move(scene), std::move(optics), options, context), context, report);
+}
+
+}  // namespace petzval

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene and a camera brought together: distance, focus, table, frame.
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/depth_field.h>
+#include <petzval/imaging/field_of_view.h>
+#include <petzval/optics/build.h>
+#include <petzval/scene/depth_map.h>
+#include <petzval/simulate/image.h>
+#include <petzval/simulate/mounting.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+/// How many fields and wavelengths a lens's table has: what a picture needs, or what tells how far light
+/// spreads, to a per cent of the field.
+enum class TableDetail { full, outline };
+
+/// To be read, or in memory.
+using SceneInput = std::variant<const SceneRequest*, Scene>;
+
+const std::optional<Sensor>& sensor_of(const Optics& optics) {
+  return std::visit([](const auto& camera) -> const std::optional<Sensor>& { return camera.sensor; }, optics);
+}
+
+/// Whether a scene takes any angle and distance: a chart or a photograph on a plane.
+bool is_open(const SceneRequest& scene) {
+  return !scene.options.panorama && is_open_scene(scene.name);
+}
+
+Scene read(const SceneRequest& request, std::optional<double> expected_m, bool expected,
+           const Context& context) {
+  SceneOptions options = request.options;
+  // Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
+  if (expected && !options.distance_m && is_open(request) && !is_deep_chart(request.name))
+    options.distance_m = expected_m.value_or(INFINITY);
+  Scene scene = read_scene(request.name, options);
+  scene.validate();
+  for (const std::string& text : scene.notes) send_note(context, fmt::format("{}: {}", request.name, text));
+  return scene;
+}
+
+std::optional<double> middle_from_sensor_m(const Scene& scene, MountedLens& lens) {
+  const double depth_m = middle_depth_m(scene);
+  if (std::isinf(depth_m)) return std::nullopt;
+  if (scene.depth_from == DepthFrom::sensor) return depth_m;
+  // The pupil stays as far from the lens as it is; the sensor moves by less and less.
+  double focus_m = depth_m;
+  constexpr int rounds = 4;
+  for (int round = 0; round < rounds; ++round) {
+    focus_m = depth_m + DefocusLaw(lens.lens()).pupil_to_sensor_mm() / mm_per_m;
+    lens.focus_at_m(focus_m);
+  }
+  return focus_m;
+}
+
+/// Where automatic focus finds a scene with depth: in the middle of the picture, from the sensor plane
+/// (absent: infinity).
+std::optional<double> depth_focus_m(const Scene& scene, MountedLens lens) {
+  try {
+    const std::optional<double> middle_m = middle_from_sensor_m(scene, lens);
+    lens.focus_at_m(middle_m);
+    return middle_m;
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("the depth in the middle of the picture is {:.4g} m: {} (`focus` takes another "
+                    "distance; `scene_depth_scale` is for maps in other units than metres)",
+                    middle_depth_m(scene), error.what()));
+  }
+}
+
+/// What a scene with depth is focused on: the object of the lens, though each layer will have its own.
+std::optional<double> object_in_focus_m(const Focus& focus, const Scene& scene, const MountedLens& lens) {
+  if (focus.kind == Focus::Kind::automatic) return depth_focus_m(scene, lens);
+  const std::optional<double> asked_m = asked_distance_m(focus);
+  if (!asked_m) return lens.object_distance_from_sensor_m();
+  return std::isinf(*asked_m) ? std::nullopt : asked_m;
+}
+
+/// The lens as it is used: focused as asked, the object where the scene is.
+Lens focused_on(const MountedLens& lens, const Camera& camera, std::optional<double> scene_distance_m,
+                const Context& context) {
+  if (camera.focus.kind == Focus::Kind::automatic && !camera.image_distance_mm) {
+    MountedLens focused = lens;
+    focused.focus_at_m(scene_distance_m);
+    return focused.lens();
+  }
+  MountedLens here(focus(lens, camera.focus, {}, context));
+  // The sensor stays; only the object moves.
+  if (here.object_distance_from_sensor_m() != scene_distance_m) here.place_object_at_m(scene_distance_m);
+  return here.lens();
+}
+
+/// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image.
+double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
+  if (sensor) return sensor->geometry.half_diagonal_mm();
+  const double pitch_um = scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
+                                                : natural_depth_pitch_um(scene, lens);
+  return pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
+}
+
+/// Every `step`th of the wavelengths, and the last.
+std::vector<double> thinned(const std::vector<double>& wavelengths_nm, std::size_t step) {
+  std::vector<double> few;
+  for (std::size_t i = 0; i < wavelengths_nm.size(); i += step) few.push_back(wavelengths_nm[i]);
+  if (few.back() != wavelengths_nm.back()) few.push_back(wavelengths_nm.back());
+  return few;
+}
+
+TableOptions table_options(const Camera& camera, const Scene& scene, TableDetail detail) {
+  TableOptions options;
+  options.wavelengths_nm = scene.wavelengths_nm();
+  if (detail == TableDetail::outline) {
+    constexpr std::size_t step = 5;
+    options.wavelengths_nm = thinned(options.wavelengths_nm, step);
+    options.field_count = 11;
+  }
+  if (camera.apertures == Camera::Apertures::ignored) options.clip = Tracer::Clip::stop_only;
+  options.losses = camera.losses;
+  return options;
+}
+
+/// A table of nothing but the lens's name and paraxial optics.
+LensDataTable facts_alone(const Lens& lens) {
+  LensDataTable table;
+  table.lens_name = lens.name;
+  table.first_order = first_order(lens);
+  return table;
+}
+
+/// Scene and table, before frame and scene are fitted to each other.
+ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
+                 const Context& context) {
+  const MountedLens lens = mounted_lens(camera, context);
+  Scene scene = std::holds_alternative<Scene>(input)
+                    ? std::get<Scene>(std::move(input))
+                    : read(*std::get<const SceneRequest*>(input), lens.object_distance_from_sensor_m(),
+                           camera.focus.kind == Focus::Kind::design, context);
+  const bool deep = !scene.depth_m.empty();
+  if (scene.distance_m() && !deep) {
+    MountedLens placed = lens;
+    placed.place_object_at_m(scene.distance_m());
+    if (!placed.lens().object_distance_mm) scene.set_distance_m({});  // so far away that this is infinity
+  }
+  const Lens focused = focused_on(
+      lens, camera, deep ? object_in_focus_m(camera.focus, scene, lens) : scene.distance_m(), context);
+  TableOptions table = table_options(camera, scene, detail);
+  table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
+  if (deep)
+    return {std::move(scene),
+            facts_alone(focused),
+            DepthCamera{focused, table, std::make_shared<std::map<std::string, LensDataTable>>()},
+            {},
+            std::move(options)};
+  LensDataTable built = result_within(context, [&](const ProgressCallback& progress) {
+    return build_lens_data_table(focused, table, progress);
+  });
+  return {std::move(scene), std::move(built), {}, {}, std::move(options)};
+}
+
+/// A stored table is what it is: the scene stands where it was made for.
+ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, TableDetail,
+                 const Context& context) {
+  std::optional<double> distance_m = object_to_sensor_mm(camera.table);
+  if (distance_m) *distance_m /= mm_per_m;
+  Scene scene = std::holds_alternative<Scene>(input)
+                    ? std::get<Scene>(std::move(input))
+                    : read(*std::get<const SceneRequest*>(input), distance_m, true, context);
+  if (!scene.depth_m.empty())
+    send_note(
+        context,
+        "the scene's depth map is not used: a lens data table is made for one distance; `lens` would use it");
+  return {std::move(scene), std::move(camera.table), {}, {}, std::move(options)};
+}
+
+double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
+  return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, plan.options.imaging,
+                                               plan.options.depth)
+                    : covering_angle_deg(plan.scene, plan.table, sensor, plan.options.imaging);
+}
+
+/// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
+/// the scene.
+void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest* request,
+                       const Context& context) {
+  const std::optional<Sensor>& sensor = sensor_of(optics);
+  if (!sensor) {
+    plan.frame = plan.depth
+                     ? natural_depth_sensor(plan.scene, *plan.depth, plan.options.imaging, plan.options.depth)
+                     : natural_sensor(plan.scene, plan.table, plan.options.imaging);
+    return send_note(
+        context,
+        fmt::format("no `sensor`: {} x {} pixels of {:.5g} um, the scene's samples as the lens images "
+                    "them on the axis, as many as the scene covers",
+                    plan.frame.columns, plan.frame.rows, plan.frame.pitch_um));
+  }
+  plan.frame = sensor->geometry;
+  if (!request || !fills_frame(*request, optics, plan.options)) return;
+  const double fills_deg = filling_angle_deg(plan, plan.frame);
+  plan.scene.set_horizontal_angle_deg(std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0)));
+  send_note(context,
+            fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
+                        "(`scene_angle_deg` sets another)",
+                        is_builtin_scene(request->name) ? "chart" : "photograph",
+                        plan.scene.horizontal_angle_deg()));
+}
+
+ImageOptions with_photosite(ImageOptions options, const Optics& optics) {
+  if (const std::optional<Sensor>& sensor = sensor_of(optics)) options.imaging.photosite = sensor->photosite;
+  options.imaging.validate();
+  options.depth.validate();
+  return options;
+}
+
+ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, const Context& context) {
+  const SceneRequest* const request =
+      std::holds_alternative<Scene>(input) ? nullptr : std::get<const SceneRequest*>(input);
+  if (options.least_scene_angle_deg && !(request && fills_frame(*request, optics, options)))
+    throw InputError(
+        "`least_scene_angle_deg` is for a chart or a photograph that fills the frame of a `sensor`; "
+        "`scene_angle_deg` would be right");
+  const ImageOptions wanted = with_photosite(options, optics);
+  ImagePlan result = std::visit(
+      [&](auto& camera) { return source(std::move(input), camera, wanted, TableDetail::full, context); },
+      optics);
+  if (!result.depth && wanted.depth.layers != 0)
+    throw InputError("`layers` is for scenes with depth; this one is a plane (`scene_depth` gives it a map)");
+  run_within(context, [&](const ProgressCallback&) { fit_to_each_other(result, optics, request, context); });
+  return result;
+}
+
+}  // namespace
+
+ImagePlan plan_image(const SceneRequest& scene, Optics optics, const ImageOptions& options,
+                     const Context& context) {
+  return plan(&scene, std::move(optics), options, context);
+}
+
+ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options, const Context& context) {
+  scene.validate();
+  return plan(std::move(scene), std::move(optics), options, context);
+}
+
+bool fills_frame(const SceneRequest& scene, const Optics& optics, const ImageOptions& options) {
+  return sensor_of(optics) && is_open(scene) && !scene.options.horizontal_angle_deg &&
+         options.imaging.surround == Surround::error;
+}
+
+std::optional<double> filling_angle_deg(const SceneRequest& scene, const Optics& optics,
+                                        const ImageOptions& options, const Context& context) {
+  if (!fills_frame(scene, optics, options)) return {};
+  const ImageOptions wanted = with_photosite(options, optics);
+  return result_within(context, [&](const ProgressCallback&) {
+    Optics copy = optics;
+    const ImagePlan outline = std::visit(
+        [&](auto& camera) { return source(&scene, camera, wanted, TableDetail::outline, context); }, copy);
+    return filling_angle_deg(outline, sensor_of(optics)->geometry);
+  });
+}
+
+}  // namespace petzval
