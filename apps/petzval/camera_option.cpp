@@ -2,69 +2,41 @@
 #include "camera_option.h"
 
 #include <fmt/format.h>
-#include <petzval/analysis/best_focus.h>
 #include <petzval/base/error.h>
-#include <petzval/base/number_text.h>
-#include <petzval/base/units.h>
-#include <petzval/camera/mounted_lens.h>
-
-#include <cmath>
+#include <petzval/sensor/sensor_reader.h>
 
 namespace petzval::app {
 
-namespace {
-
-/// A whole text as a positive number.
-std::optional<double> positive_value(std::string_view text) {
-  const std::optional<double> value = parse_number(text);
-  return value && *value > 0 ? value : std::nullopt;
+void CameraChoice::add_lens(CLI::App& command, bool positional, bool required) {
+  lens.add_to(command, positional, required);
 }
 
-constexpr std::string_view by_mtf = "best-mtf@";
-
-void focus_camera(MountedLens& camera, const std::string& focus,
-                  const std::optional<FieldTableRequest>& request, const Shared& shared) {
-  if (focus == "design") return;
-  if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
-  if (const std::optional<double> distance_mm = positive_value(focus))
-    return camera.focus_at_m(*distance_mm / mm_per_m);
-  const FieldTableRequest fields = request.value_or(FieldTableRequest::of(camera.lens()));
-  BestFocus best;
-  if (focus == "best-spot") {
-    best = best_spot_focus(camera.lens(), fields);
-    note(shared, fmt::format("--focus best-spot moves the sensor by {:+.5f} mm; RMS spot {:.3f} to {:.3f} um",
-                             best.shift_mm, best.before, best.after));
-  } else if (focus.starts_with(by_mtf)) {
-    const std::optional<double> frequency = positive_value(std::string_view(focus).substr(by_mtf.size()));
-    if (!frequency)
-      throw InputError(
-          fmt::format("--focus {}: give a frequency in cycles/mm, for example best-mtf@40", focus));
-    best = best_mtf_focus(camera.lens(), fields, *frequency);
-    note(shared, fmt::format("--focus {} moves the sensor by {:+.5f} mm; mean MTF {:.4f} to {:.4f}", focus,
-                             best.shift_mm, best.before, best.after));
-  } else {
-    throw InputError(fmt::format(
-        "--focus {}: design, infinity, a distance from the sensor in mm, best-spot or best-mtf@CYCLES_PER_MM "
-        "would be right",
-        focus));
-  }
-  camera.move_sensor_mm(best.shift_mm);
+void CameraChoice::add_stop_and_focus(CLI::App& command, const Focus& usual) {
+  usual_focus = usual;
+  command.add_option("--f-number", f_number, "Stop down to this paraxial f-number at infinity")
+      ->check(positive_number());
+  command.add_option(
+      "--focus", focus,
+      fmt::format("Where the sensor stands: auto (sharp where the scene is), design (as in the "
+                  "prescription), infinity, an object distance from the sensor (1.2m, 250mm), "
+                  "best-spot or best-mtf@CYCLES_PER_MM; default: {}",
+                  usual.text()));
 }
 
-}  // namespace
-
-void CameraChoice::add_to(CLI::App& command) {
-  command.add_option("--f-number", f_number, "Stop down to this paraxial f-number")->check(positive_number());
-  command.add_option("--focus", focus,
-                     "Where the sensor stands: design, infinity, an object distance from the sensor [mm], "
-                     "best-spot or best-mtf@CYCLES_PER_MM");
+void CameraChoice::add_positions(CLI::App& command) {
   command
       .add_option("--image-distance", image_distance_mm,
                   "Put the sensor this far behind the last surface [mm]")
       ->check(positive_number());
   command.add_option("--move-lens", move_lens_mm,
                      "Move the whole lens towards the object [mm]; object and sensor stay");
+}
+
+void CameraChoice::add_blades(CLI::App& command) {
   blades.add_to(command);
+}
+
+void CameraChoice::add_field_azimuth(CLI::App& command) {
   command
       .add_option(
           "--field-azimuth", field_azimuth_deg,
@@ -73,20 +45,88 @@ void CameraChoice::add_to(CLI::App& command) {
       ->check(finite_number());
 }
 
-Lens CameraChoice::used(const Lens& lens, const std::optional<FieldTableRequest>& request,
-                        const Shared& shared) const {
-  if (image_distance_mm && focus != "design")
-    throw InputError("--image-distance and --focus both place the sensor; give one of them");
-  MountedLens camera(lens);
-  if (f_number) camera.set_f_number(*f_number);
-  if (image_distance_mm) camera.set_image_distance_mm(*image_distance_mm);
-  if (move_lens_mm) camera.move_lens_mm(*move_lens_mm);
-  StopBlades seen = blades.blades(lens);
+void CameraChoice::add_apertures(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--apertures",
+          [this](const std::string& choice) {
+            if (choice == "from-fields") apertures = Camera::Apertures::from_fields;
+          },
+          "Clear apertures that the file leaves out: unbounded (file), or what the lens's fields need "
+          "(from-fields)")
+      ->check(CLI::IsMember({"file", "from-fields"}));
+  command.add_flag_callback(
+      "--ignore-apertures", [this] { apertures = Camera::Apertures::ignored; },
+      "Let nothing but the stop clip the rays");
+}
+
+void CameraChoice::add_sensor(CLI::App& command, const std::string& meaning) {
+  command.add_option("--sensor", sensor, meaning);
+  command
+      .add_option("--sensor-set", sensor_settings,
+                  "Alter the sensor: pitch_um=3 or gain_modes[0].read_noise_e=1.5 (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+std::vector<std::string> CameraChoice::given_lens_options() const {
+  std::vector<std::string> names;
+  const auto add = [&](bool given, const char* name) {
+    if (given) names.emplace_back(name);
+  };
+  add(f_number.has_value(), "--f-number");
+  add(!focus.empty(), "--focus");
+  add(!lens.settings.empty(), "--set");
+  add(!lens.substitutions.empty(), "--substitute");
+  add(!lens.glasses.paths.empty(), "--glass-catalogue");
+  add(apertures == Camera::Apertures::from_fields, "--apertures");
+  add(apertures == Camera::Apertures::ignored, "--ignore-apertures");
+  add(image_distance_mm.has_value(), "--image-distance");
+  add(move_lens_mm.has_value(), "--move-lens");
+  add(blades.count || blades.rotation_deg, "--blades");
+  add(losses.any(), "--fresnel, --coating and --absorption");
+  return names;
+}
+
+void CameraChoice::add_to(CLI::App& command) {
+  add_stop_and_focus(command, Focus::design());
+  add_positions(command);
+  add_blades(command);
+  add_field_azimuth(command);
+}
+
+Camera CameraChoice::settings(const Lens& of) const {
+  Camera camera;
+  camera.lens = of;
+  camera.focus = focus.empty() ? usual_focus : Focus::parse(focus);
+  camera.f_number = f_number;
+  camera.image_distance_mm = image_distance_mm;
+  camera.move_lens_mm = move_lens_mm.value_or(0);
+  camera.apertures = apertures;
+  if (of.surfaces.empty()) return camera;
+  StopBlades seen = blades.blades(of);
   // Fields lie in the y-z plane: turning them is turning the blades the other way.
   if (seen.count > 0) seen.rotation_deg -= field_azimuth_deg;
-  camera.set_blades(seen);
-  focus_camera(camera, focus, request, shared);
-  return camera.lens();
+  camera.blades = seen;
+  return camera;
+}
+
+Camera CameraChoice::camera(const Shared& shared) const {
+  if (sensor.empty() && !sensor_settings.empty())
+    throw InputError("--sensor-set alters the --sensor, and there is none");
+  const Lens read = lens.path_or_name.empty() ? Lens() : lens.read(shared);
+  Camera camera = settings(read);
+  if (!read.surfaces.empty()) camera.losses = losses.losses(read, shared);
+  if (!sensor.empty()) camera.sensor = read_sensor(sensor, sensor_settings);
+  return camera;
+}
+
+Lens CameraChoice::used(const Lens& of, const std::optional<FieldTableRequest>& request,
+                        const Shared& shared) const {
+  Camera camera = settings(of);
+  camera.apertures = Camera::Apertures::ignored;  // the caller has seen to them
+  const Context context = context_of(shared);
+  return petzval::focus(mounted_lens(camera, context), camera.focus, request, context);
 }
 
 }  // namespace petzval::app

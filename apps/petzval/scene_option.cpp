@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/quantities.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/scene/wavelength_list.h>
 
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
 namespace petzval::app {
@@ -30,18 +30,6 @@ double positive(const std::string& option, const std::string& text, const char* 
   return *value;
 }
 
-/// "768x576"
-void take_size(const std::string& text, SceneOptions& options) {
-  const std::size_t cross = text.find('x');
-  if (cross != std::string::npos) {
-    options.columns = whole_text<int>(std::string_view(text).substr(0, cross));
-    options.rows = whole_text<int>(std::string_view(text).substr(cross + 1));
-  }
-  if (cross == std::string::npos || !options.columns || !options.rows || *options.columns < 1 ||
-      *options.rows < 1)
-    throw InputError(fmt::format("--scene-size {}: columns x rows, such as 768x576, would be right", text));
-}
-
 }  // namespace
 
 void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
@@ -51,7 +39,7 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
       "(petzval scene list)");
   if (required) option->required();
   command.add_option("--scene-angle", angle, "Full horizontal angle of the scene [degrees]");
-  command.add_option("--scene-distance", distance, "Distance from the sensor plane [m], or inf");
+  command.add_option("--scene-distance", distance, "Distance from the sensor plane: 1.2m, 250mm or infinity");
   command.add_option("--scene-luminance", luminance,
                      "Mean luminance [cd/m2], of the whole spectrum whatever --wavelengths takes from it");
   command.add_option("--scene-size", size, "Samples of a chart: 768x576");
@@ -106,13 +94,13 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   SceneOptions options = std::move(defaults);
   if (!angle.empty())
     options.horizontal_angle_deg = positive("--scene-angle", angle, "degrees above 0 and below 180");
-  if (distance == "inf")
-    options.distance_m = std::numeric_limits<double>::infinity();
-  else if (!distance.empty())
-    options.distance_m = positive("--scene-distance", distance, "metres above 0, or inf,");
+  if (!distance.empty()) options.distance_m = parse_distance_m(distance, "scene_distance");
   if (!luminance.empty())
     options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");
-  if (!size.empty()) take_size(size, options);
+  if (!size.empty()) {
+    const PixelSize samples = parse_pixel_size(size, "scene_size");
+    options.columns = samples.columns, options.rows = samples.rows;
+  }
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);
   if (!illuminant.empty()) options.illuminant = illuminant;
   options.depth = depth;

@@ -2,7 +2,7 @@
 // A scene on the command line.
 #pragma once
 
-#include <petzval/scene/scene_file.h>
+#include <petzval/simulate/image.h>
 
 #include <optional>
 #include <string>
@@ -28,6 +28,7 @@ struct SceneChoice {
   /// be among the defaults of a scene that is a file: see is_chart().) \throws InputError naming the option
   /// that is wrong.
   SceneOptions options(SceneOptions defaults = {}) const;
+  SceneRequest request() const { return {path_or_name, options()}; }
   /// Reads the scene with these options.
   Scene read(const SceneOptions& defaults = {}) const { return read_scene(path_or_name, options(defaults)); }
   /// Reads it and prints its notes.

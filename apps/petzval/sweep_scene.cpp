@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-#include "image_source.h"
+#include "image_option.h"
 
 namespace petzval::app {
 
@@ -36,8 +36,9 @@ void with_choice(std::vector<std::string> arguments,
 
 bool fills_frame(const std::vector<std::string>& arguments) {
   bool fills = false;
-  with_choice(arguments, [&](const ImageChoice& choice, const Shared&) {
-    fills = !choice.scene_angle_least && app::fills_frame(choice);
+  with_choice(arguments, [&](const ImageChoice& choice, const Shared& shared) {
+    fills = !choice.image.least_scene_angle_deg &&
+            petzval::fills_frame(choice.scene.request(), choice.read_optics(shared), choice.image_options());
   });
   return fills;
 }
@@ -50,7 +51,9 @@ Widths widths_of(const std::vector<std::vector<std::string>>& command_lines) {
   Widths widths;
   for (const std::vector<std::string>& arguments : command_lines)
     with_choice(arguments, [&](const ImageChoice& choice, const Shared& shared) {
-      const double angle_deg = filling_angle_deg(choice, shared).value();
+      const double angle_deg = filling_angle_deg(choice.scene.request(), choice.read_optics(shared),
+                                                 choice.image_options(), {.threads = shared.threads})
+                                   .value();
       widths.least_deg = std::min(widths.least_deg, angle_deg);
       widths.greatest_deg = std::max(widths.greatest_deg, angle_deg);
     });
