@@ -52,7 +52,7 @@ void developed(benchmark::State& state) {
   RawImage raw = capture(current, sensor, 1, {});
   raw.calibrations = standard_calibrations(sensor);
   raw.as_shot_neutral = {0.6, 1, 0.7};
-  for (auto _ : state) benchmark::DoNotOptimize(develop(raw));
+  for (auto _ : state) benchmark::DoNotOptimize(develop_planes(raw));
 }
 BENCHMARK(developed)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->Iterations(2);
 

@@ -48,7 +48,7 @@ bool try_dng(std::string_view bytes) {
   std::optional<RawImage> raw;
   if (!accepted([&] { raw = parse_dng(std::string(bytes), "fuzz"); })) return false;
   raw->validate();
-  accepted([&] { develop(*raw); });
+  accepted([&] { develop_planes(*raw); });
   if (!fits_dng(*raw)) return true;
   const std::string written = dng_bytes(*raw, "fuzz");
   const RawImage again = parse_dng(written, "fuzz");

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "option_names.h"
 #include "output_option.h"
 
 namespace petzval::app {
@@ -141,35 +142,6 @@ CLI::Validator whole_number() {
       "a whole number from 0 on");
 }
 
-std::vector<double> parse_number_list(const std::string& option, const std::string& text) {
-  constexpr double most_numbers = 100'000;
-  const auto complain = [&](const std::string& part) {
-    throw InputError(fmt::format("{} {}: \"{}\" is not a number or start:step:stop, such as 400:10:700",
-                                 option, quotable(text), quotable(part)));
-  };
-  std::vector<double> numbers;
-  for (const std::string& part : CLI::detail::split(text, ',')) {
-    const std::vector<std::string> ends = CLI::detail::split(part, ':');
-    std::vector<double> values;
-    for (const std::string& end : ends) {
-      const auto value = parse_number(trimmed(end));
-      if (!value) complain(part);
-      values.push_back(*value);
-    }
-    if (values.size() == 1) {
-      numbers.push_back(values[0]);
-      continue;
-    }
-    if (values.size() != 3) complain(part);
-    const double start = values[0], step = values[1], steps = (values[2] - start) / step;
-    if (!(steps >= 0 && steps < most_numbers)) complain(part);
-    // The last step may miss the end by rounding.
-    constexpr double share_of_a_step = 1e-9;
-    for (int i = 0; i <= std::floor(steps + share_of_a_step); ++i) numbers.push_back(start + i * step);
-  }
-  return numbers;
-}
-
 void GlassChoice::add_to(CLI::App& command) {
   command
       .add_option(
@@ -232,7 +204,7 @@ Lens LensChoice::read(const Shared& shared) const {
 }
 
 void note(const Shared& shared, const std::string& message) {
-  if (!shared.quiet) fmt::print(stderr, "petzval: note: {}\n", message);
+  if (!shared.quiet) fmt::print(stderr, "petzval: note: {}\n", with_option_names(message));
 }
 
 void require_extension(const std::string& path, const std::vector<std::string>& extensions,

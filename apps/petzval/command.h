@@ -74,10 +74,6 @@ CLI::Validator number_not_negative();
 CLI::Validator finite_number();
 CLI::Validator whole_number();
 
-/// "0,7,14", "0:5:20" (start:step:stop, both ends taken) or both, parted by commas.
-/// \param option  for messages. \throws InputError naming the option.
-std::vector<double> parse_number_list(const std::string& option, const std::string& text);
-
 /// Prints a note on stderr, unless --quiet: "petzval: note: …".
 void note(const Shared& shared, const std::string& message);
 

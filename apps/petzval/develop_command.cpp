@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "command.h"
 #include "develop_option.h"
 #include "output_option.h"
 
@@ -37,24 +38,29 @@ const char* name_of(Demosaic method) {
   return "";
 }
 
-void develop(const DevelopCommand& command, const Shared& shared) {
+void run_develop(const DevelopCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs)
     require_extension(path, display_picture_extensions(), "a picture");
   StagedFiles files;
   std::vector<std::string> staged;
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
   const RawImage raw = read_dng(command.raw);
-  DevelopReport report;
-  const Planes picture =
-      command.choice.develop(raw, report, [&](const std::string& path) { return files.stage(path); });
-  const std::string provenance = fmt::format("petzval {} develop: {}", version(), raw.provenance);
-  for (const std::string& path : staged)
-    write_display_picture(path, picture, display_space(command.choice.space), command.bits, provenance);
+  const std::vector<std::pair<std::string, std::string>> steps = command.choice.step_files();
+  const DevelopStep write_step = [&](const std::string& name, const Planes& planes) {
+    for (const auto& [wanted, path] : steps)
+      if (wanted == name)
+        write_display_picture(files.stage(path), planes, display_space(command.choice.space), 16,
+                              fmt::format("step {} of development", name));
+  };
+  const Picture picture = develop(raw, command.choice.development(), context_of(shared),
+                                  steps.empty() ? DevelopStep() : write_step);
+  const DevelopReport& report = picture.report;
+  for (const std::string& path : staged) write_picture(path, picture, command.bits);
   files.commit();
 
   if (shared.json) {
-    const nlohmann::ordered_json json = {{"columns", picture.columns},
-                                         {"rows_of_pixels", picture.rows},
+    const nlohmann::ordered_json json = {{"columns", picture.planes.columns},
+                                         {"rows_of_pixels", picture.planes.rows},
                                          {"mosaic", mosaic_text(raw.mosaic, raw.channels)},
                                          {"demosaic", name_of(report.demosaic)},
                                          {"neutral", report.neutral},
@@ -64,7 +70,7 @@ void develop(const DevelopCommand& command, const Shared& shared) {
     return fmt::print("{}\n", json.dump(2));
   }
   if (shared.quiet) return;
-  fmt::print("{} x {} pixels, {}, demosaic {}\n", picture.columns, picture.rows,
+  fmt::print("{} x {} pixels, {}, demosaic {}\n", picture.planes.columns, picture.planes.rows,
              mosaic_text(raw.mosaic, raw.channels), name_of(report.demosaic));
   fmt::print("  white {:.4f}{}, {} defects corrected\n", fmt::join(report.neutral, " "),
              report.temperature_k > 0 ? fmt::format(", light of {:.0f} K", report.temperature_k) : "",
@@ -77,7 +83,7 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<DevelopCommand>();
   CLI::App* command = add_command(app, shared, "develop", "Develop a raw file: a picture",
                                   "petzval develop raw.dng -o picture.png", true,
-                                  [options, &shared] { develop(*options, shared); });
+                                  [options, &shared] { run_develop(*options, shared); });
   command->add_option("raw", options->raw, "RAW.dng")->required();
   options->choice.add_to(*command);
   command

@@ -2,12 +2,13 @@
 // Options that say how a raw image is developed, for every command that makes pictures of raw images.
 #pragma once
 
-#include <petzval/isp/develop.h>
+#include <petzval/simulate/develop.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "command.h"
+#include "cli11.h"
 
 namespace petzval::app {
 
@@ -15,14 +16,15 @@ struct DevelopChoice {
   std::string white_balance = "as-shot", demosaic = "auto", sensor, matrix = "auto", flat, space = "srgb",
               tone = "none";
   bool keep_defects = false;
-  double denoise = 0, sharpen = 0, sharpen_radius_px = 1, brightness_ev = 0;
+  DevelopOptions given;            ///< what the options fill in directly
   std::vector<std::string> steps;  ///< NAME=FILE
 
-  /// \param after_image  of `image`, whose --sensor is another.
-  void add_to(CLI::App& command, bool after_image = false);
-  /// Linear light of the display. Steps are written to where `stage` says that their files go.
-  Planes develop(const RawImage& raw, DevelopReport& report,
-                 const std::function<std::string(const std::string&)>& stage) const;
+  /// \param after_light  of a command that makes the light, whose --sensor is another.
+  void add_to(CLI::App& command, bool after_light = false);
+  /// Reads the flat field and the sensor, if they are named. \throws InputError.
+  Development development() const;
+  /// Name and file of each step that is to be written. \throws InputError for a name that is none.
+  std::vector<std::pair<std::string, std::string>> step_files() const;
 };
 
 }  // namespace petzval::app

@@ -5,6 +5,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ray_fan.h>
 #include <petzval/base/error.h>
+#include <petzval/base/quantities.h>
 #include <petzval/base/wavelength.h>
 
 #include <algorithm>
@@ -30,14 +31,14 @@ const std::map<std::string, Fields::Kind>& field_kinds() {
 }  // namespace
 
 std::vector<double> parse_wavelength_list(const std::string& text) {
-  std::vector<double> wavelengths_nm = parse_number_list("--wavelengths", text);
-  for (const double nm : wavelengths_nm) require_wavelength(nm, "--wavelengths " + text);
+  std::vector<double> wavelengths_nm = parse_number_list(text, "wavelengths_nm");
+  for (const double nm : wavelengths_nm) require_wavelength(nm, "`wavelengths_nm` " + text);
   return wavelengths_nm;
 }
 
 void FieldChoice::add_to(CLI::App& command) {
   command.add_option_function<std::string>(
-      "--fields", [this](const std::string& text) { fields = parse_number_list("--fields", text); },
+      "--fields", [this](const std::string& text) { fields = parse_number_list(text, "fields"); },
       "Fields, 0,7,14 or 0:7:14 (start:step:stop); in the units of the field type");
   command.add_option("--field-type", field_type, "What the fields are; default: as in the lens file")
       ->check(CLI::IsMember(
@@ -117,7 +118,25 @@ nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
+namespace {
+
+JsonTaker* json_taker = nullptr;
+
+}  // namespace
+
+JsonTaker::JsonTaker() {
+  json_taker = this;
+}
+
+JsonTaker::~JsonTaker() {
+  json_taker = nullptr;
+}
+
 void print_json(const nlohmann::ordered_json& json) {
+  if (json_taker) {
+    json_taker->taken_ = json;
+    return;
+  }
   fmt::print("{}\n", json.dump(2));
 }
 

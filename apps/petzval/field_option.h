@@ -42,7 +42,22 @@ nlohmann::ordered_json f_number_or_null(const FirstOrder& data);
 
 /// NaN and infinities become null, as JSON wants.
 nlohmann::ordered_json number_or_null(double value);
-/// Prints JSON on stdout, indented.
+/// Prints JSON on stdout, indented; or hands it to the JsonTaker that there is.
 void print_json(const nlohmann::ordered_json& json);
+
+/// While it lives, JSON that commands would print is kept instead: for commands that run other commands.
+class JsonTaker {
+ public:
+  JsonTaker();
+  ~JsonTaker();
+  JsonTaker(const JsonTaker&) = delete;
+  JsonTaker& operator=(const JsonTaker&) = delete;
+  /// What was printed last; null: nothing.
+  const nlohmann::ordered_json& taken() const { return taken_; }
+
+ private:
+  friend void print_json(const nlohmann::ordered_json& json);
+  nlohmann::ordered_json taken_;
+};
 
 }  // namespace petzval::app

@@ -18,7 +18,7 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
   const Context context = context_of(shared);
   Optics optics = choice.read_optics(shared);
   const std::optional<Sensor> sensor = std::visit([](const auto& camera) { return camera.sensor; }, optics);
-  choice.shot.check(sensor, choice.outputs, app);
+  OutputOptions outputs = choice.shot.checked(sensor, choice.outputs, app);
 
   FormedImage formed;
   formed.plan = plan_image(choice.scene.request(), std::move(optics), choice.image_options(), context);
@@ -29,9 +29,10 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
         &formed.report);
   else
     formed.light = image(formed.plan, context, &formed.report);
-  const std::optional<Shot> shot = write_outputs(choice, formed, sensor, shared);
-  if (shared.json) return print_json(summary_json(formed, shot, choice.outputs));
-  if (!shared.quiet) print_summary(formed, shot);
+  outputs.scene_white = formed.plan.scene.illuminant;
+  const Outputs made = write_image(choice.outputs, formed, sensor, outputs, context);
+  if (shared.json) return print_json(summary_json(formed, made, choice.outputs));
+  if (!shared.quiet) print_summary(formed, made);
 }
 
 }  // namespace

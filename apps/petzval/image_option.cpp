@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/file_extension.h>
 #include <petzval/optics/table_file.h>
 
 #include <algorithm>
@@ -15,15 +14,6 @@
 namespace petzval::app {
 
 namespace {
-
-void check_outputs(const std::vector<std::string>& outputs) {
-  const std::vector<std::string> known = {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"};
-  for (const std::string& path : outputs) {
-    if (std::find(known.begin(), known.end(), extension_of(path)) == known.end())
-      throw InputError(
-          path, "irradiance is written as .exr or .npy, a raw file as .dng, a picture as .png or .tif");
-  }
-}
 
 /// A stored table is what it is: options that would make another one are refused.
 void check_sources(const ImageChoice& choice) {
@@ -65,7 +55,6 @@ void check_method(const ImageChoice& choice) {
 }  // namespace
 
 void ImageChoice::check() const {
-  check_outputs(outputs);
   check_sources(*this);
   if (camera.sensor.empty() && !camera.sensor_settings.empty())
     throw InputError("--sensor-set alters the --sensor, and there is none");
@@ -159,9 +148,6 @@ void ImageChoice::add_to(CLI::App& command) {
       ->required()
       ->allow_extra_args(false);
   shot.add_to(command);
-  command.add_option("--bits", shot.bits, "Of the picture: 8 or 16")
-      ->check(CLI::IsMember({8, 16}))
-      ->capture_default_str();
 }
 
 }  // namespace petzval::app

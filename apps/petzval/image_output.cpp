@@ -2,13 +2,11 @@
 #include "image_output.h"
 
 #include "field_option.h"
+#include "option_names.h"
 
 #include <fmt/format.h>
-#include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
 #include <petzval/base/staged_files.h>
-#include <petzval/image/formats/irradiance.h>
-#include <petzval/image/picture.h>
 
 #include <cmath>
 #include <cstddef>
@@ -21,22 +19,6 @@ namespace {
 
 std::string distance_of(const Scene& scene) {
   return scene.distance_m() ? fmt::format("{:g} m from the sensor", *scene.distance_m()) : "at infinity";
-}
-
-/// The white of the scene, if its light in these bands can be taken for white at all: two or three narrow
-/// bands cannot.
-std::optional<Spectrum> usable_white(const SpectralImage& image, const Scene& scene, const Shared& shared) {
-  const SpectralImage one_pixel(1, 1, image.wavelengths_nm(), image.pitch_um());
-  PictureOptions options;
-  options.scene_white = scene.illuminant;
-  try {
-    PictureRenderer(one_pixel, options);
-    return scene.illuminant;
-  } catch (const InputError& error) {
-    note(shared,
-         fmt::format("colours are shown as they fall on the sensor, not adapted to white: {}", error.what()));
-    return {};
-  }
 }
 
 }  // namespace
@@ -53,42 +35,30 @@ std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, c
   return file ? std::optional(std::move(file)) : std::nullopt;
 }
 
-std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
-                                  const std::optional<Sensor>& sensor, const Shared& shared) {
+Outputs write_image(const std::vector<std::string>& paths, FormedImage& image,
+                    const std::optional<Sensor>& sensor, const OutputOptions& options,
+                    const Context& context) {
   StagedFiles files;
-  if (image.file) {
-    image.file->put_at(files.stage(choice.outputs.front()));
-    files.commit();
-    return {};
-  }
-  SpectralImage& light = *image.light;
-  std::vector<std::string> of_light;
-  for (const std::string& path : choice.outputs) {
-    const std::string extension = extension_of(path);
-    if (extension == ".exr" || extension == ".npy") {
-      of_light.push_back(path);
-    } else if (extension == ".png" && !choice.shot.develops(sensor)) {
-      PictureOptions options;
-      options.scene_white = usable_white(light, image.plan.scene, shared);
-      options.false_colour = true;
-      note(shared,
-           fmt::format("{}: {}", path, write_picture(files.stage(path), light, options, choice.shot.bits)));
-    }
-  }
-  std::optional<Shot> shot = choice.shot.shoot(light, sensor, choice.outputs, files, shared);
-  // Whole images come last: the last of them may use the room that the light takes.
-  for (std::size_t i = 0; i < of_light.size(); ++i) {
-    const std::string staged = files.stage(of_light[i]);
-    if (i + 1 < of_light.size())
-      write_irradiance(staged, light);
-    else
-      write_irradiance(staged, std::move(light));
-  }
+  Outputs made;
+  if (image.file)
+    image.file->put_at(files.stage(paths.front()));
+  else
+    made = write_outputs(*std::move(image.light), paths, sensor, options, files, context);
   files.commit();
-  return shot;
+  return made;
 }
 
-nlohmann::ordered_json summary_json(const FormedImage& image, const std::optional<Shot>& shot,
+namespace {
+
+std::vector<std::string> notes_of(const FormedImage& image) {
+  std::vector<std::string> notes;
+  for (const std::string& note : image.report.imaging.notes) notes.push_back(with_option_names(note));
+  return notes;
+}
+
+}  // namespace
+
+nlohmann::ordered_json summary_json(const FormedImage& image, const Outputs& made,
                                     const std::vector<std::string>& outputs) {
   nlohmann::ordered_json json = {
       {"columns", image.plan.frame.columns},
@@ -112,16 +82,16 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const std::optiona
       {"distortion_seconds", image.report.imaging.distortion_seconds},
       {"blur_seconds", image.report.imaging.blur_seconds},
       {"kernel_seconds", image.report.imaging.kernel_seconds},
-      {"notes", image.report.imaging.notes},
+      {"notes", notes_of(image)},
       {"outputs", outputs}};
-  if (shot) {
-    json["exposure_s"] = shot->raw.exposure_s;
-    json["iso"] = shot->raw.iso;
-    json["as_shot_neutral"] = shot->raw.as_shot_neutral;
+  if (made.raw) {
+    json["exposure_s"] = made.raw->exposure_s;
+    json["iso"] = made.raw->iso;
+    json["as_shot_neutral"] = made.raw->as_shot_neutral;
   }
-  if (shot && shot->development) {
-    json["temperature_k"] = shot->development->temperature_k;
-    json["defects_corrected"] = shot->development->defects;
+  if (made.picture) {
+    json["temperature_k"] = made.picture->report.temperature_k;
+    json["defects_corrected"] = made.picture->report.defects;
   }
   if (image.report.layers.empty()) return json;
   json["viewpoint_to_sensor_mm"] = image.report.pupil_to_sensor_mm;
@@ -134,12 +104,12 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const std::optiona
 
 namespace {
 
-void print_shot(const Shot& shot) {
-  fmt::print("  exposure    {:.4g} s, ISO {:.0f}, on {}\n", shot.raw.exposure_s, shot.raw.iso,
-             shot.raw.sensor_name);
-  if (shot.development && shot.raw.channels.size() > 1)
+void print_shot(const Outputs& made) {
+  fmt::print("  exposure    {:.4g} s, ISO {:.0f}, on {}\n", made.raw->exposure_s, made.raw->iso,
+             made.raw->sensor_name);
+  if (made.picture && made.raw->channels.size() > 1)
     fmt::print("  developed   white {:.4f}, {} defects corrected\n",
-               fmt::join(shot.development->neutral, " "), shot.development->defects);
+               fmt::join(made.picture->report.neutral, " "), made.picture->report.defects);
 }
 
 void print_layers(const std::vector<DepthLayer>& layers, double pitch_um) {
@@ -156,7 +126,7 @@ void print_layers(const std::vector<DepthLayer>& layers, double pitch_um) {
 
 }  // namespace
 
-void print_summary(const FormedImage& image, const std::optional<Shot>& shot) {
+void print_summary(const FormedImage& image, const Outputs& made) {
   const auto& bands = image.plan.scene.wavelengths_nm();
   fmt::print("{} x {} pixels of {:.5g} um, ", image.plan.frame.columns, image.plan.frame.rows,
              image.plan.frame.pitch_um);
@@ -171,7 +141,7 @@ void print_summary(const FormedImage& image, const std::optional<Shot>& shot) {
   fmt::print("  method      {}\n", image.report.method);
   fmt::print("  irradiance  {:.4g} to {:.4g} W/(m2 nm)\n", image.report.imaging.darkest,
              image.report.imaging.brightest);
-  if (shot) print_shot(*shot);
+  if (made.raw) print_shot(made);
   print_layers(image.report.layers, image.plan.frame.pitch_um);
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "image_option.h"
+#include <petzval/simulate/outputs.h>
 
 namespace petzval::app {
 
@@ -25,12 +25,13 @@ struct FormedImage {
 /// A single .npy file of an image that is large: its bands go there as they are formed.
 std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, const ImagePlan& plan);
 
-/// Writes everything that was asked for. \returns what the sensor made of the light, if anything.
-std::optional<Shot> write_outputs(const ImageChoice& choice, FormedImage& image,
-                                  const std::optional<Sensor>& sensor, const Shared& shared);
+/// Writes everything that was asked for.
+Outputs write_image(const std::vector<std::string>& paths, FormedImage& image,
+                    const std::optional<Sensor>& sensor, const OutputOptions& options,
+                    const Context& context);
 
-nlohmann::ordered_json summary_json(const FormedImage& image, const std::optional<Shot>& shot,
+nlohmann::ordered_json summary_json(const FormedImage& image, const Outputs& made,
                                     const std::vector<std::string>& outputs);
-void print_summary(const FormedImage& image, const std::optional<Shot>& shot);
+void print_summary(const FormedImage& image, const Outputs& made);
 
 }  // namespace petzval::app

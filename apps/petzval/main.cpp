@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The petzval program: parses the command line and turns exceptions into exit codes.
+#include "option_names.h"
 #include "program.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@
 namespace {
 
 int report(const std::string& message, int code) {
-  fmt::print(stderr, "petzval: error: {}\n", petzval::with_final_names(message));
+  fmt::print(stderr, "petzval: error: {}\n",
+             petzval::app::with_option_names(petzval::with_final_names(message)));
   return code;
 }
 

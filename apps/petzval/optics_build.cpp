@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
-#include <petzval/base/progress.h>
-#include <petzval/base/units.h>
-#include <petzval/camera/mounted_lens.h>
 #include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/sensor.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 
-#include "field_option.h"
-#include "loss_option.h"
+#include "camera_option.h"
 #include "optics_commands.h"
 #include "output_option.h"
 
@@ -26,32 +21,17 @@ namespace petzval::app {
 namespace {
 
 struct BuildCommand {
-  LensChoice lens;
-  FieldChoice apertures;  ///< only --apertures and --ignore-apertures of it
-  LossChoice losses;
+  CameraChoice camera;
   std::string output, wavelengths, sensor;
-  std::string focus = "design";
-  std::optional<double> f_number, image_height_mm;
+  std::optional<double> image_height_mm;
   int field_count = TableOptions{}.field_count;
 };
-
-/// "design", "infinity", or a distance from the sensor [mm].
-void take_focus(MountedLens& camera, const std::string& focus) {
-  if (focus == "design") return;
-  if (focus == "infinity" || focus == "inf") return camera.focus_at_m({});
-  double distance_mm = 0;
-  const auto [end, error] = std::from_chars(focus.data(), focus.data() + focus.size(), distance_mm);
-  if (error != std::errc() || end != focus.data() + focus.size() || !(distance_mm > 0))
-    throw InputError(fmt::format(
-        "--focus {}: design, infinity or a distance from the sensor in mm would be right", focus));
-  camera.focus_at_m(distance_mm / mm_per_m);
-}
 
 TableOptions table_options(const BuildCommand& command) {
   TableOptions options;
   options.field_count = command.field_count;
   if (!command.wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(command.wavelengths);
-  if (command.apertures.ignore_apertures) options.clip = Tracer::Clip::stop_only;
+  if (command.camera.apertures == Camera::Apertures::ignored) options.clip = Tracer::Clip::stop_only;
   if (command.image_height_mm && !(*command.image_height_mm > 0))
     throw InputError(
         fmt::format("--image-height {}: a positive number of mm would be right", *command.image_height_mm));
@@ -92,12 +72,12 @@ void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
 void build(const BuildCommand& command, const Shared& shared) {
   require_extension(command.output, table_extensions(), "a lens data table");
   TableOptions options = table_options(command);
-  MountedLens camera(command.apertures.prepare(command.lens.read(shared), shared));
-  if (command.f_number) camera.set_f_number(*command.f_number);
-  take_focus(camera, command.focus);
-  options.losses = command.losses.losses(camera.lens(), shared);
-  ProgressBar bar(!shared.quiet);
-  const LensDataTable table = build_lens_data_table(camera.lens(), options, bar.callback());
+  const Context context = context_of(shared);
+  const Camera camera = command.camera.camera(shared);
+  options.losses = camera.losses;
+  const LensDataTable table = result_within(context, [&](const ProgressCallback& progress) {
+    return build_lens_data_table(lens_in_use(camera, context), options, progress);
+  });
   note_short_table(table, options.max_image_height_mm, shared);
   note_cut_psfs(table, shared);
   write_table(table, command.output);
@@ -112,7 +92,7 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
                   "petzval optics build edmund-54852 --sensor 768x576@6.25 --wavelengths 400:50:700 "
                   "-o edmund.h5",
                   false, [options, &shared] { build(*options, shared); });
-  options->lens.add_to(*command);
+  options->camera.add_lens(*command, true, true);
   command->add_option("-o,--output", options->output, "The table, an HDF5 file")
       ->check(output_file())
       ->required();
@@ -125,19 +105,10 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
       ->excludes(sensor);
   command->add_option("--fields", options->field_count, "Number of fields, the axis included")
       ->capture_default_str();
-  command->add_option("--focus", options->focus, "design, infinity, or a distance from the sensor [mm]")
-      ->capture_default_str();
-  command->add_option("--f-number", options->f_number, "Stop down to this paraxial f-number at infinity");
-  command
-      ->add_option_function<std::string>(
-          "--apertures",
-          [options](const std::string& choice) { options->apertures.from_fields = choice == "from-fields"; },
-          "Clear apertures that the file leaves out: unbounded (file), or what the lens's fields need "
-          "(from-fields)")
-      ->check(CLI::IsMember({"file", "from-fields"}));
-  command->add_flag("--ignore-apertures", options->apertures.ignore_apertures,
-                    "Let nothing but the stop clip the rays");
-  options->losses.add_to(*command);
+  options->camera.add_stop_and_focus(*command, Focus::design());
+  options->camera.add_positions(*command);
+  options->camera.add_apertures(*command);
+  options->camera.losses.add_to(*command);
 }
 
 }  // namespace petzval::app

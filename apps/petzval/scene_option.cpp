@@ -94,11 +94,11 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   SceneOptions options = std::move(defaults);
   if (!angle.empty())
     options.horizontal_angle_deg = positive("--scene-angle", angle, "degrees above 0 and below 180");
-  if (!distance.empty()) options.distance_m = parse_distance_m(distance, "scene_distance");
+  if (!distance.empty()) options.distance_m = parse_distance_m(distance, "scene.distance_m");
   if (!luminance.empty())
     options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");
   if (!size.empty()) {
-    const PixelSize samples = parse_pixel_size(size, "scene_size");
+    const PixelSize samples = parse_pixel_size(size, "scene.size");
     options.columns = samples.columns, options.rows = samples.rows;
   }
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "command.h"
 #include "output_option.h"
 #include "sense_option.h"
 #include "sensor_option.h"
@@ -90,7 +91,8 @@ void sense(const SenseCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
   const Sensor sensor = read_sensor(command.sensor, command.sensor_settings);
   sensor.require_electronics();
-  const RawImage raw = command.choice.expose(read_irradiance(command.irradiance), sensor, shared);
+  const RawImage raw =
+      expose(read_irradiance(command.irradiance), sensor, command.choice.options(), context_of(shared));
   for (const std::string& path : staged) write_raw(path, raw);
   files.commit();
   if (shared.json) return fmt::print("{}\n", summary_json(raw, command.outputs).dump(2));

@@ -24,13 +24,13 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// Options whose own values may be start:step:stop.
+/// Options whose own values may be start:step:stop: a range is one value of theirs.
 bool takes_lists(const std::string& key) {
   return key == "wavelengths" || key == "scene-bands" || key == "fields" || key == "field";
 }
 
 struct Range {
-  double from = 0, to = 0, step = 0;
+  double from = 0, step = 0, to = 0;
 
   /// How many values it has; nothing if the step does not lead from one end to the other.
   std::optional<double> count() const {
@@ -40,23 +40,27 @@ struct Range {
   }
 };
 
-/// FROM:TO:STEP, if the text is three numbers. \throws InputError if one is none.
+/// START:STEP:STOP, if the text is three numbers. \throws InputError if one is none.
 std::optional<Range> parse_range(const std::string& key, const std::string& text) {
   if (text.find(',') != text.npos) return {};
   const std::vector<std::string> parts = split(text, ':');
   if (parts.size() != 3) return {};
-  const auto from = parse_number(parts[0]), to = parse_number(parts[1]), step = parse_number(parts[2]);
-  if (from && to && step) return Range{*from, *to, *step};
-  if (!from && !to && !step) return {};
+  const auto from = parse_number(parts[0]), step = parse_number(parts[1]), to = parse_number(parts[2]);
+  if (from && step && to) return Range{*from, *step, *to};
+  if (!from && !step && !to) return {};
   throw InputError(
-      fmt::format("--vary {}={}: FROM:TO:STEP are three numbers, as in 0.4:0.6:0.05", key, text));
+      fmt::format("--vary {}={}: START:STEP:STOP are three numbers, as in 0.4:0.05:0.6", key, text));
 }
 
 std::vector<std::string> values_of(const std::string& key, const Range& range, const std::string& text) {
   const std::optional<double> count = range.count();
-  if (!count) {
+  // One value of a range that has two ends is the other order of the three: 0.4:0.6:0.05.
+  if (!count || (*count < 2 && range.from != range.to)) {
+    const Range turned{range.from, range.to, range.step};
     const std::string right = range.step == 0 ? std::string("a step other than 0")
-                                              : fmt::format("{}:{}:{}", range.from, range.to, -range.step);
+                              : turned.count().value_or(0) >= 2
+                                  ? fmt::format("{}:{}:{}", turned.from, turned.step, turned.to)
+                                  : fmt::format("{}:{}:{}", range.from, -range.step, range.to);
     throw InputError(fmt::format("--vary {}={}: steps of {} do not lead from {} to {}; {} would be right",
                                  key, text, range.step, range.from, range.to, right));
   }
@@ -95,14 +99,14 @@ SweptParameter parse_swept(const std::string& text, std::vector<std::string>& no
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(
-        fmt::format("--vary {}: KEY=FROM:TO:STEP or KEY=A,B,… would be right, as in "
-                    "surfaces[4].thickness_mm=0.4:0.6:0.05",
+        fmt::format("--vary {}: KEY=START:STEP:STOP or KEY=A,B,… would be right, as in "
+                    "surfaces[4].thickness_mm=0.4:0.05:0.6",
                     text));
   SweptParameter parameter{text.substr(0, equals), {}};
   const std::string values = text.substr(equals + 1);
-  const std::optional<Range> range = parse_range(parameter.key, values);
-  const bool own = range && takes_lists(parameter.key) && range->count().value_or(1) == 1;
-  if (!range || own) {
+  const std::optional<Range> range =
+      takes_lists(parameter.key) ? std::nullopt : parse_range(parameter.key, values);
+  if (!range) {
     parameter.values = split(values, ',');
   } else {
     parameter.values = values_of(parameter.key, *range, values);

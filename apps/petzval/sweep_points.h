@@ -14,9 +14,9 @@ struct SweptParameter {
   std::vector<std::string> values;
 };
 
-/// "KEY=FROM:TO:STEP" (FROM, FROM + STEP and so on, not beyond TO) or "KEY=A,B,…". \param notes  gains what
-/// the user should know: an end that is not met, values that stand there twice. \throws InputError saying
-/// what would be right, or for more than 10,000 values.
+/// "KEY=START:STEP:STOP" (START, START + STEP and so on, not beyond STOP) or "KEY=A,B,…". \param notes  gains
+/// what the user should know: an end that is not met, values that stand there twice. \throws InputError
+/// saying what would be right, or for more than 10,000 values.
 SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes);
 
 /// Values of all parameters at one point, in the order of the parameters.

@@ -2,29 +2,25 @@
 #include "sweep_result.h"
 
 #include <fmt/format.h>
+#include <petzval/base/context.h>
 #include <petzval/base/data_directory.h>
-#include <petzval/base/error.h>
+#include <petzval/base/staged_files.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/pbrt/scene_files.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <new>
 
-#include "child_process.h"
+#include "field_option.h"
+#include "option_names.h"
+#include "program.h"
 
 namespace petzval::app {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string last_line(const std::string& text) {
-  std::string_view view(text);
-  while (!view.empty() && view.back() == '\n') view.remove_suffix(1);
-  const std::size_t at = view.rfind('\n');
-  std::string line(at == std::string_view::npos ? view : view.substr(at + 1));
-  constexpr std::string_view prefix = "petzval: error: ";
-  return line.compare(0, prefix.size(), prefix) == 0 ? line.substr(prefix.size()) : line;
-}
 
 std::string base_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
@@ -76,21 +72,47 @@ bool recall(const std::string& record_path, PointResult& result, const Shared& s
   return result.done = true;
 }
 
+/// Runs a command of this program. \returns its exit code, and its numbers or what is wrong.
+struct Outcome {
+  int exit_code = 0;
+  Json numbers;
+  std::string error;
+};
+
+Outcome run_command(std::vector<std::string> arguments) {
+  CLI::App program{"", "petzval"};
+  Shared shared;
+  add_all_commands(program, shared);
+  const JsonTaker taker;
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
+  try {
+    program.parse(std::move(arguments));
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    return {2, {}, usage_message(program, error)};
+  } catch (const InputError& error) {
+    return {2, {}, with_option_names(with_final_names(error.what()))};
+  } catch (const std::bad_alloc&) {
+    return {1, {}, "out of memory; a smaller picture or fewer bands would fit"};
+  } catch (const std::exception& error) {
+    return {1, {}, with_final_names(error.what())};
+  }
+  return {0, taker.taken(), ""};
+}
+
 /// Runs the command of the point, and records what it made.
 void make(PointResult& result, const std::string& folder, const std::string& name) {
-  const std::string aside = folder + "/." + name;
-  const ChildOutcome outcome = run_again(result.arguments, aside + ".out", aside + ".err");
+  const Outcome outcome = run_command(result.arguments);
   result.exit_code = outcome.exit_code;
-  result.numbers = Json::parse(outcome.out, nullptr, false);
+  result.numbers = outcome.numbers;
   result.done = outcome.exit_code == 0 && result.numbers.is_object();
   if (result.done) return write_whole_file(folder + "/" + name + ".json", record_of(result).dump(1) + "\n");
   result.numbers = Json::object();
   result.picture.clear();
   result.outputs.clear();
-  result.error = in_words_of_sweep(last_line(outcome.error), result.point);
-  if (!result.error.empty()) return;
-  result.error = outcome.exit_code == 0 ? "the command printed no numbers"
-                                        : fmt::format("ended with code {}", outcome.exit_code);
+  result.error =
+      outcome.exit_code == 0 ? "the command gave no numbers" : in_words_of_sweep(outcome.error, result.point);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One point of a sweep: made by this program as another process, or taken from an earlier run.
+// One point of a sweep: made now, or taken from an earlier run.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -26,7 +26,7 @@ class BadScene(ProgramTest):
         return ["scene.exr"]
 
     def angle(self):
-        return ["--scene-angle", "30", "--scene-distance", "0.25"]
+        return ["--scene-angle", "30", "--scene-distance", "0.25m"]
 
     def test_the_sample_itself_is_right(self):
         self.exr(grey)
@@ -74,7 +74,7 @@ class BadScene(ProgramTest):
         # of 10 um wider; the scene has 2 degrees.
         self.exr(grey)
         done = self.petzval("image", "scene.exr", *LENS, "--sensor", SENSOR, "--scene-angle", "2", "--scene-distance",
-                            "0.25", "-o", "out.png")
+                            "0.25m", "-o", "out.png")
         self.assert_error(done, 2, "falls short by")
         short = re.search(r"falls short by ([\d.]+)° horizontally, ([\d.]+)° vertically", done.stderr)
         margin = int(re.search(r"a margin of (\d+) cells", done.stderr)[1])
@@ -84,7 +84,7 @@ class BadScene(ProgramTest):
     def test_impossible_options(self):
         self.exr(grey)
         for option in (["--scene-angle", "180"], ["--scene-angle", "0"], ["--scene-angle", "nan"],
-                       ["--scene-distance", "-1"], ["--scene-luminance", "0"], ["--scene-luminance", "inf"]):
+                       ["--scene-distance", "-1m"], ["--scene-distance", "1"], ["--scene-luminance", "0"], ["--scene-luminance", "inf"]):
             self.refuse("scene.exr", options=option)
 
     def test_impossible_sensors(self):

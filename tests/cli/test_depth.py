@@ -32,14 +32,14 @@ class Depth(petzval_cli.ProgramTest):
 
     def test_one_depth_is_a_plane_there(self):
         self.depth_file("even.npy", lambda *_: 1.5)
-        plane = self.image("plane.npy", "--scene-distance", 1.5)
-        self.assertEqual(self.image("deep.npy", "--scene-distance", 1.5, "--scene-depth", "even.npy"), plane)
-        self.assertNotEqual(self.image("near.npy", "--scene-distance", 1.5, "--scene-depth", "even.npy", "--focus", 900),
+        plane = self.image("plane.npy", "--scene-distance", "1.5m")
+        self.assertEqual(self.image("deep.npy", "--scene-distance", "1.5m", "--scene-depth", "even.npy"), plane)
+        self.assertNotEqual(self.image("near.npy", "--scene-distance", "1.5m", "--scene-depth", "even.npy", "--focus", "900mm"),
                             plane)
 
     def test_a_map_goes_with_the_scene_into_a_file_and_back(self):
         self.depth_file("steps.npy", lambda column, _: 0.8 if column < 20 else math.inf)
-        scene = (*self.CHART, "--scene-distance", 1, "--scene-depth", "steps.npy", "--scene-depth-from", "pupil")
+        scene = (*self.CHART, "--scene-distance", "1m", "--scene-depth", "steps.npy", "--scene-depth-from", "pupil")
         direct = self.image("direct.npy", scene=scene)
         self.assert_succeeds("scene", "convert", *scene, "kept.exr")
         facts = self.json_of("scene", "info", "kept.exr")
@@ -49,7 +49,7 @@ class Depth(petzval_cli.ProgramTest):
         # The map alone, and in the file of another scene of that size.
         self.assert_succeeds("scene", "convert", "kept.exr", "--depth", "map.npy")
         self.assertEqual(floats_of(self.folder / "map.npy"), floats_of(self.folder / "steps.npy"))
-        other = (*self.CHART, "--scene-distance", 1, "--scene-depth", "kept.exr", "--scene-depth-from", "pupil")
+        other = (*self.CHART, "--scene-distance", "1m", "--scene-depth", "kept.exr", "--scene-depth-from", "pupil")
         self.assertEqual(self.image("other.npy", scene=other), direct)
         self.assert_succeeds("scene", "convert", "kept.exr", "--depth", "map.png")
 
@@ -58,12 +58,12 @@ class Depth(petzval_cli.ProgramTest):
         self.depth_file("steps.npy", lambda column, _: 0.7 if column < 16 else 1.0 if column < 32 else 2.0)
 
         def contrasts(*focus):
-            pixels = self.image("picture.npy", "--scene-distance", 1, "--scene-depth", "steps.npy", *focus)
+            pixels = self.image("picture.npy", "--scene-distance", "1m", "--scene-depth", "steps.npy", *focus)
             parts = [[pixels[row * 24 + column] for row in range(16) for column in range(first, first + 5)]
                      for first in (1, 9, 18)]
             return [(max(part) - min(part)) / (max(part) + min(part)) for part in parts]
 
-        for sharpest, focus in enumerate(((700,), (), (2000,))):
+        for sharpest, focus in enumerate((("700mm",), (), ("2m",))):
             found = contrasts(*(("--focus", *focus) if focus else ()))
             self.assertEqual(max(range(3), key=lambda part: found[part]), sharpest, found)
 
@@ -110,7 +110,7 @@ class Depth(petzval_cli.ProgramTest):
         refused("negative.npy", "negative.npy", "-1 m")
         self.depth_file("inside.npy", lambda column, row: 0.03)
         refused("inside.npy", "--scene-depth-scale")
-        refused("inside.npy", "--scene-depth-scale", arguments=("--focus", 1000))
+        refused("inside.npy", "--scene-depth-scale", arguments=("--focus", "1m"))
         self.write("small.npy", spectral_files.npy((3, 4), [1.0] * 12))
         refused("small.npy", "small.npy", "4 x 3", f"{COLUMNS} x {ROWS}")
         self.write("line.npy", spectral_files.npy((12,), [1.0] * 12))
@@ -134,12 +134,12 @@ class Depth(petzval_cli.ProgramTest):
                             "--scene-depth", "even.npy", words=["even.npy"])
 
     def test_a_stored_table_is_for_one_distance(self):
-        self.assert_succeeds("optics", "build", "dgauss-50mm", "--focus", 1000, "--wavelengths", 550, "--fields", 5,
+        self.assert_succeeds("optics", "build", "dgauss-50mm", "--focus", "1m", "--wavelengths", 550, "--fields", 5,
                              "-o", "table.h5")
         table = ("--optics", "table.h5", "--sensor", "24x16@150", "--surround", "extend", "-o", "x.npy")
         scene = ("cards", "--scene-size", "48x36", "--scene-angle", 8, "--wavelengths", 550)
         self.assert_refused("image", *scene, *table, "--layers", 3, words=["--layers"])
-        done = self.petzval("image", *scene, *table, "--scene-distance", 1)
+        done = self.petzval("image", *scene, *table, "--scene-distance", "1m")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("depth map is not used", done.stderr)
 

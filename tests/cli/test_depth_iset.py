@@ -51,7 +51,7 @@ class Piano(ProgramTest):
         pictures = {}
         for name, metres in (("near", near), ("far", far)):
             out = self.json_of("image", PIANO, "--lens", "dgauss-50mm", "--sensor", f"{side}x{side}@80", "--wavelengths", "550",
-                               "--layers", 6, "--surround", "extend", "--focus", 1000 * metres, "-o", f"{name}.npy")
+                               "--layers", 6, "--surround", "extend", "--focus", f"{metres}m", "-o", f"{name}.npy")
             self.assertEqual(len(out["layers"]), 6)
             pictures[name] = np.load(self.folder / f"{name}.npy")[:, :, 0].astype("f8")
         # Each pixel has the depth of the sample that it looks at: the frame and the scene are centred, 10 degrees wide.

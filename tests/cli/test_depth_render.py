@@ -43,7 +43,7 @@ class DepthAgainstRendering(petzval_cli.ProgramTest):
     def both(self, focus_m, checkered):
         """(layers, rendering) in pixels, and the diameter of the blur of what is out of focus in pixels."""
         lens = ("--lens", "dgauss-50mm", "--sensor", f"{COLUMNS}x{ROWS}@150")
-        focus = ("--focus", focus_m * 1000)
+        focus = ("--focus", f"{focus_m}m")
         # Where the entrance pupil is once the lens is focused: any scene with depth tells.
         pupil_m = self.json_of("image", "cards", "--scene-size", "12x8", "--scene-angle", 16, "--surround", "extend",
                                "--wavelengths", 550, "--method", "none", *lens, *focus,

@@ -48,7 +48,7 @@ class Image(ProgramTest):
     def test_a_wall_far_away_is_one_at_infinity(self):
         def wall(lens, distance_m):
             self.assert_succeeds("image", "wall", "--lens", lens, "--sensor", "16x12@60", "--wavelengths", 550,
-                                 "--scene-distance", distance_m, "-o", "wall.npy")
+                                 "--scene-distance", distance_m if distance_m == "inf" else f"{distance_m}m", "-o", "wall.npy")
             return read_npy(self.folder / "wall.npy")[1]
 
         for lens in ("edmund-54852", "dgauss-50mm"):

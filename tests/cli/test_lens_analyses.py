@@ -78,7 +78,7 @@ class LensAnalyses(ProgramTest):
         self.assertAlmostEqual(closed["f_number"], 8, 9)
         self.assertAlmostEqual(closed["efl_mm"], open_["efl_mm"], 9)
         # 1/f = 1/s + 1/s' with the thin lens's planes replaced by Newton's: x x' = f².
-        near = self.json_of("lens", "info", "double-gauss", "--focus", "2000")
+        near = self.json_of("lens", "info", "double-gauss", "--focus", "2000mm")
         x = near["object_distance_mm"] + near["ffl_mm"]
         moved = near["total_track_mm"] - open_["total_track_mm"]
         self.assertAlmostEqual(moved, near["efl_mm"] ** 2 / x, 9)

@@ -51,7 +51,7 @@ class Optics(ProgramTest):
         designed = self.build(*SMALL)
         # The object stands 250 mm before vertex 1, so that much and the length of the lens from the sensor.
         distance = 250 + designed["vertex_to_sensor_mm"]
-        self.assertEqual(self.build(*SMALL, "--focus", f"{distance:.12f}")["rows"], designed["rows"])
+        self.assertEqual(self.build(*SMALL, "--focus", f"{distance:.12f}mm")["rows"], designed["rows"])
         infinity = self.build(*SMALL, "--focus", "infinity")
         self.assertEqual(infinity["field_definition"]["type"], "angle_deg")
         self.assertIsNone(infinity["object_distance_mm"])
@@ -78,7 +78,7 @@ class Optics(ProgramTest):
         self.assert_refused(*build, words=["--output"])
         self.assert_refused(*build, "-o", "no/folder/t.h5", words=["no/folder"])
         for option, value, word in (("--wavelengths", "blue", "blue"), ("--fields", "1", "fields"),
-                                    ("--focus", "near", "design, infinity"), ("--focus", "5", "m"),
+                                    ("--focus", "near", "design, infinity"), ("--focus", "5", "5m or 5mm"), ("--focus", "5mm", "m"),
                                     ("--f-number", "1.2", "f/1.775"), ("--image-height", "-3", "--image-height"),
                                     ("--sensor", "768x", "768x"), ("--wavelengths", "100", "nm")):
             with self.subTest(option=option, value=value):

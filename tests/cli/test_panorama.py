@@ -58,7 +58,7 @@ class Panorama(petzval_cli.ProgramTest):
         around = ("--scene-projection", "equirectangular")
         self.assert_refused(*ask, *around, words=["--sensor"])
         self.assert_refused(*ask, *around, "--sensor", "40x40@500", "--scene-angle", 30, words=["--scene-angle"])
-        self.assert_refused(*ask, *around, "--sensor", "40x40@500", "--scene-distance", 3, words=["infinity"])
+        self.assert_refused(*ask, *around, "--sensor", "40x40@500", "--scene-distance", "3m", words=["infinity"])
         self.assert_refused(*ask, "--scene-angle", 30, "--scene-yaw", 3, words=["--scene-yaw"])
         self.assert_refused(*ask, *around, "--scene-pitch", "up", words=["--scene-pitch"])
         self.write("a.npy", spectral_files.npy((2, 3), [1.0] * 6))

@@ -12,7 +12,7 @@ from sample_files import spectral_exr
 BANDS = [500, 550, 600]
 CAMERA = ["--lens", "edmund-54852", "--sensor", "64x48@10"]
 # 250 mm before vertex 1, which is 14.3085 mm before the sensor: where the prescription has its object.
-SCENE = ["--scene-angle", "12", "--scene-distance", "0.26430847"]
+SCENE = ["--scene-angle", "12", "--scene-distance", "0.26430847m"]
 
 
 class Pictures(ProgramTest):

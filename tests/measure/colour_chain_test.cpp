@@ -42,7 +42,7 @@ ChartDifference through(const std::string& name, const std::string& light_name, 
   RawImage raw = capture(current, sensor, metered_exposure_s(current, saturation, {}), options);
   raw.calibrations = standard_calibrations(sensor);
   raw.as_shot_neutral = neutral_of(sensor, light);
-  const Planes planes = develop(raw);
+  const Planes planes = develop_planes(raw);
   ViewedPicture picture{planes.columns, planes.rows, {}};
   for (std::size_t i = 0; i < planes.values[0].size(); ++i)
     picture.pixels.push_back(

@@ -4,6 +4,7 @@
 #include <petzval/analysis/point_spread.h>
 #include <petzval/analysis/pupil_rays.h>
 #include <petzval/base/units.h>
+#include <petzval/numeric/bessel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +118,7 @@ std::vector<double> encircled_energy(const Psf& psf, std::span<const double> rad
 
 double airy_encircled_energy(double radius_um, double lambda_n_um) {
   const double x = pi * radius_um / lambda_n_um;
-  const double j0 = std::cyl_bessel_j(0.0, x), j1 = std::cyl_bessel_j(1.0, x);
+  const double j0 = bessel_j0(x), j1 = bessel_j1(x);
   return 1 - j0 * j0 - j1 * j1;
 }
 

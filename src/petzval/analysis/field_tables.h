@@ -14,8 +14,8 @@ namespace petzval {
 /// Which fields and wavelengths to tabulate; empty lists mean the lens's own.
 struct FieldTableRequest {
   Fields::Kind field_kind = Fields::Kind::angle_deg;
-  std::vector<double> fields;
-  std::vector<double> wavelengths_nm;
+  std::vector<double> fields = {};
+  std::vector<double> wavelengths_nm = {};
   Tracer::Clip clip = Tracer::Clip::apertures;
   Losses losses = {};  ///< that illumination counts
 

@@ -36,15 +36,15 @@ std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirecti
                                    double frequency_cpmm);
 
 struct MtfOptions {
-  std::vector<double> frequencies_cpmm;
+  std::vector<double> frequencies_cpmm = {};
   bool geometric = false;
-  PupilModel model;
+  PupilModel model = {};
   /// One a wavelength of the request: over all wavelengths together, each PSF of unit light times its weight,
   /// at its own place (lateral colour included). Empty: every wavelength for itself.
-  std::vector<double> weights;
+  std::vector<double> weights = {};
   /// Sensors [mm] behind the lens's own image surface, each with rows of its own; the fields stay the object
   /// points that they are. Empty: the image surface alone.
-  std::vector<double> sensor_shifts_mm;
+  std::vector<double> sensor_shifts_mm = {};
 };
 
 struct MtfRow {

@@ -27,8 +27,8 @@ struct Context {
   /// Told what the user should know; may be empty. One call at a time, from the calling thread.
   std::function<void(const std::string& text)> note = {};
   /// Told how far the work is, at least ten times a second; may be empty. `fraction` is in [0, 1], `what` a
-  /// short noun ("PSFs", "blur"). Returns whether to go on: after `false` the work ends with Cancelled.
-  /// Called from any thread, one call at a time.
+  /// short noun ("lens data table", "blur", "light"). Returns whether to go on: after `false` the work ends
+  /// with Cancelled. Called from any thread, one call at a time.
   std::function<bool(double fraction, const std::string& what)> progress = {};
 };
 

@@ -9,8 +9,9 @@
 
 namespace petzval {
 
-/// Told about long work: `fraction` in [0, 1], `what` a short noun ("PSFs", "blur"). Called from any thread.
-/// Library functions take a `const ProgressCallback&` and accept an empty one.
+/// Told about long work: `fraction` in [0, 1], `what` a short noun ("lens data table", "blur", "light").
+/// Called from any thread. What it throws ends the work. Library functions take a `const ProgressCallback&`
+/// and accept an empty one.
 using ProgressCallback = std::function<void(double fraction, const std::string& what)>;
 
 /// A bar on stderr: appears only on a terminal and only for work that lasts over two seconds.

@@ -14,8 +14,8 @@ namespace petzval {
 namespace {
 
 /// Longer endings before those that they end in.
-constexpr std::array<std::pair<std::string_view, double>, 5> lengths_m{
-    {{"mm", 1e-3}, {"cm", 1e-2}, {"um", 1e-6}, {"km", 1e3}, {"m", 1}}};
+constexpr std::array<std::pair<std::string_view, double>, 5> units_a_metre{
+    {{"mm", 1e3}, {"cm", 1e2}, {"um", 1e6}, {"km", 1e-3}, {"m", 1}}};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -55,10 +55,10 @@ void add_range(double start, double step, double stop, const std::string& said,
 
 std::optional<double> parse_length_m(std::string_view text) {
   if (text == "infinity" || text == "inf") return INFINITY;
-  for (const auto& [ending, metres] : lengths_m) {
+  for (const auto& [ending, in_a_metre] : units_a_metre) {
     if (!text.ends_with(ending)) continue;
     const std::optional<double> number = parse_number(trimmed(text.substr(0, text.size() - ending.size())));
-    return number ? std::optional(*number * metres) : std::nullopt;
+    return number ? std::optional(*number / in_a_metre) : std::nullopt;
   }
   return {};
 }

@@ -13,7 +13,7 @@ inline constexpr double shortest_wavelength_nm = 100;
 /// "wavelengths are in nm; 550 would be right for 0.55". Empty if nothing is.
 std::string wavelength_fault(double nm);
 
-/// \throws InputError with wavelength_fault(). \param what  stands before it: "--wavelengths 0.4,0.5".
+/// \throws InputError with wavelength_fault(). \param what  stands before it: "`wavelengths_nm` 0.4,0.5".
 void require_wavelength(double nm, const std::string& what);
 
 }  // namespace petzval

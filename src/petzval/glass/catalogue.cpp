@@ -251,4 +251,8 @@ std::vector<std::string> GlassCatalogue::names_spelled(const std::string& letter
   return found == impl_->spelled.end() ? std::vector<std::string>() : found->second;
 }
 
+Material glass_material(const std::string& name, const GlassCatalogue& glasses) {
+  return Material(glasses.find(name));
+}
+
 }  // namespace petzval

@@ -48,4 +48,7 @@ class GlassCatalogue {
   std::shared_ptr<const Impl> impl_;  ///< never changed once it is here
 };
 
+/// The material of a lens made of this glass, "SCHOTT:N-BK7" or "N-BK7". \throws InputError as find().
+Material glass_material(const std::string& name, const GlassCatalogue& glasses = GlassCatalogue::bundled());
+
 }  // namespace petzval

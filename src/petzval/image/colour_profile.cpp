@@ -34,11 +34,11 @@ struct ProfileToLinear::State {
 ProfileToLinear::ProfileToLinear(const std::string& profile, const std::string& file) {
   const Profile from(cmsOpenProfileFromMem(profile.data(), static_cast<cmsUInt32Number>(profile.size())));
   if (!from)
-    throw InputError(file, "has a damaged colour profile; --scene-encoding srgb takes its numbers as sRGB");
+    throw InputError(file, "has a damaged colour profile; `scene.encoding` srgb takes its numbers as sRGB");
   const cmsColorSpaceSignature space = cmsGetColorSpace(from.get());
   if (space != cmsSigGrayData && space != cmsSigRgbData)
     throw InputError(file,
-                     "has a colour profile for neither grey nor RGB; --scene-encoding srgb takes its "
+                     "has a colour profile for neither grey nor RGB; `scene.encoding` srgb takes its "
                      "numbers as sRGB");
   const std::size_t channels = space == cmsSigGrayData ? 1 : 3;
   const Profile to = linear_srgb_profile();
@@ -47,7 +47,7 @@ ProfileToLinear::ProfileToLinear(const std::string& profile, const std::string& 
                          INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE | cmsFLAGS_NOOPTIMIZE);
   if (transform == nullptr)
     throw InputError(file,
-                     "has a colour profile that cannot be used; --scene-encoding srgb takes its numbers "
+                     "has a colour profile that cannot be used; `scene.encoding` srgb takes its numbers "
                      "as sRGB");
   state_ = std::make_unique<State>(State{transform, channels});
 }

@@ -95,7 +95,7 @@ class RowToLinear {
       profile_.emplace(picture.icc_profile, path);
       if (profile_->channels() < colours_)
         throw InputError(path,
-                         "is in colour, but its colour profile is for grey; --scene-encoding srgb takes "
+                         "is in colour, but its colour profile is for grey; `scene.encoding` srgb takes "
                          "its numbers as sRGB");
       return;
     }

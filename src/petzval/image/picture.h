@@ -31,7 +31,7 @@ struct PictureOptions {
   /// Spectrum of the light of the scene, on any scale: a white surface under it is shown as display white, by
   /// Bradford adaptation. It is taken at the wavelengths of the image, so that the white is right for few
   /// bands too. Without it nothing is adapted: light of D65 is white.
-  std::optional<Spectrum> scene_white;
+  std::optional<Spectrum> scene_white = {};
 
   /// An image of a single band has no colour but that of the band. It is shown in grey, or, if this is set,
   /// in the colour of the wavelength as far as sRGB can show it (what lies outside the gamut is clipped).

@@ -19,7 +19,7 @@ enum class PixelAperture { point, box, photosite };
 
 /// The lens that light came through, as far as a camera notes it in its files.
 struct LensFacts {
-  std::string name;
+  std::string name = {};
   double focal_length_mm = 0, f_number = 0;  ///< the working f-number; 0: not known
   double exit_pupil_mm = 0;  ///< from the sensor, negative in front of it; 0: not known, or at infinity
 };
@@ -78,7 +78,7 @@ class SpectralImage {
   std::string photosite;
   /// What else is known of it; stored in files.
   std::optional<LensFacts> lens;
-  std::optional<Spectrum> illuminant;  ///< the light of the scene, on any scale
+  std::optional<Spectrum> illuminant = {};  ///< the light of the scene, on any scale
 
  private:
   int columns_ = 0, rows_ = 0;

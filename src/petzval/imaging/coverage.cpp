@@ -34,11 +34,12 @@ void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, cons
       high, across, short_by(wide, scene.horizontal_angle_deg()), short_by(high, scene.vertical_angle_deg()),
       short_by(across, scene.diagonal_angle_deg()));
   if (surround == Surround::error)
-    throw InputError(shortfall +
-                     "; a larger --scene-angle, a smaller sensor, or --surround zero or extend would do");
+    throw InputError(
+        shortfall +
+        "; a larger `scene.horizontal_angle_deg`, a smaller sensor, or `surround` zero or extend would do");
   notes.push_back(shortfall + (surround == Surround::zero
-                                   ? "; beyond it is darkness (--surround zero)"
-                                   : "; beyond it its edge goes on (--surround extend)"));
+                                   ? "; beyond it is darkness (`surround` zero)"
+                                   : "; beyond it its edge goes on (`surround` extend)"));
 }
 
 void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& frame,

@@ -14,7 +14,7 @@ DefocusLaw::DefocusLaw(const Lens& lens) {
   if (!std::isfinite(pupil.position_mm) || !std::isfinite(pupil.diameter_mm))
     throw InputError(fmt::format(
         "lens {} is telecentric in object space: it has no viewpoint from which a scene with depth "
-        "could be seen (--scene-depth none images it as a plane)",
+        "could be seen (`scene.depth` none images it as a plane)",
         lens.name));
   pupil_to_sensor_mm_ = lens.total_track_mm() - pupil.position_mm;
   const double radius = pupil.diameter_mm / 2, wavelength_nm = lens.reference_wavelength_nm;

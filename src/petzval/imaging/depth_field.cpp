@@ -47,7 +47,7 @@ double natural_depth_pitch_um(const Scene& scene, const Lens& lens) {
   const double pitch_um = std::abs(height_mm) * tangent_from_pupil(scene, law) * um_per_mm;
   if (!(pitch_um > 0) || !std::isfinite(pitch_um))
     throw InputError(
-        "the lens forms no image of a finite size of this scene: a --sensor would settle the pixels");
+        "the lens forms no image of a finite size of this scene: a `sensor` would settle the pixels");
   return pitch_um;
 }
 
@@ -66,7 +66,7 @@ SensorGeometry natural_depth_sensor(const Scene& scene, const DepthCamera& camer
   if (!frame)
     throw InputError(
         fmt::format("the blur alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: "
-                    "a --sensor with --surround extend would do",
+                    "a `sensor` with `surround` extend would do",
                     scene.columns(), scene.rows(), pitch_um));
   return *frame;
 }

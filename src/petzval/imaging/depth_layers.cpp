@@ -61,7 +61,7 @@ std::vector<double> even_marks(double least, double greatest, int asked) {
   const auto width = static_cast<std::size_t>(scene.columns());
   throw InputError(fmt::format(
       "the depth at row {}, column {} is {:.4g} m from the sensor, but lens {} reaches {:.4g} m in "
-      "front of it; --scene-depth-scale would be right for a map in other units than metres",
+      "front of it; `scene.depth_scale` would be right for a map in other units than metres",
       sample / width, sample % width, depth_m, lens.name, nearest_mm / mm_per_m));
 }
 

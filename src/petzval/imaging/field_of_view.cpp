@@ -18,8 +18,8 @@ double covering_angle_deg(const Scene& scene, const SeenExtent& seen) {
   constexpr double widest_deg = 175;
   if (!(angle < widest_deg))
     throw InputError(
-        fmt::format("the field of the sensor is {:.1f}° wide: no plane scene covers it; --surround zero "
-                    "or extend and a --scene-angle would do",
+        fmt::format("the field of the sensor is {:.1f}° wide: no plane scene covers it; `surround` zero "
+                    "or extend and a `scene.horizontal_angle_deg` would do",
                     angle));
   return angle;
 }
@@ -36,7 +36,7 @@ double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
                                               : std::abs(lens.efl_mm) * scene.tangent_per_sample();
   if (!(sample_mm > 0) || !std::isfinite(sample_mm))
     throw InputError(
-        "the lens forms no image of a finite size of this scene: a --sensor would settle the pixels");
+        "the lens forms no image of a finite size of this scene: a `sensor` would settle the pixels");
   return sample_mm * um_per_mm;
 }
 
@@ -60,7 +60,7 @@ std::optional<SensorGeometry> largest_covered_frame(const Scene& scene, double p
 
 SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, const ImagingOptions& options) {
   if (scene.is_panorama())
-    throw InputError("a panorama ends nowhere, and so would its image: a --sensor is needed");
+    throw InputError("a panorama ends nowhere, and so would its image: a `sensor` is needed");
   const double pitch_um = natural_pitch_um(scene, table.first_order);
   const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
   const auto frame = largest_covered_frame(
@@ -68,7 +68,7 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
   if (!frame)
     throw InputError(
         fmt::format("the PSF alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: a "
-                    "larger --scene-angle or a --sensor would do",
+                    "larger `scene.horizontal_angle_deg` or a `sensor` would do",
                     scene.columns(), scene.rows(), pitch_um));
   return *frame;
 }

@@ -30,13 +30,13 @@ enum class BlurMethod {
 
 struct ImagingOptions {
   BlurMethod method = BlurMethod::product;
-  ProductOptions product;
-  SectionOptions sections;  ///< `blend` follows from the method
+  ProductOptions product = {};
+  SectionOptions sections = {};  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
-  RadialFit fit;        ///< of distortion and g_source over image height
+  RadialFit fit = {};   ///< of distortion and g_source over image height
   int supersample = 1;  ///< S: source cells are S × S to a pixel, 1 to 16
   Surround surround = Surround::error;
-  Photosite photosite;  ///< of the sensor, with its optical low-pass filter
+  Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
 
   /// S, or more if the photosite needs it (cells_for).
   int cells_per_pixel() const;
@@ -54,14 +54,14 @@ struct ImagingOptions {
 struct ImagingReport {
   /// Things a user should know, one line each: how the edges were treated, dark corners, light outside the
   /// PSF windows, undershoot.
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = {};
   int cells_per_pixel = 1;  ///< along a side
   int margin_cells = 0;     ///< how far light may come in from outside the frame, the most of all bands
   int transform_size = 0;   ///< the largest, of `sections`
   /// Of `product`: what was chosen, for the band whose estimated error is the largest; a plan without a
   /// transform that is not direct stands for blended sections of `tile` cells, which PSFs beyond its
   /// transforms need.
-  ProductPlan product;
+  ProductPlan product = {};
   int scene_points_per_cell = 1;      ///< scene samples averaged in a cell: this squared
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]

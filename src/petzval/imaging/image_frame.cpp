@@ -29,7 +29,7 @@ PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report) {
   if (boxes > 1 && taps.cells < freely_weighted)
     report.notes.push_back(fmt::format(
         "the scene is finer than a cell of 1/{} pixel, which blurs it twice: fine detail comes out "
-        "softer than it is; --supersample {} or more applies the pixel aperture once",
+        "softer than it is; `supersample` {} or more applies the pixel aperture once",
         taps.cells, freely_weighted));
   return taps;
 }
@@ -85,7 +85,7 @@ void note_result(const ImagingOptions& options, ImagingReport& report) {
   constexpr int wide_cells = 112;  // beyond it transforms have hardly room for a tile
   if (options.method == BlurMethod::product && report.margin_cells > wide_cells)
     report.notes.push_back(fmt::format(
-        "PSFs reach {} cells, more than fast transforms hold: larger pixels or a larger --tolerance "
+        "PSFs reach {} cells, more than fast transforms hold: larger pixels or a larger `tolerance` "
         "would be much quicker",
         report.margin_cells));
 }

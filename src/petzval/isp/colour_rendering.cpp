@@ -51,7 +51,7 @@ MatrixXd camera_from_xyz(const RawImage& raw, double temperature_k) {
 
 void require_calibration(const RawImage& raw) {
   if (raw.calibrations.empty())
-    throw InputError("the raw image has no colour matrix; --matrix none would show its channels as they are");
+    throw InputError("the raw image has no colour matrix; `matrix` none would show its channels as they are");
 }
 
 VectorXd as_vector(const std::vector<double>& values) {

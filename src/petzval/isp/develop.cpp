@@ -46,8 +46,8 @@ const std::vector<std::string>& develop_step_names() {
   return names;
 }
 
-Planes develop(const RawImage& raw, const DevelopOptions& options, DevelopReport* report,
-               const DevelopStep& step) {
+Planes develop_planes(const RawImage& raw, const DevelopOptions& options, DevelopReport* report,
+                      const DevelopStep& step) {
   DevelopReport done;
   const auto tell_mosaic = [&](const char* name, const LinearMosaic& mosaic) {
     if (step) step(name, {mosaic.columns, mosaic.rows, {mosaic.values}});

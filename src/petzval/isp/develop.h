@@ -18,11 +18,11 @@ struct DevelopOptions {
   const RawImage* flat = nullptr;  ///< of a uniform surface, for the shading; must outlive the call
   bool defects = true;
   /// Response to white; empty: the image's own, or without one as if the scene were grey on average.
-  std::vector<double> neutral;
+  std::vector<double> neutral = {};
   bool grey_world = false;
-  std::optional<Demosaic> demosaic;    ///< absent: gradient for Bayer mosaics, general for others
-  std::optional<CameraMatrix> matrix;  ///< absent: from the image's calibrations
-  bool colours = true;                 ///< false: channels 0, 1, 2 are shown as red, green, blue
+  std::optional<Demosaic> demosaic = {};    ///< absent: gradient for Bayer mosaics, general for others
+  std::optional<CameraMatrix> matrix = {};  ///< absent: from the image's calibrations
+  bool colours = true;                      ///< false: channels 0, 1, 2 are shown as red, green, blue
   double denoise_strength = 0, sharpen_amount = 0, sharpen_sigma_px = 1;
   double exposure_ev = 0;
   ToneCurve tone = ToneCurve::none;
@@ -31,7 +31,7 @@ struct DevelopOptions {
 
 /// What was done.
 struct DevelopReport {
-  std::vector<double> neutral;
+  std::vector<double> neutral = {};
   double temperature_k = 0;  ///< of the light; 0: not known
   int defects = 0;
   Demosaic demosaic = Demosaic::general;
@@ -44,8 +44,8 @@ using DevelopStep = std::function<void(const std::string& name, const Planes& pl
 /// sharpening → exposure and tone: linear light of the display, 0 to 1 and beyond. Names of the steps:
 /// "linear", "defects", "shading", "white-balance", "demosaic", "denoise", "colour", "sharpen", "tone".
 /// \throws InputError for options that do not fit the image.
-Planes develop(const RawImage& raw, const DevelopOptions& options = {}, DevelopReport* report = nullptr,
-               const DevelopStep& step = {});
+Planes develop_planes(const RawImage& raw, const DevelopOptions& options = {},
+                      DevelopReport* report = nullptr, const DevelopStep& step = {});
 
 /// The names above in order.
 const std::vector<std::string>& develop_step_names();

@@ -13,13 +13,19 @@ namespace petzval {
 
 namespace {
 
-/// Places of the eight nearest pixels of the same channel, for each cell of the mosaic.
-std::vector<std::array<std::pair<int, int>, 8>> same_channel_neighbours(const Mosaic& mosaic) {
-  std::vector<std::array<std::pair<int, int>, 8>> result;
+/// How many pixels of the same channel a pixel is compared with.
+constexpr std::size_t neighbour_count = 8;
+
+/// Rows and columns from a pixel to the others of its channel, the nearest first.
+using Places = std::vector<std::pair<int, int>>;
+
+/// For each cell of the mosaic; enough for eight to lie inside the image at its corners, too.
+std::vector<Places> same_channel_neighbours(const Mosaic& mosaic) {
+  std::vector<Places> result;
   const int reach = 2 * std::max(mosaic.rows, mosaic.columns);
   for (int r0 = 0; r0 < mosaic.rows; ++r0)
     for (int c0 = 0; c0 < mosaic.columns; ++c0) {
-      std::vector<std::pair<int, int>> places;
+      Places places;
       for (int r = -reach; r <= reach; ++r)
         for (int c = -reach; c <= reach; ++c)
           if ((r != 0 || c != 0) && mosaic.channel(r0 + r + reach * mosaic.rows,
@@ -28,11 +34,30 @@ std::vector<std::array<std::pair<int, int>, 8>> same_channel_neighbours(const Mo
       std::stable_sort(places.begin(), places.end(), [](auto a, auto b) {
         return a.first * a.first + a.second * a.second < b.first * b.first + b.second * b.second;
       });
-      std::array<std::pair<int, int>, 8> nearest;
-      std::copy_n(places.begin(), nearest.size(), nearest.begin());
-      result.push_back(nearest);
+      result.push_back(std::move(places));
     }
   return result;
+}
+
+/// Values of the nearest pixels of the same channel that there are; fewer than eight in the smallest images
+/// alone.
+struct Neighbours {
+  std::array<float, neighbour_count> values{};
+  std::size_t count = 0;
+};
+
+Neighbours neighbours_of(const std::vector<float>& values, const LinearMosaic& mosaic, int row, int column,
+                         const Places& places) {
+  Neighbours found;
+  for (const auto& [down, right] : places) {
+    const int r = row + down, c = column + right;
+    if (r < 0 || c < 0 || r >= mosaic.rows || c >= mosaic.columns) continue;
+    found.values[found.count++] =
+        values[static_cast<std::size_t>(r) * static_cast<std::size_t>(mosaic.columns) +
+               static_cast<std::size_t>(c)];
+    if (found.count == neighbour_count) break;
+  }
+  return found;
 }
 
 /// Mean over a square of the pixels of the same channel; one plane a channel would need more memory.
@@ -94,13 +119,8 @@ int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offse
       const auto& places = neighbours[(row % static_cast<std::size_t>(mosaic.mosaic.rows)) *
                                           static_cast<std::size_t>(mosaic.mosaic.columns) +
                                       static_cast<std::size_t>(c % mosaic.mosaic.columns)];
-      std::array<float, 8> around;
-      for (std::size_t i = 0; i < around.size(); ++i) {
-        const auto r =
-            static_cast<std::size_t>(mirrored(static_cast<int>(row) + places[i].first, mosaic.rows));
-        around[i] =
-            before[r * columns + static_cast<std::size_t>(mirrored(c + places[i].second, mosaic.columns))];
-      }
+      auto [around, count] = neighbours_of(before, mosaic, static_cast<int>(row), c, places);
+      if (count < neighbour_count) continue;
       const auto [low, high] = std::minmax_element(around.begin(), around.end());
       const float value = before[row * columns + static_cast<std::size_t>(c)];
       const double beyond = std::max(static_cast<double>(*low - value), static_cast<double>(value - *high));

@@ -18,12 +18,12 @@ namespace petzval {
 struct Surface {
   double curvature_per_mm = 0;  ///< c = 1/radius, > 0 when the centre lies on the +z side; 0 = flat
   double thickness_mm = 0;      ///< to the next vertex; the last one reaches the image surface
-  Material material;            ///< fills the gap behind the surface
+  Material material = {};       ///< fills the gap behind the surface
   bool stop = false;
-  StopBlades blades;                       ///< of the stop, inside its radius; none: round
-  std::optional<double> semi_diameter_mm;  ///< clear semi-aperture; absent = unbounded
-  double conic = 0;                        ///< k
-  std::map<int, double> asphere;           ///< power p of r → a_p [mm^(1−p)]
+  StopBlades blades = {};                       ///< of the stop, inside its radius; none: round
+  std::optional<double> semi_diameter_mm = {};  ///< clear semi-aperture; absent = unbounded
+  double conic = 0;                             ///< k
+  std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
 
   bool is_flat() const { return curvature_per_mm == 0 && asphere.empty(); }
 };
@@ -50,14 +50,14 @@ struct Fields {
 };
 
 struct Lens {
-  std::string name;
-  std::string source;
-  std::optional<double> object_distance_mm;  ///< from the object to vertex 1; absent = infinity
-  Aperture aperture;
-  Fields fields;
+  std::string name = {};
+  std::string source = {};
+  std::optional<double> object_distance_mm = {};  ///< from the object to vertex 1; absent = infinity
+  Aperture aperture = {};
+  Fields fields = {};
   std::vector<double> wavelengths_nm{587.5618};
   double reference_wavelength_nm = 587.5618;
-  std::vector<Surface> surfaces;
+  std::vector<Surface> surfaces = {};
 
   /// Index of the stop surface. A valid lens has exactly one.
   std::size_t stop_index() const;

@@ -13,16 +13,16 @@ namespace petzval {
 struct LensReadOptions {
   /// Explicit glass substitutions, "LAK10C" → "CDGM:H-LAK10", or "SK1" → "1.61025/56.71", nd and Vd of a
   /// glass that no catalogue has. Nothing is substituted without one.
-  std::map<std::string, std::string> substitutions;
+  std::map<std::string, std::string> substitutions = {};
   /// Where glasses are looked for; absent: the bundled catalogue alone.
-  std::optional<GlassCatalogue> glasses;
+  std::optional<GlassCatalogue> glasses = {};
 };
 
 /// A lens and what its reader has to say of it (apertures that are missing, an image distance that was
 /// solved…), one line each, for stderr.
 struct LensFile {
-  Lens lens;
-  std::vector<std::string> notes;
+  Lens lens = {};
+  std::vector<std::string> notes = {};
 };
 
 /// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx,

@@ -64,7 +64,7 @@ json altered(json root, const std::vector<JsonStep>& steps, const json& value) {
 }  // namespace
 
 Lens with_setting(const Lens& lens, const std::string& assignment, const LensReadOptions& options) {
-  const std::string origin = "--set " + assignment;
+  const std::string origin = "`set` " + assignment;
   JsonDocument document(lens_to_json(lens), lens.name);
   try {
     const JsonSetting setting =

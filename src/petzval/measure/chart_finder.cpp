@@ -181,7 +181,7 @@ ChartCorners find_chart(const ViewedPicture& picture, const Spectrum& light) {
   constexpr double acceptable = 25;
   if (!(best < acceptable))
     throw InputError(
-        "no ColorChecker is found in the picture; --corners gives the centres of its corner patches");
+        "no ColorChecker is found in the picture; `corners` gives the centres of its corner patches");
   const Grid grid = refined(refined(best_grid, spots), spots);
   ChartCorners corners;
   const double places[4][2] = {

@@ -208,8 +208,8 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
                                     const ProgressCallback& progress) {
   // On a sensor a polygon stands still, while the PSFs of a table turn with the azimuth of the field.
   require_round_stop(lens,
-                     "a table by field height turns with the field, which polygons do not; `lens psf "
-                     "--field-azimuth` and `render` have blades");
+                     "a table by field height turns with the field, which polygons do not; single PSFs "
+                     "(`field_azimuth_deg`) and renderings have blades");
   const TableOptions options = completed(lens, asked);
   LensDataTable table;
   table.lens_name = lens.name;

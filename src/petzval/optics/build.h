@@ -12,7 +12,7 @@
 namespace petzval {
 
 struct TableOptions {
-  std::vector<double> wavelengths_nm;  ///< empty: the lens's own
+  std::vector<double> wavelengths_nm = {};  ///< empty: the lens's own
   /// Real image height that the table must reach [mm]: half the sensor diagonal. The table goes on until a
   /// PSF radius beyond it, or until no ray passes (less than a thousandth of the pupil's area on axis). 0:
   /// the lens's largest field.

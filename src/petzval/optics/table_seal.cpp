@@ -34,10 +34,10 @@ constexpr std::string_view hdf5_signature("\x89HDF\r\n\x1a\n", 8);
   std::string behind(hdf5_signature.size(), '\0');
   file.read(behind.data(), static_cast<std::streamsize>(behind.size()));
   if (!start.starts_with(hdf5_signature) && behind != hdf5_signature)
-    throw InputError(path, "is not an HDF5 file; petzval optics build makes lens data tables");
+    throw InputError(path, "is not an HDF5 file, as lens data tables are");
   throw InputError(path,
-                   "is damaged, or a table of another program: it does not begin with Petzval's checksum. "
-                   "petzval optics import --from hdf5 takes tables made elsewhere");
+                   "is damaged, or a table of another program: it does not begin with Petzval's checksum; "
+                   "importing it (from hdf5) would be right for a table made elsewhere");
 }
 
 std::string seal_text(std::uint64_t size, const Checksum& checksum) {
@@ -74,10 +74,10 @@ void check_table_seal(const std::string& path) {
     size += got;
   }
   if (!seal.starts_with(seal_text(size, checksum)))
-    throw InputError(
-        path,
-        "is damaged: size or checksum do not agree with its first lines; build it anew (if it was edited on "
-        "purpose: petzval optics import --from hdf5)");
+    throw InputError(path,
+                     "is damaged: size or checksum do not agree with its first lines; building it anew would "
+                     "be right, or importing it (from hdf5) if "
+                     "it was edited on purpose");
 }
 
 }  // namespace petzval

@@ -31,7 +31,8 @@ std::vector<double> sampled(const Spectrum& light, const std::vector<double>& ba
 void swap_illuminant(Scene& scene, const Spectrum& illuminant) {
   if (!scene.illuminant)
     throw InputError(
-        "holds radiance and does not say under which light, so it cannot be put under another; --illuminant "
+        "holds radiance and does not say under which light, so it cannot be put under another; "
+        "`scene.illuminant` "
         "is "
         "for charts, photographs, reflectances and scenes whose light is known");
   const std::vector<double>& bands = scene.wavelengths_nm();

@@ -106,7 +106,7 @@ void Scene::make_panorama(PanoramaView view) {
         fmt::format("a panorama of {} x {} samples; twice as many columns as rows (360 x 180 degrees) "
                     "would be right",
                     columns_, rows_));
-  if (distance_m_) throw InputError("a panorama is at infinity; --scene-distance inf would be right");
+  if (distance_m_) throw InputError("a panorama is at infinity; `scene.distance_m` inf would be right");
   if (!std::isfinite(view.yaw_deg) || !std::isfinite(view.pitch_deg))
     throw InputError("a view of a panorama must be a finite angle");
   view_ = view;
@@ -227,7 +227,7 @@ void Scene::validate_depth() const {
   if (depth_m.empty()) return;
   if (is_panorama())
     throw InputError(
-        "a panorama is at infinity; a depth map belongs to a plane scene (--scene-depth none leaves it out)");
+        "a panorama is at infinity; a depth map belongs to a plane scene (`scene.depth` none leaves it out)");
   if (depth_m.size() != band_size())
     throw InputError(fmt::format("{} depths for {} x {} samples; one a sample would be right", depth_m.size(),
                                  columns_, rows_));

@@ -49,27 +49,29 @@ ChartOptions chart_options(const SceneOptions& options) {
 void refuse_cube_options(const std::string& what, const SceneOptions& options) {
   if (options.quantity || options.scale || !options.radiance_unit.empty() || !options.file_bands_nm.empty() ||
       options.negative_is_zero)
-    throw InputError(what,
-                     "says what its numbers are; --scene-quantity, --scene-unit, --scene-scale, "
-                     "--scene-bands and --scene-negative-zero are for ENVI, NumPy and OpenEXR files");
+    throw InputError(
+        what,
+        "says what its numbers are; `scene.quantity`, `scene.radiance_unit`, `scene.scale`, "
+        "`scene.file_bands_nm` and `scene.negative_is_zero` are for ENVI, NumPy and OpenEXR files");
 }
 
 void refuse_thermal_options(const std::string& what, const SceneOptions& options) {
   if (options.thermal.temperature_k || options.thermal.background_k || options.thermal.emissivity != 1)
-    throw InputError(what,
-                     "is no thermal scene; --scene-temperature, --scene-emissivity and --scene-background "
-                     "are for emissivities and maps of temperature");
+    throw InputError(
+        what,
+        "is no thermal scene; `scene.temperature_k`, `scene.emissivity` and `scene.background_k` "
+        "are for emissivities and maps of temperature");
 }
 
 Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOptions& options) {
   if (options.encoding)
     throw InputError(
-        fmt::format("scene {}: a chart has no encoding; --scene-encoding is for photographs", text));
+        fmt::format("scene {}: a chart has no encoding; `scene.encoding` is for photographs", text));
   refuse_cube_options("scene " + text, options);
   refuse_thermal_options("scene " + text, options);
   if (chart.deep && options.distance_m && std::isinf(*options.distance_m))
     throw InputError(fmt::format(
-        "scene {}: its depths are multiples of a finite --scene-distance (1 m unless given)", text));
+        "scene {}: its depths are multiples of a finite `scene.distance_m` (1 m unless given)", text));
   return make_chart(text, chart, chart_options(options));
 }
 
@@ -140,13 +142,13 @@ Scene read_spectral_file(const std::string& path, const SceneOptions& options) {
                      "a scene is an ISET .mat, a spectral .exr, an ENVI .hdr, a NumPy .npy, a photograph "
                      "(.png, .jpg, .tif) "
                      "or a chart's name (petzval scene list)");
-  if (options.encoding) throw InputError(path, "holds spectra; --scene-encoding is for photographs");
+  if (options.encoding) throw InputError(path, "holds spectra; `scene.encoding` is for photographs");
   return extension == ".mat" ? read_mat_file(path, options) : read_cube_file(path, extension, options);
 }
 
 Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   if (options.columns || options.rows)
-    throw InputError(path, "has a size of its own; --scene-size is for charts");
+    throw InputError(path, "has a size of its own; `scene.size` is for charts");
   const bool is_photograph = has_photograph_name(path);
   if (is_photograph) refuse_cube_options(path, options), refuse_thermal_options(path, options);
   Scene scene = is_photograph ? read_photograph_file(path, options) : read_spectral_file(path, options);
@@ -201,7 +203,7 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
   if (scene.depth_m.empty() && (options.depth_scale || options.depth_from))
     throw InputError(
         scene.name,
-        "has no depth map; --scene-depth-scale and --scene-depth-from are for scenes that have one");
+        "has no depth map; `scene.depth_scale` and `scene.depth_from` are for scenes that have one");
   if (options.depth_from) scene.depth_from = *options.depth_from;
   if (options.depth_scale)
     for (float& depth : scene.depth_m) depth = static_cast<float>(double(depth) * *options.depth_scale);
@@ -231,7 +233,8 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
   if (!options.panorama) return finished(read_plane(path_or_name, options), options);
   if (options.horizontal_angle_deg)
-    throw InputError(path_or_name, "is a panorama, 360 degrees wide; --scene-angle is for plane scenes");
+    throw InputError(path_or_name,
+                     "is a panorama, 360 degrees wide; `scene.horizontal_angle_deg` is for plane scenes");
   SceneOptions plane = options;
   constexpr double any_angle_deg = 90;  // no file need say how wide it is
   plane.horizontal_angle_deg = any_angle_deg;

@@ -14,29 +14,30 @@ namespace petzval {
 
 /// What the user may say about a scene; what is left open comes from the file or is the chart's own default.
 struct SceneOptions {
-  std::optional<int> columns, rows;    ///< charts only (768 × 576); a file has its size
-  std::vector<double> wavelengths_nm;  ///< empty: the file's bands; default_bands_nm() where it has none
-  std::optional<double> horizontal_angle_deg;  ///< replaces the file's; 40 for charts and photographs
-  std::optional<double> distance_m;  ///< replaces the file's; they stand at infinity. inf: at infinity
-  std::string illuminant;  ///< of charts, photographs (D65) and reflectances; swapped for that of a scene
-                           ///< whose light is known
-  std::optional<double> mean_luminance_cd_m2;  ///< of the whole spectrum, whatever wavelengths are then taken
-                                               ///< from it; replaces the file's; 100 for charts, photographs
-  std::optional<PhotographEncoding> encoding;  ///< photographs only; absent: as the file says
+  std::optional<int> columns = {}, rows = {};    ///< charts only (768 × 576); a file has its size
+  std::vector<double> wavelengths_nm = {};  ///< empty: the file's bands; default_bands_nm() where it has none
+  std::optional<double> horizontal_angle_deg = {};  ///< replaces the file's; 40 for charts and photographs
+  std::optional<double> distance_m = {};  ///< replaces the file's; they stand at infinity. inf: at infinity
+  std::string illuminant = {};  ///< of charts, photographs (D65) and reflectances; swapped for that of a
+                                ///< scene whose light is known
+  std::optional<double> mean_luminance_cd_m2 =
+      {};  ///< of the whole spectrum, whatever wavelengths are then taken
+           ///< from it; replaces the file's; 100 for charts, photographs
+  std::optional<PhotographEncoding> encoding = {};  ///< photographs only; absent: as the file says
 
-  std::optional<PanoramaView> panorama;  ///< the samples are an equirectangular panorama
+  std::optional<PanoramaView> panorama = {};  ///< the samples are an equirectangular panorama
 
-  std::string depth;  ///< a file (read_depth_file); "none": as if the scene had no depth; empty: its own
-  std::optional<double> depth_scale;    ///< times every depth
-  std::optional<DepthFrom> depth_from;  ///< replaces what the file says
+  std::string depth = {};  ///< a file (read_depth_file); "none": as if the scene had no depth; empty: its own
+  std::optional<double> depth_scale = {};    ///< times every depth
+  std::optional<DepthFrom> depth_from = {};  ///< replaces what the file says
 
   // Files of bare numbers only: ENVI, NumPy, spectral OpenEXR (CubeOptions).
-  std::optional<SceneQuantity> quantity;  ///< absent: as the file says
-  std::string radiance_unit;              ///< empty: the file's, or W·m⁻²·sr⁻¹·nm⁻¹
-  std::optional<double> scale;            ///< times every number
-  std::vector<double> file_bands_nm;      ///< wavelengths of a file that does not say them
-  bool negative_is_zero = false;          ///< instead of an error
-  ThermalOptions thermal;                 ///< of emissivities and temperatures
+  std::optional<SceneQuantity> quantity = {};  ///< absent: as the file says
+  std::string radiance_unit = {};              ///< empty: the file's, or W·m⁻²·sr⁻¹·nm⁻¹
+  std::optional<double> scale = {};            ///< times every number
+  std::vector<double> file_bands_nm = {};      ///< wavelengths of a file that does not say them
+  bool negative_is_zero = false;               ///< instead of an error
+  ThermalOptions thermal = {};                 ///< of emissivities and temperatures
 };
 
 /// Reads a scene:
@@ -54,8 +55,8 @@ std::string scene_companion(const std::string& path);
 
 /// A chart that read_scene makes from its name.
 struct BuiltinScene {
-  std::string name;         ///< "checkerboard[:N]"
-  std::string description;  ///< one line
+  std::string name = {};         ///< "checkerboard[:N]"
+  std::string description = {};  ///< one line
 };
 std::vector<BuiltinScene> builtin_scenes();
 /// Whether a scene can be taken to be as wide and as far away as is wanted: a chart, or the name of a

@@ -24,7 +24,7 @@ SceneQuantity quantity_of(const SpectralCube& cube, const CubeOptions& options) 
   if (options.quantity) return *options.quantity;
   if (cube.quantity) return *cube.quantity;
   throw InputError(
-      "does not say what its numbers are; --scene-quantity radiance, reflectance, emissivity or temperature "
+      "does not say what its numbers are; `scene.quantity` radiance, reflectance, emissivity or temperature "
       "does");
 }
 
@@ -33,7 +33,7 @@ double angle_of(const SpectralCube& cube, const CubeOptions& options) {
   if (cube.panorama) return any_angle_deg;  // until the scene becomes one
   if (options.horizontal_angle_deg) return *options.horizontal_angle_deg;
   if (cube.horizontal_angle_deg) return *cube.horizontal_angle_deg;
-  throw InputError("does not say how wide the scene is; --scene-angle DEGREES does");
+  throw InputError("does not say how wide the scene is; `scene.horizontal_angle_deg` DEGREES does");
 }
 
 std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& options, SceneQuantity quantity) {
@@ -42,14 +42,14 @@ std::vector<double> bands_of(const SpectralCube& cube, const CubeOptions& option
       throw InputError(fmt::format("is a map of temperatures with {} bands; one would be right", cube.bands));
     if (options.wavelengths_nm.empty())
       throw InputError(
-          "is a map of temperatures; --wavelengths 8000:500:14000 or the like says where it shines");
+          "is a map of temperatures; `wavelengths_nm` 8000:500:14000 or the like says where it shines");
     return options.wavelengths_nm;
   }
   const std::vector<double>& bands =
       options.file_bands_nm.empty() ? cube.wavelengths_nm : options.file_bands_nm;
   if (bands.empty())
     throw InputError(
-        fmt::format("does not say the wavelengths of its {} bands; --scene-bands 400:10:700 or the "
+        fmt::format("does not say the wavelengths of its {} bands; `scene.file_bands_nm` 400:10:700 or the "
                     "like does",
                     cube.bands));
   if (bands.size() != static_cast<std::size_t>(cube.bands))
@@ -67,19 +67,20 @@ void check_light(const CubeOptions& options, SceneQuantity quantity, const std::
   const std::optional<Spectrum>& light = options.illuminant;
   if (quantity == SceneQuantity::reflectance) {
     if (!light)
-      throw InputError("holds reflectances; they need light to be a scene: --illuminant D65, for example");
+      throw InputError(
+          "holds reflectances; they need light to be a scene: `scene.illuminant` D65, for example");
     if (std::none_of(bands.begin(), bands.end(), [&](double nm) { return light->at(nm) > 0; }))
       throw InputError("the illuminant has no light in the bands of the scene");
   } else if (quantity != SceneQuantity::radiance) {
-    if (light) throw InputError("shines of its own warmth; --illuminant is for surfaces that are lit");
+    if (light) throw InputError("shines of its own warmth; `scene.illuminant` is for surfaces that are lit");
     options.thermal.validate();
     if (quantity == SceneQuantity::temperature && options.thermal.temperature_k)
-      throw InputError("is a map of temperatures; --scene-temperature is for emissivities");
+      throw InputError("is a map of temperatures; `scene.temperature_k` is for emissivities");
     if (quantity == SceneQuantity::emissivity && options.thermal.emissivity != 1)
-      throw InputError("holds emissivities; --scene-emissivity is for maps of temperatures");
+      throw InputError("holds emissivities; `scene.emissivity` is for maps of temperatures");
     if (quantity == SceneQuantity::emissivity && !options.thermal.temperature_k)
       throw InputError(
-          "holds emissivities; they need a temperature to shine: --scene-temperature 310, in kelvins, for "
+          "holds emissivities; they need a temperature to shine: `scene.temperature_k` 310, in kelvins, for "
           "example");
   }
 }
@@ -90,14 +91,14 @@ void check_reflectances(Scene& scene, float greatest, double scale) {
     // A hundredth for per cent; for counts to 1,000, 10,000 … the power of ten that makes shares of them.
     const double tens = std::max(2.0, std::ceil(std::log10(double{greatest / usual_overshoot})));
     throw InputError(fmt::format(
-        "holds reflectances up to {:.4g}, where a perfect white has 1; --scene-scale {:.3g} would "
+        "holds reflectances up to {:.4g}, where a perfect white has 1; `scene.scale` {:.3g} would "
         "be right for {}",
         greatest, scale * std::pow(10, -tens), tens == 2 ? "per cent" : "counts"));
   }
   if (greatest > usual_overshoot)
     scene.notes.push_back(fmt::format(
         "holds reflectances up to {:.4g}, where a perfect white has 1: are they per cent, or counts? "
-        "(--scene-scale multiplies them)",
+        "(`scene.scale` multiplies them)",
         greatest));
 }
 
@@ -119,7 +120,7 @@ void put_under(Scene& scene, const CubeOptions& options) {
     scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
     scene.notes.push_back(
         fmt::format("reflectances have no level of light: the scene is lit to a mean luminance of {:g} cd/m2 "
-                    "(--scene-luminance sets another)",
+                    "(`scene.mean_luminance_cd_m2` sets another)",
                     reflectance_luminance_cd_m2));
   }
 }
@@ -190,7 +191,8 @@ Scene scene_of(SpectralCube cube, const CubeOptions& options) {
   const double factor = quantity == SceneQuantity::radiance && !unit.empty() ? radiance_scale(unit) : 1;
   if (quantity == SceneQuantity::radiance && unit.empty())
     scene.notes.emplace_back(
-        "does not say the unit of its radiance: W.m^-2.sr^-1.nm^-1 is taken (--scene-unit sets another)");
+        "does not say the unit of its radiance: W.m^-2.sr^-1.nm^-1 is taken (`scene.radiance_unit` sets "
+        "another)");
   if (factor != 1)
     scene.for_each_band([factor](std::size_t, std::span<float> band) {
       for (float& value : band) value = static_cast<float>(value * factor);

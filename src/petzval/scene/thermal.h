@@ -12,9 +12,9 @@ namespace petzval {
 
 /// What surrounds a warm scene and what its surfaces are.
 struct ThermalOptions {
-  std::optional<double> temperature_k;  ///< of all surfaces, where the file has none
-  double emissivity = 1;                ///< of all surfaces and bands, where the file has none; 0 to 1
-  std::optional<double> background_k;   ///< of what the surfaces mirror; absent: nothing (0 K)
+  std::optional<double> temperature_k = {};  ///< of all surfaces, where the file has none
+  double emissivity = 1;                     ///< of all surfaces and bands, where the file has none; 0 to 1
+  std::optional<double> background_k = {};   ///< of what the surfaces mirror; absent: nothing (0 K)
 
   /// \throws InputError saying what would be right.
   void validate() const;

@@ -35,12 +35,12 @@ const std::vector<std::string>& noise_source_names();
 NoiseSource noise_source(const std::string& name);
 
 struct CaptureOptions {
-  std::string gain_mode;  ///< of a sensor with several conversion gains; empty: the first
+  std::string gain_mode = {};  ///< of a sensor with several conversion gains; empty: the first
   double analog_gain = 1;
-  std::optional<double> temperature_c;  ///< absent: the one that the dark current is stated for
-  std::uint64_t seed = 1;               ///< of the noise that is new in each exposure
-  std::optional<std::uint64_t> serial;  ///< another copy of the sensor, with other fixed patterns
-  std::set<NoiseSource> without;
+  std::optional<double> temperature_c = {};  ///< absent: the one that the dark current is stated for
+  std::uint64_t seed = 1;                    ///< of the noise that is new in each exposure
+  std::optional<std::uint64_t> serial = {};  ///< another copy of the sensor, with other fixed patterns
+  std::set<NoiseSource> without = {};
   int frames = 1;  ///< exposures that are averaged
 
   bool has(NoiseSource source) const { return !without.contains(source); }

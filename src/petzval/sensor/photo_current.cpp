@@ -50,7 +50,7 @@ void check_match(const SpectralImage& image, const Sensor& sensor) {
   if (std::abs(image.pitch_um() / frame.pitch_um - 1) > same_pitch)
     throw InputError(
         fmt::format("the irradiance has pixels of {:g} um, sensor {} has pixels of {:g} um; an irradiance "
-                    "made with --sensor for this sensor would be right",
+                    "made with `sensor` for this sensor would be right",
                     image.pitch_um(), sensor.name, frame.pitch_um));
   if (image.columns() > frame.columns || image.rows() > frame.rows)
     throw InputError(fmt::format("the irradiance has {} x {} pixels, sensor {} only {} x {}", image.columns(),
@@ -137,7 +137,7 @@ double exit_pupil_mm(const SpectralImage& image, const PhotoCurrentOptions& opti
   if (image.lens && image.lens->exit_pupil_mm != 0) return image.lens->exit_pupil_mm;
   throw InputError(
       "the sensor's microlens needs chief ray angles, and the irradiance does not say where the exit pupil "
-      "is; --exit-pupil MM or --without microlens would be right");
+      "is; `exit_pupil_mm` MM or `without` microlens would be right");
 }
 
 void apply_microlens(PhotoCurrent& current, const Sensor& sensor, double pupil_mm) {

@@ -15,7 +15,7 @@ namespace petzval {
 struct ColourCalibration {
   int exif_light_source = 0;  ///< 17: A, 21: D65, 23: D50 (EXIF's LightSource)
   double temperature_k = 0;
-  std::vector<double> camera_from_xyz;  ///< channels × 3: DNG's ColorMatrix
+  std::vector<double> camera_from_xyz = {};  ///< channels × 3: DNG's ColorMatrix
   std::vector<double>
       pcs_from_balanced;  ///< 3 × channels: DNG's ForwardMatrix, from white-balanced channels to XYZ of D50
 };
@@ -23,22 +23,22 @@ struct ColourCalibration {
 /// A mosaic of numbers with all that is needed to make a picture of it.
 struct RawImage {
   int columns = 0, rows = 0;
-  Mosaic mosaic;
-  std::vector<std::string> channels;   ///< names: "red", "green", "blue", …
-  std::vector<std::uint16_t> samples;  ///< as stored, row by row
+  Mosaic mosaic = {};
+  std::vector<std::string> channels = {};   ///< names: "red", "green", "blue", …
+  std::vector<std::uint16_t> samples = {};  ///< as stored, row by row
 
   /// The linear value of each stored one; empty: stored values are linear. Levels are those of linear values.
-  std::vector<std::uint16_t> linearization;
+  std::vector<std::uint16_t> linearization = {};
   double black_level = 0, white_level = 65535;
   double dn_per_e = 0;      ///< linear values per electron; 0: not known
   double read_noise_e = 0;  ///< rms in the dark, quantisation included
 
-  std::vector<ColourCalibration> calibrations;  ///< none, one or two
-  std::vector<double> as_shot_neutral;  ///< of each channel under the light of the scene, the greatest 1
+  std::vector<ColourCalibration> calibrations = {};  ///< none, one or two
+  std::vector<double> as_shot_neutral = {};  ///< of each channel under the light of the scene, the greatest 1
 
   double exposure_s = 0, iso = 0;
-  LensFacts lens;
-  std::string sensor_name, provenance;
+  LensFacts lens = {};
+  std::string sensor_name = {}, provenance = {};
 
   double pixel(int row, int column) const {
     const std::uint16_t stored = samples[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +

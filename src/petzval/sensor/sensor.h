@@ -30,15 +30,15 @@ struct SensorGeometry {
 
 /// A channel of the colour filter array.
 struct SensorChannel {
-  std::string name;
+  std::string name = {};
   /// Electrons per photon that falls on the pixel's area (pitch²): the total quantum efficiency η of EMVA
   /// 1288, with filters, fill factor and microlens; 0 to 1.
-  Spectrum quantum_efficiency;
+  Spectrum quantum_efficiency = {};
 };
 
 /// One conversion gain of the pixel, of which there may be several (dual conversion gain).
 struct GainMode {
-  std::string name;
+  std::string name = {};
   double full_well_e = 0;   ///< more electrons than these are lost
   double dn_per_e = 0;      ///< EMVA 1288's system gain K, at analog gain 1
   double read_noise_e = 0;  ///< rms, before the analog gain
@@ -48,24 +48,25 @@ struct GainMode {
 
 /// What the pixels lose or gain under light that comes in at an angle.
 struct Microlens {
-  std::vector<double> angles_deg, response;  ///< relative response against the angle from the best one
+  std::vector<double> angles_deg = {},
+                      response = {};  ///< relative response against the angle from the best one
   /// The chief ray angle that the shift of the microlenses is made for, against image height.
-  std::vector<double> design_heights_mm, design_angles_deg;
+  std::vector<double> design_heights_mm = {}, design_angles_deg = {};
 };
 
 /// Everything that turns light into numbers.
 struct SensorElectronics {
-  std::vector<SensorChannel> channels;
-  Mosaic mosaic;
+  std::vector<SensorChannel> channels = {};
+  Mosaic mosaic = {};
   /// Where the electrons of a pixel end up: share of the neighbour at (row, column) − 1 from the centre.
   std::array<std::array<double, 3>, 3> crosstalk{{{0, 0, 0}, {0, 1, 0}, {0, 0, 0}}};
-  std::optional<Microlens> microlens;
+  std::optional<Microlens> microlens = {};
 
-  std::vector<GainMode> gain_modes;
+  std::vector<GainMode> gain_modes = {};
   int bits = 12;
   double black_level_dn = 0, white_level_dn = 4095;
   /// Deviation of the output from proportionality, as a share of the signal, at shares of the full well.
-  std::vector<double> linearity_fractions, linearity_deviations;
+  std::vector<double> linearity_fractions = {}, linearity_deviations = {};
 
   double dark_current_e_per_s = 0, dark_temperature_c = 20, dark_doubling_c = 8;
   double dsnu_e = 0, prnu = 0;  ///< rms over pixels: of the dark signal [e], of the gain (relative)
@@ -84,12 +85,12 @@ struct SensorElectronics {
 };
 
 struct Sensor {
-  std::string name, source;
-  SensorGeometry geometry;
+  std::string name = {}, source = {};
+  SensorGeometry geometry = {};
   /// Where within a pixel light is gathered, and the optical low-pass filter before it, in pitches. Whoever
   /// makes the irradiance applies them, once. The default is a box of one pitch and no filter.
-  Photosite photosite;
-  std::optional<SensorElectronics> electronics;  ///< absent: a frame for images, no more
+  Photosite photosite = {};
+  std::optional<SensorElectronics> electronics = {};  ///< absent: a frame for images, no more
 
   /// \throws InputError unless the sensor says how it turns light into numbers.
   const SensorElectronics& require_electronics() const;

@@ -42,6 +42,7 @@ void seek_focus(MountedLens& lens, const Focus& focus, const FieldTableRequest& 
 }  // namespace
 
 MountedLens mounted_lens(const Camera& camera, const Context& context) {
+  camera.lens.validate();
   if (camera.image_distance_mm && camera.focus.kind != Focus::Kind::design &&
       camera.focus.kind != Focus::Kind::automatic)
     throw InputError("`image_distance_mm` and `focus` both place the sensor; one of them would be right");

@@ -72,7 +72,7 @@ std::optional<double> depth_focus_m(const Scene& scene, MountedLens lens) {
   } catch (const InputError& error) {
     throw InputError(
         fmt::format("the depth in the middle of the picture is {:.4g} m: {} (`focus` takes another "
-                    "distance; `scene_depth_scale` is for maps in other units than metres)",
+                    "distance; `scene.depth_scale` is for maps in other units than metres)",
                     middle_depth_m(scene), error.what()));
   }
 }
@@ -208,7 +208,7 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
   plan.scene.set_horizontal_angle_deg(std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0)));
   send_note(context,
             fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
-                        "(`scene_angle_deg` sets another)",
+                        "(`scene.horizontal_angle_deg` sets another)",
                         is_builtin_scene(request->name) ? "chart" : "photograph",
                         plan.scene.horizontal_angle_deg()));
 }
@@ -226,13 +226,13 @@ ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, con
   if (options.least_scene_angle_deg && !(request && fills_frame(*request, optics, options)))
     throw InputError(
         "`least_scene_angle_deg` is for a chart or a photograph that fills the frame of a `sensor`; "
-        "`scene_angle_deg` would be right");
+        "`scene.horizontal_angle_deg` would be right");
   const ImageOptions wanted = with_photosite(options, optics);
   ImagePlan result = std::visit(
       [&](auto& camera) { return source(std::move(input), camera, wanted, TableDetail::full, context); },
       optics);
   if (!result.depth && wanted.depth.layers != 0)
-    throw InputError("`layers` is for scenes with depth; this one is a plane (`scene_depth` gives it a map)");
+    throw InputError("`layers` is for scenes with depth; this one is a plane (`scene.depth` gives it a map)");
   run_within(context, [&](const ProgressCallback&) { fit_to_each_other(result, optics, request, context); });
   return result;
 }

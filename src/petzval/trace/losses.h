@@ -18,7 +18,7 @@ namespace petzval {
 /// Share of the light that a coated surface reflects, whatever the angle and the polarisation.
 struct CoatingReflectance {
   /// (wavelength [nm], reflectance 0…1), increasing wavelengths; linear in between, held at the ends.
-  std::vector<std::pair<double, double>> table;
+  std::vector<std::pair<double, double>> table = {};
 
   static CoatingReflectance constant(double reflectance) { return {{{0.0, reflectance}}}; }
   double at(double wavelength_nm) const;
@@ -27,10 +27,11 @@ struct CoatingReflectance {
 /// Which losses a trace counts. Light reflected twice or more, which comes back as ghosts and flare, is lost
 /// here.
 struct Losses {
-  bool fresnel = false;                                ///< surfaces without a coating reflect as bare glass
-  bool absorption = false;                             ///< by the extinction coefficients of the catalogue
-  std::optional<CoatingReflectance> air_glass;         ///< coating of all surfaces between air and glass
-  std::map<std::size_t, CoatingReflectance> surfaces;  ///< coatings of single surfaces, before `air_glass`
+  bool fresnel = false;                              ///< surfaces without a coating reflect as bare glass
+  bool absorption = false;                           ///< by the extinction coefficients of the catalogue
+  std::optional<CoatingReflectance> air_glass = {};  ///< coating of all surfaces between air and glass
+  std::map<std::size_t, CoatingReflectance> surfaces =
+      {};  ///< coatings of single surfaces, before `air_glass`
 
   bool any() const { return fresnel || absorption || air_glass || !surfaces.empty(); }
   /// \throws InputError for a surface that the lens does not have, an empty or unsorted table, or a
@@ -59,8 +60,8 @@ class LensTransmittance {
  private:
   struct Interface {
     double index_before, index_after;
-    std::optional<double> reflectance;  ///< nothing: Fresnel, if that counts
-    double absorption_per_mm;           ///< of the gap behind the surface, 4πk/λ
+    std::optional<double> reflectance = {};  ///< nothing: Fresnel, if that counts
+    double absorption_per_mm;                ///< of the gap behind the surface, 4πk/λ
   };
   bool fresnel_;
   std::vector<Interface> interfaces_;

@@ -49,7 +49,7 @@ Material GlassLookup::of_catalogue(const std::string& name, const std::vector<st
   try {
     return Material(catalogue().find(name, preferred));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}; --substitute {}=… takes another", error.what(), name));
+    throw InputError(fmt::format("{}; `substitute` {}=… takes another", error.what(), name));
   }
 }
 
@@ -88,8 +88,8 @@ void GlassLookup::require_all_used() const {
     });
     if (used) continue;
     if (asked_.empty())
-      throw InputError(fmt::format("--substitute {}={}: the lens names no glasses", quotable(from), to));
-    throw InputError(fmt::format("--substitute {}={}: the lens has no such glass; its glasses are {}",
+      throw InputError(fmt::format("`substitute` {}={}: the lens names no glasses", quotable(from), to));
+    throw InputError(fmt::format("`substitute` {}={}: the lens has no such glass; its glasses are {}",
                                  quotable(from), quotable(to), fmt::join(asked_, ", ")));
   }
 }

@@ -249,7 +249,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   }
   if (found.edges.empty())
     throw InputError(
-        fmt::format("no straight edge of at least {:g} pixels stands out in the picture; give a --roi",
+        fmt::format("no straight edge of at least {:g} pixels stands out in the picture; give a `roi`",
                     options.least_length_px));
   return found;
 }

@@ -132,7 +132,7 @@ PsfFrame frame_of(const PsfStack& stack, const PsfLie& lie, RayTraceFile& file) 
       if (!lie.away)
         file.notes.push_back(
             "the PSFs are mirror symmetric about a column, as rtImportData leaves those of Zemax: away from "
-            "the axis is taken to be up (--psf-away sets another)");
+            "the axis is taken to be up (`psf_away` sets another)");
     } else if (mirror) {
       frame = {PsfAway::right, mirror->centre, mirror->centre};
     }

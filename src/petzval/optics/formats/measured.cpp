@@ -144,7 +144,7 @@ void take_curves(const Entries& entries, std::string_view text, const std::strin
     }
   } else {
     measured.notes.push_back(
-        "no distortion and even illumination are assumed (--curves gives a file of them)");
+        "no distortion and even illumination are assumed (`curves` gives a file of them)");
   }
   for (std::size_t f = 0; f < relative.size(); ++f) {
     data.distorted_height_mm.insert(data.distorted_height_mm.end(), waves, entries.fields_mm[f]);

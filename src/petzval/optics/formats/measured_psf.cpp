@@ -54,7 +54,7 @@ Psf psf_of_samples(const std::vector<MeasuredSample>& samples, bool clip_negativ
     if (sample.value < 0 && !clip_negative)
       throw InputError(
           fmt::format("has a value of {} at x = {} mm, y = {} mm; light is not negative "
-                      "(--clip-negative takes it for noise)",
+                      "(`clip_negative` takes it for noise)",
                       sample.value, sample.x_mm, sample.y_mm));
     xs.push_back(sample.x_mm);
     ys.push_back(sample.y_mm);

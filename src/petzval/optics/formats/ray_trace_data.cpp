@@ -57,14 +57,15 @@ double g_axis_sr(const RayTraceData& data, const RayTraceReading& reading, bool 
   if (reading.g_axis_sr) return *reading.g_axis_sr;
   const double n = data.f_number, m = finite_object ? std::abs(data.magnification) : 0;
   if (std::isnan(n))
-    throw InputError("does not say the f-number: without it the level of the light must be given (--g-axis)");
+    throw InputError(
+        "does not say the f-number: without it the level of the light must be given (`g_axis_sr`)");
   if (!(std::isfinite(n) && n > 0))
     throw InputError(fmt::format(
-        "the f-number is {:g}: a positive one, or the level of the light (--g-axis), would be right", n));
+        "the f-number is {:g}: a positive one, or the level of the light (`g_axis_sr`), would be right", n));
   const double g = iset_irradiance_sr(n, m);
   notes.push_back(
       fmt::format("the file says nothing of the level of the light: g_sensor on the axis is taken as "
-                  "π/(1 + 4 N²(1 + |m|)²) = {:.5f} sr at f/{:.4g} (--g-axis sets another)",
+                  "π/(1 + 4 N²(1 + |m|)²) = {:.5f} sr at f/{:.4g} (`g_axis_sr` sets another)",
                   g, n));
   return g;
 }
@@ -169,8 +170,8 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
       if (reading.says_something())
         imported.notes.push_back(
             "the file holds the table that Petzval made it of, which is taken as it was: the level of the "
-            "light, the kind of the illumination and the length of the lens are in it, and --g-axis, "
-            "--relative-illumination and --vertex-to-sensor have no effect");
+            "light, the kind of the illumination and the length of the lens are in it, and `g_axis_sr`, "
+            "`relative_illumination` and `vertex_to_sensor_mm` have no effect");
       return {*std::move(table), std::move(imported.notes)};
     }
     imported.notes.push_back(
@@ -210,7 +211,7 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
   if (finite && reading.vertex_to_sensor_mm == 0)
     imported.notes.push_back(
         fmt::format("the length of the lens is not known: the scene stands {:g} mm from the sensor, as the "
-                    "object from the first vertex (--vertex-to-sensor sets what lies between)",
+                    "object from the first vertex (`vertex_to_sensor_mm` sets what lies between)",
                     data.object_distance_mm));
   table.validate();
   return imported;
@@ -225,7 +226,7 @@ RayTraceData ray_trace_data(const LensDataTable& table) {
     if (psf.spacing_um != table.psf.front().spacing_um)
       throw InputError(
           fmt::format("the PSFs are sampled at {:g} µm and at {:g} µm, and ISET has one spacing for all; "
-                      "--resample brings them to one",
+                      "`resample` brings them to one",
                       table.psf.front().spacing_um, psf.spacing_um));
   if (!finite && table.fields.back() >= 90)
     throw InputError(fmt::format(

@@ -142,7 +142,7 @@ struct ListingReader {
       guessed = true;
       notes.push_back(
           fmt::format("the PSF listings do not say where they lie: away from the axis is taken to be {} "
-                      "(--psf-away sets another)",
+                      "(`psf_away` sets another)",
                       away_text(usual)));
     }
     return usual;
@@ -230,7 +230,7 @@ std::vector<std::string> write_zemax_table(const RayTraceData& data, const std::
   if (even_steps(data.field_height_mm)) return {};
   return {
       "the image heights are no even steps, which ISET's rtImportData takes them to be: Petzval reads these "
-      "files right, ISET wants --to iset"};
+      "files right, ISET needs an export to iset"};
 }
 
 }  // namespace petzval

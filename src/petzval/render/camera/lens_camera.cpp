@@ -70,7 +70,7 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   if (options.sampling == LensCameraOptions::Sampling::rear_disk) {
     if (!last.semi_diameter_mm)
       throw InputError(fmt::format(
-          "{}: the last surface has no aperture to aim at; --sampling exit-pupil needs none", lens.name));
+          "{}: the last surface has no aperture to aim at; `sampling` exit-pupil needs none", lens.name));
     rear_radius_mm_ = *last.semi_diameter_mm;
   } else if (!any_light_passes(*this, film_, groups.count())) {
     throw no_light(lens, film_.half_diagonal_mm());

@@ -186,12 +186,12 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
   if (!realistic) read_perspective(parameters, camera);
   if (realistic && choice.pinhole)
     throw scene_error(entity.location(),
-                      "the scene's camera is a real lens; it has no perspective for --pinhole");
+                      "the scene's camera is a real lens; it has no perspective for `pinhole`");
   if ((realistic || choice.lens) && !choice.pinhole)
     camera.lens = lens_in_use(choice, parameters, realistic, camera);
   else if (choice.film_distance_mm || choice.focus_distance_m || choice.aperture_diameter_mm ||
            choice.f_number)
-    throw InputError("film distance, focus and stop belong to a lens; --lens names one");
+    throw InputError("film distance, focus and stop belong to a lens; `lens` names one");
   if (choice.pinhole) camera.perspective.lens_radius = 0;
   if (realistic)
     for (const char* each : {"aperturediameter", "focusdistance", "lensfile", "aperture_diameter",

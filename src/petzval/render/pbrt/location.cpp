@@ -24,7 +24,8 @@ std::string Location::text() const {
 }
 
 InputError scene_error(const Location& at, const std::string& message) {
-  return InputError(fmt::format("{}: {}", at.text(), one_line(message)));
+  if (at.path) return InputError(at.text(), one_line(message));
+  return InputError(at.file ? *at.file : "scene", at.line, at.column, one_line(message));
 }
 
 }  // namespace petzval::render

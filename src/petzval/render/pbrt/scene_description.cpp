@@ -7,7 +7,7 @@
 namespace petzval::render {
 
 void Unsupported::report(const Location& at, const std::string& what) {
-  if (!collect_) throw scene_error(at, what + " is not supported (--list-unsupported shows all such things)");
+  if (!collect_) throw scene_error(at, what + " is not supported (`list_unsupported` shows all such things)");
   list_.push_back({at, what});
 }
 

@@ -54,7 +54,9 @@ std::optional<double> distance_m(const MatFile& file) {
 double angle_deg(const MatFile& file, std::optional<double> if_absent) {
   if (const std::optional<double> fov = number_of(file, "fov")) return *fov;
   if (if_absent) return *if_absent;
-  throw InputError(file.path(), "has no variable 'fov': its horizontal angle must be given (--scene-angle)");
+  throw InputError(
+      file.path(),
+      "has no variable 'fov': its horizontal angle must be given (`scene.horizontal_angle_deg`)");
 }
 
 /// An illuminant as ISET's files of before 2012 have it: wavelengths, and energy at them.

@@ -58,7 +58,7 @@ PhotonCube photon_cube(const MatValue& scene) {
 double angle_deg(const MatValue& scene, std::optional<double> if_absent) {
   if (const std::optional<MatValue> angle = scene.find("wAngular")) return angle->number();
   if (if_absent) return *if_absent;
-  scene.fail("has no wAngular: its horizontal angle must be given (--scene-angle)");
+  scene.fail("has no wAngular: its horizontal angle must be given (`scene.horizontal_angle_deg`)");
 }
 
 std::optional<double> distance_m(const MatValue& scene) {

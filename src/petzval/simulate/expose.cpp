@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/sensor/colour_calibration.h>
+#include <petzval/simulate/expose.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+constexpr std::string_view by_value = "ev:";
+
+double exposure_s(const ExposeOptions& options, const SpectralImage& light, const PhotoCurrent& current,
+                  double saturation_e) {
+  if (options.exposure.kind == Exposure::Kind::automatic)
+    return metered_exposure_s(current, saturation_e, {options.metering, options.compensation_ev});
+  const double compensation = std::exp2(options.compensation_ev);
+  if (options.exposure.kind == Exposure::Kind::seconds) return options.exposure.value * compensation;
+  const double n = options.f_number.value_or(light.lens ? light.lens->f_number : 0);
+  if (!(n > 0))
+    throw InputError("an exposure value needs an f-number, and the irradiance has none; `f_number` gives it");
+  return exposure_of_ev_s(options.exposure.value, n) * compensation;
+}
+
+/// White balance of the light of the scene, as asked, as the image says, or as if the scene were grey on
+/// average.
+std::vector<double> neutral(const ExposeOptions& options, const SpectralImage& light, const Sensor& sensor,
+                            const PhotoCurrent& current, const Context& context) {
+  if (sensor.electronics->channels.size() == 1) return {};
+  if (options.illuminant) return neutral_of(sensor, *options.illuminant);
+  if (light.illuminant) return neutral_of(sensor, *light.illuminant);
+  std::vector<double> means = channel_means(current, *sensor.electronics);
+  const double most = *std::max_element(means.begin(), means.end());
+  for (double& mean : means) {
+    if (!(mean > 0)) return {};
+    mean /= most;
+  }
+  send_note(context,
+            "the light of the scene is not known: white balance as if the scene were grey on average "
+            "(`scene.illuminant` D65 says otherwise)");
+  return means;
+}
+
+RawImage captured(const ExposeOptions& options, const Sensor& sensor, const PhotoCurrent& current,
+                  double seconds, std::uint64_t seed) {
+  CaptureOptions capturing{options.gain_mode, options.analog_gain, options.temperature_c, seed,
+                           options.serial,    options.without,     options.frames};
+  if (options.bracket_ev.empty()) return capture(current, sensor, seconds, capturing);
+  std::vector<RawImage> exposures;
+  for (const double ev : options.bracket_ev) {
+    exposures.push_back(capture(current, sensor, seconds * std::exp2(ev), capturing));
+    ++capturing.seed;  // noise of its own
+  }
+  return merge_bracket(exposures);
+}
+
+RawImage exposed(const SpectralImage& light, Sensor sensor, const ExposeOptions& options,
+                 const Context& context) {
+  const auto counts = [&](NoiseSource source) { return !options.without.contains(source); };
+  SensorElectronics& electronics = *sensor.electronics;
+  // White balance and colours are then those of a sensor without it.
+  if (!counts(NoiseSource::crosstalk)) electronics.crosstalk = SensorElectronics().crosstalk;
+  const GainMode& mode = electronics.gain_mode(options.gain_mode);
+  const PhotoCurrent current = photo_current(
+      light, sensor, {counts(NoiseSource::crosstalk), counts(NoiseSource::microlens), options.exit_pupil_mm});
+  const double seconds =
+      exposure_s(options, light, current, electronics.saturation_e(mode, options.analog_gain));
+
+  RawImage raw = captured(options, sensor, current, seconds, context.seed);
+  raw.calibrations = standard_calibrations(sensor);
+  raw.as_shot_neutral = neutral(options, light, sensor, current, context);
+  constexpr const char* daylight = "D55";
+  raw.iso = saturation_speed(sensor, mode, options.analog_gain, illuminant(daylight));
+  if (light.lens) raw.lens = *light.lens;
+  if (options.f_number) raw.lens.f_number = *options.f_number;
+  raw.provenance = fmt::format("petzval {} sense: {}; {}", version(), sensor.name, light.provenance);
+  return raw;
+}
+
+}  // namespace
+
+Exposure Exposure::parse(std::string_view text) {
+  if (text == "auto") return automatic();
+  const bool value_given = text.starts_with(by_value);
+  const std::optional<double> value = parse_number(text.substr(value_given ? by_value.size() : 0));
+  if (!value || (!value_given && *value < 0))
+    throw InputError(fmt::format(
+        "`exposure` {}: auto, seconds (0.01) or an exposure value (ev:12) would be right", quotable(text)));
+  return value_given ? of_value(*value) : seconds(*value);
+}
+
+RawImage expose(const SpectralImage& light, const Sensor& sensor, const ExposeOptions& options,
+                const Context& context) {
+  sensor.require_electronics();
+  return result_within(context,
+                       [&](const ProgressCallback&) { return exposed(light, sensor, options, context); });
+}
+
+}  // namespace petzval

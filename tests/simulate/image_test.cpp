@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/optics/build.h>
+#include <petzval/simulate/image.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace petzval {
+namespace {
+
+Camera small_camera() {
+  Camera camera;
+  camera.lens = read_lens("dgauss-50mm").lens;
+  camera.sensor = read_sensor("48x36@200");
+  return camera;
+}
+
+SceneRequest wall() {
+  return {.name = "wall", .options = {.wavelengths_nm = {500, 550, 600}}};
+}
+
+// On the axis E = π L sin²U' for a lens without aberrations; here U' is that of the working f-number to 1 %.
+TEST(Image, OfAWallHasTheIrradianceOfTheCone) {
+  const ImagePlan plan = plan_image(wall(), small_camera());
+  const SpectralImage light = image(plan);
+  for (int band = 0; band < light.bands(); ++band) {
+    const double radiance = plan.scene.mean_radiance()[static_cast<std::size_t>(band)];
+    const double n = plan.table.first_order.working_f_number;
+    EXPECT_NEAR(light.at(band, 18, 24) / (M_PI * radiance / (4 * n * n + 1)), 1, 0.02);
+  }
+}
+
+TEST(Image, SaysWhatItWasMadeOf) {
+  ImageReport report;
+  std::vector<std::string> notes;
+  Context context;
+  context.note = [&](const std::string& text) { notes.push_back(text); };
+  const SpectralImage light = image(wall(), small_camera(), {}, context, &report);
+  EXPECT_NE(light.provenance.find("wall"), std::string::npos) << light.provenance;
+  EXPECT_NE(light.provenance.find(report.method), std::string::npos);
+  ASSERT_TRUE(light.lens);
+  EXPECT_NEAR(light.lens->focal_length_mm, 50, 1);
+  EXPECT_TRUE(light.illuminant);
+  EXPECT_TRUE(std::ranges::any_of(notes, [](const std::string& note) {
+    return note.find("degrees wide, to fill the frame") != std::string::npos;
+  }));
+}
+
+TEST(Image, OfASceneInMemoryIsThatOfTheSceneRead) {
+  const Camera camera = small_camera();
+  SceneRequest request = wall();
+  request.options.horizontal_angle_deg = 30;
+  const SpectralImage read = image(request, camera);
+  const SpectralImage kept = image(read_scene(request.name, request.options), camera);
+  EXPECT_TRUE(std::ranges::equal(read.values(), kept.values()));
+}
+
+TEST(Image, ThroughAStoredTableIsThatThroughItsLens) {
+  const Camera camera = small_camera();
+  const ImagePlan plan = plan_image(wall(), camera);
+  const SpectralImage direct = image(plan);
+  SceneRequest same = wall();
+  same.options.horizontal_angle_deg = plan.scene.horizontal_angle_deg();
+  const SpectralImage stored = image(same, TableCamera{plan.table, camera.sensor});
+  EXPECT_TRUE(std::ranges::equal(direct.values(), stored.values()));
+}
+
+TEST(Image, HandsOverTheBandsThatItWouldKeep) {
+  const ImagePlan plan = plan_image(wall(), small_camera());
+  const SpectralImage light = image(plan);
+  std::vector<float> bands;
+  image_bands(
+      plan, [&](std::span<const float> pixels) { bands.insert(bands.end(), pixels.begin(), pixels.end()); });
+  EXPECT_TRUE(std::ranges::equal(light.values(), bands));
+}
+
+TEST(Image, LossesOfTheCameraTakeLight) {
+  Camera coated = small_camera();
+  coated.losses.fresnel = true;
+  const SpectralImage clear = image(wall(), small_camera()), lossy = image(wall(), coated);
+  // Twelve air-glass surfaces or so of 4 to 6 % each.
+  EXPECT_LT(lossy.at(1, 18, 24), 0.75 * clear.at(1, 18, 24));
+  EXPECT_GT(lossy.at(1, 18, 24), 0.3 * clear.at(1, 18, 24));
+}
+
+TEST(Image, IsTheSameOnAnyNumberOfThreads) {
+  Context one, two;
+  one.threads = 1, two.threads = 2;
+  SceneRequest chart = wall();
+  chart.name = "studio";
+  const SpectralImage a = image(chart, small_camera(), {}, one), b = image(chart, small_camera(), {}, two);
+  EXPECT_TRUE(std::ranges::equal(a.values(), b.values()));
+}
+
+TEST(Image, CanBeStopped) {
+  Camera camera = small_camera();
+  camera.sensor = read_sensor("640x480@15");
+  SceneRequest chart = wall();
+  chart.name = "studio";
+  // Whenever it is asked: in the table, in the fitting, in the blur.
+  for (const int answers : {0, 3, 20}) {
+    std::atomic<int> asked = 0;
+    Context context;
+    context.progress = [&](double, const std::string&) { return asked++ < answers; };
+    EXPECT_THROW(image(chart, camera, {}, context), Cancelled) << answers;
+  }
+}
+
+TEST(Image, RefusesWhatDoesNotFit) {
+  ImageOptions layered;
+  layered.depth.layers = 3;
+  EXPECT_THROW(image(wall(), small_camera(), layered), InputError);
+  ImageOptions widened;
+  widened.least_scene_angle_deg = 20;
+  SceneRequest fixed = wall();
+  fixed.options.horizontal_angle_deg = 30;
+  EXPECT_THROW(image(fixed, small_camera(), widened), InputError);
+}
+
+TEST(FillingAngle, IsNearlyThatOfTheImage) {
+  const Camera camera = small_camera();
+  const double angle = filling_angle_deg(wall(), camera, {}).value();
+  EXPECT_NEAR(angle / plan_image(wall(), camera).scene.horizontal_angle_deg(), 1, 0.01);
+  SceneRequest fixed = wall();
+  fixed.options.horizontal_angle_deg = 30;
+  EXPECT_FALSE(filling_angle_deg(fixed, camera, {}));
+}
+
+}  // namespace
+}  // namespace petzval
