@@ -9,6 +9,7 @@
 #endif
 
 #include <petzval/lens/shapes/numbers-inl.h>
+#include <petzval/lens/shapes/qcon-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
@@ -16,7 +17,7 @@ namespace petzval::HWY_NAMESPACE {
 template <class... Kind>
 struct KindList {};
 
-using AddedKinds = KindList<>;
+using AddedKinds = KindList<Qcon>;
 
 }  // namespace petzval::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
