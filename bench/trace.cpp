@@ -52,7 +52,7 @@ void plain_loop(benchmark::State& state) {
   std::vector<plain::Surface<T>> surfaces;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Tracer::PreparedSurface& from = tracer.surfaces()[i];
-    surfaces.push_back({T(from.curvature), T(lens.surfaces[i].thickness_mm),
+    surfaces.push_back({T(from.shape.curvature), T(lens.surfaces[i].thickness_mm),
                         T(from.index_before / from.index_after), T(1e6)});
   }
   const RayBatch beam = parallel_beam(10);

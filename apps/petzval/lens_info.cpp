@@ -4,6 +4,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <cmath>
 #include <memory>
@@ -92,9 +93,7 @@ void print_surfaces(const Lens& lens) {
     if (surface.blades.count > 0)
       remark +=
           fmt::format(" of {} blades turned by {:g}°", surface.blades.count, surface.blades.rotation_deg);
-    if (surface.conic != 0) remark += fmt::format("; conic {:g}", surface.conic);
-    for (const auto& [power, coefficient] : surface.asphere)
-      remark += fmt::format("; r^{} {:g}", power, coefficient);
+    for (const std::string& shape : shape_remarks(surface)) remark += "; " + shape;
     fmt::print("{:>3} {:>14} {:>12.6g} {:>12}  {}\n", i, c == 0 ? "flat" : fmt::format("{:.6g}", 1 / c),
                surface.thickness_mm,
                surface.semi_diameter_mm ? fmt::format("{:.6g}", *surface.semi_diameter_mm) : "unbounded",

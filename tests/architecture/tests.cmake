@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Rules that the compiler does not know: directions of includes, licence lines, nothing left unfinished.
+# Rules that the compiler does not know: directions of includes, licence lines, nothing left unfinished, a list
+# that must be whole.
 set(here ${CMAKE_CURRENT_LIST_DIR})
 add_test(NAME architecture.include_directions
   COMMAND Python3::Interpreter ${here}/include_directions.py
     ${PROJECT_SOURCE_DIR}/src/petzval ${PROJECT_SOURCE_DIR}/tests)
 add_test(NAME architecture.source_rules COMMAND Python3::Interpreter ${here}/source_rules.py ${PROJECT_SOURCE_DIR})
+add_test(NAME architecture.symmetry_list
+  COMMAND Python3::Interpreter ${here}/symmetry_list.py
+    ${PROJECT_SOURCE_DIR}/docs/TRACING.md ${PROJECT_SOURCE_DIR}/src/petzval)
 foreach(checker include_directions source_rules)
   add_test(NAME architecture.${checker}_finds_faults COMMAND Python3::Interpreter ${here}/test_${checker}.py)
   set_tests_properties(architecture.${checker} architecture.${checker}_finds_faults PROPERTIES

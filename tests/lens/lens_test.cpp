@@ -24,10 +24,10 @@ TEST(Lens, MeasuresItself) {
   EXPECT_NO_THROW(valid().validate());
   EXPECT_EQ(valid().stop_index(), 0u);
   EXPECT_EQ(valid().total_track_mm(), 47);
-  EXPECT_TRUE(valid().surfaces[0].is_flat());
+  EXPECT_TRUE(is_flat(valid().surfaces[0]));
   Surface plate;
   plate.asphere = {{4, 1e-5}};
-  EXPECT_FALSE(plate.is_flat());
+  EXPECT_FALSE(is_flat(plate));
   const Lens empty;
   EXPECT_EQ(empty.total_track_mm(), 0);
   expect_mentions(error_of([&] { empty.stop_index(); }), {"no stop"});

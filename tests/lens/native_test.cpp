@@ -58,7 +58,7 @@ TEST(NativeReader, ReadsEveryEntry) {
   EXPECT_EQ(first.conic, 0.5);
   EXPECT_EQ(first.asphere, (std::map<int, double>{{4, 1.2e-6}, {6, -3e-9}}));
   EXPECT_EQ(lens.stop_index(), 1u);
-  EXPECT_TRUE(lens.surfaces[1].is_flat());
+  EXPECT_TRUE(is_flat(lens.surfaces[1]));
   EXPECT_TRUE(lens.surfaces[1].material.is_air());
   EXPECT_EQ(std::get<Material::Model>(lens.surfaces[2].material.kind()).vd, 50);
   EXPECT_EQ(lens.surfaces[3].material.index(500), 1.7);

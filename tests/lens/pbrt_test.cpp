@@ -37,7 +37,7 @@ TEST(PbrtReader, ReadsRows) {
   EXPECT_EQ(lens.surfaces[0].semi_diameter_mm, 10);      // the file has diameters
   EXPECT_TRUE(lens.surfaces[2].material.is_air());
   EXPECT_EQ(lens.stop_index(), 3u);
-  EXPECT_TRUE(lens.surfaces[3].is_flat());
+  EXPECT_TRUE(is_flat(lens.surfaces[3]));
   EXPECT_TRUE(lens.surfaces[3].material.is_air());
   EXPECT_EQ(lens.aperture.kind, Aperture::Kind::stop_semi_diameter_mm);
   EXPECT_EQ(lens.aperture.value, 7.5);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <cmath>
 #include <functional>
@@ -91,6 +92,10 @@ inline void expect_same_surface(const Surface& a, const Surface& b) {
   EXPECT_EQ(a.semi_diameter_mm, b.semi_diameter_mm);
   EXPECT_EQ(a.conic, b.conic);
   EXPECT_EQ(a.asphere, b.asphere);
+  ASSERT_EQ(a.shape.has_value(), b.shape.has_value());
+  if (!a.shape) return;
+  EXPECT_EQ(a.shape->kind, b.shape->kind);
+  EXPECT_EQ(a.shape->parameters, b.shape->parameters);
 }
 
 /// Bit for bit, in all that traces rays.

@@ -73,7 +73,7 @@ TEST(Setting, ReplacesGlass) {
 
 TEST(Setting, TakesEntriesAway) {
   EXPECT_FALSE(set("surfaces[0].semi_diameter_mm=null").surfaces[0].semi_diameter_mm);
-  EXPECT_TRUE(set("surfaces[0].radius_mm=null").surfaces[0].is_flat());
+  EXPECT_TRUE(is_flat(set("surfaces[0].radius_mm=null").surfaces[0]));
 }
 
 TEST(Setting, MovesTheStop) {

@@ -5,33 +5,20 @@
 #include <petzval/trace/radiance_tracer.h>
 #include <petzval/trace/tracer.h>
 
-#include <hwy/targets.h>
-
 #include <cmath>
 #include <random>
 
 #include "trace/sample_lenses.h"
+#include "trace/simd_targets.h"
 
 namespace petzval {
 namespace {
 
 using sample::of_every_kind;
+using sample::OnlyTarget;
 using sample::random_ray;
+using sample::targets_of_this_machine;
 using sample::triplet_like;
-
-/// Holds the machine to one instruction set.
-class OnlyTarget {
- public:
-  explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
-  ~OnlyTarget() { hwy::SetSupportedTargetsForTest(0); }
-};
-
-std::vector<std::int64_t> targets_of_this_machine() {
-  std::vector<std::int64_t> targets;
-  for (int bit = 0; bit < 62; ++bit)
-    if (hwy::SupportedTargets() & (std::int64_t{1} << bit)) targets.push_back(std::int64_t{1} << bit);
-  return targets;
-}
 
 void append(const Ray& ray, RayBatch& batch) {
   batch.push_back(ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0], ray.direction[1],

@@ -2,6 +2,7 @@
 #include <petzval/analysis/field_curvature.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <cmath>
 #include <limits>
@@ -18,26 +19,6 @@ double dot(const Vector& a, const Vector& b) {
 
 double distance_along(const Vector& from, const Vector& to, const Vector& direction) {
   return dot({to[0] - from[0], to[1] - from[1], to[2] - from[2]}, direction);
-}
-
-/// Principal curvatures of a surface of revolution z(r), in its meridian and across it.
-struct PrincipalCurvatures {
-  double meridional, sagittal;
-};
-
-PrincipalCurvatures principal_curvatures(const Tracer::PreparedSurface& surface, double r) {
-  const double c = surface.curvature, square = 1 - (1 + surface.conic) * c * c * r * r;
-  double slope = c * r / std::sqrt(square), bend = c / std::pow(square, 1.5);
-  for (std::size_t p = 1; p < surface.polynomial.size(); ++p) {
-    const double power = static_cast<double>(p), a = surface.polynomial[p];
-    if (a == 0) continue;
-    slope += a * power * std::pow(r, power - 1);
-    if (p > 1) bend += a * power * (power - 1) * std::pow(r, power - 2);
-  }
-  const double length = std::sqrt(1 + slope * slope);
-  // On the axis both are the same; a cone (p = 1) has no curvature there to speak of.
-  if (r == 0) return {bend, bend};
-  return {bend / (length * length * length), slope / (r * length)};
 }
 
 /// n/distance to the two foci, measured along the ray from where it is now.
@@ -72,7 +53,7 @@ AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief)
     if (i > 0) bundle.travel(distance_along(at, hit.point_mm, direction), surface.index_before);
     const double cosine = dot(direction, hit.normal), cosine_after = dot(hit.direction_after, hit.normal);
     const PrincipalCurvatures curvature =
-        principal_curvatures(surface, std::hypot(hit.point_mm[0], hit.point_mm[1]));
+        principal_curvatures(surface.shape, std::hypot(hit.point_mm[0], hit.point_mm[1]));
     const double power = surface.index_after * cosine_after - surface.index_before * cosine;
     bundle.tangential =
         (bundle.tangential * cosine * cosine + power * curvature.meridional) / (cosine_after * cosine_after);

@@ -5,7 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
-#include <petzval/lens/paraxial_system.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
 #include <cmath>
@@ -76,10 +76,8 @@ class ParaxialLens {
 /// c₃ of the sag c r²/2 + (c³ + c₃) r⁴/8 + …: what a surface departs by from the sphere of its vertex
 /// curvature.
 double fourth_order_departure(const Surface& surface) {
-  const auto quartic = surface.asphere.find(4);
-  const double cubed = std::pow(surface.curvature_per_mm, 3), vertex = vertex_curvature_per_mm(surface);
-  const double fourth = quartic == surface.asphere.end() ? 0.0 : quartic->second;
-  return (1 + surface.conic) * cubed + 8 * fourth - vertex * vertex * vertex;
+  const auto [vertex, fourth] = vertex_series(surface);
+  return fourth - vertex * vertex * vertex;
 }
 
 /// Refractive indices on the two sides of a surface: at the reference wavelength, and dispersion (first minus

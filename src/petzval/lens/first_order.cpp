@@ -3,6 +3,7 @@
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/paraxial_system.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,15 @@
 
 namespace petzval {
 
-/// One rotationally symmetric surface and the gap behind it. Sag
-/// z(r) = c r² / (1 + √(1 − (1 + k) c² r²)) + Σ a_p r^p, positive towards the image.
+/// A kind of surface beyond conics and powers of r (lens/surface_kind.h), by name, with its parameters by
+/// name.
+struct AddedShape {
+  std::string kind;
+  std::map<std::string, std::vector<double>> parameters;
+};
+
+/// One surface and the gap behind it. Sag z(r) = c r² / (1 + √(1 − (1 + k) c² r²)) + Σ a_p r^p, or that of
+/// its `shape`, positive towards the image. lens/surface_shape.h answers what the shape is like.
 struct Surface {
   double curvature_per_mm = 0;  ///< c = 1/radius, > 0 when the centre lies on the +z side; 0 = flat
   double thickness_mm = 0;      ///< to the next vertex; the last one reaches the image surface
@@ -24,8 +31,7 @@ struct Surface {
   std::optional<double> semi_diameter_mm = {};  ///< clear semi-aperture; absent = unbounded
   double conic = 0;                             ///< k
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
-
-  bool is_flat() const { return curvature_per_mm == 0 && asphere.empty(); }
+  std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
 };
 
 /// How wide the lens is open.

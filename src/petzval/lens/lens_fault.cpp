@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/surface_kind.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace petzval {
@@ -13,6 +15,32 @@ using Fault = std::optional<LensFault>;
 
 bool positive(double value) {
   return std::isfinite(value) && value > 0;
+}
+
+Fault shape_fault(const Surface& surface, const std::string& path) {
+  const AddedShape& shape = *surface.shape;
+  const SurfaceKind* kind = find_surface_kind(shape.kind);
+  if (!kind) return LensFault{path + ".kind", "is not a kind of surface; these are: " + surface_kind_names()};
+  if (!surface.asphere.empty())
+    return LensFault{path,
+                     fmt::format("\"{}\" stands in place of powers of r; leave out asphere", kind->name)};
+  for (const auto& [name, numbers] : shape.parameters)
+    if (std::none_of(kind->parameters.begin(), kind->parameters.end(),
+                     [&name = name](const ShapeParameter& parameter) { return name == parameter.name; }))
+      return LensFault{path + "." + name, fmt::format("is not a parameter of \"{}\"", kind->name)};
+  for (const ShapeParameter& parameter : kind->parameters) {
+    const std::vector<double> numbers = shape_numbers(surface, parameter.name);
+    const std::string at = path + "." + parameter.name;
+    if (parameter.positive && !(numbers.size() == 1 && positive(numbers[0])))
+      return LensFault{at, fmt::format("must be {}, and positive", parameter.meaning)};
+    if (numbers.size() > parameter.most)
+      return LensFault{at,
+                       fmt::format("has {} numbers; at most {} are right", numbers.size(), parameter.most)};
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (!std::isfinite(numbers[i]))
+        return LensFault{at, fmt::format("must be {}, finite", parameter.meaning)};
+  }
+  return {};
 }
 
 Fault surface_fault(const Surface& surface, const std::string& path) {
@@ -43,7 +71,7 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
       return LensFault{fmt::format("{}.asphere.{}", path, power),
                        "must be a finite coefficient in mm^(1-power)"};
   }
-  return {};
+  return surface.shape ? shape_fault(surface, at("shape")) : Fault();
 }
 
 Fault surfaces_fault(const Lens& lens) {

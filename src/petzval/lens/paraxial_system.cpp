@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/lens/paraxial_system.h>
+#include <petzval/lens/surface_shape.h>
 
 namespace petzval {
 
@@ -11,11 +12,6 @@ void ParaxialMatrix::refract(double power_per_mm) {
 void ParaxialMatrix::transfer(double reduced_distance_mm) {
   a += reduced_distance_mm * c;
   b += reduced_distance_mm * d;
-}
-
-double vertex_curvature_per_mm(const Surface& surface) {
-  const auto square = surface.asphere.find(2);
-  return surface.curvature_per_mm + (square == surface.asphere.end() ? 0.0 : 2 * square->second);
 }
 
 ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {

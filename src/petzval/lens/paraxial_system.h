@@ -26,10 +26,6 @@ struct ParaxialSystem {
   double petzval_sum_per_mm = 0;  ///< Σ φ/(n n'), without the factor n of the image space
 };
 
-/// Curvature at the vertex: c and the r² term of an asphere. A term in r, a cone, has no paraxial limit and
-/// is left out, as other programs do.
-double vertex_curvature_per_mm(const Surface& surface);
-
 /// \throws InputError when an index is not known at the wavelength.
 ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm);
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/scaled_lens.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <cmath>
 
@@ -10,12 +11,7 @@ namespace petzval {
 Lens scaled_lens(Lens lens, double factor) {
   if (!(factor > 0) || !std::isfinite(factor))
     throw InputError(fmt::format("a scale factor of {}; it must be positive", factor));
-  for (Surface& surface : lens.surfaces) {
-    surface.curvature_per_mm /= factor;
-    surface.thickness_mm *= factor;
-    if (surface.semi_diameter_mm) *surface.semi_diameter_mm *= factor;
-    for (auto& [power, coefficient] : surface.asphere) coefficient *= std::pow(factor, 1 - power);
-  }
+  for (Surface& surface : lens.surfaces) surface = scaled_surface(std::move(surface), factor);
   if (lens.object_distance_mm) *lens.object_distance_mm *= factor;
   if (lens.aperture.kind == Aperture::Kind::entrance_pupil_diameter_mm ||
       lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/lens/surface_shape.h>
 #include <petzval/report/lens_drawing.h>
 #include <petzval/report/surface_profile.h>
 #include <petzval/report/ticks.h>
@@ -25,12 +26,13 @@ std::vector<double> vertices_z_mm(const Lens& lens) {
 /// surface; the crossings of straight stretches are asked only when no point is on it.
 double ray_height_mm(const Surface& surface, double vertex_z_mm, const std::vector<DrawnRay>& rays) {
   constexpr double on_surface_mm = 1e-6;
+  const ShapeData<double> shape = shape_of(surface);
   double on_it = 0, crossing = 0;
   for (const DrawnRay& ray : rays) {
     double before = std::nan("");
     for (std::size_t i = 0; i < ray.zy_mm.size(); ++i) {
       const auto [z, y] = ray.zy_mm[i];
-      const double ahead = z - vertex_z_mm - profile_sag_mm(surface, y);
+      const double ahead = z - vertex_z_mm - surface_point(shape, 0, y).sag;
       if (std::abs(ahead) < on_surface_mm) on_it = std::max(on_it, std::abs(y));
       if (before * ahead < 0) {
         const double last_y = ray.zy_mm[i - 1][1];
@@ -290,7 +292,7 @@ std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<
   }
   fill_from_neighbours(heights, std::max(std::abs(z.back()) / 6, 1e-9));
   for (std::size_t i = 0; i < heights.size(); ++i)
-    heights[i] = std::min(heights[i], just_inside_rim * profile_rim_mm(lens.surfaces[i]));
+    heights[i] = std::min(heights[i], just_inside_rim * rim_mm(shape_of(lens.surfaces[i])));
   return heights;
 }
 

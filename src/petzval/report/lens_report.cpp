@@ -7,6 +7,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/surface_shape.h>
 #include <petzval/report/analysis_plots.h>
 #include <petzval/report/colours.h>
 #include <petzval/report/field_curves.h>
@@ -101,9 +102,7 @@ Table prescription(const Lens& lens) {
     if (surface.blades.count > 0)
       remarks.push_back(
           fmt::format("{} blades turned by {:g}°", surface.blades.count, surface.blades.rotation_deg));
-    if (surface.conic != 0) remarks.push_back(fmt::format("conic {:g}", surface.conic));
-    for (const auto& [power, coefficient] : surface.asphere)
-      remarks.push_back(fmt::format("r^{} {:g}", power, coefficient));
+    for (std::string& remark : shape_remarks(surface)) remarks.push_back(std::move(remark));
     table.rows.push_back({static_cast<double>(i), c == 0 ? std::string("flat") : cell_text(1 / c, 5),
                           surface.thickness_mm, surface.semi_diameter_mm.value_or(NAN),
                           surface.material.is_air() ? std::string("air") : surface.material.description(),

@@ -1,32 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/lens/surface_shape.h>
 #include <petzval/report/surface_profile.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace petzval {
 
-double profile_sag_mm(const Surface& surface, double y_mm) {
-  const double c = surface.curvature_per_mm, r2 = y_mm * y_mm;
-  const double root = std::sqrt(1 - (1 + surface.conic) * c * c * r2);  // NaN beyond the rim
-  double sag = c * r2 / (1 + root);
-  for (const auto& [power, coefficient] : surface.asphere)
-    sag += coefficient * std::pow(std::abs(y_mm), power);
-  return sag;
-}
-
-double profile_rim_mm(const Surface& surface) {
-  const double squared = (1 + surface.conic) * surface.curvature_per_mm * surface.curvature_per_mm;
-  return squared > 0 ? 1 / std::sqrt(squared) : std::numeric_limits<double>::infinity();
-}
-
 std::vector<PlanePoint> profile(const Surface& surface, double vertex_z_mm, double semi_diameter_mm) {
-  const int segments = surface.is_flat() ? 1 : 64;
+  const int segments = is_flat(surface) ? 1 : 64;
+  const ShapeData<double> shape = shape_of(surface);
   std::vector<PlanePoint> points;
   for (int i = 0; i <= segments; ++i) {
     const double y = semi_diameter_mm * (2.0 * i / segments - 1);
-    points.push_back({vertex_z_mm + profile_sag_mm(surface, y), y});
+    points.push_back({vertex_z_mm + surface_point(shape, 0, y).sag, y});
   }
   return points;
 }

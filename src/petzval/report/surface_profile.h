@@ -11,12 +11,6 @@ namespace petzval {
 
 using PlanePoint = std::array<double, 2>;  ///< z, y [mm]
 
-/// Sag [mm] at a height y; NaN beyond the rim of the conic.
-double profile_sag_mm(const Surface& surface, double y_mm);
-
-/// The largest height at which the surface can be drawn [mm]: its rim, or infinity.
-double profile_rim_mm(const Surface& surface);
-
 /// The surface from y = −semi_diameter to +semi_diameter.
 std::vector<PlanePoint> profile(const Surface& surface, double vertex_z_mm, double semi_diameter_mm);
 

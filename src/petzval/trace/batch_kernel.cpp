@@ -24,20 +24,22 @@ template <class T, bool measures>
 HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, measures> (&rays)[interleaved]) {
   const auto to_vertex = hn::Set(Lanes<T>(), surface.to_vertex_mm);
   for (RayVector<T, measures>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
-  switch (surface.kind) {
-    case KernelSurfaceKind::plane:
+  switch (surface.shape.form) {
+    case ShapeForm::plane:
       for (RayVector<T, measures>& ray : rays) step_plane(surface, ray);
       return;
-    case KernelSurfaceKind::sphere:
+    case ShapeForm::sphere:
       for (RayVector<T, measures>& ray : rays) step_sphere(surface, ray);
       return;
-    case KernelSurfaceKind::conic:
+    case ShapeForm::conic:
       for (RayVector<T, measures>& ray : rays) step_conic(surface, ray);
       return;
-    case KernelSurfaceKind::even_asphere:
-    case KernelSurfaceKind::odd_asphere:
-      for (RayVector<T, measures>& ray : rays) step_asphere(surface, ray);
-      return;
+    case ShapeForm::powers:
+      return step_each<Powers<false>>(surface, rays);
+    case ShapeForm::even_powers:
+      return step_each<Powers<true>>(surface, rays);
+    case ShapeForm::added:
+      return step_added(AddedKinds(), surface, rays);
   }
 }
 

@@ -3,6 +3,8 @@
 // for radiance, without.
 #pragma once
 
+#include <petzval/lens/shapes/shape_data.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -10,14 +12,13 @@
 
 namespace petzval {
 
-enum class KernelSurfaceKind : std::uint8_t { plane, sphere, conic, even_asphere, odd_asphere };
-
 /// One surface in the order of travel, with everything that does not depend on the ray worked out.
 template <class T>
 struct KernelSurface {
-  KernelSurfaceKind kind = KernelSurfaceKind::plane;
+  ShapeData<T> shape;
   bool clips = false;
-  T curvature = 0, conic = 0, one_plus_conic = 1;
+  T curvature = 0;     ///< as seen in the sense of travel
+  T flip = 1;          ///< −1: the sense of travel is against that of the shape
   T to_vertex_mm = 0;  ///< added to z on arrival: the previous vertex minus this one
   T index_before = 1;  ///< on the side the ray comes from
   T index_ratio = 1;   ///< before / behind
@@ -26,10 +27,6 @@ struct KernelSurface {
   /// Of a stop that is a polygon besides: unit normals of its edges, and how far they are from its middle.
   std::vector<std::array<T, 2>> edges;
   T edge_distance = 0, per_edge_distance = 0;
-  /// Horner coefficients in t = r²/ρ² (even) or t = r/ρ (odd), a_p ρ^p: in float they neither overflow nor
-  /// vanish.
-  std::vector<T> polynomial;
-  T per_polynomial_unit = 1;  ///< 1/ρ² or 1/ρ
 };
 
 /// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.
@@ -54,8 +51,8 @@ struct RayColumns {
 /// Traces in place, by the widest instruction set of the machine (or what hwy::SetSupportedTargetsForTest
 /// allows). The last bits depend on the instruction set, not on the position in the batch. Method: the
 /// one-division form of the quadratic with z relative to the next vertex; three vectors in flight, so that
-/// the latencies of roots and divisions overlap; aspheres by Newton from their conic, to 1e-12 mm in double
-/// and to rounding in float.
+/// the latencies of roots and divisions overlap; other shapes by Newton from their conic, to 1e-12 mm in
+/// double and to rounding in float.
 void trace_columns(const KernelPath<double>& path, const RayColumns<double>& rays);
 void trace_columns(const KernelPath<float>& path, const RayColumns<float>& rays);
 

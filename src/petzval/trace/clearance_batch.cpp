@@ -12,8 +12,8 @@ ClearanceBatch::ClearanceBatch(const Tracer& tracer, const Pencil& pencil, Trace
       pencil_(pencil),
       clip_(clip),
       path_(kernel_path<double>(tracer, pencil.backward(), clip)),
-      aspheric_(std::any_of(tracer.surfaces().begin(), tracer.surfaces().end(),
-                            [](const Tracer::PreparedSurface& s) { return !s.polynomial.empty(); })) {}
+      iterated_(std::any_of(tracer.surfaces().begin(), tracer.surfaces().end(),
+                            [](const Tracer::PreparedSurface& s) { return s.shape.is_iterated(); })) {}
 
 void ClearanceBatch::measure(std::span<const double> u, std::span<const double> v, std::span<double> worst) {
   rays_.resize(u.size());
@@ -31,8 +31,8 @@ void ClearanceBatch::measure(std::span<const double> u, std::span<const double> 
                   {rays_.x_mm.data(), rays_.y_mm.data(), rays_.z_mm.data(), rays_.l.data(), rays_.m.data(),
                    rays_.n.data(), nullptr, nullptr, u.size()},
                   worst.data());
-  if (!aspheric_) return;
-  // The lanes give an asphere up sooner than the scalar trace does.
+  if (!iterated_) return;
+  // The lanes give up sooner than the scalar trace does.
   for (std::size_t i = 0; i < u.size(); ++i)
     if (std::isinf(worst[i])) worst[i] = pencil_.clearance(tracer_, u[i], v[i], clip_).worst;
 }

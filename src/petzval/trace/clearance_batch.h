@@ -25,7 +25,7 @@ class ClearanceBatch {
   Pencil pencil_;
   Tracer::Clip clip_;
   KernelPath<double> path_;
-  bool aspheric_;
+  bool iterated_;
   RayBatch rays_;
 };
 

@@ -9,15 +9,6 @@ namespace petzval {
 
 namespace {
 
-KernelSurfaceKind kind_of(const Tracer::PreparedSurface& surface) {
-  const std::vector<double>& terms = surface.polynomial;
-  for (std::size_t p = 1; p < terms.size(); p += 2)
-    if (terms[p] != 0) return KernelSurfaceKind::odd_asphere;
-  if (!terms.empty()) return KernelSurfaceKind::even_asphere;
-  if (surface.curvature == 0) return KernelSurfaceKind::plane;
-  return surface.conic == 0 ? KernelSurfaceKind::sphere : KernelSurfaceKind::conic;
-}
-
 /// The radius ρ, a power of two, at which no term of the polynomial is larger than ρ itself.
 double polynomial_unit_mm(const std::vector<double>& terms) {
   double unit = std::numeric_limits<double>::infinity();
@@ -26,13 +17,30 @@ double polynomial_unit_mm(const std::vector<double>& terms) {
   return std::isfinite(unit) && unit > 0 ? std::exp2(std::floor(std::log2(unit))) : 1.0;
 }
 
-template <class T>
-void set_polynomial(const std::vector<double>& terms, double flip, KernelSurface<T>& surface) {
+/// Even powers by themselves, and in a unit in which the coefficients neither overflow nor vanish in float.
+void pack_powers(ShapeData<double>& shape) {
+  const std::vector<double> terms = std::move(shape.terms);
+  bool even = true;
+  for (std::size_t p = 1; p < terms.size(); p += 2) even = even && terms[p] == 0;
+  const std::size_t step = even ? 2 : 1;
   const double unit = polynomial_unit_mm(terms);
-  const std::size_t step = surface.kind == KernelSurfaceKind::even_asphere ? 2 : 1;
+  shape.form = even ? ShapeForm::even_powers : ShapeForm::powers;
+  shape.terms.clear();
   for (std::size_t p = 0; p < terms.size(); p += step)
-    surface.polynomial.push_back(static_cast<T>(flip * terms[p] * std::pow(unit, static_cast<double>(p))));
-  surface.per_polynomial_unit = static_cast<T>(step == 2 ? 1 / (unit * unit) : 1 / unit);
+    shape.terms.push_back(terms[p] * std::pow(unit, static_cast<double>(p)));
+  shape.per_unit = even ? 1 / (unit * unit) : 1 / unit;
+}
+
+template <class T>
+ShapeData<T> kernel_shape(ShapeData<double> from) {
+  if (from.form == ShapeForm::powers) pack_powers(from);
+  return {from.form,
+          from.added,
+          static_cast<T>(from.curvature),
+          static_cast<T>(from.conic),
+          static_cast<T>(from.one_plus_conic),
+          std::vector<T>(from.terms.begin(), from.terms.end()),
+          static_cast<T>(from.per_unit)};
 }
 
 template <class T>
@@ -41,20 +49,18 @@ KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backwa
   const double before = backward ? from.index_after : from.index_before;
   const double ratio = before / (backward ? from.index_before : from.index_after);
   KernelSurface<T> surface;
-  surface.kind = kind_of(from);
+  surface.shape = kernel_shape<T>(from.shape);
+  surface.flip = static_cast<T>(flip);
   surface.clips = std::isfinite(clip_radius_sq);
   surface.clear_radius_sq = surface.clips ? static_cast<T>(clip_radius_sq) : T(0);
   // Boundaries are sought at the rim itself.
   surface.per_clear_radius_sq =
       surface.clips ? static_cast<T>((1 + Tracer::rim_tolerance) / clip_radius_sq) : T(0);
-  surface.curvature = static_cast<T>(flip * from.curvature);
-  surface.conic = static_cast<T>(from.conic);
-  surface.one_plus_conic = static_cast<T>(1 + from.conic);
+  surface.curvature = static_cast<T>(flip * from.shape.curvature);
   surface.index_before = static_cast<T>(before);
   surface.index_ratio = static_cast<T>(ratio);
   surface.index_ratio_sq = static_cast<T>(ratio * ratio);
   surface.one_minus_index_ratio_sq = static_cast<T>(1 - ratio * ratio);
-  if (!from.polynomial.empty()) set_polynomial(from.polynomial, flip, surface);
   return surface;
 }
 

@@ -96,7 +96,8 @@ LabelRange label_range(const Tracer& tracer, const Pencil& pencil) {
     if (std::isfinite(surface.clear_radius_sq)) size = std::max(size, std::sqrt(surface.clear_radius_sq));
   double reach = size;
   for (const Tracer::PreparedSurface& surface : tracer.surfaces())
-    if (surface.curvature != 0) reach = std::max(reach, std::min(1 / std::abs(surface.curvature), 10 * size));
+    if (surface.shape.curvature != 0)
+      reach = std::max(reach, std::min(1 / std::abs(surface.shape.curvature), 10 * size));
   return {-2 * reach, 2 * reach};
 }
 

@@ -1,124 +1,134 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/trace/surface_step.h>
 
+#include <petzval/trace/surface_meet-inl.h>
+
 #include <cmath>
+#include <optional>
 
 namespace petzval {
 
 namespace {
 
+// The arithmetic that vectors of rays have too.
+using HWY_NAMESPACE::AddedKinds;
+using HWY_NAMESPACE::advance_point;
+using HWY_NAMESPACE::Approach;
+using HWY_NAMESPACE::approach;
+using HWY_NAMESPACE::ConicSurface;
+using HWY_NAMESPACE::cross;
+using HWY_NAMESPACE::distance_to_plane;
+using HWY_NAMESPACE::KindList;
+using HWY_NAMESPACE::Powers;
 using Prepared = Tracer::PreparedSurface;
+using Point = HWY_NAMESPACE::RayAt<double>;
 
-/// Newton stops when the point lies this near to an asphere [mm]; a hundredth of the last digit that anybody
+/// Newton stops when the point lies this near to a surface [mm]; a hundredth of the last digit that anybody
 /// asks an optical path for.
-constexpr double asphere_tolerance_mm = 1e-12;
-constexpr int asphere_iterations = 60;
+constexpr double newton_tolerance_mm = 1e-12;
+constexpr int newton_iterations = 60;
 
-void advance(SurfaceRay& ray, double distance) {
-  ray.x += distance * ray.l;
-  ray.y += distance * ray.m;
-  ray.z += distance * ray.n;
+/// A ray on its way to a surface, and what it finds there. z runs in the sense of travel.
+struct Met {
+  Point at;
+  double distance;
+  double gradient[3];
+};
+
+ConicSurface<double> conic_of(const Prepared& surface, double sense) {
+  return {sense * surface.shape.curvature, surface.shape.conic, surface.shape.one_plus_conic};
 }
 
-/// Signed distance to the conic c(x² + y² + (1+k)z²) = 2z, the root with sense·(direction·gradient) ≥ 0, in
-/// the form that does not cancel. NaN when the ray misses.
-double conic_distance(const Prepared& surface, double sense, const SurfaceRay& ray) {
-  const double c = surface.curvature, q = 1 + surface.conic;
-  const double f = c * (ray.x * ray.x + ray.y * ray.y + q * ray.z * ray.z) - 2 * ray.z;
-  const double g = ray.n - c * (ray.l * ray.x + ray.m * ray.y + q * ray.n * ray.z);
-  const double a = c * (1 + surface.conic * ray.n * ray.n);
-  const double root = sense * std::sqrt(g * g - a * f);  // NaN below zero: a miss
-  return g * root >= 0 ? f / (g + root) : (g - root) / a;
-}
-
-/// Sag and (dz/dr)/r at r; false beyond the conic's rim.
-bool asphere_sag(const Prepared& surface, double r_sq, double& sag, double& slope_over_r) {
-  const double c = surface.curvature;
-  const double under = 1 - (1 + surface.conic) * c * c * r_sq;
-  if (!(under > 0)) return false;
-  const double root = std::sqrt(under), r = std::sqrt(r_sq);
-  double value = 0, slope = 0;  // Horner for Σ a_p r^p and its derivative
-  for (std::size_t p = surface.polynomial.size(); p-- > 0;) {
-    slope = slope * r + value;
-    value = value * r + surface.polynomial[p];
-  }
-  sag = c * r_sq / (1 + root) + value;
-  slope_over_r = c / root + (r > 0 ? slope / r : 0.0);
+HWY_INLINE bool meet_plane(double sense, Met& met) {
+  if (!(met.at.n > 0)) return false;
+  met.distance = distance_to_plane(met.at);
+  advance_point(met.distance, met.at);
+  met.at.z = met.gradient[0] = met.gradient[1] = sense * 0.0;  // zeros are positive in the lens
+  met.gradient[2] = 1;
   return true;
 }
 
-/// Newton along a ray that is already near the surface; the distance grows by what it walks.
-bool polish_on_asphere(const Prepared& surface, double sense, SurfaceRay& ray, double& distance,
-                       double normal[3]) {
-  const SurfaceRay start = ray;
-  double further = 0;
-  for (int i = 0; i < asphere_iterations && std::isfinite(further); ++i) {
-    ray = start;
-    advance(ray, further);
-    double sag, slope_over_r;
-    if (!asphere_sag(surface, ray.x * ray.x + ray.y * ray.y, sag, slope_over_r)) return false;
-    const double error = ray.z - sag;
-    const double nx = -slope_over_r * ray.x, ny = -slope_over_r * ray.y;
-    const double rate = ray.l * nx + ray.m * ny + ray.n;
-    if (std::abs(error) < asphere_tolerance_mm) {
-      const double scale = 1 / std::sqrt(nx * nx + ny * ny + 1);
-      normal[0] = nx * scale;
-      normal[1] = ny * scale;
-      normal[2] = scale;
-      distance += further;
-      return sense * rate > 0;
-    }
-    further -= error / rate;
-  }
-  return false;
+template <bool is_conic>
+HWY_INLINE bool meet_conic(const ConicSurface<double>& surface, Met& met) {
+  Point& at = met.at;
+  met.distance = cross<is_conic>(surface, at).distance;
+  if (!std::isfinite(met.distance)) return false;
+  advance_point(met.distance, at);
+  const double c = surface.curvature, gx = -c * at.x, gy = -c * at.y;
+  const double gz = HWY_NAMESPACE::gradient_z(c * surface.one_plus_conic, at.z);
+  if (!(gz > 0)) return false;  // beyond the rim, on the sheet that the sag formula does not reach
+  met.gradient[0] = gx;
+  met.gradient[1] = gy;
+  met.gradient[2] = gz;
+  return at.l * gx + at.m * gy + at.n * gz > 0;
 }
 
-bool intersect_asphere(const Prepared& surface, double sense, SurfaceRay& ray, double& distance,
-                       double normal[3]) {
-  const SurfaceRay start = ray;
-  const double from_conic = conic_distance(surface, sense, start);
-  const double from_plane = -start.z / start.n;
-  for (const double guess : {from_conic, from_plane}) {
+template <class Kind>
+std::optional<Met> meet_iterated(const Prepared& surface, double sense, const Point& ray) {
+  const ConicSurface<double> conic = conic_of(surface, sense);
+  for (const double guess : {cross<true>(conic, ray).distance, distance_to_plane(ray)}) {
     if (!std::isfinite(guess)) continue;
     // Newton starts from a point near the surface: a ray may come from so far that its whole distance has no
     // room for the last digits.
-    ray = start;
-    distance = guess;
-    advance(ray, distance);
-    if (polish_on_asphere(surface, sense, ray, distance, normal)) return true;
+    Point start = ray;
+    advance_point(guess, start);
+    Approach<double> to{0, 0, 0, 0, INFINITY};
+    for (int i = 0; i < newton_iterations && to.error >= newton_tolerance_mm; ++i)
+      approach<Kind, false>(surface.shape, sense, start, newton_tolerance_mm, to);
+    if (!(to.error < newton_tolerance_mm && to.slope > 0)) continue;
+    advance_point(to.distance, start);
+    return Met{start, guess + to.distance, {to.gradient_x, to.gradient_y, 1}};
   }
-  return false;
+  return {};
+}
+
+template <class... Kind>
+std::optional<Met> meet_added(KindList<Kind...>, [[maybe_unused]] const Prepared& surface,
+                              [[maybe_unused]] double sense, [[maybe_unused]] const Point& ray) {
+  std::optional<Met> met;
+  [[maybe_unused]] std::size_t i = 0;
+  ((surface.shape.added == i++ ? void(met = meet_iterated<Kind>(surface, sense, ray)) : void()), ...);
+  return met;
+}
+
+/// Of a kind without a closed form.
+std::optional<Met> meet_by_newton(const Prepared& surface, double sense, const SurfaceRay& ray) {
+  const Point from{ray.x, ray.y, sense * ray.z, ray.l, ray.m, sense * ray.n};
+  if (surface.shape.form == ShapeForm::powers) return meet_iterated<Powers<false>>(surface, sense, from);
+  return meet_added(AddedKinds(), surface, sense, from);
+}
+
+/// With a sense that the compiler knows.
+template <bool backward>
+bool intersect_in_sense(const Prepared& surface, double index, SurfaceRay& ray, double normal[3]) {
+  constexpr double sense = backward ? -1 : 1;
+  Met met{{ray.x, ray.y, sense * ray.z, ray.l, ray.m, sense * ray.n}, 0, {}};
+  if (surface.shape.is_iterated()) {
+    const auto found = meet_by_newton(surface, sense, ray);
+    if (!found) return false;
+    met = *found;
+  } else if (!(surface.shape.form == ShapeForm::plane    ? meet_plane(sense, met)
+               : surface.shape.form == ShapeForm::sphere ? meet_conic<false>(conic_of(surface, sense), met)
+                                                         : meet_conic<true>(conic_of(surface, sense), met))) {
+    return false;
+  }
+  ray.x = met.at.x;
+  ray.y = met.at.y;
+  ray.z = sense * met.at.z;
+  ray.opl += index * met.distance;
+  const auto [gx, gy, gz] = met.gradient;
+  const double scale = 1 / std::sqrt(gx * gx + gy * gy + gz * gz);
+  normal[0] = sense * gx * scale;
+  normal[1] = sense * gy * scale;
+  normal[2] = gz * scale;
+  return true;
 }
 
 }  // namespace
 
 bool intersect(const Prepared& surface, double sense, double index, SurfaceRay& ray, double normal[3]) {
-  double distance;
-  if (!surface.polynomial.empty()) {
-    if (!intersect_asphere(surface, sense, ray, distance, normal)) return false;
-  } else if (surface.curvature == 0) {
-    if (!(sense * ray.n > 0)) return false;
-    distance = -ray.z / ray.n;
-    advance(ray, distance);
-    ray.z = 0;
-    normal[0] = normal[1] = 0;
-    normal[2] = 1;
-  } else {
-    distance = conic_distance(surface, sense, ray);
-    if (!std::isfinite(distance)) return false;
-    advance(ray, distance);
-    const double c = surface.curvature;
-    const double nz = 1 - c * (1 + surface.conic) * ray.z;
-    if (!(nz > 0)) return false;  // beyond the rim, on the sheet that the sag formula does not reach
-    const double nx = -c * ray.x, ny = -c * ray.y;
-    const double scale = 1 / std::sqrt(nx * nx + ny * ny + nz * nz);
-    normal[0] = nx * scale;
-    normal[1] = ny * scale;
-    normal[2] = nz * scale;
-    if (!(sense * (ray.l * normal[0] + ray.m * normal[1] + ray.n * normal[2]) > 0)) return false;
-  }
-  ray.opl += index * distance;
-  return true;
+  return sense < 0 ? intersect_in_sense<true>(surface, index, ray, normal)
+                   : intersect_in_sense<false>(surface, index, ray, normal);
 }
 
 bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
+#include <petzval/lens/surface_shape.h>
 #include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
@@ -94,19 +95,12 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
   double z = 0, index = 1;
   for (const Surface& surface : lens.surfaces) {
     PreparedSurface prepared;
-    prepared.curvature = surface.curvature_per_mm;
-    prepared.conic = surface.conic;
+    prepared.shape = shape_of(surface);
     prepared.vertex_z_mm = z;
     prepared.index_before = index;
     prepared.index_after = index = surface.material.index(wavelength_nm);
     prepared.clear_radius_sq =
         surface.semi_diameter_mm ? *surface.semi_diameter_mm * *surface.semi_diameter_mm : infinity;
-    for (const auto& [power, coefficient] : surface.asphere) {
-      if (coefficient == 0) continue;
-      const auto p = static_cast<std::size_t>(power);
-      if (prepared.polynomial.size() <= p) prepared.polynomial.resize(p + 1, 0.0);
-      prepared.polynomial[p] = coefficient;
-    }
     surfaces_.push_back(std::move(prepared));
     z += surface.thickness_mm;
   }

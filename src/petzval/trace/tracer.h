@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/lens/lens.h>
+#include <petzval/lens/shapes/shape_data.h>
 #include <petzval/lens/stop_blades.h>
 #include <petzval/trace/ray_batch.h>
 
@@ -33,8 +34,8 @@ struct Intersection {
 /// Forward: a ray from anywhere in object space is refracted at all surfaces in turn and carried to the image
 /// surface (a plane). Backward: a ray from image space is refracted at all surfaces in reverse order and left
 /// just in front of surface 0. Optical path is signed, so surfaces that cross beyond their rims are no harm.
-/// Method: closed form for spheres and conics, Newton to 1e-12 mm for aspheres; refraction by vector Snell
-/// (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
+/// Method: closed form for spheres and conics, Newton to 1e-12 mm for other shapes; refraction by vector
+/// Snell (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
 class Tracer {
  public:
   enum class Clip { apertures, stop_only, none };
@@ -93,9 +94,9 @@ class Tracer {
 
   /// What one surface needs to be traced; public for surface_step.h.
   struct PreparedSurface {
-    double curvature, conic, vertex_z_mm, index_before, index_after;
-    double clear_radius_sq;          ///< infinity when unbounded
-    std::vector<double> polynomial;  ///< [p] coefficient of r^p; empty for spheres and conics
+    ShapeData<double> shape;
+    double vertex_z_mm, index_before, index_after;
+    double clear_radius_sq;  ///< infinity when unbounded
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
 

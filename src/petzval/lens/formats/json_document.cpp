@@ -128,7 +128,7 @@ JsonEntry JsonEntry::at(const char* key) const {
   return *found;
 }
 
-void JsonEntry::allow_only(std::initializer_list<const char*> keys) const {
+void JsonEntry::allow_only(const std::vector<const char*>& keys) const {
   if (!value_->is_object()) fail_type("an object");
   for (const auto& [key, value] : value_->items()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;

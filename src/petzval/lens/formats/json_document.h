@@ -2,7 +2,6 @@
 // A JSON text whose entries know their line, for readers that forgive nothing.
 #pragma once
 
-#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -58,7 +57,7 @@ class JsonEntry {
   JsonEntry at(const char* key) const;
   std::optional<JsonEntry> find(const char* key) const;
   /// \throws InputError if there is a key that is not among these.
-  void allow_only(std::initializer_list<const char*> keys) const;
+  void allow_only(const std::vector<const char*>& keys) const;
 
   std::optional<std::string> long_number() const { return document_->long_number(path_); }
   [[noreturn]] void fail(const std::string& message) const { document_->fail(path_, message); }

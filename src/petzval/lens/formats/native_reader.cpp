@@ -6,6 +6,7 @@
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +65,12 @@ Material read_glass(const JsonEntry& entry, GlassLookup& glasses) {
   return located(entry, [&] { return Material(model); });
 }
 
+std::vector<double> read_numbers(const JsonEntry& entry, const char* meaning, const char* item_meaning) {
+  std::vector<double> numbers;
+  for (const JsonEntry& item : entry.items(meaning)) numbers.push_back(item.number(item_meaning));
+  return numbers;
+}
+
 double read_curvature(const JsonEntry& radius) {
   if (radius.is_null()) return 0;
   const double value = radius.number("a radius in mm, or null for a flat surface");
@@ -79,6 +86,25 @@ void read_asphere(const JsonEntry& entry, Surface& surface) {
   }
 }
 
+/// "kind", and the keys that the kind has: numbers or lists of them.
+AddedShape read_shape(const JsonEntry& entry) {
+  const JsonEntry name = entry.at("kind");
+  AddedShape shape{name.text("a kind of surface"), {}};
+  const SurfaceKind* kind = find_surface_kind(shape.kind);
+  if (!kind) name.fail("is not a kind of surface; these are: " + surface_kind_names());
+  std::vector<const char*> keys{"kind"};
+  for (const ShapeParameter& parameter : kind->parameters) keys.push_back(parameter.name);
+  entry.allow_only(keys);
+  for (const ShapeParameter& parameter : kind->parameters) {
+    const auto value = entry.find(parameter.name);
+    if (!value) continue;
+    shape.parameters[parameter.name] = parameter.most > 1
+                                           ? read_numbers(*value, "a list of numbers", parameter.meaning)
+                                           : std::vector<double>{value->number(parameter.meaning)};
+  }
+  return shape;
+}
+
 StopBlades read_blades(const JsonEntry& entry) {
   entry.allow_only({"count", "rotation_deg"});
   const JsonEntry count = entry.at("count");
@@ -92,8 +118,8 @@ StopBlades read_blades(const JsonEntry& entry) {
 }
 
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
-  entry.allow_only(
-      {"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "stop", "blades"});
+  entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "shape",
+                    "stop", "blades"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
@@ -102,6 +128,7 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
     surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
   if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
   if (const auto asphere = entry.find("asphere")) read_asphere(*asphere, surface);
+  if (const auto shape = entry.find("shape"); shape && !shape->is_null()) surface.shape = read_shape(*shape);
   if (const auto stop = entry.find("stop")) surface.stop = stop->truth();
   if (const auto blades = entry.find("blades"); blades && !blades->is_null())
     surface.blades = read_blades(*blades);
@@ -116,12 +143,6 @@ Aperture read_aperture(const JsonEntry& entry) {
   const auto kind = std::find(std::begin(aperture_keys), std::end(aperture_keys), key);
   if (kind == std::end(aperture_keys)) value.fail("is not a kind of aperture; these are: " + known);
   return {static_cast<Aperture::Kind>(kind - std::begin(aperture_keys)), value.number("a number")};
-}
-
-std::vector<double> read_numbers(const JsonEntry& entry, const char* meaning, const char* item_meaning) {
-  std::vector<double> numbers;
-  for (const JsonEntry& item : entry.items(meaning)) numbers.push_back(item.number(item_meaning));
-  return numbers;
 }
 
 Fields read_fields(const JsonEntry& entry) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/number_text.h>
 #include <petzval/lens/formats/native.h>
+#include <petzval/lens/surface_kind.h>
 
 namespace petzval {
 
@@ -39,6 +40,15 @@ struct NativeGlassText {
   }
 };
 
+std::string shape_text(const AddedShape& shape) {
+  std::string text = "{\"kind\": " + quoted(shape.kind);
+  for (const ShapeParameter& parameter : surface_kind(shape.kind).parameters)
+    if (const auto found = shape.parameters.find(parameter.name); found != shape.parameters.end())
+      text += fmt::format(", \"{}\": {}", parameter.name,
+                          parameter.most > 1 ? list(found->second) : number_text(found->second.at(0)));
+  return text + "}";
+}
+
 std::string surface_text(const Surface& surface) {
   const bool flat = surface.curvature_per_mm == 0;
   std::string text =
@@ -58,6 +68,7 @@ std::string surface_text(const Surface& surface) {
       terms.push_back(fmt::format("\"{}\": {}", power, number_text(coefficient)));
     text += fmt::format(", \"asphere\": {{{}}}", fmt::join(terms, ", "));
   }
+  if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
   return text + "}";
 }
 

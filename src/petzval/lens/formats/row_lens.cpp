@@ -4,6 +4,7 @@
 #include <petzval/base/number_text.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/row_lens.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <cmath>
 
@@ -45,7 +46,7 @@ LensRow row_of(const Lens& lens, std::size_t i, const RowRefusal& refuse) {
   const Surface& surface = lens.surfaces[i];
   const double index = single_index(lens, i, refuse), before = i == 0 ? 1 : single_index(lens, i - 1, refuse);
   const bool flat = surface.curvature_per_mm == 0;
-  if (surface.conic != 0 || !surface.asphere.empty()) refuse(i, "conics and aspheres");
+  if (!is_spherical(surface)) refuse(i, "conics and aspheres");
   if (surface.blades.count != 0)
     refuse(i, "a stop of blades; set surfaces[" + std::to_string(i) + "].blades=null first");
   if (!surface.semi_diameter_mm) refuse(i, "a surface without a clear aperture; set semi_diameter_mm first");

@@ -6,6 +6,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_glass.h>
+#include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
 
@@ -113,7 +114,8 @@ std::string surface_text(const Lens& lens, std::size_t i, std::string& private_g
       fmt::format("S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
                   std::visit(SeqGlassText{i, private_glasses}, surface.material.kind()));
   if (surface.stop) text += "  STO\n";
-  if (surface.conic != 0 || !surface.asphere.empty()) text += asphere_text(surface, i);
+  if (surface.shape) refuse(i, "shape", fmt::format("the kind \"{}\"", surface.shape->kind));
+  if (!is_spherical(surface)) text += asphere_text(surface, i);
   if (surface.semi_diameter_mm) text += fmt::format("  CIR {}\n", number_text(*surface.semi_diameter_mm));
   return text;
 }

@@ -114,6 +114,9 @@ std::string surface_text(const Lens& lens, std::size_t i) {
   if (surface.blades.count != 0)
     throw InputError(fmt::format(
         "surfaces[{0}]: Petzval writes no blades into a .zmx file; set surfaces[{0}].blades=null first", i));
+  if (surface.shape)
+    throw InputError(
+        fmt::format("surfaces[{}].shape: a .zmx file cannot hold the kind \"{}\"", i, surface.shape->kind));
   std::string text = fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface));
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
