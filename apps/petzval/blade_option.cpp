@@ -24,4 +24,13 @@ StopBlades BladeChoice::blades(const Lens& lens) const {
   return blades;
 }
 
+std::optional<StopBlades> BladeChoice::of_unknown_lens() const {
+  if (!count && rotation_deg)
+    throw InputError("--blade-rotation belongs to --blades, or to a --lens that has some");
+  if (!count) return {};
+  const StopBlades blades{*count, rotation_deg.value_or(0)};
+  blades.validate();
+  return blades;
+}
+
 }  // namespace petzval::app

@@ -19,6 +19,8 @@ struct BladeChoice {
   /// What the options make of a lens's own blades. \throws InputError as StopBlades::validate(), and for a
   /// rotation of no blades.
   StopBlades blades(const Lens& lens) const;
+  /// The same for a lens that is not known yet: absent unless --blades says how many.
+  std::optional<StopBlades> of_unknown_lens() const;
 };
 
 }  // namespace petzval::app

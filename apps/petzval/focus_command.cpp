@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval focus: the film distance at which a scene is sharpest.
 #include <fmt/format.h>
-#include <petzval/lens/lens_file.h>
 
 #include "field_option.h"
 #include "focus_output.h"
 #include "output_option.h"
-#include "scene_focus.h"
+#include "render_option.h"
 
 namespace petzval::app {
 
@@ -14,7 +13,6 @@ namespace {
 
 struct SceneFocusCommand {
   RenderChoice choice;
-  FocusChoice focus;
   std::string plot;
 };
 
@@ -24,20 +22,24 @@ nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& com
   for (const FocusEvaluation& each : result.evaluations)
     rows.push_back(
         {{"film_distance_mm", each.film_distance_mm}, {"measure", each.measure}, {"stage", each.stage}});
-  return {{"scene", command.choice.scene},    {"film_distance_mm", result.film_distance_mm},
-          {"measure", command.focus.measure}, {"search", command.focus.search},
-          {"depth_mm", run.depth_mm},         {"camera_rays", run.camera_rays},
-          {"at_the_end", result.at_the_end},  {"rows", rows}};
+  const AutofocusChoice& choice = command.choice.autofocus;
+  return {{"scene", command.choice.request.scene},
+          {"film_distance_mm", result.film_distance_mm},
+          {"measure", choice.measure},
+          {"search", choice.search},
+          {"depth_mm", run.depth_mm},
+          {"camera_rays", run.camera_rays},
+          {"at_the_end", result.at_the_end},
+          {"rows", rows}};
 }
 
 void focus(const SceneFocusCommand& command, const Shared& shared) {
   if (!command.plot.empty()) require_extension(command.plot, {".svg"}, "a plot");
-  const PreparedScene scene = prepare_scene(command.choice, focus_wavelengths_nm(), shared);
-  const FocusRun run = autofocus(scene, command.focus, shared);
-  note_focus_at_the_end(run.result, shared);
-  if (!command.plot.empty()) draw_focus(run.result, scene.camera.lens->name, command.plot);
+  const RenderRequest request = command.choice.read(shared);
+  const FocusRun run = autofocus(request, context_of(shared));
+  if (!command.plot.empty()) draw_focus(run, command.plot);
   if (shared.json) return print_json(to_json(run, command));
-  fmt::print("{}", focus_text(run.result, command.focus.measure));
+  fmt::print("{}", focus_text(run.result, command.choice.autofocus.measure));
 }
 
 }  // namespace
@@ -50,12 +52,8 @@ void add_focus_command(CLI::App& app, Shared& shared) {
                   "focus.svg",
                   true, [options, &shared] { focus(*options, shared); });
   options->choice.add_to(*command);
-  command->add_option("--zones", options->focus.zones_file,
+  command->add_option("--zones", options->choice.autofocus.zones_file,
                       "A file of zones: left right top bottom, in fractions of the film, a line each");
-  command->add_option("--zone", options->focus.zones, "One zone: left,right,top,bottom (repeatable)")
-      ->take_all()
-      ->allow_extra_args(false);
-  options->focus.add_to(*command);
   command->add_option("--plot", options->plot, "Draw the evaluations into this SVG file")
       ->check(output_file());
 }

@@ -9,7 +9,8 @@
 
 namespace petzval::app {
 
-void draw_focus(const FocusResult& result, const std::string& title, const std::string& path) {
+void draw_focus(const FocusRun& run, const std::string& path) {
+  const FocusResult& result = run.result;
   std::vector<FocusEvaluation> sorted = result.evaluations;
   std::sort(sorted.begin(), sorted.end(), [](const FocusEvaluation& a, const FocusEvaluation& b) {
     return a.film_distance_mm < b.film_distance_mm;
@@ -20,7 +21,7 @@ void draw_focus(const FocusResult& result, const std::string& title, const std::
     y.push_back(each.measure / result.measure);
   }
   Plot plot;
-  plot.title = title;
+  plot.title = run.lens;
   plot.x = {"film distance", "mm"};
   plot.y = {"focus measure / largest", ""};
   plot.y.from = 0;
@@ -37,13 +38,6 @@ std::string focus_text(const FocusResult& result, const std::string& measure) {
     text += fmt::format("  {:>18.4f}  {:>16.6g}  {}\n", each.film_distance_mm, each.measure, each.stage);
   return text + fmt::format("film distance {:.4f} mm, after {} evaluations\n", result.film_distance_mm,
                             result.evaluations.size());
-}
-
-void note_focus_at_the_end(const FocusResult& result, const Shared& shared) {
-  if (result.at_the_end)
-    note(shared,
-         "the sharpest place lies at an end of the distances searched; --focus-from and --focus-to widen "
-         "them");
 }
 
 }  // namespace petzval::app

@@ -2,7 +2,7 @@
 // What focus, and render when it focuses, tell of it.
 #pragma once
 
-#include <petzval/focus/autofocus.h>
+#include <petzval/simulate/autofocus.h>
 
 #include <string>
 
@@ -14,9 +14,6 @@ namespace petzval::app {
 std::string focus_text(const FocusResult& result, const std::string& measure);
 
 /// The evaluations as a curve, into an SVG file.
-void draw_focus(const FocusResult& result, const std::string& title, const std::string& path);
-
-/// A note where the sharpest place lies at an end of the range.
-void note_focus_at_the_end(const FocusResult& result, const Shared& shared);
+void draw_focus(const FocusRun& run, const std::string& path);
 
 }  // namespace petzval::app

@@ -29,7 +29,8 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
         &formed.report);
   else
     formed.light = image(formed.plan, context, &formed.report);
-  outputs.scene_white = formed.plan.scene.illuminant;
+  outputs.shown.scene_white = formed.plan.scene.illuminant;
+  outputs.shown.false_colour = true;
   const Outputs made = write_image(choice.outputs, formed, sensor, outputs, context);
   if (shared.json) return print_json(summary_json(formed, made, choice.outputs));
   if (!shared.quiet) print_summary(formed, made);

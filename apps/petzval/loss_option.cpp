@@ -89,7 +89,7 @@ void LossChoice::add_to(CLI::App& command) {
   command.add_flag("--absorption", absorption, "Count absorption in the glass, by the catalogue's k");
 }
 
-Losses LossChoice::losses(const Lens& lens, const Shared& shared) const {
+Losses LossChoice::read() const {
   Losses losses;
   losses.fresnel = fresnel;
   losses.absorption = absorption;
@@ -97,6 +97,11 @@ Losses LossChoice::losses(const Lens& lens, const Shared& shared) const {
     losses.air_glass = CoatingReflectance::constant(*reflectance);
   else if (!coating.empty())
     read_coating(coating, losses);
+  return losses;
+}
+
+Losses LossChoice::losses(const Lens& lens, const Shared& shared) const {
+  const Losses losses = read();
   losses.validate(lens);
   if (absorption) {
     std::set<std::string> clear;

@@ -15,9 +15,12 @@ struct LossChoice {
   std::string coating;  ///< a reflectance, or a CSV file of them
 
   void add_to(CLI::App& command);
+  /// For a lens that is not known yet. \throws InputError for a coating that is neither a number nor a
+  /// readable table, with file and line.
+  Losses read() const;
   bool any() const { return fresnel || absorption || !coating.empty(); }
   /// Checked against the lens; notes which of its glasses have no data when absorption is asked for.
-  /// \throws InputError for a coating that is neither a number nor a readable table, with file and line.
+  /// \throws InputError as read(), and for surfaces that the lens does not have.
   Losses losses(const Lens& lens, const Shared& shared) const;
 };
 

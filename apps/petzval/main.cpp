@@ -14,7 +14,11 @@
 #include <iostream>
 #include <new>
 
+#include "interrupted.h"
+
 namespace {
+
+constexpr int ended_by_interrupt = 130;  // what shells expect of a program that Ctrl-C ends
 
 int report(const std::string& message, int code) {
   fmt::print(stderr, "petzval: error: {}\n",
@@ -54,8 +58,9 @@ int main(int argc, char** argv) {
     return report(app::usage_message(program, error), 2);
   } catch (const InputError& error) {
     return report(error.what(), 2);
+  } catch (const app::Interrupted& stopped) {
+    return report(stopped.what(), ended_by_interrupt);
   } catch (const Cancelled&) {
-    constexpr int ended_by_interrupt = 130;  // what shells expect of a program that Ctrl-C ends
     return report("stopped; nothing was written", ended_by_interrupt);
   } catch (const Failure& error) {
     return report(error.what(), 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/base/error.h>
+#include <fmt/format.h>
+#include <petzval/base/context.h>
 #include <petzval/base/parallel.h>
 #include <petzval/render/film/noise.h>
 #include <petzval/render/renderer.h>
@@ -52,6 +53,9 @@ class Passes {
     for (int group = 0; group < groups_; ++group) sum += taken(group, passes);
     return sum;
   }
+  /// Passes that take as many samples as a pass can: what follows them does not depend on how many are
+  /// wanted.
+  int full() const { return samples_ / (indices_a_pass * groups_); }
 
  private:
   int most_of_group() const { return (samples_ + groups_ - 1) / groups_; }
@@ -182,27 +186,41 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   const FilmSampling sampling(window, options.photosite);
   Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), options.first_surfaces,
             options.noise > 0);
-  if (!options.checkpoint.empty()) read_checkpoint(options.checkpoint, film, options.fingerprint);
-
   const Passes passes(world.groups, options);
+  const bool keeps = !options.checkpoint.empty();
+  if (keeps && read_checkpoint(options.checkpoint, film, options.fingerprint) && film.passes > passes.full())
+    throw InputError(options.checkpoint,
+                     fmt::format("has {} samples a pixel; as many `samples_per_pixel` or more would be right",
+                                 film.passes * indices_a_pass * world.groups.count()));
+
   const TileTask task{world, camera, world_from_camera, sensor, sampling, options};
   const std::vector<PixelWindow> tiles = tiles_of(window);
   const int resumed_at = film.passes;
   Outlook ahead = outlook(film, passes, options.noise);
   auto saved = std::chrono::steady_clock::now();
+  std::optional<Film> full = keeps ? std::optional(film) : std::nullopt;  // after full passes alone
   bool go_on = true;
   while (!ahead.done && go_on) {
-    add_pass(task, tiles, passes, film, [&](double share) {
-      // Of what this run has to do, so that the time left can be told.
-      if (progress)
-        progress((film.passes + share - resumed_at) / (ahead.likely_passes - resumed_at), "light");
-    });
+    try {
+      add_pass(task, tiles, passes, film, [&](double share) {
+        // Of what this run has to do, so that the time left can be told.
+        if (progress)
+          progress((film.passes + share - resumed_at) / (ahead.likely_passes - resumed_at), "light");
+      });
+    } catch (const Cancelled&) {
+      if (full && full->passes > 0) {
+        write_checkpoint(options.checkpoint, *full, options.fingerprint);
+        if (options.so_far) options.so_far(developed(*full, world.groups, sensor, options.photosite, passes));
+      }
+      throw;
+    }
+    if (keeps && film.passes <= passes.full()) full = film;
     ahead = outlook(film, passes, options.noise);
     if (options.after_pass) go_on = options.after_pass(film.passes, passes.count());
     const auto now = std::chrono::steady_clock::now();
     const bool due = std::chrono::duration<double>(now - saved).count() >= options.checkpoint_seconds;
-    if (!options.checkpoint.empty() && !ahead.done && (!go_on || due)) {
-      write_checkpoint(options.checkpoint, film, options.fingerprint);
+    if (keeps && (ahead.done || !go_on || due)) {
+      write_checkpoint(options.checkpoint, *full, options.fingerprint);
       saved = now;
     }
   }

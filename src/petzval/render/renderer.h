@@ -3,11 +3,11 @@
 #pragma once
 
 #include <petzval/base/progress.h>
-#include <petzval/image/spectral_image.h>
 #include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/film_camera.h>
 #include <petzval/render/film/film.h>
 #include <petzval/render/film/film_sampling.h>
+#include <petzval/render/rendering.h>
 #include <petzval/sensor/sensor.h>
 
 #include <optional>
@@ -28,35 +28,21 @@ struct RenderOptions {
   std::optional<PixelWindow> window;  ///< only these pixels are rendered
   Photosite photosite;  ///< over which each pixel's value is a mean, and the low-pass filter before it
   bool first_surfaces = false;
-  std::string checkpoint;   ///< a file to resume from and to save to; empty: none
+  /// A file to resume from and to save to; empty: none. Kept when the picture is done, or stopped: more
+  /// samples are added to those in it.
+  std::string checkpoint;
   std::string fingerprint;  ///< of scene, lens and options, kept in the checkpoint
   double checkpoint_seconds = 60;
   /// Called with passes done and all; returning false ends rendering there (after a checkpoint, if one is
   /// kept).
   std::function<bool(int, int)> after_pass;
-};
-
-/// What a picture's first surfaces are, seen through the lens: means over the rays that met one.
-struct FirstSurfaces {
-  std::vector<float>
-      depth;  ///< distance from the film along the camera's axis [scene units]; 0 where nothing is met
-  std::vector<float> normal;  ///< world space, [pixel][3]
-  std::vector<float> albedo;  ///< [band][pixel]
-  std::vector<float> share;   ///< of the rays that met a surface
-};
-
-struct Rendering {
-  SpectralImage irradiance;  ///< [W·m⁻²·nm⁻¹], of the window; of its pixel aperture
-  std::optional<FirstSurfaces> first_surfaces;
-  std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
-  bool complete = true;
-  int samples_per_pixel = 0;    ///< that were taken
-  std::optional<double> noise;  ///< estimate, if RenderOptions::noise asks for one
+  /// Given the picture so far before Cancelled leaves render_picture(), if there is a checkpoint with any.
+  std::function<void(Rendering)> so_far;
 };
 
 /// Renders a picture. The same arguments give the same bytes for any number of threads, and whether or not it
 /// was interrupted and resumed. \param world_from_camera  camera space: looking along +z, x right, y up, film
-/// at 0. \throws InputError, Failure.
+/// at 0. \throws InputError, Failure, Cancelled.
 Rendering render_picture(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
                          const SensorGeometry& film, const RenderOptions& options,
                          const ProgressCallback& progress = {});

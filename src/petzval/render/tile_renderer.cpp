@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/stop.h>
 #include <petzval/render/tile_renderer.h>
 
 namespace petzval::render {
 
 namespace {
+
+/// Paths that are followed before anybody is asked whether to go on.
+constexpr std::size_t paths_between_questions = 16;
 
 /// Follows the samples of one tile.
 class TileRenderer {
@@ -31,7 +35,10 @@ class TileRenderer {
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
     task_.camera.trace(group, task_.sampling, places_, rays_);
-    for (std::size_t i = 0; i < places_.size(); ++i) follow(i, group);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (i % paths_between_questions == 0) check_stop();
+      follow(i, group);
+    }
   }
 
   void start_sample(int group, int index, Pixel pixel) {

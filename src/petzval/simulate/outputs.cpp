@@ -74,9 +74,8 @@ std::optional<Spectrum> usable_white(const SpectralImage& light, const std::opti
 /// The light as a viewer would see it.
 void show(const SpectralImage& light, const std::string& path, const OutputOptions& options,
           StagedFiles& files, const Context& context) {
-  PictureOptions shown;
-  shown.scene_white = usable_white(light, options.scene_white, context);
-  shown.false_colour = true;
+  PictureOptions shown = options.shown;
+  if (shown.scene_white) shown.scene_white = usable_white(light, shown.scene_white, context);
   send_note(context,
             fmt::format("{}: {}", path, write_picture(files.stage(path), light, shown, options.bits)));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/staged_files.h>
+#include <petzval/image/picture.h>
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>
 
@@ -24,7 +25,7 @@ struct OutputOptions {
   ExposeOptions expose = {};
   Development development = {};
   std::vector<std::pair<std::string, std::string>> step_files = {};  ///< of development: name, file
-  std::optional<Spectrum> scene_white = {};  ///< what a picture of the light shows as white
+  PictureOptions shown = {};  ///< how a picture of the light shows it; its scene white where bands allow it
 };
 
 /// What became of the light.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/units.h>
-#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/scene_camera.h>
 
@@ -113,52 +112,26 @@ void set_stop(Lens& lens, double diameter_mm, std::vector<std::string>& notes) {
                                 diameter_mm));
 }
 
-/// From the last surface; the assignment of CS348B has it in the scene.
-std::optional<double> film_distance(const CameraChoice& choice, const Parameters& parameters,
-                                    bool realistic) {
-  const bool in_scene = realistic && parameters.find("filmdistance");
-  if (choice.film_distance_mm || choice.focus_distance_m || !in_scene) return choice.film_distance_mm;
-  return parameters.number("filmdistance", 0);
+/// The assignment of CS348B has the film's distance from the last surface in the scene.
+SceneFocus read_focus(const Parameters& parameters, bool realistic, double scene_units_per_mm) {
+  if (realistic && parameters.find("filmdistance")) return {parameters.number("filmdistance", 0), {}};
+  const double m_per_unit = 1 / (scene_units_per_mm * mm_per_m);
+  const double distance =
+      parameters.number(realistic ? "focusdistance" : "focaldistance", realistic ? 10 : -1);
+  return {{}, distance > 0 ? std::optional(distance * m_per_unit) : std::nullopt};
 }
 
-void focus(MountedLens& camera, const CameraChoice& choice, const Parameters& parameters, bool realistic,
-           SceneCamera& result) {
-  const double m_per_unit = 1 / (choice.options.scene_units_per_mm * mm_per_m);
-  if (film_distance(choice, parameters, realistic)) return;
-  if (choice.focus_distance_m) return camera.focus_at_m(*choice.focus_distance_m);
-  const char* name = realistic ? "focusdistance" : "focaldistance";
-  const double distance = parameters.number(name, realistic ? 10 : -1);
-  if (distance > 0) return camera.focus_at_m(distance * m_per_unit);
-  result.notes.push_back(
-      "the lens is focused as its prescription has it: neither the scene nor the command line gives a "
-      "distance");
-}
-
-Lens lens_in_use(const CameraChoice& choice, const Parameters& parameters, bool realistic,
-                 SceneCamera& result) {
+Lens scene_or_chosen_lens(const CameraChoice& choice, const Parameters& parameters, bool realistic,
+                          std::vector<std::string>& notes) {
   Lens lens = choice.lens ? *choice.lens : read_scene_lens(parameters);
   if (realistic) parameters.string("lensfile", "");
   const double scene_stop =
       realistic ? parameters.number("aperture_diameter", parameters.number("aperturediameter", 1)) : -1;
-  if (choice.aperture_diameter_mm && choice.f_number)
-    throw InputError("give the stop either a diameter or an f-number");
   if (choice.aperture_diameter_mm)
-    set_stop(lens, *choice.aperture_diameter_mm, result.notes);
-  else if (!choice.f_number && !choice.lens && scene_stop > 0)
-    set_stop(lens, scene_stop, result.notes);
-  MountedLens camera(std::move(lens));
-  if (choice.f_number) camera.set_f_number(*choice.f_number);
-  if (choice.film_distance_mm && choice.focus_distance_m)
-    throw InputError("give the film either a distance from the lens or a distance to focus on");
-  focus(camera, choice, parameters, realistic, result);
-  Lens used = camera.lens();
-  if (const std::optional<double> distance = film_distance(choice, parameters, realistic)) {
-    if (!(*distance > 0) || !std::isfinite(*distance))
-      throw InputError(
-          fmt::format("a film {} mm behind the lens; a positive distance would be right", *distance));
-    used.surfaces.back().thickness_mm = *distance;
-  }
-  return used;
+    set_stop(lens, *choice.aperture_diameter_mm, notes);
+  else if (choice.scene_stop && !choice.lens && scene_stop > 0)
+    set_stop(lens, scene_stop, notes);
+  return lens;
 }
 
 /// A clipping plane as pbrt's first version had them. \throws InputError unless it is no nearer than 0.
@@ -186,12 +159,11 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
   if (!realistic) read_perspective(parameters, camera);
   if (realistic && choice.pinhole)
     throw scene_error(entity.location(),
-                      "the scene's camera is a real lens; it has no perspective for `pinhole`");
-  if ((realistic || choice.lens) && !choice.pinhole)
-    camera.lens = lens_in_use(choice, parameters, realistic, camera);
-  else if (choice.film_distance_mm || choice.focus_distance_m || choice.aperture_diameter_mm ||
-           choice.f_number)
-    throw InputError("film distance, focus and stop belong to a lens; `lens` names one");
+                      "the scene's camera is a real lens; it has no perspective for a `pinhole`");
+  if ((realistic || choice.lens) && !choice.pinhole) {
+    camera.lens = scene_or_chosen_lens(choice, parameters, realistic, camera.notes);
+    camera.focus = read_focus(parameters, realistic, choice.options.scene_units_per_mm);
+  }
   if (choice.pinhole) camera.perspective.lens_radius = 0;
   if (realistic)
     for (const char* each : {"aperturediameter", "focusdistance", "lensfile", "aperture_diameter",

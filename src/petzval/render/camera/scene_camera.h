@@ -23,17 +23,22 @@ struct CameraChoice {
   std::optional<int> columns, rows;  ///< with a sensor, of its middle
   std::optional<double> film_diagonal_mm;
   std::optional<double> aperture_diameter_mm;  ///< of the stop
-  std::optional<double> f_number;
-  std::optional<double> film_distance_mm;  ///< from the last vertex to the film
-  std::optional<double> focus_distance_m;  ///< from the film to what is sharp
+  bool scene_stop = true;  ///< the scene says how wide its lens's stop is, unless there is a diameter
   LensCameraOptions options;
+};
+
+/// Where the scene's file wants its film: the one or the other, or nothing.
+struct SceneFocus {
+  std::optional<double> film_distance_mm;  ///< from the last vertex
+  std::optional<double> distance_m;        ///< from the film to what is sharp
 };
 
 /// A camera as it is used: how many pixels, how large, and either a lens or an ideal perspective.
 struct SceneCamera {
   SensorGeometry film;
   Photosite photosite;
-  std::optional<Lens> lens;  ///< focused and stopped down
+  std::optional<Lens> lens;
+  SceneFocus focus;  ///< of a scene's lens; the lens is not focused yet
   PerspectiveOptions perspective;
   LensCameraOptions options;
   Transform world_from_camera;
@@ -50,7 +55,8 @@ struct SceneCamera {
 /// Reads the Film and Camera of a scene: perspective, realistic (pbrt-v4's parameters: lensfile,
 /// aperturediameter [mm], focusdistance [scene units]; or those of the assignment of CS348B, 2006: specfile,
 /// aperture_diameter, filmdistance, filmdiag [mm], hither, yon [scene units]), and film sizes. \throws
-/// InputError with file, line and column for bad values, and through `unsupported`.
+/// InputError with file, line and column for bad values, and through `unsupported`. The lens has its stop,
+/// but not yet its focus.
 SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
                           Unsupported& unsupported);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/stop.h>
 #include <petzval/base/units.h>
 #include <petzval/colour/rgb_to_spectrum.h>
 #include <petzval/render/lights/environment.h>
@@ -116,7 +117,8 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
   std::vector<Sky::Pixel> pixels;
   std::vector<double> weights;
   double sum = 0;
-  for (int row = 0; row < picture->height; ++row)
+  for (int row = 0; row < picture->height; ++row) {
+    check_stop();
     for (int column = 0; column < picture->width; ++column) {
       const float* p = picture->pixel(column, row);
       const bool grey = picture->channels == 1;
@@ -129,6 +131,7 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
       weights.push_back((rgb.r + rgb.g + rgb.b) / 3);
       sum += weights.back();
     }
+  }
   mean_ = mean_of(radiance_) * sum / static_cast<double>(weights.size());
   sky_ = std::make_shared<const Sky>(
       Sky{picture, SquareDistribution(weights, picture->width, picture->height), std::move(pixels), groups});

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/stop.h>
 #include <petzval/render/pbrt/tokens.h>
 
 namespace petzval::render {
@@ -35,6 +36,8 @@ void Tokens::skip_space() {
 std::optional<Token> Tokens::read() {
   skip_space();
   if (at_ >= text_.size()) return {};
+  constexpr std::size_t between_questions = 4096;
+  if (++tokens_ % between_questions == 0) check_stop();
   Token token;
   token.line = line_, token.column = column();
   const std::size_t start = at_;

@@ -41,6 +41,7 @@ class Tokens {
   std::shared_ptr<const std::string> file_;
   std::size_t at_ = 0, line_start_ = 0;
   int line_ = 1;
+  std::size_t tokens_ = 0;  ///< read so far
   std::optional<Token> peeked_;
   bool has_peeked_ = false;
 };

@@ -2,12 +2,15 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/numeric/sobol.h>
 #include <petzval/render/shapes/intersector.h>
 
 #include <bit>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <mutex>
 
 namespace petzval::render {
 
@@ -92,6 +95,35 @@ RTCRay ray_of(Vector3 origin, Vector3 direction, double limit) {
   ray.tfar = static_cast<float>(limit);
   ray.mask = ~0u;
   return ray;
+}
+
+/// Asks on behalf of Embree's threads whether to go on.
+struct BuildMonitor {
+  Listener* listener = current_listener();
+  std::mutex mutex = {};
+  std::exception_ptr stopped = {};  ///< what must not pass through Embree
+
+  static bool goes_on(void* user, double) {
+    auto& monitor = *static_cast<BuildMonitor*>(user);
+    const ListenerScope scope(monitor.listener);
+    try {
+      check_stop();
+      return true;
+    } catch (...) {
+      const std::lock_guard lock(monitor.mutex);
+      monitor.stopped = std::current_exception();
+      return false;
+    }
+  }
+};
+
+/// Builds the search tree of a scene.
+void commit(RTCScene scene) {
+  BuildMonitor monitor;
+  rtcSetSceneProgressMonitorFunction(scene, BuildMonitor::goes_on, &monitor);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  if (monitor.stopped) std::rethrow_exception(monitor.stopped);
 }
 
 }  // namespace
@@ -180,8 +212,10 @@ struct Intersector::Impl {
 
   RTCScene build(const std::vector<Geometry>& geometries, GeometryRange range) const {
     RTCScene result = new_scene();
-    for (std::size_t i = range.first; i < range.last; ++i)
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      check_stop();
       attach(result, geometries[i], static_cast<unsigned>(i - range.first));
+    }
     return result;
   }
 
@@ -208,14 +242,15 @@ Intersector::Intersector(const std::vector<Geometry>& geometries, GeometryRange 
   impl_->first_instance = scene.last - scene.first;
   for (const GeometryRange& range : objects) {
     impl_->objects.push_back(impl_->build(geometries, range));
-    rtcCommitScene(impl_->objects.back());
+    commit(impl_->objects.back());
     impl_->ranges.push_back(range);
   }
   for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (i % 1024 == 0) check_stop();
     impl_->object_of_instance.push_back(static_cast<std::size_t>(placed[i].object));
     impl_->place(placed[i], static_cast<unsigned>(impl_->first_instance + i));
   }
-  rtcCommitScene(impl_->scene);
+  commit(impl_->scene);
   impl_->check();
 }
 

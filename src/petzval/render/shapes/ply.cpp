@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Polygon files (G. Turk's PLY format): vertices and faces in text or binary.
 #include <fmt/format.h>
+#include <petzval/base/stop.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/pbrt/parameter_reader.h>
 #include <petzval/render/shapes/triangle_mesh.h>
@@ -136,6 +137,10 @@ class PlyBody {
 
   double number(PlyType type) { return format_ == PlyFormat::ascii ? word() : binary(type); }
   std::size_t left() const { return bytes_.size() - at_; }
+  /// Whether to go on, now and then.
+  static void ask(std::size_t element) {
+    if (element % 4096 == 0) check_stop();
+  }
 
  private:
   double word() {
@@ -224,6 +229,7 @@ void read_vertices(const PlyElement& element, PlyBody& body, const std::string& 
   if (!there[0] || !there[1] || !there[2]) throw InputError(path, "has vertices without x, y and z");
   const bool normals = there[3] && there[4] && there[5], uvs = there[6] && there[7];
   for (std::size_t i = 0; i < element.count; ++i) {
+    body.ask(i);
     std::array<float, 8> values{};
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
@@ -252,6 +258,7 @@ void add_face(const std::vector<std::uint32_t>& corners, const std::string& path
 void read_faces(const PlyElement& element, PlyBody& body, const std::string& path, TriangleMesh& mesh) {
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < element.count; ++i) {
+    body.ask(i);
     corners.clear();
     for (const PlyProperty& property : element.properties) {
       if (!property.count) {
@@ -275,11 +282,13 @@ void read_faces(const PlyElement& element, PlyBody& body, const std::string& pat
 }
 
 void skip_element(const PlyElement& element, PlyBody& body) {
-  for (std::size_t i = 0; i < element.count; ++i)
+  for (std::size_t i = 0; i < element.count; ++i) {
+    body.ask(i);
     for (const PlyProperty& property : element.properties) {
       const double count = property.count ? body.number(*property.count) : 1;
       for (double k = 0; k < count; ++k) body.number(property.type);
     }
+  }
 }
 
 }  // namespace

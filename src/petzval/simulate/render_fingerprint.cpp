@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "render_fingerprint.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/pbrt/scene_files.h>
+#include <petzval/simulate/prepared_world.h>
 
-namespace petzval::app {
+namespace petzval {
 
 namespace {
 
@@ -37,15 +36,15 @@ std::string losses_line(const Losses& losses) {
 
 }  // namespace
 
-std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& scene,
-                               const render::RenderOptions& options) {
-  const render::SceneCamera& camera = scene.camera;
-  const std::vector<double>& nm = scene.world->groups.wavelengths_nm();
+std::string render_fingerprint(const PreparedScene& scene, const render::RenderOptions& options) {
+  const RenderRequest& request = scene.request;
+  const render::SceneCamera camera = scene_camera(scene);
+  const std::vector<double>& nm = scene.world->world->groups.wavelengths_nm();
   std::string text = fmt::format("petzval {}\n", version());
   text += fmt::format("seed {}\n", options.seed);
-  // A picture that ends at a noise is the beginning of one that ends at less.
-  text += options.noise > 0 ? std::string("samples as the noise demands\n")
-                            : fmt::format("samples {}\n", options.samples_per_pixel);
+  // Fewer samples are the beginning of more, and a picture that ends at a noise that of one that ends at
+  // less.
+  text += options.noise > 0 ? "samples in two halves\n" : "samples in turn\n";
   text += fmt::format("max-depth {}\nnear {} far {}\n", options.path.max_depth, options.clipping.near,
                       options.clipping.far);
   text += fmt::format("first-surfaces {}\n", options.first_surfaces);
@@ -55,16 +54,19 @@ std::string render_fingerprint(const RenderChoice& choice, const PreparedScene& 
   text += fmt::format("wavelengths {}\n", fmt::join(nm, ","));
   text +=
       fmt::format("camera {}\nsampling {}\n",
-                  camera.lens ? "lens, its origin at the " + choice.camera_origin
-                              : fmt::format("perspective, lens radius {}", camera.perspective.lens_radius),
-                  choice.sampling);
+                  !camera.lens ? fmt::format("perspective, lens radius {}", camera.perspective.lens_radius)
+                  : camera.options.origin_at_front ? "lens, its origin at the front"
+                                                   : "lens, its origin at the film",
+                  request.sampling == RenderRequest::Sampling::rear_disk ? "rear-disk" : "exit-pupil");
   const StopBlades blades = camera.lens ? camera.lens->stop_blades() : StopBlades{};
   text += fmt::format("blades {} turned by {}\ndiffraction {}\n", blades.count, blades.rotation_deg,
-                      choice.diffraction);
-  text += fmt::format("scene-unit {}\nabsolute-spectra {}\n", choice.scene_unit_mm, choice.absolute_spectra);
-  text += fmt::format("sky {} skip-unsupported {}\n", choice.sky_cd_m2.value_or(0), choice.skip_unsupported);
+                      request.diffraction);
+  text +=
+      fmt::format("scene-unit {}\nabsolute-spectra {}\n", request.scene_unit_mm, request.absolute_spectra);
+  text +=
+      fmt::format("sky {} skip-unsupported {}\n", request.sky_cd_m2.value_or(0), request.skip_unsupported);
   text += lens_line(camera, nm) + losses_line(camera.options.losses);
-  return text + render::scene_files_fingerprint(scene.description);
+  return text + render::scene_files_fingerprint(scene.world->description);
 }
 
-}  // namespace petzval::app
+}  // namespace petzval

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render_output.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/image/formats/npy.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "output_option.h"
+
+namespace petzval::app {
+
+namespace {
+
+void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture, StagedFiles& files) {
+  const auto rows = static_cast<std::size_t>(picture.irradiance.rows());
+  const auto columns = static_cast<std::size_t>(picture.irradiance.columns());
+  const auto bands = static_cast<std::size_t>(picture.irradiance.bands());
+  if (!outputs.depth.empty())
+    write_npy(files.stage(outputs.depth), std::vector<std::size_t>{rows, columns},
+              picture.first_surfaces->depth);
+  if (!outputs.normals.empty())
+    write_npy(files.stage(outputs.normals), std::vector<std::size_t>{rows, columns, 3},
+              picture.first_surfaces->normal);
+  if (!outputs.albedo.empty())
+    write_npy(files.stage(outputs.albedo), std::vector<std::size_t>{bands, rows, columns},
+              picture.first_surfaces->albedo);
+}
+
+}  // namespace
+
+void RenderOutputs::add_to(CLI::App& command) {
+  command
+      .add_option("--depth", depth,
+                  "Also write the distance of what is seen from the film [scene units] (.npy)")
+      ->check(output_file());
+  command.add_option("--normals", normals, "Also write its normals in world space (.npy)")
+      ->check(output_file());
+  command.add_option("--albedo", albedo, "Also write its reflectance by band (.npy)")->check(output_file());
+  command.add_option("--white", white,
+                     "Illuminance that a .png of the light shows as white [lx]; default: the brightest");
+  command
+      .add_option("-o,--output", pictures,
+                  "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
+                  "repeatable")
+      ->check(output_file())
+      ->allow_extra_args(false);
+  shot.add_to(command);
+}
+
+OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const CLI::App& command) const {
+  if (pictures.empty())
+    throw InputError("-o names the picture to be written (.exr, .npy, .png; with a --sensor .dng and .tif)");
+  for (const std::string& path : pictures)
+    require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
+  for (const std::string* path : {&depth, &normals, &albedo})
+    if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
+  OutputOptions options = shot.checked(sensor, pictures, command);
+  if (white && develops(options, sensor))
+    throw InputError(
+        "--white is for pictures of the light, and those of a --sensor that turns light into numbers are "
+        "developed; --brightness or --picture irradiance would be right");
+  if (white) {
+    options.shown.exposure = PictureOptions::Exposure::fixed;
+    options.shown.white_level = *white;
+  }
+  return options;
+}
+
+void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
+                             const std::vector<std::pair<std::string, std::string>>& others) const {
+  std::vector<NamedFile> outputs, inputs;
+  for (const std::string& path : pictures) outputs.push_back({"--output", path});
+  for (const auto& [option, path] :
+       {NamedFile{"--depth", depth}, NamedFile{"--normals", normals}, NamedFile{"--albedo", albedo}})
+    if (!path.empty()) outputs.push_back({option, path});
+  for (const auto& [option, path] : others)
+    if (!path.empty()) outputs.push_back({option, path});
+  for (const std::string& path : files_of_scene) inputs.push_back({"scene", path});
+  refuse_same_files(outputs, inputs);
+}
+
+Outputs RenderOutputs::write(const Rendering& picture, const std::optional<Sensor>& sensor,
+                             const OutputOptions& options, const Context& context) const {
+  StagedFiles files;
+  Outputs made = write_outputs(picture.irradiance, pictures, sensor, options, files, context);
+  write_first_surfaces(*this, picture, files);
+  files.commit();
+  return made;
+}
+
+nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering& picture, const Outputs& made,
+                                    const RenderSeconds& seconds, const std::vector<std::string>& outputs) {
+  using Json = nlohmann::ordered_json;
+  const SpectralImage& image = picture.irradiance;
+  const std::span<const float> values = image.values();
+  double sum = 0;
+  for (const float value : values) sum += static_cast<double>(value);
+  Json json = {{"scene", scene.request.scene},
+               {"lens", scene.lens ? Json(scene.lens->name) : Json()},
+               {"film_distance_mm", scene.lens ? Json(scene.film_distance_mm()) : Json()},
+               {"columns", image.columns()},
+               {"rows", image.rows()},
+               {"pitch_um", image.pitch_um()},
+               {"pixel_aperture", scene.photosite.text()},
+               {"wavelengths_nm", image.wavelengths_nm()},
+               {"samples_per_pixel", picture.samples_per_pixel},
+               {"noise", picture.noise ? Json(*picture.noise) : Json()},
+               {"camera_rays", picture.rays},
+               {"camera_rays_passed", picture.passed},
+               {"mean_irradiance", sum / static_cast<double>(values.size())},
+               {"irradiance_unit", "W.m^-2.nm^-1"},
+               {"prepare_seconds", seconds.prepare},
+               {"render_seconds", seconds.light},
+               {"outputs", outputs}};
+  if (!made.raw) return json;
+  json["exposure_s"] = made.raw->exposure_s;
+  json["iso"] = made.raw->iso;
+  json["as_shot_neutral"] = made.raw->as_shot_neutral;
+  return json;
+}
+
+void print_summary(const PreparedScene& scene, const Rendering& picture, const Outputs& made,
+                   const RenderSeconds& seconds) {
+  const SpectralImage& image = picture.irradiance;
+  const auto& bands = image.wavelengths_nm();
+  fmt::print("{} x {} pixels of {:.5g} um, ", image.columns(), image.rows(), image.pitch_um());
+  if (bands.size() == 1)
+    fmt::print("1 band at {:g} nm\n", bands.front());
+  else
+    fmt::print("{} bands from {:g} to {:g} nm\n", bands.size(), bands.front(), bands.back());
+  fmt::print("  camera   {}\n", camera_text(scene));
+  fmt::print("  samples  {} a pixel; {:.1f} % of {} camera rays pass\n", picture.samples_per_pixel,
+             100.0 * static_cast<double>(picture.passed) /
+                 static_cast<double>(std::max<std::uint64_t>(picture.rays, 1)),
+             picture.rays);
+  if (picture.noise) fmt::print("  noise    {:.3g} (RMS error over mean light)\n", *picture.noise);
+  fmt::print("  time     {:.2f} s to prepare, {:.1f} s for light, {:.3g} million camera rays a second\n",
+             seconds.prepare, seconds.light,
+             static_cast<double>(picture.rays) * 1e-6 / std::max(seconds.light, 1e-9));
+  if (made.raw)
+    fmt::print("  exposure {:.4g} s, ISO {:.0f}, on {}\n", made.raw->exposure_s, made.raw->iso,
+               made.raw->sensor_name);
+}
+
+}  // namespace petzval::app

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/best_focus.h>
+#include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
+#include <petzval/base/units.h>
+#include <petzval/camera/mounted_lens.h>
+#include <petzval/colour/display.h>
+#include <petzval/colour/observer.h>
+#include <petzval/focus/focus_scan.h>
+#include <petzval/focus/golden_search_2006.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/simulate/prepared_world.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+/// How far from the focus of infinity the film may go, in focal lengths: as far as for an object eight focal
+/// lengths away.
+constexpr double extension = 0.15;
+/// Where golden section ends, in depths of focus.
+constexpr double share_of_depth = 0.05;
+/// How far the film may go beyond the focus of infinity, in depths of focus: a peak there has two flanks.
+constexpr double depths_beyond = 4;
+
+/// Where the film stands for an object at infinity: at the paraxial focus, or where the spot on the axis is
+/// smallest, whichever is nearer to the lens (spherical aberration parts them).
+double infinity_focus_mm(const Lens& lens) {
+  MountedLens camera(lens);
+  camera.focus_at_m({});
+  FieldTableRequest axis = FieldTableRequest::of(camera.lens());
+  axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};
+  const double film_mm = camera.lens().surfaces.back().thickness_mm;
+  return std::min(paraxial_image_distance_mm(lens, {}, lens.reference_wavelength_nm),
+                  film_mm + best_spot_focus(camera.lens(), axis).shift_mm);
+}
+
+render::PixelWindow window_of(const FocusZone& zone, const SensorGeometry& film) {
+  const auto at = [](double share, int pixels) {
+    return std::clamp(static_cast<int>(std::lround(share * pixels)), 0, pixels);
+  };
+  const render::PixelWindow window{at(zone.left, film.columns), at(zone.top, film.rows),
+                                   at(zone.right, film.columns), at(zone.bottom, film.rows)};
+  if (window.columns() < 4 || window.rows() < 4)
+    throw InputError(
+        fmt::format("the zone {:g} {:g} {:g} {:g} has {} x {} pixels; at least 4 x 4 would be right",
+                    zone.left, zone.right, zone.top, zone.bottom, window.columns(), window.rows()));
+  return window;
+}
+
+/// max(R, G, B) of every pixel.
+GreyPicture brightest_component(const SpectralImage& image) {
+  const std::vector<Xyz> weights = Observer::cie_1931().weights(image.wavelengths_nm());
+  GreyPicture grey{image.columns(), image.rows(), std::vector<double>(image.band_size())};
+  for (std::size_t i = 0; i < image.band_size(); ++i) {
+    Xyz sum;
+    for (int band = 0; band < image.bands(); ++band)
+      sum = sum + static_cast<double>(image.band(band)[i]) * weights[static_cast<std::size_t>(band)];
+    const LinearRgb rgb = linear_srgb(sum);
+    grey.values[i] = std::max({rgb.r, rgb.g, rgb.b});
+  }
+  return grey;
+}
+
+/// Eight wavelengths, which one path serves.
+std::vector<double> eight_wavelengths_nm() {
+  return {430, 465, 500, 535, 570, 605, 640, 675};
+}
+
+/// Renders the zones of a scene, and counts the camera rays.
+class ZoneRenderer {
+ public:
+  ZoneRenderer(const PreparedScene& scene, const render::World& world, std::vector<FocusZone> zones,
+               const Context& context)
+      : scene_(scene), world_(world), zones_(std::move(zones)), context_(context) {}
+
+  std::vector<ZonePicture> at(double film_distance_mm) {
+    const render::SceneCamera moved = scene_camera(scene_).with_film_distance_mm(film_distance_mm);
+    const auto camera = moved.make(world_.groups);
+    std::vector<ZonePicture> pictures;
+    for (const FocusZone& zone : zones_) {
+      const render::PixelWindow window = window_of(zone, moved.film);
+      GreyPicture first = picture(moved, *camera, window, 2 * context_.seed);
+      pictures.push_back({std::move(first), picture(moved, *camera, window, 2 * context_.seed + 1)});
+    }
+    return pictures;
+  }
+  const std::vector<FocusZone>& zones() const { return zones_; }
+  std::uint64_t rays() const { return rays_; }
+
+ private:
+  GreyPicture picture(const render::SceneCamera& set_up, const render::FilmCamera& camera,
+                      const render::PixelWindow& window, std::uint64_t seed) {
+    render::RenderOptions options = render_options(scene_);
+    options.samples_per_pixel = std::max(1, scene_.request.autofocus.samples_per_pixel / 2);
+    options.window = window;
+    options.seed = seed;
+    const render::Rendering rendered =
+        render_picture(world_, camera, set_up.world_from_camera, set_up.film, options);
+    rays_ += rendered.rays;
+    return brightest_component(rendered.irradiance);
+  }
+
+  const PreparedScene& scene_;
+  const render::World& world_;
+  std::vector<FocusZone> zones_;
+  const Context& context_;
+  std::uint64_t rays_ = 0;
+};
+
+std::vector<FocusZone> zones_or_middle(const AutofocusOptions& options) {
+  return options.zones.empty() ? std::vector<FocusZone>{{1.0 / 3, 2.0 / 3, 1.0 / 3, 2.0 / 3}} : options.zones;
+}
+
+FocusRun search(const PreparedScene& scene, const render::World& world, const Context& context,
+                const ProgressCallback& progress) {
+  const AutofocusOptions& wanted = scene.request.autofocus;
+  const FirstOrder first = first_order(*scene.lens);
+  ZoneRenderer zones(scene, world, zones_or_middle(wanted), context);
+  int asked = 0;
+  const PicturesAt pictures = [&](double film_distance_mm) {
+    progress(std::min(1.0, asked++ / static_cast<double>(std::max(1, wanted.most_evaluations))), "focus");
+    return zones.at(film_distance_mm);
+  };
+  FocusRun run;
+  run.lens = scene.lens->name;
+  run.depth_mm = wanted.depth_mm.value_or(first.f_number * scene.film.pitch_um * mm_per_um);
+  const double infinity_mm = infinity_focus_mm(*scene.lens);
+  const double from =
+      wanted.from_mm.value_or(std::max(infinity_mm - depths_beyond * run.depth_mm, infinity_mm / 2));
+  const double to = wanted.to_mm.value_or(infinity_mm + extension * first.efl_mm);
+  if (wanted.search == AutofocusOptions::Search::golden_2006) {
+    GoldenSearchOptions options;
+    options.measure = wanted.measure;
+    options.nearest_mm = from, options.farthest_mm = to;
+    options.tolerance_mm = share_of_depth * run.depth_mm;
+    run.result = find_focus_2006(pictures, zones.zones(), options);
+  } else if (wanted.search == AutofocusOptions::Search::scan) {
+    run.result = scan_focus(pictures, zones.zones(), wanted.measure, from, to, wanted.most_evaluations);
+  } else {
+    FocusSearchOptions options;
+    options.measure = wanted.measure;
+    options.nearest_mm = from, options.farthest_mm = to;
+    options.depth_mm = run.depth_mm;
+    options.most_evaluations = wanted.most_evaluations;
+    run.result = find_focus(pictures, zones.zones(), options);
+  }
+  run.camera_rays = zones.rays();
+  if (run.result.at_the_end)
+    send_note(context,
+              "the sharpest place lies at an end of the distances searched; `autofocus.from_mm` and "
+              "`autofocus.to_mm` widen them");
+  return run;
+}
+
+}  // namespace
+
+AutofocusOptions::Search autofocus_search_of(std::string_view name) {
+  if (name == "brent") return AutofocusOptions::Search::brent;
+  if (name == "golden-2006") return AutofocusOptions::Search::golden_2006;
+  if (name == "scan") return AutofocusOptions::Search::scan;
+  throw InputError(fmt::format("`search` {}: brent, golden-2006 or scan would be right", quotable(name)));
+}
+
+const FocusRun& autofocus(PreparedScene& scene, const Context& context) {
+  if (!scene.lens) throw InputError("an ideal camera has nothing to focus; `lens` names a lens");
+  if (scene.request.camera.image_distance_mm)
+    throw InputError("`image_distance_mm` and autofocus both place the sensor; one of them would be right");
+  FocusRun run = result_within(context, [&](const ProgressCallback& progress) {
+    // The light of the picture serves if its wavelengths were asked for; otherwise fewer are quicker.
+    if (!scene.request.wavelengths_nm.empty()) return search(scene, *scene.world->world, context, progress);
+    render::Unsupported unsupported(true);  // what it finds has been reported
+    const auto world =
+        build_world_at(scene.world->description, scene.request, eight_wavelengths_nm(), unsupported);
+    return search(scene, *world, context, progress);
+  });
+  scene.lens = scene_camera(scene).with_film_distance_mm(run.result.film_distance_mm).lens;
+  scene.focus = std::move(run);
+  return *scene.focus;
+}
+
+FocusRun autofocus(RenderRequest request, const Context& context) {
+  if (request.wavelengths_nm.empty()) request.wavelengths_nm = eight_wavelengths_nm();
+  PreparedScene scene = prepare_scene(request, context);
+  return autofocus(scene, context);
+}
+
+}  // namespace petzval

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/sensor/lens_facts.h>
+#include <petzval/simulate/prepared_world.h>
+
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+constexpr int usual_samples = 64, most_samples_for_noise = 4096;
+
+render::RenderOptions sampling_of(const PreparedScene& scene, const Context& context) {
+  const RenderRequest& request = scene.request;
+  render::RenderOptions options = render_options(scene);
+  options.samples_per_pixel =
+      request.samples_per_pixel.value_or(request.noise > 0 ? most_samples_for_noise : usual_samples);
+  options.noise = request.noise;
+  options.seed = context.seed;
+  options.first_surfaces = request.first_surfaces;
+  options.checkpoint = request.checkpoint;
+  options.checkpoint_seconds = request.checkpoint_seconds;
+  if (!request.checkpoint.empty()) options.fingerprint = render_fingerprint(scene, options);
+  return options;
+}
+
+void add_facts(const PreparedScene& scene, const Context& context, Rendering& picture) {
+  picture.irradiance.provenance =
+      fmt::format("petzval {} render: {} through {}; {} samples a pixel, seed {}", version(),
+                  scene.request.scene, camera_text(scene), picture.samples_per_pixel, context.seed);
+  if (scene.lens) picture.irradiance.lens = lens_facts(scene.lens->name, first_order(*scene.lens));
+}
+
+}  // namespace
+
+Rendering render_scene(const PreparedScene& scene, const Context& context, std::optional<Rendering>* so_far) {
+  if (scene.wants_autofocus()) {
+    PreparedScene focused = scene;
+    autofocus(focused, context);
+    return render_scene(focused, context, so_far);
+  }
+  const render::World& world = *scene.world->world;
+  if (world.lights.empty()) send_note(context, "the scene has no lights; the picture will be black");
+  render::RenderOptions options = sampling_of(scene, context);
+  const int samples = render::effective_samples(world.groups, options.samples_per_pixel);
+  if (samples != options.samples_per_pixel)
+    send_note(context, fmt::format("{} bands need at least {} samples a pixel",
+                                   world.groups.wavelengths_nm().size(), samples));
+  if (so_far)
+    options.so_far = [&](Rendering picture) {
+      add_facts(scene, context, picture);
+      *so_far = std::move(picture);
+    };
+  Rendering picture = result_within(context, [&](const ProgressCallback& progress) {
+    const render::SceneCamera camera = scene_camera(scene);
+    return render_picture(world, *camera.make(world.groups), camera.world_from_camera, scene.film, options,
+                          progress);
+  });
+  if (picture.noise && *picture.noise > scene.request.noise)
+    send_note(context, fmt::format("the noise is {:.3g} after {} samples a pixel; a larger "
+                                   "`samples_per_pixel` would let it fall to {:g}",
+                                   *picture.noise, picture.samples_per_pixel, scene.request.noise));
+  add_facts(scene, context, picture);
+  return picture;
+}
+
+Rendering render_scene(const RenderRequest& request, const Context& context) {
+  return render_scene(prepare_scene(request, context), context);
+}
+
+}  // namespace petzval

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The second way to the sensor: a three-dimensional scene, path-traced through every surface of the lens.
+#pragma once
+
+#include <petzval/base/context.h>
+#include <petzval/render/rendering.h>
+#include <petzval/simulate/autofocus.h>
+#include <petzval/simulate/camera.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// The irradiance on the sensor, and what the first surfaces are.
+using Rendering = render::Rendering;
+
+/// A scene in three dimensions, and how it is seen.
+///
+///     RenderRequest request{.scene = "spheres"};
+///     request.camera.lens = read_lens("dgauss-50mm").lens;
+///     request.camera.focus = Focus::at_m(1.2);
+///     request.samples_per_pixel = 256;
+///     const Rendering picture = render_scene(request);
+struct RenderRequest {
+  /// Where directions from a point of the film are drawn from.
+  enum class Sampling {
+    exit_pupil,  ///< the region that holds the pupil as that point sees it
+    rear_disk    ///< the disk of the last surface, as in 2006: the same picture, with more noise
+  };
+  /// What stands where the scene puts its camera.
+  enum class Origin { film, front };
+
+  /// A file in the text format of pbrt-v4 or in glTF 2.0 (.gltf, .glb), or the name of a bundled scene.
+  std::string scene = {};
+  /// Without surfaces, its lens is the one of the scene's camera, if that has one. Without a sensor the film
+  /// is the scene's. Automatic focus is autofocus on the zones below; an ideal camera has none.
+  Camera camera = {};
+  /// The focus is the one in the scene's file, or the prescription's where there is none, whatever
+  /// `camera.focus` says.
+  bool focus_as_in_scene = false;
+  AutofocusOptions autofocus = {};
+  bool pinhole = false;                        ///< the scene's perspective through a pinhole, for comparison
+  std::optional<int> columns = {}, rows = {};  ///< of the picture; with a sensor, of its middle
+  std::optional<double> film_diagonal_mm = {};
+  std::optional<double> aperture_diameter_mm = {};  ///< of the stop, in place of an f-number
+
+  std::vector<double> wavelengths_nm = {};  ///< empty: 400 to 700 in steps of 10
+  double scene_unit_mm = 1000;              ///< length of the scene's unit
+  bool absolute_spectra = false;  ///< spectra of lights are radiances [W·m⁻²·sr⁻¹·nm⁻¹] as they stand
+  std::optional<double> sky_cd_m2 = {};  ///< white light from all around, added to that of the scene
+  bool skip_unsupported = false;  ///< leave out what the scene has and Petzval has not, instead of refusing
+
+  Sampling sampling = Sampling::exit_pupil;
+  Origin camera_origin = Origin::film;
+  bool diffraction = false;           ///< bend rays at the stop at random as its edge does
+  std::optional<int> max_depth = {};  ///< times that light is scattered; absent: the scene's, or 5
+  /// Surfaces outside of these planes are not seen [scene units from the camera's place]; absent: the
+  /// scene's.
+  std::optional<double> near_distance = {}, far_distance = {};
+  std::optional<int> samples_per_pixel = {};  ///< absent: 64, with `noise` at most 4096
+  /// If positive: ends when nine of ten tiles are estimated to be this close to the picture without noise,
+  /// RMS error over mean light.
+  double noise = 0;
+  bool first_surfaces = false;  ///< depth, normals and albedo, too
+  /// A file to go on from and to save to, on the way, when the picture is done and when it is stopped; more
+  /// samples may then be asked for. Empty: none.
+  std::string checkpoint = {};
+  double checkpoint_seconds = 60;
+};
+
+/// What only the library's own files look into.
+struct PreparedWorld;
+
+/// A scene read, its world built, its camera set up. A value: the world is shared by copies, and what `lens`
+/// and the sampling in `request` say may be altered between renderings.
+struct PreparedScene {
+  RenderRequest request;
+  SensorGeometry film;
+  Photosite photosite;
+  std::optional<Lens> lens;        ///< as it is used; absent: a pinhole or a thin lens
+  std::optional<FocusRun> focus;   ///< once autofocus has placed the film
+  std::vector<std::string> files;  ///< of the scene: its own, and those that it names
+  std::shared_ptr<const PreparedWorld> world;
+
+  bool wants_autofocus() const;
+  /// From the last vertex to the film; 0 without a lens.
+  double film_distance_mm() const;
+};
+
+/// "dgauss-50mm, film 37.75 mm behind the last surface, stop 17.1 mm wide".
+std::string camera_text(const PreparedScene& scene);
+
+/// Reads the scene and builds its world. Notes tell what was chosen or left out. \throws InputError with
+/// file, line and column for what is wrong in the scene; Failure; Cancelled.
+PreparedScene prepare_scene(const RenderRequest& request, const Context& context = {});
+
+/// Something in a scene that is not supported, and where.
+struct UnsupportedFeature {
+  std::string file;
+  int line = 0, column = 0;         ///< of a text file
+  std::optional<std::string> path;  ///< of an entry of a JSON file
+  std::string place;                ///< "scene.pbrt:12:7" or "scene.gltf: materials[2].normalTexture"
+  std::string what;
+};
+std::vector<UnsupportedFeature> unsupported_features(RenderRequest request, const Context& context = {});
+
+/// Moves the film to where the zones are sharpest. Only the zones are rendered, twice over with different
+/// random numbers so that noise cancels in the measure, and with the same random numbers for every film
+/// distance. \throws InputError for a camera without a lens and for zones of fewer than 4 × 4 pixels;
+/// Cancelled.
+const FocusRun& autofocus(PreparedScene& scene, const Context& context = {});
+/// The film distance at which the zones of a scene are sharpest. Without wavelengths, light is followed at
+/// eight of them, which one path serves.
+FocusRun autofocus(RenderRequest request, const Context& context = {});
+
+/// The light on the sensor, with its provenance and the lens's facts, after autofocus if that is asked and
+/// has not been. The seed is the context's. \param so_far  if not null, is given the picture as far as it got
+/// when the work is stopped and there is a checkpoint. \throws InputError; Failure; Cancelled.
+Rendering render_scene(const PreparedScene& scene, const Context& context = {},
+                       std::optional<Rendering>* so_far = nullptr);
+/// prepare_scene() and render_scene() in one.
+Rendering render_scene(const RenderRequest& request, const Context& context = {});
+
+}  // namespace petzval
