@@ -112,7 +112,9 @@ namespace {
 CLI::Validator number_check(bool (*holds)(double), const char* right) {
   const auto complaint = [=](const std::string& word) {
     const auto number = parse_number(word);
-    return number && holds(*number) ? std::string() : fmt::format("{} is not {}", word, right);
+    if (number && holds(*number)) return std::string();
+    return word.empty() ? fmt::format("an empty word; {} would be right", right)
+                        : fmt::format("{} is not {}", word, right);
   };
   return CLI::Validator(complaint, right);
 }

@@ -205,10 +205,10 @@ void add_sweep_command(CLI::App& app, Shared& shared) {
   sweeps->require_subcommand(1);
   add_swept(*sweeps, app, shared, "image", "Sweep petzval image; what is not listed here goes to it",
             "petzval sweep image checkerboard --lens edmund-54852 --sensor 64x48@60 --wavelengths 550 "
-            "--vary surfaces[4].thickness_mm=0.4:0.6:0.1 --vary f-number=2,4 -o sweep");
+            "--vary surfaces[4].thickness_mm=0.4:0.1:0.6 --vary f-number=2,4 -o sweep");
   add_swept(
       *sweeps, app, shared, "lens", "Sweep an analysis of petzval lens; what is not listed here goes to it",
-      "petzval sweep lens distortion edmund-54852 --fields 2 --vary surfaces[4].thickness_mm=0.4:0.6:0.1 "
+      "petzval sweep lens distortion edmund-54852 --fields 2 --vary surfaces[4].thickness_mm=0.4:0.1:0.6 "
       "-o sweep");
 }
 

@@ -42,7 +42,7 @@ class Program(ProgramTest):
         self.assert_refused(*image, "--tolerance", "abc", words=["--tolerance abc: a number would be right"])
         self.assert_refused(*image, "--nodes", "1.5", words=["--nodes 1.5: a whole number would be right"])
         self.assert_refused(*image, "--tolerance", "", words=["--tolerance", "empty", "a number would be right"])
-        self.assert_refused(*image, "--f-number", "", words=["--f-number", "empty", "a number would be right"])
+        self.assert_refused(*image, "--f-number", "", words=["--f-number", "empty", "a number above 0 would be right"])
         self.assert_refused(*image, "--nodes", "", words=["--nodes", "empty", "a whole number would be right"])
 
     def test_help_is_a_command_too(self):

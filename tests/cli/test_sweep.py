@@ -202,7 +202,7 @@ class Sweep(ProgramTest):
         self.assert_nothing_made(*IMAGE[1:], "--vary", "surfaces[4].thickness_mm=0.6:0.1:0.4", words=["0.6:-0.1:0.4"])
 
     def test_command_lines_are_checked_before_the_first_point(self):
-        for vary, words in [("f-number=abc", ["--vary f-number=abc: ", "a number would be right"]),
+        for vary, words in [("f-number=abc", ["--vary f-number=abc: ", "abc is not a number above 0"]),
                             ("method=none,foo", ["--vary method=foo: ", "product"]),
                             ("foo=1,2", ["--vary foo=1: ", "no option --foo"]),
                             ("surfaces[99].thickness_mm=1,2", ["--vary surfaces[99].thickness_mm=1: "]),
