@@ -176,7 +176,7 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   command->allow_extras();
   command
       ->add_option("--vary", options->vary,
-                   "KEY=FROM:TO:STEP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
+                   "KEY=START:STEP:STOP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
                    "a parameter of the lens (surfaces[4].thickness_mm) or of the sensor (sensor.pitch_um); "
                    "repeatable: all combinations")
       ->required()
