@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "command.h"
 #include "output_option.h"
 
 namespace petzval::app {
