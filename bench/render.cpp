@@ -12,6 +12,7 @@
 #include <petzval/base/scratch_folder.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/scaled_lens.h>
@@ -49,8 +50,9 @@ Lens lens_of_50_mm(const char* name) {
 
 SceneCamera camera_of(Prepared& scene, const char* lens, LensCameraOptions::Sampling sampling) {
   CameraChoice choice;
-  choice.lens = lens_of_50_mm(lens);
-  choice.focus_distance_m = 1.2;
+  MountedLens mounted(lens_of_50_mm(lens));
+  mounted.focus_at_m(1.2);
+  choice.lens = mounted.lens();
   choice.columns = 400, choice.rows = 300;
   choice.options.sampling = sampling;
   return set_up_camera(scene.description, choice, scene.unsupported);

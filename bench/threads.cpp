@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/parallel.h>
+#include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/scene_camera.h>
 #include <petzval/render/renderer.h>
@@ -121,8 +122,11 @@ void rendering(benchmark::State& state, const char* lens) {
   for (int each = 400; each <= 700; each += 10) nm.push_back(each);
   const auto world = build_world(description, WavelengthGroups(nm), {}, unsupported);
   CameraChoice choice;
-  if (lens) choice.lens = read_lens(lens).lens;
-  if (lens) choice.focus_distance_m = 1.2;
+  if (lens) {
+    MountedLens mounted(read_lens(lens).lens);
+    mounted.focus_at_m(1.2);
+    choice.lens = mounted.lens();
+  }
   choice.columns = 160, choice.rows = 120;
   const SceneCamera set_up = set_up_camera(description, choice, unsupported);
   const auto camera = set_up.make(world->groups);

@@ -3,7 +3,7 @@
 """Writes vases.gltf: three vases of clay, brass and glass on a board, lit by a window.
 
 python3 examples/gltf_vases.py vases.gltf
-petzval render vases.gltf --lens dgauss-50mm --focus-distance 0.9 --size 240x180 -o vases.png
+petzval render vases.gltf --lens dgauss-50mm --focus 0.9m --size 240x180 -o vases.png
 """
 
 import array

@@ -12,8 +12,13 @@ namespace petzval::app {
 namespace {
 
 /// Parameters whose options are not called after them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> other_names{
-    {{"least_scene_angle_deg", "--scene-angle-least"},
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> other_names{
+    {{"autofocus.from_mm", "--focus-from"},
+     {"autofocus.to_mm", "--focus-to"},
+     {"least_scene_angle_deg", "--scene-angle-least"},
+     {"losses", "--fresnel, --coating or --absorption"},
+     {"samples_per_pixel", "--spp"},
+     {"zones", "--zone"},
      {"scene.background_k", "--scene-background"},
      {"scene.file_bands_nm", "--scene-bands"},
      {"scene.horizontal_angle_deg", "--scene-angle"},

@@ -125,7 +125,7 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
       "infinity, the distance from the film of what is to be sharp (1.2m, 250mm), best-spot or "
       "best-mtf@CYCLES_PER_MM; default: as the scene's file says");
   command
-      .add_option("--film-distance", options.choice.camera.image_distance_mm,
+      .add_option("--film-distance,--image-distance", options.choice.camera.image_distance_mm,
                   "From the last surface to the film [mm]")
       ->check(positive_number());
   command

@@ -49,6 +49,10 @@ void RenderOutputs::add_to(CLI::App& command) {
       ->check(output_file())
       ->allow_extra_args(false);
   shot.add_to(command);
+  command
+      .add_option("--illuminant", shot.sense.illuminant,
+                  "Light of the scene, for white balance; default: grey on average")
+      ->group("Exposure of the sensor");
 }
 
 OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const CLI::App& command) const {

@@ -52,7 +52,7 @@ class DepthAgainstRendering(petzval_cli.ProgramTest):
         self.write("pinhole.pbrt", world(pupil_m, checkered))
         self.assert_succeeds("render", "pinhole.pbrt", "--pinhole", "--size", f"{12 * COLUMNS}x{12 * ROWS}", "--spp", 4,
                              "--wavelengths", 550, "-o", "seen.exr", "--depth", "depth.npy")
-        self.assert_succeeds("render", "film.pbrt", "--lens", "dgauss-50mm", "--focus-distance", focus_m, "--film-diagonal",
+        self.assert_succeeds("render", "film.pbrt", "--lens", "dgauss-50mm", "--focus", f"{focus_m}m", "--film-diagonal",
                              math.hypot(COLUMNS, ROWS) * 0.15, "--size", f"{COLUMNS}x{ROWS}", "--spp", 1024,
                              "--wavelengths", 550, "-o", "rendered.npy")
         angle = 2 * math.degrees(math.atan(COLUMNS / ROWS * math.tan(math.radians(5))))

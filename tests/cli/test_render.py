@@ -65,9 +65,12 @@ class Render(ProgramTest):
                 (["--spp", "0"], "--spp"), (["--size", "0x4"], "--size"), (["--size", "big"], "--size"),
                 (["--film-distance", "-1"], "film"), (["--pinhole", "--lens", "dgauss-50mm"], "--pinhole"),
                 (["--film-distance", "30"], "--lens"), (["--lens", "no-such-lens"], "no-such-lens"),
-                ([*LENS, "--aperture-diameter", "0"], "stop"), ([*LENS, "--focus-distance", "1"], "either"),
-                ([*LENS, "--aperture-diameter", "3", "--f-number", "4"], "either"),
-                (["--lens", "dgauss-50mm", "--focus-distance", "0.01"], "focus"), ([*LENS, "--scene-unit", "0"], "--scene-unit")]:
+                ([*LENS, "--aperture-diameter", "0"], "stop"), ([*LENS, "--focus", "1m"], "--focus"),
+                ([*LENS, "--aperture-diameter", "3", "--f-number", "4"], "--f-number"),
+                ([*LENS, "--zone", "0.1,0.9,0.1,0.9"], "--film-distance"), (["--lens", "dgauss-50mm", "--focus", "1m", "--focus-distance", "1"], "--focus-distance"),
+                (["--lens", "dgauss-50mm", "--focus", "1m", "--zone", "0.1,0.9,0.1,0.9"], "--focus 1m"), (["--focus", "auto"], "--lens"),
+                (["--lens", "dgauss-50mm", "--focus", "1.2"], "1.2m"), (["--pinhole", "--focus", "1m"], "--lens"),
+                (["--lens", "dgauss-50mm", "--focus", "1cm"], "focus"), ([*LENS, "--scene-unit", "0"], "--scene-unit")]:
             with self.subTest(options=options):
                 self.assert_refused("render", "s.pbrt", *options, "-o", "x.npy", words=[part])
         self.assert_refused("render", "s.pbrt", "-o", "x.jpg", words=[".exr"])
@@ -100,8 +103,8 @@ class Render(ProgramTest):
     def test_nine_of_ten_camera_rays_pass(self):
         # Films as large as what the lens images: the fisheye's circle, 78 degrees from the axis, is 27 mm wide.
         for lens, diagonal in (("dgauss-50mm", 43), ("wide-22mm", 43), ("telephoto-250mm", 43), ("fisheye-10mm", 24)):
-            said = self.assert_succeeds("render", "spheres", "--lens", lens, "--film-diagonal", diagonal, "--focus-distance",
-                                        "2", "--size", "40x30", "--spp", "16", "-o", "p.npy")
+            said = self.assert_succeeds("render", "spheres", "--lens", lens, "--film-diagonal", diagonal, "--focus",
+                                        "2m", "--size", "40x30", "--spp", "16", "-o", "p.npy")
             with self.subTest(lens=lens):
                 self.assertGreater(float(re.search(r"([\d.]+) % of \d+ camera rays pass", said)[1]), 90)
 
@@ -144,7 +147,7 @@ class Render(ProgramTest):
         self.assertLessEqual(len(said["rows"]), 12)
         self.assertTrue((self.folder / "f.svg").read_text().startswith("<"))
         # The wall stands 1.4 m from the film: the paraxial focus of that distance, within the depth of focus.
-        exact = self.json_of("render", "s.pbrt", "--lens", "dgauss-50mm", "--focus-distance", "1.4", "--spp", "4", "-o", "x.npy")
+        exact = self.json_of("render", "s.pbrt", "--lens", "dgauss-50mm", "--focus", "1.4m", "--spp", "4", "-o", "x.npy")
         self.assertAlmostEqual(said["film_distance_mm"], exact["film_distance_mm"], delta=2 * 40 / 160)
         picture = self.json_of("render", "s.pbrt", "--lens", "dgauss-50mm", "--autofocus", "z.txt", "--size", "128x96", "--spp",
                                "4", "-o", "y.npy")
@@ -199,9 +202,50 @@ class Render(ProgramTest):
     def test_goes_on_after_a_kill_to_the_same_bytes(self):
         self.killed()
         self.assert_succeeds(*self.rendering("resumed.npy"))
-        self.assertFalse((self.folder / "c.petzval").exists())
         self.assert_succeeds(*self.rendering("whole.npy", threads=1, checkpoint=None, checkpoint_seconds=None))
         self.assertEqual((self.folder / "resumed.npy").read_bytes(), (self.folder / "whole.npy").read_bytes())
+
+    def test_writes_what_there_is_when_stopped_and_goes_on_to_the_same_bytes(self):
+        picture, checkpoint = self.folder / "p.npy", self.folder / "c.petzval"
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            picture.unlink(missing_ok=True)
+            with subprocess.Popen([PROGRAM, *self.rendering("p.npy")], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, text=True) as running:
+                until, before = time.monotonic() + 60, checkpoint.stat().st_mtime_ns if checkpoint.exists() else 0
+                while running.poll() is None and time.monotonic() < until:
+                    if checkpoint.exists() and checkpoint.stat().st_mtime_ns != before:
+                        break
+                    time.sleep(0.005)
+                running.send_signal(sent)
+                said = running.stderr.read()
+            self.assertEqual(running.returncode, 130, said)
+            self.assertIn("goes on from c.petzval", said)
+            self.assertTrue(picture.exists())
+            self.assertEqual(sorted(self.contents()), ["c.petzval", "p.npy", "s.pbrt"])
+        self.assert_succeeds(*self.rendering("p.npy"))
+        self.assert_succeeds(*self.rendering("whole.npy", threads=1, checkpoint=None, checkpoint_seconds=None))
+        self.assertEqual(picture.read_bytes(), (self.folder / "whole.npy").read_bytes())
+
+    def test_adds_samples_to_a_finished_picture(self):
+        # 31 bands take four groups: 12 samples end amid a pass of 16, 32 after two of them, 40 amid the third.
+        for samples in (12, 32, 40):
+            self.assert_succeeds(*self.rendering("added.npy", spp=samples))
+            self.assert_succeeds(*self.rendering("whole.npy", spp=samples, checkpoint=None, checkpoint_seconds=None))
+            self.assertEqual((self.folder / "added.npy").read_bytes(), (self.folder / "whole.npy").read_bytes(), samples)
+        self.assert_refused(*self.rendering("x.npy", spp=16), words=["c.petzval", "32 samples", "--spp"])
+
+    def test_exposes_and_develops_as_sense_and_develop_do(self):
+        sensor = ("--sensor", "third-inch-1280x960")
+        light = ("render", "s.pbrt", *LENS, *sensor, "--size", "32x24", "--spp", "8", "--quiet")
+        self.assert_succeeds(*light, "--illuminant", "D65", "--exposure", "0.01", "-o", "a.dng", "-o", "a.png", "-o", "a.tif")
+        self.assert_succeeds(*light, "-o", "b.exr")
+        self.assert_succeeds("sense", "b.exr", *sensor, "--illuminant", "D65", "--exposure", "0.01", "--quiet", "-o", "b.dng")
+        self.assert_succeeds("develop", "b.dng", "--quiet", "-o", "b.png", "-o", "b.tif")
+        for end in ("dng", "png", "tif"):
+            self.assertEqual((self.folder / f"a.{end}").read_bytes(), (self.folder / f"b.{end}").read_bytes(), end)
+        for options, part in [(["-o", "x.tif"], "--sensor"), (["-o", "x.dng"], "--sensor"), ([*sensor, "--white", "3", "-o", "x.png"], "--white"),
+                              ([*sensor, "--exposure", "1", "-o", "x.exr"], "--exposure")]:
+            self.assert_refused("render", "s.pbrt", *LENS, "--size", "8x8", *options, words=[part])
 
     def test_refuses_the_checkpoint_of_anything_else(self):
         (self.folder / "t.pbrt").write_text('Material "diffuse" "texture reflectance" "t"\n')
@@ -213,7 +257,6 @@ class Render(ProgramTest):
         def refused(word, **changed):
             self.assert_refused(*self.rendering("x.npy", **changed), words=["c.petzval", word])
         refused("seed 3", seed=4)
-        refused("samples 256", spp=128)
         refused("lens ", f_number=4)
         refused("lens ", film_distance=38.001)
         refused("sampling exit-pupil", sampling="rear-disk")
@@ -228,12 +271,16 @@ class Render(ProgramTest):
         self.assert_succeeds(*self.rendering("x.npy"))
 
     def test_focuses_on_zones_of_the_command_line_and_draws_how(self):
+        middle = ("--lens", "dgauss-50mm", "--size", "96x72", "--json")
+        focused = self.json_of("focus", "s.pbrt", *middle)["film_distance_mm"]
+        for auto in (["--autofocus"], ["--focus", "auto"]):
+            self.assertEqual(self.json_of("render", "s.pbrt", *middle, "--spp", "4", *auto, "-o", "x.npy")["film_distance_mm"], focused)
         said = self.assert_succeeds("render", "s.pbrt", "--lens", "dgauss-50mm", "--size", "128x96", "--spp", "4", "--zone", "0.1,0.5,0.1,0.9",
                                     "--zone", "0.6,0.9,0.1,0.9", "--focus-plot", "f.svg", "-o", "x.npy")
         self.assertIn("evaluations", said)
         self.assertIn("coarse", said)
         self.assertTrue((self.folder / "f.svg").read_text().startswith("<"))
-        self.assert_refused("render", "s.pbrt", *LENS, "--spp", "4", "--zone", "0.5,0.1,0,1", "-o", "y.npy", words=["left < right"])
+        self.assert_refused("render", "s.pbrt", "--lens", "dgauss-50mm", "--spp", "4", "--zone", "0.5,0.1,0,1", "-o", "y.npy", words=["left < right"])
 
     def test_blades_and_clipping_planes(self):
         def light(*options):

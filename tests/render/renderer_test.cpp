@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures as a whole: the same bytes whoever computes them, interrupted or not; light where geometry says.
 #include <gtest/gtest.h>
+#include <petzval/base/context.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
@@ -35,9 +36,10 @@ struct SmallPicture {
   SensorGeometry film{40, 30, 150};
   LensCamera camera{read_lens("edmund-54852").lens, film, world->groups};
 
-  Rendering render(RenderOptions options = {}) const {
+  Rendering render(const RenderOptions& options = {}) const { return render_surfaces(options, 24); }
+  Rendering render_surfaces(RenderOptions options, int samples) const {
     options.first_surfaces = true;
-    return render_with(options, 24);
+    return render_with(options, samples);
   }
   Rendering render_with(RenderOptions options, int samples) const {
     options.samples_per_pixel = samples;
@@ -96,6 +98,53 @@ TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   EXPECT_THROW(small.render(options), InputError);
   std::ofstream(path) << "something else";
   EXPECT_THROW(small.render(options), InputError);
+}
+
+TEST(Renderer, SavesWhatThereIsWhenItIsStopped) {
+  const SmallPicture small;
+  const test::Scratch scratch;
+  RenderOptions options;
+  options.checkpoint = scratch.path("checkpoint");
+  std::optional<Rendering> so_far;
+  options.so_far = [&](Rendering picture) { so_far = std::move(picture); };
+  bool stop = false;
+  options.after_pass = [&](int done, int) {
+    stop = done == 2;
+    return true;
+  };
+  Context context;
+  context.progress = [&](double, const std::string&) { return !stop; };
+  EXPECT_THROW(run_within(context, [&](const ProgressCallback&) { small.render(options); }), Cancelled);
+  ASSERT_TRUE(so_far);
+  EXPECT_EQ(so_far->samples_per_pixel, 16);  // two passes of four for each of two groups
+  options = {};
+  EXPECT_EQ(values(*so_far), values(small.render_surfaces(options, 16)));
+  options.checkpoint = scratch.path("checkpoint");
+  EXPECT_EQ(values(small.render(options)), values(small.render()));
+}
+
+TEST(Renderer, LeavesNothingBehindWhenItIsStoppedAtOnce) {
+  const SmallPicture small;
+  const test::Scratch scratch;
+  RenderOptions options;
+  options.checkpoint = scratch.path("checkpoint");
+  options.so_far = [](const Rendering&) { ADD_FAILURE() << "of no pass"; };
+  Context context;
+  int questions = 0;
+  context.progress = [&](double, const std::string&) { return ++questions < 2; };
+  EXPECT_THROW(run_within(context, [&](const ProgressCallback&) { small.render(options); }), Cancelled);
+  EXPECT_TRUE(scratch.is_empty());
+}
+
+TEST(Renderer, AddsSamplesToThoseOfAFinishedPicture) {
+  const SmallPicture small;
+  const test::Scratch scratch;
+  RenderOptions options;
+  options.checkpoint = scratch.path("checkpoint");
+  // Two groups of wavelengths take four samples each in a pass: 10 end amid the second one.
+  for (const int samples : {10, 16, 30})
+    EXPECT_EQ(values(small.render_surfaces(options, samples)), values(small.render_surfaces({}, samples)));
+  EXPECT_THROW(small.render_surfaces(options, 16), InputError);
 }
 
 std::vector<double> summed_over_bands(const Rendering& rendering) {

@@ -24,7 +24,8 @@ TEST(SceneCamera, KnowsTheNamesOfTheAssignmentOf2006) {
                 "\"float hither\" 0.5 \"float yon\" 100\n"
                 "Film \"image\" \"integer xresolution\" 30 \"integer yresolution\" 40\n");
   ASSERT_TRUE(camera.lens);
-  EXPECT_EQ(camera.film_distance_mm(), 36.77);
+  EXPECT_EQ(camera.focus.film_distance_mm, 36.77);
+  EXPECT_FALSE(camera.focus.distance_m);
   EXPECT_EQ(camera.lens->aperture.kind, Aperture::Kind::stop_semi_diameter_mm);
   EXPECT_EQ(camera.lens->aperture.value, 4.25);
   EXPECT_NEAR(2 * camera.film.half_diagonal_mm(), 70, 1e-9);
@@ -36,9 +37,9 @@ TEST(SceneCamera, TheUserHasTheLastWord) {
   const std::string text = "Camera \"realistic\" \"string lensfile\" \"" + lens_path +
                            "\" \"float filmdistance\" 36.77 \"float filmdiag\" 70\n";
   CameraChoice choice;
-  choice.film_distance_mm = 40, choice.film_diagonal_mm = 43;
+  choice.film_diagonal_mm = 43, choice.aperture_diameter_mm = 3;
   const SceneCamera set = camera_of(text, choice);
-  EXPECT_EQ(set.film_distance_mm(), 40);
+  EXPECT_EQ(set.lens->aperture.value, 1.5);
   EXPECT_NEAR(2 * set.film.half_diagonal_mm(), 43, 1e-9);
   CameraChoice sensor;
   sensor.sensor = read_sensor("320x200@6");

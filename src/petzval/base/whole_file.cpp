@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/base/whole_file.h>
 #include <unistd.h>
 
@@ -95,6 +96,7 @@ std::string read_whole_file(const std::string& path, std::size_t max_bytes) {
   std::string bytes;
   char block[1 << 16];
   for (std::size_t got; (got = std::fread(block, 1, sizeof block, handle.get())) > 0;) {
+    check_stop();
     bytes.append(block, got);
     if (bytes.size() > max_bytes) throw InputError(path, fmt::format("is larger than {} bytes", max_bytes));
   }

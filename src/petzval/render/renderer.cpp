@@ -199,6 +199,12 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   Outlook ahead = outlook(film, passes, options.noise);
   auto saved = std::chrono::steady_clock::now();
   std::optional<Film> full = keeps ? std::optional(film) : std::nullopt;  // after full passes alone
+  int saved_passes = film.passes;
+  const auto save = [&] {
+    if (full->passes == saved_passes) return;
+    write_checkpoint(options.checkpoint, *full, options.fingerprint);
+    saved_passes = full->passes;
+  };
   bool go_on = true;
   while (!ahead.done && go_on) {
     try {
@@ -209,7 +215,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       });
     } catch (const Cancelled&) {
       if (full && full->passes > 0) {
-        write_checkpoint(options.checkpoint, *full, options.fingerprint);
+        save();
         if (options.so_far) options.so_far(developed(*full, world.groups, sensor, options.photosite, passes));
       }
       throw;
@@ -220,7 +226,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
     const auto now = std::chrono::steady_clock::now();
     const bool due = std::chrono::duration<double>(now - saved).count() >= options.checkpoint_seconds;
     if (keeps && (ahead.done || !go_on || due)) {
-      write_checkpoint(options.checkpoint, *full, options.fingerprint);
+      save();
       saved = now;
     }
   }

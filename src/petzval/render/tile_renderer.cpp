@@ -7,7 +7,7 @@ namespace petzval::render {
 namespace {
 
 /// Paths that are followed before anybody is asked whether to go on.
-constexpr std::size_t paths_between_questions = 16;
+constexpr std::size_t paths_between_questions = 4;
 
 /// Follows the samples of one tile.
 class TileRenderer {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/stop.h>
 #include <petzval/render/lights/light_reader.h>
 #include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
@@ -28,6 +29,7 @@ class WorldBuilder {
 
  private:
   void add(const ShapeDescription& description) {
+    check_stop();
     const std::string& type = description.entity.type;
     const Parameters& parameters = description.entity.parameters;
     Geometry geometry;
@@ -71,6 +73,7 @@ class WorldBuilder {
       return unsupported_.report(description.entity.location(), "a transparent surface that shines");
     const Entity& entity = scene_.area_lights[static_cast<std::size_t>(description.area_light)];
     double area = 0;
+    check_stop();
     for (std::size_t i = 0; i < geometry.primitives(); ++i) area += geometry.primitive_area(i);
     Lights& lights = world_.lights;
     const bool two_sided = entity.parameters.boolean("twosided", false);

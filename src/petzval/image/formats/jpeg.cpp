@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/jpeg.h>
 // libjpeg's header wants these two before it.
@@ -110,16 +111,30 @@ class JpegReader {
   }
 
   void read_rows(std::uint8_t* samples, std::size_t row_size) {
-    if (setjmp(error_.escape)) fail();
-    jpeg_start_decompress(&jpeg_);
+    start();
     while (jpeg_.output_scanline < jpeg_.output_height) {
-      JSAMPROW row = samples + jpeg_.output_scanline * row_size;
-      jpeg_read_scanlines(&jpeg_, &row, 1);
+      check_stop();
+      read_row(samples + jpeg_.output_scanline * row_size);
     }
-    jpeg_finish_decompress(&jpeg_);
+    finish();
   }
 
  private:
+  void start() {
+    if (setjmp(error_.escape)) fail();
+    jpeg_start_decompress(&jpeg_);
+  }
+
+  void read_row(JSAMPROW row) {
+    if (setjmp(error_.escape)) fail();
+    jpeg_read_scanlines(&jpeg_, &row, 1);
+  }
+
+  void finish() {
+    if (setjmp(error_.escape)) fail();
+    jpeg_finish_decompress(&jpeg_);
+  }
+
   [[noreturn]] void fail() const {
     throw InputError(path_, fmt::format("is no sound JPEG: {}", error_.message));
   }

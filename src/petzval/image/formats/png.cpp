@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/output_file.h>
 #include <petzval/image/formats/png.h>
@@ -194,15 +195,18 @@ class Reader {
   std::size_t prepare_rows() {
     if (setjmp(png_jmpbuf(png_))) fail();
     png_set_expand(png_);
-    png_set_interlace_handling(png_);
+    passes_ = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);
     return png_get_rowbytes(png_, info_);
   }
 
-  void read_rows(png_bytepp rows) {
-    if (setjmp(png_jmpbuf(png_))) fail();
-    png_read_image(png_, rows);
-    png_read_end(png_, info_);
+  void read_rows(const std::vector<png_bytep>& rows) {
+    for (int pass = 0; pass < passes_; ++pass)
+      for (const png_bytep row : rows) {
+        check_stop();
+        read_row(row);
+      }
+    read_end();
   }
 
   void take_text(std::map<std::string, std::string>& text) const {
@@ -213,6 +217,16 @@ class Reader {
   }
 
  private:
+  void read_row(png_bytep row) {
+    if (setjmp(png_jmpbuf(png_))) fail();
+    png_read_row(png_, row, nullptr);
+  }
+
+  void read_end() {
+    if (setjmp(png_jmpbuf(png_))) fail();
+    png_read_end(png_, info_);
+  }
+
   /// libpng makes room for a chunk of the length that the file states; hold that against the file first.
   void check_chunks() const {
     constexpr std::size_t signature = 8, framing = 12;  // length, name and checksum
@@ -261,6 +275,7 @@ class Reader {
   PngError error_;
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
+  int passes_ = 1;  ///< through interlaced rows
 };
 
 }  // namespace
@@ -311,7 +326,7 @@ PngImage parse_png(std::string bytes_of_file, const std::string& path) {
   std::vector<png_byte> bytes(row_bytes * static_cast<std::size_t>(image.rows));
   std::vector<png_bytep> rows(static_cast<std::size_t>(image.rows));
   for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = bytes.data() + row * row_bytes;
-  reader.read_rows(rows.data());
+  reader.read_rows(rows);
   reader.take_text(image.text);
 
   image.samples.resize(image.row_samples() * rows.size());

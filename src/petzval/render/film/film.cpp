@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/film/film.h>
 
+#include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 namespace petzval::render {
 
@@ -13,11 +17,6 @@ namespace {
 /// 16 GiB of sums.
 constexpr double most_values = 2147483648.0;
 constexpr std::string_view magic = "petzval-render-checkpoint/2\n";
-
-template <class T>
-void append(std::string& bytes, const std::vector<T>& values) {
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-}
 
 struct CheckpointHead {
   std::uint64_t fingerprint_size, rays, passed;
@@ -50,8 +49,10 @@ void require_same(std::string_view there, std::string_view here, const std::stri
   }
 }
 
-std::vector<std::vector<double>*> sums_of(Film& film) {
-  return {&film.light, &film.half, &film.met, &film.depth, &film.normal, &film.albedo};
+/// Of a film or a const one.
+template <typename AnyFilm>
+auto sums_of(AnyFilm& film) {
+  return std::array{&film.light, &film.half, &film.met, &film.depth, &film.normal, &film.albedo};
 }
 
 }  // namespace
@@ -73,17 +74,19 @@ Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces, bool noise
 }
 
 void write_checkpoint(const std::string& path, const Film& film, const std::string& fingerprint) {
-  std::string bytes(magic);
+  WholeFile file(path);
+  std::ofstream out(file.temporary_path(), std::ios::binary);
   const CheckpointHead head{fingerprint.size(), film.rays, film.passed, film.passes};
-  bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
-  bytes += fingerprint;
-  append(bytes, film.light);
-  append(bytes, film.half);
-  append(bytes, film.met);
-  append(bytes, film.depth);
-  append(bytes, film.normal);
-  append(bytes, film.albedo);
-  write_whole_file(path, bytes);
+  const auto write = [&](const void* bytes, std::size_t count) {
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+  };
+  write(magic.data(), magic.size());
+  write(&head, sizeof head);
+  write(fingerprint.data(), fingerprint.size());
+  for (const std::vector<double>* sums : sums_of(film)) write(sums->data(), sums->size() * sizeof(double));
+  out.close();
+  if (!out) throw Failure(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  file.commit();
 }
 
 bool read_checkpoint(const std::string& path, Film& film, const std::string& fingerprint) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/context.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/gltf/gltf_file.h>
 
@@ -175,6 +176,8 @@ GltfFile parse_gltf(const std::string& bytes, const std::string& path) {
                                                  files.folder.string())
                    : reader.LoadASCIIFromString(&file.model, &error, &warning, bytes.data(), size,
                                                 files.folder.string());
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::exception& thrown) {
     error = thrown.what();
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/stop.h>
 #include <petzval/colour/display.h>
 #include <petzval/image/formats/jpeg.h>
 #include <petzval/image/formats/png.h>
@@ -12,6 +13,8 @@
 namespace petzval::render {
 
 namespace {
+
+constexpr std::size_t pixels_between_questions = 1 << 16;
 
 const char* wrap_of(const GltfFile& file, int mode, const std::string& path) {
   switch (mode) {
@@ -133,9 +136,11 @@ std::string GltfTextures::add_colour(const GltfTexture& texture, const std::arra
   const std::vector<double> linear = from.linear();
   PictureFile picture{from.width, from.height, 3, {}};
   picture.values.reserve(3 * from.pixels());
-  for (std::size_t i = 0; i < from.pixels(); ++i)
+  for (std::size_t i = 0; i < from.pixels(); ++i) {
+    if (i % pixels_between_questions == 0) check_stop();
     for (std::size_t c = 0; c < 3; ++c)
       picture.values.push_back(static_cast<float>(factor[c] * linear[from.sample(i, c)]));
+  }
   return add(texture, "spectrum", std::move(picture));
 }
 
@@ -143,8 +148,10 @@ std::string GltfTextures::add_channel(const GltfTexture& texture, std::size_t ch
   const Decoded& from = decoded(texture);
   PictureFile picture{from.width, from.height, 1, {}};
   picture.values.reserve(from.pixels());
-  for (std::size_t i = 0; i < from.pixels(); ++i)
+  for (std::size_t i = 0; i < from.pixels(); ++i) {
+    if (i % pixels_between_questions == 0) check_stop();
     picture.values.push_back(static_cast<float>(factor * from.sample(i, channel) / from.white));
+  }
   return add(texture, "float", std::move(picture));
 }
 

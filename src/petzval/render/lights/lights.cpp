@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/stop.h>
 #include <petzval/base/units.h>
 #include <petzval/render/lights/lights.h>
 
@@ -29,6 +30,7 @@ double power_of(const SmallLight& light, double scene_radius) {
 void Lights::prepare(const std::vector<Geometry>& geometries, double scene_radius) {
   std::vector<double> powers;
   for (const AreaLight& light : areas) {
+    if (powers.size() % 4096 == 0) check_stop();
     const Geometry& geometry = geometries[static_cast<std::size_t>(light.geometry)];
     powers.push_back(mean_of(area_spectra[static_cast<std::size_t>(light.spectrum)]) * pi *
                      (light.two_sided ? 2 : 1) * geometry.primitive_area(light.primitive));

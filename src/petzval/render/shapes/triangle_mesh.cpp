@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/stop.h>
 #include <petzval/render/shapes/triangle_mesh.h>
 
 #include <cmath>
@@ -160,6 +161,7 @@ double TriangleMesh::area(std::size_t triangle) const {
 }
 
 void TriangleMesh::transform(const Transform& to) {
+  check_stop();
   for (std::size_t i = 0; i < positions.size(); ++i)
     positions[i] = mesh_vertex(to.point(position(static_cast<std::uint32_t>(i))));
   for (Vertex& n : normals) n = mesh_vertex(normalised(to.normal({n[0], n[1], n[2]})));
@@ -167,6 +169,7 @@ void TriangleMesh::transform(const Transform& to) {
 }
 
 void TriangleMesh::validate() const {
+  check_stop();
   const auto finite = [](const auto& list, const char* what) {
     for (std::size_t i = 0; i < list.size(); ++i)
       for (const float value : list[i])

@@ -6,6 +6,7 @@
 #include <ImfInputFile.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/stop.h>
 #include <petzval/colour/display.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/render/textures/picture_file.h>
@@ -17,6 +18,8 @@
 namespace petzval::render {
 
 namespace {
+
+constexpr std::size_t pixels_between_questions = 1 << 16;
 
 /// A gigapixel is more than any texture has.
 constexpr std::int64_t most_pixels = std::int64_t{1} << 30;
@@ -35,10 +38,12 @@ PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) 
   PictureFile picture{png.columns, png.rows, used, {}};
   const std::size_t pixels = static_cast<std::size_t>(png.columns) * static_cast<std::size_t>(png.rows);
   picture.values.reserve(pixels * static_cast<std::size_t>(used));
-  for (std::size_t i = 0; i < pixels; ++i)
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (i % pixels_between_questions == 0) check_stop();
     for (int c = 0; c < used; ++c)
       picture.values.push_back(
           linear[png.samples[i * static_cast<std::size_t>(png.channels) + static_cast<std::size_t>(c)]]);
+  }
   return picture;
 }
 
@@ -64,11 +69,15 @@ PictureFile read_exr_picture(const std::string& path) try {
     buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, picture.values.data() + c, window, pixel,
                                              pixel * static_cast<std::size_t>(width)));
   file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
+  constexpr int rows_between_questions = 64;
+  for (int y = window.min.y; y <= window.max.y; y += rows_between_questions) {
+    check_stop();
+    file.readPixels(y, std::min(y + rows_between_questions - 1, window.max.y));
+  }
   for (const float value : picture.values)
     if (!std::isfinite(value)) throw InputError(path, "holds a value that is not finite");
   return picture;
-} catch (const InputError&) {
+} catch (const Error&) {
   throw;
 } catch (const std::exception& error) {
   throw InputError(path, fmt::format("is no sound OpenEXR picture: {}", error.what()));
