@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/sensor/sensor_reader.h>
 
 namespace petzval::app {
 

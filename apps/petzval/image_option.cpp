@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-#include <petzval/sensor/sensor_reader.h>
 
 #include "output_option.h"
 

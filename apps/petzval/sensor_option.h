@@ -2,7 +2,7 @@
 // A sensor on the command line, with entries of its file altered.
 #pragma once
 
-#include <petzval/sensor/sensor_reader.h>
+#include <petzval/sensor/sensor.h>
 
 #include <string>
 #include <vector>

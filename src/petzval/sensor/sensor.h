@@ -101,5 +101,8 @@ struct Sensor {
 /// \throws InputError with file and line, saying what would be right; also for a sensor that contradicts
 /// itself.
 Sensor read_sensor(const std::string& text);
+/// The same with some entries of its file altered: "pitch_um=3", "gain_modes[0].read_noise_e=1.5".
+/// \throws InputError as that does, naming the setting.
+Sensor read_sensor(const std::string& text, const std::vector<std::string>& settings);
 
 }  // namespace petzval

@@ -15,10 +15,6 @@ namespace petzval {
 Sensor parse_sensor(const std::string& text, const std::string& file);
 Sensor parse_sensor(const JsonDocument& document);
 
-/// read_sensor(text) with some entries of its file altered: "pitch_um=3", "gain_modes[0].read_noise_e=1.5".
-/// \throws InputError as that does, naming the setting.
-Sensor read_sensor(const std::string& text, const std::vector<std::string>& settings);
-
 /// What is wrong with a frame, or nothing.
 std::string complaint_about(const SensorGeometry& geometry);
 
