@@ -20,4 +20,4 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/petzvalConfig.cmake.in
   INSTALL_DESTINATION ${PETZVAL_INSTALL_CMAKEDIR} PATH_VARS PETZVAL_INSTALL_DATADIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/petzvalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/petzvalConfig.cmake ${PROJECT_BINARY_DIR}/petzvalConfigVersion.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/PetzvalDependencies.cmake DESTINATION ${PETZVAL_INSTALL_CMAKEDIR})
+  ${CMAKE_CURRENT_LIST_DIR}/PetzvalDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/default_data.cpp.in DESTINATION ${PETZVAL_INSTALL_CMAKEDIR})

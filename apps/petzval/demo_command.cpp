@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval demo: the 2005 paper, figure by figure, in one folder.
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/lens/lens_file.h>
 
 #include <filesystem>

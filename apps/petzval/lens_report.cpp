@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens report: one page about a lens, or about several.
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/report/lens_report.h>
 #include <petzval/sensor/sensor.h>

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 #include <malloc.h>
 #include <petzval/base/context.h>
+#include <petzval/base/data_directory.h>
 #include <petzval/base/staged_files.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <new>
 
@@ -26,10 +28,19 @@ int report(const std::string& message, int code) {
   return code;
 }
 
+/// The data that is installed, or linked, beside this program.
+void find_data() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error)
+    petzval::set_default_data_directory((program.parent_path().parent_path() / "share" / "petzval").string());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace petzval;
+  find_data();
   // A limit on the size of files (ulimit -f) is a full disk like any other: an error, not a death by signal.
   std::signal(SIGXFSZ, SIG_IGN);
   app::stop_on_signals();

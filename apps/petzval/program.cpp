@@ -2,7 +2,7 @@
 #include "program.h"
 
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
+#include <petzval/base/version.h>
 
 namespace petzval::app {
 

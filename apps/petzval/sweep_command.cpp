@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval sweep: pictures and numbers over a range of parameters.
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/report/html.h>
 
@@ -175,10 +175,11 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   });
   command->allow_extras();
   command
-      ->add_option("--vary", options->vary,
-                   "KEY=START:STEP:STOP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
-                   "a parameter of the lens (surfaces[4].thickness_mm) or of the sensor (sensor.pitch_um); "
-                   "repeatable: all combinations")
+      ->add_option(
+          "--vary", options->vary,
+          "KEY=START:STEP:STOP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
+          "a parameter of the lens (surfaces[4].thickness_mm) or of the sensor (sensor.pitch_um); "
+          "repeatable: all combinations")
       ->required()
       ->take_all()
       ->allow_extra_args(false);

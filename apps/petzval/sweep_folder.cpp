@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 #include <petzval/base/context.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/staged_files.h>
+#include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/pbrt/scene_files.h>
 

@@ -2,7 +2,7 @@
 #include "sweep_scene.h"
 
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
+#include <petzval/base/version.h>
 #include <petzval/render/pbrt/scene_files.h>
 
 #include <algorithm>

@@ -22,3 +22,4 @@
 #include <petzval/base/context.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>

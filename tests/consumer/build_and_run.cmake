@@ -10,14 +10,26 @@ file(REMOVE_RECURSE ${SCRATCH})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/first)
 file(RENAME ${SCRATCH}/first ${SCRATCH}/moved)
 
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -D CMAKE_PREFIX_PATH=${SCRATCH}/moved
+# The archive must know nothing of the tree that it was built in.
+file(STRINGS ${SCRATCH}/moved/lib/libpetzval.a paths REGEX "${TREE}/data")
+if(paths)
+  message(FATAL_ERROR "the installed library holds paths of the source tree: ${paths}")
+endif()
+
+unset(ENV{PETZVAL_DATA})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -D EXAMPLES=${TREE}/examples -D CMAKE_PREFIX_PATH=${SCRATCH}/moved
     -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" -D CMAKE_BUILD_TYPE=${CONFIGURATION})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/consumer)
+run(${CMAKE_COMMAND} -E chdir ${SCRATCH} ${SCRATCH}/build/altered_lens)
+foreach(gap 6.008 6.200 6.400)
+  if(NOT EXISTS ${SCRATCH}/gap-${gap}.png)
+    message(FATAL_ERROR "altered_lens wrote no gap-${gap}.png")
+  endif()
+endforeach()
 
 if(EXISTS ${SCRATCH}/moved/bin/petzval)
   # A lens that is nowhere but in the moved tree: found there or not at all.
-  unset(ENV{PETZVAL_DATA})
   set(lenses ${SCRATCH}/moved/share/petzval/lenses)
   file(COPY_FILE ${lenses}/edmund-54852.json ${lenses}/only-installed.json)
   run(${SCRATCH}/moved/bin/petzval lens info only-installed)

@@ -3,11 +3,14 @@
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <mutex>
 #include <numeric>
 
 namespace petzval {
@@ -32,6 +35,25 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// What was said of the folder by whoever may say it.
+struct DataFolders {
+  std::string set, usual;
+};
+
+/// Read and altered by one thread at a time.
+DataFolders data_folders(const std::function<void(DataFolders&)>& alter = {}) {
+  static std::mutex mutex;
+  static DataFolders folders;
+  const std::lock_guard lock(mutex);
+  if (alter) alter(folders);
+  return folders;
+}
+
+bool holds_data(const std::string& path) {
+  std::error_code error;
+  return !path.empty() && fs::is_directory(fs::path(path) / "glass", error);
+}
+
 }  // namespace
 
 const char* version() {
@@ -39,21 +61,27 @@ const char* version() {
 }
 
 std::string data_directory() {
+  const DataFolders folders = data_folders();
+  if (!folders.set.empty()) return folders.set;
   if (const char* given = std::getenv("PETZVAL_DATA"); given && *given) {
     if (!fs::is_directory(given)) throw InputError(given, "PETZVAL_DATA names no folder");
     return given;
   }
-  std::vector<std::string> candidates;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) candidates.push_back((program.parent_path().parent_path() / "share" / "petzval").string());
-  candidates.insert(candidates.end(), {PETZVAL_INSTALLED_DATA, PETZVAL_SOURCE_DATA});
-  for (const std::string& candidate : candidates)
-    if (fs::is_directory(fs::path(candidate) / "glass", error)) return candidate;
+  if (holds_data(folders.usual)) return folders.usual;
   throw InputError(
-      fmt::format("the bundled data is missing; set PETZVAL_DATA to the folder that has glass/ "
-                  "(looked in {})",
-                  fmt::join(candidates, ", ")));
+      fmt::format("the bundled data is missing{}; the variable PETZVAL_DATA set to the folder that has "
+                  "glass/ would be right",
+                  folders.usual.empty() ? "" : fmt::format(" (looked in {})", folders.usual)));
+}
+
+void set_data_directory(const std::string& path) {
+  if (!holds_data(path))
+    throw InputError(path, "has no folder glass/; the folder of the bundled data has one");
+  data_folders([&](DataFolders& folders) { folders.set = path; });
+}
+
+void set_default_data_directory(const std::string& path) {
+  data_folders([&](DataFolders& folders) { folders.usual = path; });
 }
 
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension) {

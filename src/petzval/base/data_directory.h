@@ -7,13 +7,17 @@
 
 namespace petzval {
 
-/// Version of the library, "major.minor.patch".
-const char* version();
-
-/// The folder with glass/, lenses/, spectra/, sensors/, scenes/: $PETZVAL_DATA if set, else share/petzval
-/// beside the running program, else where the library was installed to, else the source tree that it was
-/// built from. \throws InputError if none of them exists.
+/// The folder with glass/, lenses/, spectra/, sensors/, scenes/: the one that was set, else $PETZVAL_DATA,
+/// else the default. \throws InputError if there is none.
 std::string data_directory();
+
+/// Sets it for this process, before anything bundled is read: what has been read is kept. \throws InputError
+/// for a folder without glass/.
+void set_data_directory(const std::string& path);
+
+/// Sets the one that counts where nobody says otherwise. A program that links the installed package has it
+/// set to the package's own data. Not checked here.
+void set_default_data_directory(const std::string& path);
 
 /// A file given by the user: a path that exists is taken as it is; a bare name (no '/') means
 /// `<data>/<kind>/<name><extension>`. \param what  for the message: "lens", "sensor".

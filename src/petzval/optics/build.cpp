@@ -5,10 +5,10 @@
 #include <petzval/analysis/point_spread.h>
 #include <petzval/analysis/pupil_fit.h>
 #include <petzval/analysis/round_stop.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/base/version.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/version.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/isp/display_picture.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/version.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/expose.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/image.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
-#include <petzval/base/data_directory.h>
+#include <petzval/base/version.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/prepared_world.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <petzval/base/data_directory.h>
+#include <petzval/base/version.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/pbrt/scene_files.h>
 #include <petzval/simulate/prepared_world.h>
