@@ -23,7 +23,7 @@ int main() try {
   context.note = [](const std::string& note) { std::fprintf(stderr, "note: %s\n", note.c_str()); };
   context.progress = [](double, const std::string&) { return stop == 0; };
 
-  const Material air, crown = glass_material("SCHOTT:SK16"), flint = glass_material("SCHOTT:F2");
+  const Material air, crown = glass_material("HIKARI:SK16"), flint = glass_material("SCHOTT:F2");
   Camera camera;
   camera.lens.name = "triplet";
   camera.lens.aperture = {Aperture::Kind::f_number, 5};

@@ -9,6 +9,14 @@ add_test(NAME architecture.source_rules COMMAND Python3::Interpreter ${here}/sou
 add_test(NAME architecture.symmetry_list
   COMMAND Python3::Interpreter ${here}/symmetry_list.py
     ${PROJECT_SOURCE_DIR}/docs/TRACING.md ${PROJECT_SOURCE_DIR}/src/petzval)
+add_test(NAME architecture.photon_path
+  COMMAND Python3::Interpreter ${here}/photon_path.py
+    ${PROJECT_SOURCE_DIR}/docs/ARCHITECTURE.md ${PROJECT_SOURCE_DIR}/src/petzval)
+if(TARGET petzval_program)
+  add_test(NAME architecture.parameter_names
+    COMMAND Python3::Interpreter ${here}/parameter_names.py $<TARGET_FILE:petzval_program>
+      ${PROJECT_SOURCE_DIR}/src/petzval ${PROJECT_SOURCE_DIR}/apps/petzval/option_names.cpp)
+endif()
 foreach(checker include_directions source_rules)
   add_test(NAME architecture.${checker}_finds_faults COMMAND Python3::Interpreter ${here}/test_${checker}.py)
   set_tests_properties(architecture.${checker} architecture.${checker}_finds_faults PROPERTIES
