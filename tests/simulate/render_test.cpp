@@ -58,7 +58,8 @@ TEST(RenderScene, SaysWhereItsLightComesFrom) {
   context.seed = 7;
   const Rendering picture = render_scene(scenes.request(), context);
   EXPECT_EQ(picture.irradiance.columns(), 32);
-  EXPECT_EQ(picture.irradiance.lens.name, read_lens("dgauss-50mm").lens.name);
+  ASSERT_TRUE(picture.irradiance.lens);
+  EXPECT_EQ(picture.irradiance.lens->name, read_lens("dgauss-50mm").lens.name);
   const std::string& said = picture.irradiance.provenance;
   EXPECT_NE(said.find("scene.pbrt through Double Gauss"), std::string::npos) << said;
   EXPECT_NE(said.find("8 samples a pixel, seed 7"), std::string::npos) << said;
