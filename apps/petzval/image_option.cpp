@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-
 #include "output_option.h"
 
 namespace petzval::app {

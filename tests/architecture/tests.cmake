@@ -17,6 +17,14 @@ if(TARGET petzval_program)
     COMMAND Python3::Interpreter ${here}/parameter_names.py $<TARGET_FILE:petzval_program>
       ${PROJECT_SOURCE_DIR}/src/petzval ${PROJECT_SOURCE_DIR}/apps/petzval/option_names.cpp)
 endif()
+find_program(CLANG_FORMAT NAMES clang-format-14 clang-format)
+if(CLANG_FORMAT)
+  file(GLOB_RECURSE formatted CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/*.h ${PROJECT_SOURCE_DIR}/src/*.cpp
+    ${PROJECT_SOURCE_DIR}/apps/*.h ${PROJECT_SOURCE_DIR}/apps/*.cpp ${PROJECT_SOURCE_DIR}/tests/*.h
+    ${PROJECT_SOURCE_DIR}/tests/*.cpp ${PROJECT_SOURCE_DIR}/bench/*.h ${PROJECT_SOURCE_DIR}/bench/*.cpp
+    ${PROJECT_SOURCE_DIR}/fuzz/*.h ${PROJECT_SOURCE_DIR}/fuzz/*.cpp ${PROJECT_SOURCE_DIR}/examples/*.cpp)
+  add_test(NAME architecture.format COMMAND ${CLANG_FORMAT} --dry-run -Werror ${formatted})
+endif()
 foreach(checker include_directions source_rules)
   add_test(NAME architecture.${checker}_finds_faults COMMAND Python3::Interpreter ${here}/test_${checker}.py)
   set_tests_properties(architecture.${checker} architecture.${checker}_finds_faults PROPERTIES

@@ -136,8 +136,7 @@ TEST(Outputs, LeaveNothingBehindWhenTheyAreStopped) {
   const Sensor sensor = colour_sensor();
   Context context;
   context.progress = [](double, const std::string&) { return false; };
-  EXPECT_THROW(write_outputs(daylight(sensor), {folder.path("a.dng")}, sensor, {}, context),
-               Cancelled);
+  EXPECT_THROW(write_outputs(daylight(sensor), {folder.path("a.dng")}, sensor, {}, context), Cancelled);
   EXPECT_TRUE(folder.is_empty());
 }
 

@@ -14,7 +14,7 @@ namespace petzval {
 
 /// What the user may say about a scene; what is left open comes from the file or is the chart's own default.
 struct SceneOptions {
-  std::optional<int> columns = {}, rows = {};    ///< charts only (768 × 576); a file has its size
+  std::optional<int> columns = {}, rows = {};  ///< charts only (768 × 576); a file has its size
   std::vector<double> wavelengths_nm = {};  ///< empty: the file's bands; default_bands_nm() where it has none
   std::optional<double> horizontal_angle_deg = {};  ///< replaces the file's; 40 for charts and photographs
   std::optional<double> distance_m = {};  ///< replaces the file's; they stand at infinity. inf: at infinity

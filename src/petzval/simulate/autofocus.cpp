@@ -163,7 +163,8 @@ AutofocusOptions::Search autofocus_search_of(std::string_view name) {
   if (name == "brent") return AutofocusOptions::Search::brent;
   if (name == "golden-2006") return AutofocusOptions::Search::golden_2006;
   if (name == "scan") return AutofocusOptions::Search::scan;
-  throw InputError(fmt::format("`focus_search` {}: brent, golden-2006 or scan would be right", quotable(name)));
+  throw InputError(
+      fmt::format("`focus_search` {}: brent, golden-2006 or scan would be right", quotable(name)));
 }
 
 const FocusRun& autofocus(PreparedScene& scene, const Context& context) {
