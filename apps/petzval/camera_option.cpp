@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 
+#include "sensor_option.h"
+
 namespace petzval::app {
 
 void CameraChoice::add_lens(CLI::App& command, bool positional, bool required) {
@@ -61,11 +63,7 @@ void CameraChoice::add_apertures(CLI::App& command) {
 
 void CameraChoice::add_sensor(CLI::App& command, const std::string& meaning) {
   command.add_option("--sensor", sensor, meaning);
-  command
-      .add_option("--sensor-set", sensor_settings,
-                  "Alter the sensor: pitch_um=3 or gain_modes[0].read_noise_e=1.5 (repeatable)")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_sensor_settings(command, sensor_settings);
 }
 
 std::vector<std::string> CameraChoice::given_lens_options() const {

@@ -11,7 +11,7 @@
 
 namespace petzval::app {
 
-/// Adds --sensor-set; read_sensor(sensor, settings) of sensor_reader.h takes them.
+/// Adds --sensor-set; read_sensor(sensor, settings) takes them.
 inline void add_sensor_settings(CLI::App& command, std::vector<std::string>& settings) {
   command
       .add_option("--sensor-set", settings,
