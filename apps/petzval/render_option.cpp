@@ -141,7 +141,7 @@ RenderRequest RenderChoice::read(const Shared& shared) const {
     result.camera.losses = camera.losses.read();
   }
   if (!size.empty()) {
-    const PixelSize pixels = parse_pixel_size(size, "size");
+    const GridSize pixels = parse_grid_size(size, "size");
     result.columns = pixels.columns, result.rows = pixels.rows;
   }
   if (!wavelengths.empty()) result.wavelengths_nm = parse_wavelengths_nm(wavelengths);

@@ -98,7 +98,7 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!luminance.empty())
     options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");
   if (!size.empty()) {
-    const PixelSize samples = parse_pixel_size(size, "scene.size");
+    const GridSize samples = parse_grid_size(size, "scene.size");
     options.columns = samples.columns, options.rows = samples.rows;
   }
   if (!wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(wavelengths);

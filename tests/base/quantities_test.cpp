@@ -69,11 +69,10 @@ TEST(NumberList, RefusesTheOtherOrderWithTheRightOne) {
 }
 
 TEST(PixelSizes, AreColumnsTimesRows) {
-  EXPECT_EQ(parse_pixel_size("768x576", "size").columns, 768);
-  EXPECT_EQ(parse_pixel_size("768x576", "size").rows, 576);
+  EXPECT_EQ(parse_grid_size("768x576", "size").columns, 768);
+  EXPECT_EQ(parse_grid_size("768x576", "size").rows, 576);
   for (const char* wrong : {"", "768", "768x", "x576", "0x5", "-1x5", "1.5x2", "7x7x7"})
-    EXPECT_NE(complaint([&] { parse_pixel_size(wrong, "size"); }).find("768x576"), std::string::npos)
-        << wrong;
+    EXPECT_NE(complaint([&] { parse_grid_size(wrong, "size"); }).find("768x576"), std::string::npos) << wrong;
 }
 
 }  // namespace

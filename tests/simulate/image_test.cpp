@@ -19,13 +19,13 @@ Camera small_camera() {
   return camera;
 }
 
-SceneRequest wall() {
+SceneRequest wall_request() {
   return {.name = "wall", .options = {.wavelengths_nm = {500, 550, 600}}};
 }
 
 // On the axis E = π L sin²U' for a lens without aberrations; here U' is that of the working f-number to 1 %.
 TEST(Image, OfAWallHasTheIrradianceOfTheCone) {
-  const ImagePlan plan = plan_image(wall(), small_camera());
+  const ImagePlan plan = plan_image(wall_request(), small_camera());
   const SpectralImage light = image(plan);
   for (int band = 0; band < light.bands(); ++band) {
     const double radiance = plan.scene.mean_radiance()[static_cast<std::size_t>(band)];
@@ -39,7 +39,7 @@ TEST(Image, SaysWhatItWasMadeOf) {
   std::vector<std::string> notes;
   Context context;
   context.note = [&](const std::string& text) { notes.push_back(text); };
-  const SpectralImage light = image(wall(), small_camera(), {}, context, &report);
+  const SpectralImage light = image(wall_request(), small_camera(), {}, context, &report);
   EXPECT_NE(light.provenance.find("wall"), std::string::npos) << light.provenance;
   EXPECT_NE(light.provenance.find(report.method), std::string::npos);
   ASSERT_TRUE(light.lens);
@@ -52,7 +52,7 @@ TEST(Image, SaysWhatItWasMadeOf) {
 
 TEST(Image, OfASceneInMemoryIsThatOfTheSceneRead) {
   const Camera camera = small_camera();
-  SceneRequest request = wall();
+  SceneRequest request = wall_request();
   request.options.horizontal_angle_deg = 30;
   const SpectralImage read = image(request, camera);
   const SpectralImage kept = image(read_scene(request.name, request.options), camera);
@@ -61,16 +61,16 @@ TEST(Image, OfASceneInMemoryIsThatOfTheSceneRead) {
 
 TEST(Image, ThroughAStoredTableIsThatThroughItsLens) {
   const Camera camera = small_camera();
-  const ImagePlan plan = plan_image(wall(), camera);
+  const ImagePlan plan = plan_image(wall_request(), camera);
   const SpectralImage direct = image(plan);
-  SceneRequest same = wall();
+  SceneRequest same = wall_request();
   same.options.horizontal_angle_deg = plan.scene.horizontal_angle_deg();
   const SpectralImage stored = image(same, TableCamera{plan.table, camera.sensor});
   EXPECT_TRUE(std::ranges::equal(direct.values(), stored.values()));
 }
 
 TEST(Image, HandsOverTheBandsThatItWouldKeep) {
-  const ImagePlan plan = plan_image(wall(), small_camera());
+  const ImagePlan plan = plan_image(wall_request(), small_camera());
   const SpectralImage light = image(plan);
   std::vector<float> bands;
   image_bands(
@@ -81,7 +81,7 @@ TEST(Image, HandsOverTheBandsThatItWouldKeep) {
 TEST(Image, LossesOfTheCameraTakeLight) {
   Camera coated = small_camera();
   coated.losses.fresnel = true;
-  const SpectralImage clear = image(wall(), small_camera()), lossy = image(wall(), coated);
+  const SpectralImage clear = image(wall_request(), small_camera()), lossy = image(wall_request(), coated);
   // Twelve air-glass surfaces or so of 4 to 6 % each.
   EXPECT_LT(lossy.at(1, 18, 24), 0.75 * clear.at(1, 18, 24));
   EXPECT_GT(lossy.at(1, 18, 24), 0.3 * clear.at(1, 18, 24));
@@ -90,7 +90,7 @@ TEST(Image, LossesOfTheCameraTakeLight) {
 TEST(Image, IsTheSameOnAnyNumberOfThreads) {
   Context one, two;
   one.threads = 1, two.threads = 2;
-  SceneRequest chart = wall();
+  SceneRequest chart = wall_request();
   chart.name = "studio";
   const SpectralImage a = image(chart, small_camera(), {}, one), b = image(chart, small_camera(), {}, two);
   EXPECT_TRUE(std::ranges::equal(a.values(), b.values()));
@@ -99,7 +99,7 @@ TEST(Image, IsTheSameOnAnyNumberOfThreads) {
 TEST(Image, CanBeStopped) {
   Camera camera = small_camera();
   camera.sensor = read_sensor("640x480@15");
-  SceneRequest chart = wall();
+  SceneRequest chart = wall_request();
   chart.name = "studio";
   // Whenever it is asked: in the table, in the fitting, in the blur.
   for (const int answers : {0, 3, 20}) {
@@ -113,19 +113,19 @@ TEST(Image, CanBeStopped) {
 TEST(Image, RefusesWhatDoesNotFit) {
   ImageOptions layered;
   layered.depth.layers = 3;
-  EXPECT_THROW(image(wall(), small_camera(), layered), InputError);
+  EXPECT_THROW(image(wall_request(), small_camera(), layered), InputError);
   ImageOptions widened;
   widened.least_scene_angle_deg = 20;
-  SceneRequest fixed = wall();
+  SceneRequest fixed = wall_request();
   fixed.options.horizontal_angle_deg = 30;
   EXPECT_THROW(image(fixed, small_camera(), widened), InputError);
 }
 
 TEST(FillingAngle, IsNearlyThatOfTheImage) {
   const Camera camera = small_camera();
-  const double angle = filling_angle_deg(wall(), camera, {}).value();
-  EXPECT_NEAR(angle / plan_image(wall(), camera).scene.horizontal_angle_deg(), 1, 0.01);
-  SceneRequest fixed = wall();
+  const double angle = filling_angle_deg(wall_request(), camera, {}).value();
+  EXPECT_NEAR(angle / plan_image(wall_request(), camera).scene.horizontal_angle_deg(), 1, 0.01);
+  SceneRequest fixed = wall_request();
   fixed.options.horizontal_angle_deg = 30;
   EXPECT_FALSE(filling_angle_deg(fixed, camera, {}));
 }

@@ -102,7 +102,7 @@ std::vector<double> parse_number_list(std::string_view text, std::string_view pa
   return numbers;
 }
 
-PixelSize parse_pixel_size(std::string_view text, std::string_view parameter) {
+GridSize parse_grid_size(std::string_view text, std::string_view parameter) {
   const std::vector<std::string_view> sides = split(text, 'x');
   const auto columns = sides.size() == 2 ? parse_integer(sides[0]) : std::nullopt;
   const auto rows = sides.size() == 2 ? parse_integer(sides[1]) : std::nullopt;

@@ -25,11 +25,11 @@ std::string distance_text(double distance_m);
 std::vector<double> parse_number_list(std::string_view text, std::string_view parameter);
 
 /// Columns and rows of pixels or samples.
-struct PixelSize {
+struct GridSize {
   int columns = 0, rows = 0;
 };
 
 /// "768x576". \param parameter  for messages. \throws InputError.
-PixelSize parse_pixel_size(std::string_view text, std::string_view parameter);
+GridSize parse_grid_size(std::string_view text, std::string_view parameter);
 
 }  // namespace petzval
