@@ -87,7 +87,7 @@ TEST(Analysis, AgreesWithMarechalWhereTheWaveIsNearlyPerfect) {
   const double rms = column(rows, "rms_waves")[0];
   EXPECT_LT(rms, 0.1);
   EXPECT_GT(rms, 0.001);
-  EXPECT_NEAR(column(rows, "strehl")[0], std::exp(-std::pow(2 * M_PI * rms, 2)), 0.02);
+  EXPECT_NEAR(column(rows, "strehl")[0], std::exp(-std::pow(2 * M_PI * rms, 2)), 1e-4);
 }
 
 TEST(Analysis, TakesTheLensesOwnFieldsAndWavelengths) {
