@@ -17,6 +17,34 @@ TEST(Csv, HasUnitsAndEveryDigit) {
   EXPECT_EQ(std::stod("0.3333333333333333"), third);
 }
 
+TEST(Csv, LeavesOutWhatIsForPrograms) {
+  const Table table{{{"a"}, {"", "", 0, "lit"}, {"b"}}, {{1.0, true, false}}};
+  EXPECT_EQ(to_csv(table), "a,b\n1,no\n");
+}
+
+TEST(Text, HasHeadingsAndNumbersToTheRight) {
+  const Table table{{{"field", "deg", 1}, {"", "", 0, "lit"}, {"W", "µm", 2}},
+                    {{0.0, true, -0.001}, {14.0, false, std::nan("")}}};
+  EXPECT_EQ(to_text(table),
+            "  field [deg]  W [µm]\n"
+            "          0.0    0.00\n"
+            "         14.0       -\n");
+}
+
+TEST(Text, FollowsTheColumnsOwnWishes) {
+  Table table{{{"field", "deg", 1, "field", {"", "g", 12}},
+               {"hue", "", 1, "hue", {.gap = "all"}},
+               {"RMS radius", "µm", 1, "rms", {"RMS [um]", ".3f", 9}},
+               {"x", "", 1, "x", {.hidden = true}},
+               {"y"}},
+              {{0.5, std::nan(""), -1.5, 2.0, 3.0}, {7.0, 1.0, 1.0, 1.0, 1.0}}};
+  table.remarks[1] = "dark";
+  EXPECT_EQ(to_text(table),
+            " field [deg]  hue RMS [um]      y\n"
+            "         0.5  all   -1.500  3.000\n"
+            "           7  1.0     dark\n");
+}
+
 TEST(Csv, RefusesRaggedTables) {
   const Table table{{{"a", ""}, {"b", ""}}, {{1.0, 2.0}, {1.0}}};
   EXPECT_THROW(to_csv(table), InputError);

@@ -28,10 +28,19 @@ TableColumn field_column(Fields::Kind kind) {
 
 const TableColumn wavelength_column{"wavelength", "nm", 2, "wavelength_nm"};
 const TableColumn height_column{"image height", "mm", 5, "real_image_height_mm"};
+const TableColumn set_height_column{"image height", "mm", 5, "real_image_height_mm", {"", ".6f", 19}};
+
+/// Whether a terminal has a table in columns of set widths, with the field as short as it can be written.
+enum class Layout { fitted, set };
 
 template <class Row>
-Table make(Fields::Kind kind, const std::vector<Row>& rows, const std::vector<Column<Row>>& columns) {
+Table make(Fields::Kind kind, const std::vector<Row>& rows, const std::vector<Column<Row>>& columns,
+           Layout layout = Layout::fitted) {
   Table table{{field_column(kind), wavelength_column}, {}};
+  if (layout == Layout::set) {
+    table.columns[0].text = {"", "g", 28};
+    table.columns[1].text = {"", "g", 16, "all"};
+  }
   for (const Column<Row>& each : columns) table.columns.push_back(each.column);
   for (const Row& row : rows) {
     std::vector<TableCell> cells{row.field, row.wavelength_nm > 0 ? row.wavelength_nm : gap};
@@ -49,71 +58,113 @@ std::string surface_text(int surface) {
 
 Table tabulate(Fields::Kind kind, const std::vector<SpotRow>& rows) {
   using Row = SpotRow;
-  return make<Row>(
-      kind, rows,
-      {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
-       {{"centroid", "µm", 3, "centroid_um"}, [](const Row& row) { return row.centroid_um; }},
-       {{"RMS radius", "µm", 3, "rms_radius_um"}, [](const Row& row) { return row.rms_radius_um; }},
-       {{"RMS x", "µm", 3, "rms_x_um"}, [](const Row& row) { return row.rms_x_um; }},
-       {{"RMS y", "µm", 3, "rms_y_um"}, [](const Row& row) { return row.rms_y_um; }},
-       {{"100 % radius", "µm", 3, "max_radius_um"}, [](const Row& row) { return row.max_radius_um; }},
-       {{"Airy radius", "µm", 3, "airy_radius_um"}, [](const Row& row) { return row.airy_radius_um; }}});
+  return make<Row>(kind, rows,
+                   {{set_height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"centroid", "µm", 3, "centroid_um", {"centroid [um]", ".4f", 15}},
+                     [](const Row& row) { return row.centroid_um; }},
+                    {{"RMS radius", "µm", 3, "rms_radius_um", {"RMS [um]", ".4f", 10}},
+                     [](const Row& row) { return row.rms_radius_um; }},
+                    {{"RMS x", "µm", 3, "rms_x_um", {"RMS x [um]", ".4f", 12}},
+                     [](const Row& row) { return row.rms_x_um; }},
+                    {{"RMS y", "µm", 3, "rms_y_um", {"RMS y [um]", ".4f", 12}},
+                     [](const Row& row) { return row.rms_y_um; }},
+                    {{"100 % radius", "µm", 3, "max_radius_um", {"max [um]", ".4f", 10}},
+                     [](const Row& row) { return row.max_radius_um; }},
+                    {{"Airy radius", "µm", 3, "airy_radius_um", {"Airy [um]", ".4f", 11}},
+                     [](const Row& row) { return row.airy_radius_um; }}},
+                   Layout::set);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<WavefrontRow>& rows) {
   using Row = WavefrontRow;
-  return make<Row>(kind, rows,
-                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
-                    {{"RMS", "waves", 4, "rms_waves"}, [](const Row& row) { return row.rms_waves; }},
-                    {{"RMS without tilt", "waves", 4, "rms_without_tilt_waves"},
-                     [](const Row& row) { return row.rms_without_tilt_waves; }},
-                    {{"PV", "waves", 4, "pv_waves"}, [](const Row& row) { return row.pv_waves; }},
-                    {{"Strehl", "", 4, "strehl"}, [](const Row& row) { return row.strehl; }}});
+  return make<Row>(
+      kind, rows,
+      {{set_height_column, [](const Row& row) { return row.real_image_height_mm; }},
+       {{"RMS", "waves", 4, "rms_waves", {"", ".5f", 13}}, [](const Row& row) { return row.rms_waves; }},
+       {{"RMS without tilt", "waves", 4, "rms_without_tilt_waves", {"without tilt [waves]", ".5f", 21}},
+        [](const Row& row) { return row.rms_without_tilt_waves; }},
+       {{"PV", "waves", 4, "pv_waves", {"", ".4f", 12}}, [](const Row& row) { return row.pv_waves; }},
+       {{"Strehl", "", 4, "strehl", {"", ".5f", 10}}, [](const Row& row) { return row.strehl; }},
+       {{"", "mm", 5, "reference_sphere_radius_mm"},
+        [](const Row& row) { return row.reference_sphere_radius_mm; }}},
+      Layout::set);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows) {
   using Row = MtfRow;
-  std::vector<Column<Row>> columns = {
-      {{"frequency", "cycles/mm", 2, "frequency_cpmm"}, [](const Row& row) { return row.frequency_cpmm; }},
-      {{"tangential", "", 4, "tangential"}, [](const Row& row) { return row.tangential; }},
-      {{"sagittal", "", 4, "sagittal"}, [](const Row& row) { return row.sagittal; }}};
   const bool moved =
       std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.sensor_shift_mm != 0; });
   if (moved)
-    columns.push_back(
-        {{"sensor shift", "mm", 4, "sensor_shift_mm"}, [](const Row& row) { return row.sensor_shift_mm; }});
-  return make<Row>(kind, rows, columns);
+    return make<Row>(
+        kind, rows,
+        {{{"frequency", "cycles/mm", 2, "frequency_cpmm"}, [](const Row& row) { return row.frequency_cpmm; }},
+         {{"tangential", "", 4, "tangential"}, [](const Row& row) { return row.tangential; }},
+         {{"sagittal", "", 4, "sagittal"}, [](const Row& row) { return row.sagittal; }},
+         {{"sensor shift", "mm", 4, "sensor_shift_mm"}, [](const Row& row) { return row.sensor_shift_mm; }}});
+  return make<Row>(
+      kind, rows,
+      {{{"frequency", "cycles/mm", 2, "frequency_cpmm", {"", "g", 22}},
+        [](const Row& row) { return row.frequency_cpmm; }},
+       {{"tangential", "", 4, "tangential", {"", "", 11}}, [](const Row& row) { return row.tangential; }},
+       {{"sagittal", "", 4, "sagittal", {"", "", 9}}, [](const Row& row) { return row.sagittal; }}},
+      Layout::set);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows) {
   using Row = EncircledEnergyRow;
-  return make<Row>(
-      kind, rows,
-      {{{"radius", "µm", 3, "radius_um"}, [](const Row& row) { return row.radius_um; }},
-       {{"encircled energy", "", 5, "encircled_energy"}, [](const Row& row) { return row.encircled_energy; }},
-       {{"Airy", "", 5, "airy"}, [](const Row& row) { return row.airy; }}});
+  return make<Row>(kind, rows,
+                   {{{"radius", "µm", 3, "radius_um", {"radius [um]", ".4g", 12}},
+                     [](const Row& row) { return row.radius_um; }},
+                    {{"encircled energy", "", 5, "encircled_energy", {"", "", 17}},
+                     [](const Row& row) { return row.encircled_energy; }},
+                    {{"Airy", "", 5, "airy", {"", "", 9}}, [](const Row& row) { return row.airy; }}},
+                   Layout::set);
 }
+
+namespace {
+
+/// Says of rows without light that they have none.
+template <class Row>
+Table remark_on_dark(Table table, const std::vector<Row>& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!rows[i].lit) table.remarks[i] = "no ray passes";
+  return table;
+}
+
+}  // namespace
 
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
   using Row = DistortionRow;
-  return make<Row>(
-      kind, rows,
-      {{{"image height", "mm", 5, "image_height_mm"}, [](const Row& row) { return row.image_height_mm; }},
-       {{"paraxial height", "mm", 5, "paraxial_image_height_mm"},
-        [](const Row& row) { return row.paraxial_image_height_mm; }},
-       {{"distortion", "%", 3, "distortion_percent"}, [](const Row& row) { return row.distortion_percent; }},
-       {{"against f·θ", "%", 3, "distortion_ftheta_percent"},
-        [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }}});
+  return remark_on_dark(
+      make<Row>(kind, rows,
+                {{{"image height", "mm", 5, "image_height_mm", {"", ".6f", 19}},
+                  [](const Row& row) { return row.image_height_mm; }},
+                 {{"paraxial height", "mm", 5, "paraxial_image_height_mm", {"", ".6f", 23}},
+                  [](const Row& row) { return row.paraxial_image_height_mm; }},
+                 {{"distortion", "%", 3, "distortion_percent", {"", ".4f", 16}},
+                  [](const Row& row) { return row.distortion_percent; }},
+                 {{"against f·θ", "%", 3, "distortion_ftheta_percent", {.hidden = true}},
+                  [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }},
+                 {{"", "", 0, "lit"}, [](const Row& row) { return row.lit; }}},
+                Layout::set),
+      rows);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows) {
   using Row = IlluminationRow;
-  return make<Row>(kind, rows,
-                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
-                    {{"g_sensor", "sr", 5, "g_sensor_sr"}, [](const Row& row) { return row.g_sensor_sr; }},
-                    {{"g_source", "sr", 5, "g_source_sr"}, [](const Row& row) { return row.g_source_sr; }},
-                    {{"relative illumination", "", 4, "relative_illumination"},
-                     [](const Row& row) { return row.relative_illumination; }}});
+  return remark_on_dark(
+      make<Row>(kind, rows,
+                {{set_height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                 {{"", "", 0, "lit"}, [](const Row& row) { return row.lit; }},
+                 {{"", "", 0, "pupil_in_one_piece"}, [](const Row& row) { return row.pupil_in_one_piece; }},
+                 {{"g_sensor", "sr", 5, "g_sensor_sr", {"", ".6f", 15}},
+                  [](const Row& row) { return row.g_sensor_sr; }},
+                 {{"g_source", "sr", 5, "g_source_sr", {"", ".6f", 15}},
+                  [](const Row& row) { return row.g_source_sr; }},
+                 {{"relative illumination", "", 4, "relative_illumination", {"", ".5f", 23}},
+                  [](const Row& row) { return row.relative_illumination; }}},
+                Layout::set),
+      rows);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows) {

@@ -154,13 +154,16 @@ Block table(const Table& table) {
   const auto is_number = [&](std::size_t column) {
     return !table.rows.empty() && std::holds_alternative<double>(table.rows[0][column]);
   };
+  std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < table.columns.size(); ++i)
+    if (!table.columns[i].name.empty()) shown.push_back(i);
+  for (const std::size_t i : shown)
     markup += fmt::format("<th{}>{}</th>", is_number(i) ? " class=\"number\"" : "",
                           with_unit(table.columns[i].name, table.columns[i].unit));
   markup += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     markup += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i)
+    for (const std::size_t i : shown)
       markup += fmt::format("<td{}>{}</td>", is_number(i) ? " class=\"number\"" : "",
                             inline_markup(cell_text(row[i], table.columns[i].decimals)));
     markup += "</tr>\n";
