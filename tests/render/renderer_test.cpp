@@ -37,13 +37,13 @@ struct SmallPicture {
   LensCamera camera{read_lens("edmund-54852").lens, film, world->groups};
 
   Rendering render(const RenderOptions& options = {}) const { return render_surfaces(options, 24); }
-  Rendering render_surfaces(RenderOptions options, int samples) const {
+  Rendering render_surfaces(RenderOptions options, int samples, const ProgressCallback& progress = {}) const {
     options.first_surfaces = true;
-    return render_with(options, samples);
+    return render_with(options, samples, progress);
   }
-  Rendering render_with(RenderOptions options, int samples) const {
+  Rendering render_with(RenderOptions options, int samples, const ProgressCallback& progress = {}) const {
     options.samples_per_pixel = samples;
-    return render_picture(*world, camera, Transform(), film, options);
+    return render_picture(*world, camera, Transform(), film, options, progress);
   }
 };
 
@@ -114,7 +114,10 @@ TEST(Renderer, SavesWhatThereIsWhenItIsStopped) {
   };
   Context context;
   context.progress = [&](double, const std::string&) { return !stop; };
-  EXPECT_THROW(run_within(context, [&](const ProgressCallback&) { small.render(options); }), Cancelled);
+  EXPECT_THROW(
+      run_within(context,
+                 [&](const ProgressCallback& progress) { small.render_surfaces(options, 24, progress); }),
+      Cancelled);
   ASSERT_TRUE(so_far);
   EXPECT_EQ(so_far->samples_per_pixel, 16);  // two passes of four for each of two groups
   options = {};
@@ -132,7 +135,10 @@ TEST(Renderer, LeavesNothingBehindWhenItIsStoppedAtOnce) {
   Context context;
   int questions = 0;
   context.progress = [&](double, const std::string&) { return ++questions < 2; };
-  EXPECT_THROW(run_within(context, [&](const ProgressCallback&) { small.render(options); }), Cancelled);
+  EXPECT_THROW(
+      run_within(context,
+                 [&](const ProgressCallback& progress) { small.render_surfaces(options, 24, progress); }),
+      Cancelled);
   EXPECT_TRUE(scratch.is_empty());
 }
 

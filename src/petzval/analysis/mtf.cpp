@@ -2,6 +2,7 @@
 #include <petzval/analysis/bladed_otf.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/mtf.h>
+#include <petzval/base/stop.h>
 #include <petzval/base/units.h>
 #include <petzval/numeric/quadrature.h>
 
@@ -199,6 +200,7 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
     const std::vector<PupilRay> rays = pupil_rays(tracer, chief, {32, 192});
     if (rays.empty()) return {};
     for (const double shift : shifts) {
+      check_stop();
       const std::vector<PupilRay> moved = on_moved_sensor(rays, chief, shift);
       row.sensors.push_back(
           fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
@@ -210,6 +212,7 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);
   if (!pupil) return {};
   for (const double shift : shifts) {
+    check_stop();
     const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(*pupil, options.model, shift);
     if (!smooth && shift != 0)
       throw InputError(
