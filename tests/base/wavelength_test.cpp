@@ -28,11 +28,11 @@ TEST(Wavelength, OtherNumbersAreNone) {
   for (const double number : {0.0, -550.0, std::nan(""), double{INFINITY}})
     EXPECT_NE(wavelength_fault(number).find("is no wavelength"), std::string::npos) << number;
   try {
-    require_wavelength(0.55, "--wavelengths 0.55");
+    require_wavelength(0.55, "`wavelengths_nm` 0.55");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
-              "--wavelengths 0.55: wavelengths are in nm; 550 would be right for 0.55");
+              "`wavelengths_nm` 0.55: wavelengths are in nm; 550 would be right for 0.55");
   }
 }
 

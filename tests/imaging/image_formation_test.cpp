@@ -269,7 +269,7 @@ TEST(FormImage, SaysByHowManyDegreesASceneIsTooSmall) {
   const std::string text =
       refusal([&] { form_image(wall(1, {550}, 10), table, sensor, with_method(BlurMethod::sections)); });
   EXPECT_NE(text.find("covers 10.00° × "), std::string::npos) << text;
-  EXPECT_NE(text.find("--surround zero or extend"), std::string::npos) << text;
+  EXPECT_NE(text.find("`surround` zero or extend"), std::string::npos) << text;
   const std::size_t at = text.find("falls short by ");
   ASSERT_NE(at, std::string::npos) << text;
   const double short_by = std::stod(text.substr(at + 15));
@@ -280,7 +280,7 @@ TEST(FormImage, SaysByHowManyDegreesASceneIsTooSmall) {
   ImagingReport report;
   const SpectralImage image = form_image(wall(1, {550}, 10), table, sensor, options, {}, &report);
   EXPECT_NEAR(image.at(0, 0, 0), 0.25, 0.25 * 1e-3);
-  EXPECT_NE(report.notes.front().find("--surround extend"), std::string::npos);
+  EXPECT_NE(report.notes.front().find("`surround` extend"), std::string::npos);
 }
 
 TEST(FormImage, RefusesWhatDoesNotFitTogether) {

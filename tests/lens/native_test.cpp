@@ -172,7 +172,7 @@ TEST(NativeReader, SubstitutesOnlyWhatItIsTold) {
   EXPECT_EQ(std::get<Material::Model>(model.surfaces[0].material.kind()).nd, 1.61025);
   options.substitutions = {{"N-BAF10", "CDGM:H-LAK10"}};
   expect_mentions(error_of([&] { lens_from_json(native_example, "file.json", options); }),
-                  {"file.json:", "--substitute N-BAF10", "no such glass", "SCHOTT:N-BAF10"});
+                  {"file.json:", "`substitute` N-BAF10", "no such glass", "SCHOTT:N-BAF10"});
 }
 
 TEST(NativeWriter, EveryNumberSurvives) {

@@ -191,14 +191,14 @@ TEST(SeqReader, Glasses) {
   EXPECT_EQ(std::get<Material::Model>(glass("517642").kind()).vd, 64.2);
   EXPECT_EQ(std::get<Material::Model>(glass("500.700").kind()).vd, 70);
   expect_mentions(seq_complaint("NBK7_SCHOTT", "NBK99_SCHOTT"),
-                  {"lens.seq:16: S1: unknown glass", "N-BK7", "--substitute"});
+                  {"lens.seq:16: S1: unknown glass", "N-BK7", "`substitute`"});
   expect_mentions(seq_complaint("NBK7_SCHOTT", "1.5"), {"lens.seq:16: S1: 1.5", "517.642"});
   LensReadOptions options;
   options.substitutions = {{"OLD_SCHOTT", "SCHOTT:F2"}};
   EXPECT_EQ(glass("OLD_SCHOTT", options).description(), "SCHOTT:F2");
   options.substitutions = {{"BK8", "SCHOTT:F2"}};
   expect_mentions(error_of([&] { read_seq_text(seq_example, options); }),
-                  {"lens.seq: --substitute BK8", "NBK7_SCHOTT"});
+                  {"lens.seq: `substitute` BK8", "NBK7_SCHOTT"});
 }
 
 TEST(SeqReader, PrivateGlasses) {

@@ -91,7 +91,7 @@ TEST(Setting, ReachesLists) {
 
 TEST(Setting, SaysWhatWouldBeRight) {
   expect_mentions(setting_complaint("surfaces[4].thicknes_mm=1"),
-                  {"--set surfaces[4].thicknes_mm=1: ", "thickness_mm"});
+                  {"`set` surfaces[4].thicknes_mm=1: ", "thickness_mm"});
   expect_mentions(setting_complaint("surfaces[6].conic=1"), {"surfaces[6] is not there", "0 to 5"});
   expect_mentions(setting_complaint("surfaces[99999999999].conic=1"), {"is not a path"});
   expect_mentions(setting_complaint("fields.values[5]=1"), {"fields.values[5] is not there", "0 to 4"});

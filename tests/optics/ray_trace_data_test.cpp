@@ -152,7 +152,7 @@ TEST(TableOfRayTraceData, SaysThatWhatPetzvalKeptIsTakenAsItWas) {
   reading.g_axis_sr = 0.2;
   const ImportedTable imported = table_of(ray_trace_data(table), reading);
   EXPECT_EQ(imported.table.g_sensor_sr, table.g_sensor_sr);
-  EXPECT_TRUE(has_note(imported, "--g-axis"));
+  EXPECT_TRUE(has_note(imported, "`g_axis_sr`"));
 }
 
 }  // namespace

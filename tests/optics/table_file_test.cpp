@@ -178,7 +178,7 @@ TEST_F(TableFileTest, KeepsHdf5FromDamagedFilesWithoutAChecksum) {
       EXPECT_FALSE(complaint(path("flipped.h5")).empty()) << "byte " << at;
     }
   write_whole_file(path("bare.h5"), bare);
-  EXPECT_NE(complaint(path("bare.h5")).find("import --from hdf5"), std::string::npos);
+  EXPECT_NE(complaint(path("bare.h5")).find("importing it (from hdf5)"), std::string::npos);
 }
 
 /// The table without its seal, as another program would have stored it, with something altered by the HDF5

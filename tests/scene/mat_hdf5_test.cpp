@@ -147,7 +147,7 @@ TEST_F(DamagedMatHdf5, WrongTypesAreNamed) {
             }),
             "scene.spectrum must be a single struct");
   EXPECT_EQ(message_after([](hid_t file) { H5Ldelete(file, "scene/wAngular", H5P_DEFAULT); }),
-            "scene has no wAngular: its horizontal angle must be given (--scene-angle)");
+            "scene has no wAngular: its horizontal angle must be given (`scene.horizontal_angle_deg`)");
 }
 
 void read_hdf5_and_check(const std::string& path) {

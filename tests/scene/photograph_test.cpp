@@ -192,7 +192,7 @@ TEST(Photograph, WhatMakesNoSceneIsRefused) {
   EXPECT_NE(refusal("grey.tif", options).find("no light"), std::string::npos);
   options = {};
   options.columns = 4;
-  EXPECT_NE(refusal("grey.tif", options).find("--scene-size"), std::string::npos);
+  EXPECT_NE(refusal("grey.tif", options).find("`scene.size`"), std::string::npos);
 }
 
 /// A real photograph, where there is one.

@@ -79,7 +79,7 @@ TEST(SceneExr, PanoramaComesBackAsOne) {
   options.panorama = PanoramaView{5, 0};
   EXPECT_EQ(read_scene(scratch.path("all.exr"), options).view().yaw_deg, 5);
   options.horizontal_angle_deg = 40;
-  EXPECT_TRUE(says(refusal(scratch.path("all.exr"), options), "--scene-angle"));
+  EXPECT_TRUE(says(refusal(scratch.path("all.exr"), options), "`scene.horizontal_angle_deg`"));
   options = {};
   options.distance_m = 3;
   EXPECT_TRUE(says(refusal(scratch.path("all.exr"), options), "infinity"));
@@ -103,7 +103,7 @@ TEST(SceneExr, FilesOfOtherProgramsNeedAnAngle) {
   for (const char* units : {"W.m^-2.sr^-1.nm^-1", "W.m^-2.sr^-1", ""}) {
     exr.units = units;
     write_spectral_exr(scratch.path("other.exr"), exr);
-    EXPECT_TRUE(says(refusal(scratch.path("other.exr")), "--scene-angle"));
+    EXPECT_TRUE(says(refusal(scratch.path("other.exr")), "`scene.horizontal_angle_deg`"));
     SceneOptions options;
     options.horizontal_angle_deg = 20;
     const Scene scene = read_scene(scratch.path("other.exr"), options);
@@ -128,7 +128,7 @@ TEST(SceneExr, ReflectancesNeedLight) {
   write_spectral_exr(scratch.path("chart.exr"), reflectances());
   SceneOptions options;
   options.horizontal_angle_deg = 20;
-  EXPECT_TRUE(says(refusal(scratch.path("chart.exr"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("chart.exr"), options), "`scene.illuminant`"));
   options.illuminant = "E";
   const Scene scene = read_scene(scratch.path("chart.exr"), options);
   EXPECT_NEAR(scene.mean_luminance_cd_m2(), 100, 1e-4);
@@ -143,7 +143,7 @@ TEST(SceneExr, RadianceHasItsLightAlready) {
   write_scene_exr(scratch.path("ramp.exr"), scene);
   SceneOptions options;
   options.illuminant = "A";
-  EXPECT_TRUE(says(refusal(scratch.path("ramp.exr"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("ramp.exr"), options), "`scene.illuminant`"));
 }
 
 TEST(SceneExr, ImpossibleValuesAreNamed) {
@@ -220,7 +220,7 @@ TEST(ReadScene, OptionsThatDoNotApplyAreRefused) {
   EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "size"));
   options = {};
   options.illuminant = "D65";
-  EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "--illuminant"));
+  EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "`scene.illuminant`"));
   options = {};
   options.wavelengths_nm = {650};
   EXPECT_TRUE(says(refusal(scratch.path("scene.mat"), options), "650"));

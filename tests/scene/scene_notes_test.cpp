@@ -51,13 +51,13 @@ TEST_F(SceneNotes, ReflectancesInPerCentOrCountsAreRefused) {
   EXPECT_EQ(refusal_of(1), "");
   EXPECT_EQ(refusal_of(2), "");
   EXPECT_NE(refusal_of(80).find("up to 80"), std::string::npos) << refusal_of(80);
-  EXPECT_NE(refusal_of(80).find("--scene-scale 0.01 "), std::string::npos) << refusal_of(80);
-  EXPECT_NE(refusal_of(3).find("--scene-scale 0.01 "), std::string::npos) << "3 % is a dark thing";
-  EXPECT_NE(refusal_of(8000).find("--scene-scale 0.0001 "), std::string::npos) << refusal_of(8000);
+  EXPECT_NE(refusal_of(80).find("`scene.scale` 0.01 "), std::string::npos) << refusal_of(80);
+  EXPECT_NE(refusal_of(3).find("`scene.scale` 0.01 "), std::string::npos) << "3 % is a dark thing";
+  EXPECT_NE(refusal_of(8000).find("`scene.scale` 0.0001 "), std::string::npos) << refusal_of(8000);
   // What is proposed is right, whatever the numbers are multiplied by already.
   SceneOptions options;
   options.scale = 0.5;
-  EXPECT_NE(refusal_of(80, options).find("--scene-scale 0.005 "), std::string::npos)
+  EXPECT_NE(refusal_of(80, options).find("`scene.scale` 0.005 "), std::string::npos)
       << refusal_of(80, options);
   options.scale = 0.01;
   EXPECT_EQ(refusal_of(80, options), "");
@@ -80,7 +80,7 @@ TEST_F(SceneNotes, TheLevelOfReflectancesIsSaidWhereItIsMadeUp) {
 }
 
 TEST_F(SceneNotes, AUnitThatNobodySaidIsSaid) {
-  EXPECT_TRUE(has_note(scene_of_one(1, SceneQuantity::radiance).notes, "--scene-unit"));
+  EXPECT_TRUE(has_note(scene_of_one(1, SceneQuantity::radiance).notes, "`scene.radiance_unit`"));
   SceneOptions options;
   options.radiance_unit = "W/m2/sr/nm";
   EXPECT_TRUE(scene_of_one(1, SceneQuantity::radiance, options).notes.empty());

@@ -45,22 +45,22 @@ std::string complaint(const std::function<void(CubeOptions&)>& change) {
 TEST(SpectralCube, IsRefusedBeforeItHasValues) {
   EXPECT_EQ(complaint([](CubeOptions&) {}), "");
   const std::pair<const char*, std::function<void(CubeOptions&)>> wrong[] = {
-      {"--scene-quantity", [](CubeOptions& options) { options.quantity.reset(); }},
-      {"--scene-bands", [](CubeOptions& options) { options.file_bands_nm.clear(); }},
+      {"`scene.quantity`", [](CubeOptions& options) { options.quantity.reset(); }},
+      {"`scene.file_bands_nm`", [](CubeOptions& options) { options.file_bands_nm.clear(); }},
       {"2 bands, but 3",
        [](CubeOptions& options) {
          options.file_bands_nm = {400, 500, 600};
        }},
-      {"--scene-angle", [](CubeOptions& options) { options.horizontal_angle_deg.reset(); }},
+      {"`scene.horizontal_angle_deg`", [](CubeOptions& options) { options.horizontal_angle_deg.reset(); }},
       {"a scale of -1", [](CubeOptions& options) { options.scale = -1; }},
       {"irradiance", [](CubeOptions& options) { options.radiance_unit = "W.m^-2.nm^-1"; }},
-      {"--illuminant D65", [](CubeOptions& options) { options.quantity = SceneQuantity::reflectance; }},
+      {"`scene.illuminant` D65", [](CubeOptions& options) { options.quantity = SceneQuantity::reflectance; }},
       {"no light in the bands",
        [](CubeOptions& options) {
          options.quantity = SceneQuantity::reflectance;
          options.illuminant = Spectrum({700, 800}, {1, 1});
        }},
-      {"--scene-temperature", [](CubeOptions& options) { options.quantity = SceneQuantity::emissivity; }},
+      {"`scene.temperature_k`", [](CubeOptions& options) { options.quantity = SceneQuantity::emissivity; }},
       {"own warmth",
        [](CubeOptions& options) {
          options.quantity = SceneQuantity::emissivity;
