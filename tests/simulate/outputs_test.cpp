@@ -18,7 +18,7 @@ namespace {
 SpectralImage daylight(const Sensor& sensor) {
   const Spectrum light = illuminant("D65");
   std::vector<double> nm;
-  for (int at = 400; at <= 700; at += 20) nm.push_back(at);
+  for (int at = 380; at <= 780; at += 10) nm.push_back(at);
   SpectralImage image(64, 48, nm, sensor.geometry.pitch_um);
   for (int band = 0; band < image.bands(); ++band)
     for (int row = 0; row < image.rows(); ++row)
