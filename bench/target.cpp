@@ -80,7 +80,7 @@ BENCHMARK(blades_240)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 Plane picture_of(const TargetScene& scene, int size) {
   const TargetImage image = render_target(scene, *radial_pupil_otf({}, 550, 8), frame(size));
-  return {image.columns, image.rows, image.values};
+  return {image.columns(), image.rows(), image.values()};
 }
 
 void measure_one_edge(benchmark::State& state) {

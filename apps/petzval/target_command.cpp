@@ -6,10 +6,11 @@
 #include <petzval/base/staged_files.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/numeric/random.h>
+#include <petzval/report/target_plot.h>
+#include <petzval/simulate/target.h>
+#include <petzval/target/exact_sfr.h>
 #include <petzval/target/formats/polygon_file.h>
 #include <petzval/target/formats/svg_shapes.h>
-#include <petzval/target/render_target.h>
 #include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
 
@@ -24,8 +25,6 @@
 #include "output_option.h"
 #include "target_optics.h"
 #include "target_output.h"
-#include "target_plot.h"
-#include "target_sensor.h"
 
 namespace petzval::app {
 
@@ -34,8 +33,7 @@ namespace {
 struct TargetCommand {
   TargetOptics optics;
   TargetOutput output;
-  TargetSensor sensor;
-  std::string rectangle, polygons, chart, text, text_height = "40", at, size, bayer, exact_sfr, plot;
+  std::string sensor, rectangle, polygons, chart, text, text_height = "40", at, size, bayer, exact_sfr, plot;
   std::optional<double> half_plane_deg;
   double noise = 0;
 };
@@ -149,71 +147,66 @@ Picture picture_of(const TargetCommand& command) {
   return picture;
 }
 
-void add_noise(std::vector<double>& values, double sigma, std::uint64_t seed) {
-  if (!(sigma >= 0) || !std::isfinite(sigma))
-    throw InputError(fmt::format("--noise {}: zero or more is right", sigma));
-  constexpr std::uint32_t purpose = 0x7a26e7;  // of this noise alone
-  if (sigma > 0)
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] += sigma * RandomStream(seed, purpose, i).normal();
+std::string plot_title(const TargetCommand& command, const TargetOptions& options) {
+  const TargetOptics& optics = command.optics;
+  const bool has_f_number = optics.psf != "gaussian" && optics.psf != "lens";
+  return fmt::format("{} PSF{}, {} photosite, {:g} um pixels", optics.psf,
+                     has_f_number ? fmt::format(" at f/{:g}", optics.f_number) : "",
+                     command.sensor.empty() ? optics.photosite : options.photosite.text(), options.pitch_um);
 }
 
-/// One picture a wavelength, and of each the pixels whose filter has that colour.
-TargetImage mosaic(const TargetCommand& command, const TargetScene& scene, const TargetOptions& options) {
-  static const std::map<char, std::size_t> colours{{'r', 0}, {'g', 1}, {'b', 2}};
-  std::string pattern = command.bayer;
-  std::transform(pattern.begin(), pattern.end(), pattern.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (pattern != "rggb" && pattern != "bggr" && pattern != "grbg" && pattern != "gbrg")
-    throw InputError(fmt::format("--bayer {}: rggb, bggr, grbg or gbrg is right", command.bayer));
-  if (command.optics.wavelengths_nm.size() != 3)
-    throw InputError("--bayer takes three wavelengths, for red, green and blue: --wavelength 620,540,460");
-  TargetImage result;
-  for (std::size_t colour = 0; colour < 3; ++colour) {
-    TargetImage one =
-        render_target(scene, *command.optics.at_wavelength(command.optics.wavelengths_nm[colour]), options);
-    if (colour == 0) result = one;
-    for (int row = 0; row < one.rows; ++row)
-      for (int column = 0; column < one.columns; ++column) {
-        const auto filter = static_cast<std::size_t>(row % 2 * 2 + column % 2);
-        if (colours.at(pattern[filter]) == colour)
-          result.values[static_cast<std::size_t>(row) * static_cast<std::size_t>(one.columns) +
-                        static_cast<std::size_t>(column)] = one.at(column, row);
-      }
+/// Levels as files of levels show them.
+TargetImage levels_of(const TargetCommand& command, const TargetRequest& request, const Shared& shared) {
+  const Context context = context_of(shared);
+  TargetImage image = command.bayer.empty() ? relative_target(request, context)
+                                            : mosaic_target(request, command.bayer, context);
+  add_target_noise(image, command.noise, shared.seed);
+  const auto& paths = command.output.paths;
+  const bool wanted =
+      std::ranges::any_of(paths, [&](const auto& path) { return !command.output.holds_light(path); });
+  if (!request.sensor || !wanted) return image;
+  return recorded_levels(image, *request.sensor, command.output.shot.sense.options(), context);
+}
+
+TargetRequest request_of(const TargetCommand& command, const Shared& shared) {
+  TargetRequest request;
+  if (!command.sensor.empty()) {
+    request.sensor = read_sensor(command.sensor);
+    request.sensor->require_electronics();
   }
-  return result;
-}
-
-void run(TargetCommand& command, const Shared& shared) {
-  command.optics.prepare(shared);
-  command.sensor.prepare(command.optics);
-  command.optics.validate();
+  command.optics.fill(request, shared);
   command.output.validate();
   Picture picture = picture_of(command);
+  request.scene = std::move(picture.scene);
+  request.columns = picture.frame.columns, request.rows = picture.frame.rows;
+  request.black = command.output.black, request.white = command.output.white;
+  for (const std::string& path : command.output.paths)
+    if (command.output.holds_light(path) && (command.noise != 0 || !command.bayer.empty()))
+      throw InputError(path,
+                       "light has neither --noise nor a --bayer mosaic, a --sensor has; .npy, .tif and "
+                       ".png take them");
+  return request;
+}
+
+void run(const TargetCommand& command, const Shared& shared) {
+  const TargetRequest request = request_of(command, shared);
   for (const auto& [path, what, extension] :
        {std::tuple{command.exact_sfr, "a table of exact SFRs", ".csv"}, {command.plot, "a plot", ".svg"}})
     if (!path.empty()) require_extension(path, {extension}, what);
-  TargetOptions options;
-  options.columns = picture.frame.columns;
-  options.rows = picture.frame.rows;
-  options.pitch_um = command.optics.pitch_um;
-  options.photosite = command.optics.site();
-
-  const std::shared_ptr<const Otf> otf = command.optics.mixed();
-  TargetImage image = command.bayer.empty() ? render_target(picture.scene, *otf, options)
-                                            : mosaic(command, picture.scene, options);
-  command.output.to_levels(image);
-  add_noise(image.values, command.noise, shared.seed);
-  if (command.sensor.is_named()) command.sensor.expose(image, shared);
+  const TargetOptions options = target_options(request);
+  const std::shared_ptr<const Otf> otf = target_otf(request);
+  const TargetImage image = levels_of(command, request, shared);
 
   StagedFiles files;
   for (const std::string& path : command.output.paths)
-    command.output.write(files.stage(path), image, command.optics);
+    if (!command.output.holds_light(path)) command.output.write_levels(files.stage(path), image);
+  command.output.write_light(request, files, context_of(shared));
   if (!command.exact_sfr.empty())
-    write_exact_sfr(files.stage(command.exact_sfr), picture.scene, *otf, options);
-  if (!command.plot.empty()) write_target_plot(files.stage(command.plot), command.optics, *otf, options);
+    write_whole_file(files.stage(command.exact_sfr), exact_sfr_csv(exact_sfr(request.scene, *otf, options)));
+  if (!command.plot.empty())
+    write_whole_file(files.stage(command.plot), target_plot_svg(*otf, options, plot_title(command, options)));
   files.commit();
-  print_target_summary(command.optics, *otf, options, picture.scene, image, shared);
+  print_target_summary(request, command.optics.psf, *otf, image, shared);
 }
 
 }  // namespace
@@ -252,7 +245,15 @@ void add_target_command(CLI::App& app, Shared& shared) {
                       "A mosaic, rggb and so on, with a wavelength for each colour");
   command->add_option("--noise", options->noise,
                       "Standard deviation of Gaussian noise, on the scale of --white");
-  options->sensor.add_to(*command);
+  CLI::Option* sensor = command->add_option(
+      "--sensor", options->sensor,
+      "Sensor, by name or file: its pitch, photosite, low-pass filter, noise, well and converter");
+  for (const char* settled : {"--pixel-pitch", "--photosite", "--fill-factor", "--low-pass", "--noise"})
+    sensor->excludes(command->get_option(settled));
+  for (const char* exposing :
+       {"--exposure", "--metering", "--exposure-compensation", "--conversion-gain", "--gain", "--temperature",
+        "--serial", "--frames", "--bracket", "--without", "--exit-pupil", "--picture"})
+    command->get_option(exposing)->needs(sensor);
   command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv")
       ->check(output_file());
   command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg")->check(output_file());

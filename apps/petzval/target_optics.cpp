@@ -2,13 +2,7 @@
 #include "target_optics.h"
 
 #include <fmt/format.h>
-#include <petzval/analysis/field_tracer.h>
-#include <petzval/analysis/field_values.h>
-#include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
-#include <petzval/base/units.h>
-#include <petzval/base/wavelength.h>
-#include <petzval/wave/sampled_otf.h>
 
 #include <charconv>
 #include <cmath>
@@ -56,14 +50,10 @@ void TargetOptics::add_to(CLI::App& command) {
                      "Separation XxY of the four dots of an optical low-pass filter [pixels]");
 }
 
-void TargetOptics::prepare(const Shared& shared) {
+void TargetOptics::validate(bool has_sensor) const {
   if ((psf == "lens") != !lens.path_or_name.empty())
     throw InputError("--psf lens and --lens LENS belong together; give both or neither");
   if (psf != "lens" && field) throw InputError("--field belongs to --psf lens");
-  if (psf == "lens") lens_ = lens.read(shared);
-}
-
-void TargetOptics::validate() const {
   if (psf != "wavefront" && pupil.is_aberrated())
     throw InputError(fmt::format(
         "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080, --zernike", psf));
@@ -72,53 +62,27 @@ void TargetOptics::validate() const {
   if ((psf == "gaussian" || psf == "lens") && pupil.is_shaped())
     throw InputError(fmt::format(
         "--psf {} brings its own pupil; --blades and --obstruction belong to airy and wavefront", psf));
-  if (wavelengths_nm.empty()) throw InputError("--wavelength: at least one is needed");
-  for (const double nm : wavelengths_nm) require_wavelength(nm, fmt::format("--wavelength {:g}", nm));
-  if (!weights.empty() && weights.size() != wavelengths_nm.size())
-    throw InputError(fmt::format("--weights: {} for {} wavelengths; give one a wavelength", weights.size(),
-                                 wavelengths_nm.size()));
-  if (fill_factor != 1 && photosite != "square" && !sensor_site)
+  if (fill_factor != 1 && photosite != "square" && !has_sensor)
     throw InputError("--fill-factor belongs to --photosite square");
   if (!(pitch_um > 0) || !std::isfinite(pitch_um))
     throw InputError(fmt::format("--pixel-pitch {}: a positive number [um] is right", pitch_um));
-  site().validate();
 }
 
-double TargetOptics::geometric_blur_um() const {
-  if (psf != "wavefront") return 0;
-  const GeneralPupil general = pupil.at(wavelengths_nm.front());
-  const double radius = general.is_radial() ? geometric_radius(general.radial()) : 2 * general.steepest();
-  return 2 * radius * wavelengths_nm.front() * 1e-3 * f_number;
-}
-
-std::shared_ptr<const Otf> TargetOptics::at_wavelength(double wavelength_nm) const {
-  if (psf == "gaussian") return gaussian_otf(sigma_um);
-  if (psf == "lens") {
-    FieldTracer tracer(*lens_, wavelength_nm);
-    const std::optional<ChiefRay> chief =
-        tracer.chief_ray(object_field(*lens_, lens_->fields.kind, field.value_or(0)));
-    const std::optional<Psf> spread = chief ? point_spread(tracer, *chief, {}) : std::nullopt;
-    if (!spread)
-      throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens_->name,
-                                   field.value_or(0), wavelength_nm));
-    return std::make_shared<SampledOtf>(*spread);
-  }
-  GeneralPupil scaled = pupil.at(wavelengths_nm.front());
-  for (std::vector<double>* waves : {&scaled.w_waves, &scaled.zernike_waves})
-    for (double& w : *waves) w *= wavelengths_nm.front() / wavelength_nm;
-  return general_pupil_otf(scaled, wavelength_nm, f_number);
-}
-
-std::shared_ptr<const Otf> TargetOptics::mixed() const {
-  if (wavelengths_nm.size() == 1) return at_wavelength(wavelengths_nm.front());
-  std::vector<MixedOtf::Part> parts;
-  for (std::size_t i = 0; i < wavelengths_nm.size(); ++i)
-    parts.push_back({weights.empty() ? 1.0 : weights[i], at_wavelength(wavelengths_nm[i])});
-  return std::make_shared<MixedOtf>(std::move(parts));
+void TargetOptics::fill(TargetRequest& request, const Shared& shared) const {
+  validate(request.sensor.has_value());
+  request.wavelengths_nm = wavelengths_nm;
+  request.weights = weights;
+  request.pitch_um = pitch_um;
+  request.photosite = site();
+  if (psf == "gaussian")
+    request.blur = GaussianBlur{sigma_um};
+  else if (psf == "lens")
+    request.blur = LensBlur{lens.read(shared), field.value_or(0)};
+  else
+    request.blur = PupilBlur{pupil.at(wavelengths_nm.empty() ? 0 : wavelengths_nm.front()), f_number};
 }
 
 Photosite TargetOptics::site() const {
-  if (sensor_site) return *sensor_site;
   Photosite result;
   const std::size_t colon = photosite.find(':');
   const std::string kind = photosite.substr(0, colon);

@@ -2,12 +2,11 @@
 // The optics of a synthetic target on the command line.
 #pragma once
 
-#include <petzval/wave/otf.h>
-#include <petzval/wave/photosite.h>
+#include <petzval/simulate/target.h>
 
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
@@ -22,24 +21,16 @@ struct TargetOptics {
   std::vector<double> wavelengths_nm{550}, weights;
   std::optional<double> field;
   PupilChoice pupil;
-  std::optional<Photosite> sensor_site;  ///< in place of --photosite and --low-pass
   LensChoice lens;
 
-  /// Reads the lens, if one is named. Call it before the others.
-  void prepare(const Shared& shared);
   void add_to(CLI::App& command);
+  /// Optics, wavelengths, pitch and photosite, but those of a sensor that is there already.
   /// \throws InputError for options that contradict each other.
-  void validate() const;
-  /// Diameter of the blur that geometry alone would make, twice the largest transverse aberration [um].
-  double geometric_blur_um() const;
-  /// Of one wavelength: the aberrations are waves of the first wavelength.
-  std::shared_ptr<const Otf> at_wavelength(double wavelength_nm) const;
-  /// Of all wavelengths with their weights.
-  std::shared_ptr<const Otf> mixed() const;
-  Photosite site() const;
+  void fill(TargetRequest& request, const Shared& shared) const;
 
  private:
-  std::optional<Lens> lens_;
+  void validate(bool has_sensor) const;
+  Photosite site() const;
 };
 
 /// "3.5x2" → two numbers. \throws InputError naming the option.

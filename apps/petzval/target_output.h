@@ -2,36 +2,36 @@
 // What a synthetic target is written as.
 #pragma once
 
-#include <petzval/target/render_target.h>
+#include <petzval/base/staged_files.h>
+#include <petzval/simulate/target.h>
 
 #include <string>
 #include <vector>
 
 #include "command.h"
-#include "target_optics.h"
+#include "shot_option.h"
 
 namespace petzval::app {
 
-/// -o, --black, --white, --bits and --linear.
+/// -o, --black, --white, --linear, and what a --sensor makes of the light.
 struct TargetOutput {
   std::vector<std::string> paths;
   double black = 0, white = 1;
-  int bits = 8;
   bool linear = false;
+  ShotChoice shot;
 
   void add_to(CLI::App& command);
   void validate() const;
-  /// 0 becomes black and 1 white.
-  void to_levels(TargetImage& image) const;
-  /// By extension: .png and .tif of --bits, .npy (float64), .exr (float, with pitch and wavelength).
-  void write(const std::string& path, const TargetImage& image, const TargetOptics& optics) const;
+  /// Whether a file holds light or what a sensor makes of it: irradiance (.exr), raw files (.dng) and
+  /// developed pictures. The others hold levels.
+  bool holds_light(const std::string& path) const;
+  /// By extension: .png and .tif of --bits, .npy (float64).
+  void write_levels(const std::string& path, const TargetImage& image) const;
+  /// All that hold light. \throws InputError as write_outputs().
+  void write_light(const TargetRequest& request, StagedFiles& files, const Context& context) const;
 };
 
-/// A row for every edge and frequency: polygon, edge, angle_deg, length_px, frequency_cpp, sfr (signed).
-void write_exact_sfr(const std::string& path, const TargetScene& scene, const Otf& otf,
-                     const TargetOptions& options);
-
-void print_target_summary(const TargetOptics& optics, const Otf& otf, const TargetOptions& options,
-                          const TargetScene& scene, const TargetImage& image, const Shared& shared);
+void print_target_summary(const TargetRequest& request, const std::string& psf, const Otf& otf,
+                          const TargetImage& image, const Shared& shared);
 
 }  // namespace petzval::app

@@ -113,6 +113,17 @@ class Target(ProgramTest):
         files = self.contents()
         self.assertEqual(files["a.npy"], files["b.npy"])
 
+    def test_a_raw_file_is_what_sense_makes_of_the_light(self):
+        common = ["target", "--rectangle", "30x30@5", "--wavelength", "450,550,620", "--sensor", "imx363", "--seed", 4]
+        self.assert_succeeds(*common, "-o", "a.dng", "-o", "a.png", "-o", "light.exr", "-o", "levels.npy")
+        self.assert_succeeds("sense", "light.exr", "--sensor", "imx363", "--seed", 4, "-o", "b.dng")
+        self.assert_succeeds("develop", "b.dng", "-o", "b.png")
+        self.assert_succeeds(*common, "-o", "levels.png")
+        files = self.contents()
+        self.assertEqual(files["a.dng"], files["b.dng"])
+        self.assertEqual(files["a.png"], files["b.png"])
+        self.assertNotEqual(files["a.png"], files["levels.png"])
+
     def test_writing(self):
         self.assert_succeeds("target", "--text", "Petzval 1840", "--text-height", "20@10", *OPTICS, "-o", "t.png", "--plot", "p.svg")
         self.assertIn(b"PSF", (self.folder / "p.svg").read_bytes())
@@ -144,6 +155,9 @@ class Target(ProgramTest):
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--noise", 0.1, *out], ["--noise", "--sensor"]),
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--without", "shott", *out], ["shott", "shot, "]),
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--size", "1281x64", *out], ["1280 x 960"]),
+                ([*rectangle, "-o", "t.dng"], ["--sensor"]),
+                ([*rectangle, "--noise", 0.1, "-o", "t.exr"], ["--noise", ".npy"]),
+                ([*rectangle, "--wavelength", "550,550", "-o", "t.exr"], ["--wavelength", "once"]),
                 ([*rectangle, "--blade-curvature", 0.5, *out], ["--blades"]),
                 ([*rectangle, "--blades", 4, "--obstruction", 0.8, *out], ["reaches the blades"]),
                 ([*rectangle, "--f-number", 0, *out], ["f-number", "positive"]),

@@ -27,7 +27,7 @@ Shot shoot(const TargetScene& scene, int size, double f_number, double w020 = 0)
   shot.otf = radial_pupil_otf({{w020}, 0}, 550, f_number);
   shot.options.columns = shot.options.rows = size, shot.options.pitch_um = 4.73;
   const TargetImage image = render_target(scene, *shot.otf, shot.options);
-  shot.plane = {image.columns, image.rows, image.values};
+  shot.plane = {image.columns(), image.rows(), image.values()};
   return shot;
 }
 

@@ -46,7 +46,7 @@ EdgeShot shoot(const Case& c) {
   EdgeShot shot{{}, radial_pupil_otf({{c.w020, c.w040}, 0}, 550, c.f_number), {}, c};
   shot.options.columns = c.width, shot.options.rows = c.height, shot.options.pitch_um = 4.73;
   const TargetImage image = render_target(scene, *shot.otf, shot.options);
-  shot.plane = {image.columns, image.rows, image.values};
+  shot.plane = {image.columns(), image.rows(), image.values()};
   return shot;
 }
 
@@ -190,7 +190,7 @@ TEST(MeasureEdge, BentEdgesNeedTheirOrder) {
   scene.polygons.push_back({{regular_polygon({-648, 52}, 700, 60000, 3)}, 0, 0});
   EdgeShot shot = shoot({0, 8, 0, 0});
   const TargetImage image = render_target(scene, *shot.otf, shot.options);
-  shot.plane.values = image.values;
+  shot.plane.values = image.values();
   SfrOptions bent;
   bent.edge_order = 4;
   const auto error = [&](const SfrOptions& options) {

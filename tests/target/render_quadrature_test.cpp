@@ -188,7 +188,7 @@ TEST(RenderQuadrature, PolygonsThroughAberratedOpticsAndPhotosites) {
       for (const SitePoint& point : site)
         light +=
             point.weight * light_at(c.polygon, {column + 0.5 + point.x, row + 0.5 + point.y}, energy, unit);
-      EXPECT_NEAR(image.at(column, row), 1 - light, 2e-7) << c.name << " at " << column << "," << row;
+      EXPECT_NEAR(image.at(row, column), 1 - light, 2e-7) << c.name << " at " << column << "," << row;
     }
   }
 }

@@ -32,8 +32,8 @@ TargetOptions frame(int columns, int rows) {
 
 double worst_difference(const TargetImage& a, const TargetImage& b) {
   double worst = 0;
-  for (std::size_t i = 0; i < a.values.size(); ++i)
-    worst = std::max(worst, std::abs(a.values[i] - b.values[i]));
+  for (std::size_t i = 0; i < a.values().size(); ++i)
+    worst = std::max(worst, std::abs(a.values()[i] - b.values()[i]));
   return worst;
 }
 
@@ -64,7 +64,7 @@ TEST(RenderTarget, HalfPlaneIsTheClosedFormTo1e6) {
     for (int row = 0; row < 64; row += 21)
       for (int column = 0; column < 96; column += 11) {
         const double d = (column + 0.5 - 48.3) * cosine + (row + 0.5 - 31.9) * sine;
-        EXPECT_NEAR(image.at(column, row), 1 - test::edge_spread(along, cutoff, d), 1e-6)
+        EXPECT_NEAR(image.at(row, column), 1 - test::edge_spread(along, cutoff, d), 1e-6)
             << c.angle_deg << " deg, f/" << c.f_number << ", W020 " << c.w020 << ", d " << d;
       }
   }
@@ -91,7 +91,7 @@ TEST(RenderTarget, HalfPlaneThroughBladesIsTheClosedFormToo) {
     for (int row = 0; row < 64; row += 21)
       for (int column = 0; column < 64; column += 7) {
         const double d = (column + 0.5 - 32.3) * cosine + (row + 0.5 - 31.9) * sine;
-        worst = std::max(worst, std::abs(image.at(column, row) - 1 + test::edge_spread(along, cutoff, d)));
+        worst = std::max(worst, std::abs(image.at(row, column) - 1 + test::edge_spread(along, cutoff, d)));
       }
     EXPECT_LT(worst, 5e-6) << blades << " blades, " << angle_deg << " deg";
   }
@@ -124,7 +124,7 @@ TEST(RenderTarget, SmallPolygonsAgreeWithQuadratureTo1e6) {
        {concave, rectangle({24.3, 20.1}, 0.8, 0.6, 20), rectangle({20.2, 14.4}, 25, 12, 31)}) {
     const TargetImage image = render_target(one(contour), *otf, options);
     for (const auto& [column, row] : {std::pair{0, 0}, {24, 20}, {20, 12}, {33, 13}, {10, 27}, {47, 39}})
-      EXPECT_NEAR(image.at(column, row), 1 - airy_over_polygon(contour, {column + 0.5, row + 0.5}, unit),
+      EXPECT_NEAR(image.at(row, column), 1 - airy_over_polygon(contour, {column + 0.5, row + 0.5}, unit),
                   1e-6)
           << column << "," << row;
   }
@@ -145,9 +145,9 @@ TEST(RenderTarget, PhotositeIsAnAverageOverItsArea) {
       Contour shifted = contour;
       for (Vertex& v : shifted) v = {v.x - rule.nodes[i], v.y - rule.nodes[j]};
       const TargetImage image = render_target(one(shifted), *otf, point);
-      for (std::size_t k = 0; k < 400; ++k) sum[k] += rule.weights[i] * rule.weights[j] * image.values[k];
+      for (std::size_t k = 0; k < 400; ++k) sum[k] += rule.weights[i] * rule.weights[j] * image.values()[k];
     }
-  for (std::size_t k = 0; k < 400; ++k) EXPECT_NEAR(sum[k], expected.values[k], 1e-8);
+  for (std::size_t k = 0; k < 400; ++k) EXPECT_NEAR(sum[k], expected.values()[k], 1e-8);
 }
 
 TEST(RenderTarget, ShiftsByWholePixelsAndTurnsByRightAngles) {
@@ -162,8 +162,8 @@ TEST(RenderTarget, ShiftsByWholePixelsAndTurnsByRightAngles) {
   for (int row = 10; row < 90; ++row)
     for (int column = 10; column < 90; ++column) {
       // What the period still wraps of the tail, below 1e-7, depends on the place in it.
-      EXPECT_NEAR(shifted.at(column + 7, row - 3), image.at(column, row), 1e-7);
-      EXPECT_NEAR(rotated.at(99 - row, column), image.at(column, row), 1e-7);
+      EXPECT_NEAR(shifted.at(row - 3, column + 7), image.at(row, column), 1e-7);
+      EXPECT_NEAR(rotated.at(column, 99 - row), image.at(row, column), 1e-7);
     }
 }
 
@@ -172,7 +172,7 @@ TEST(RenderTarget, ConservesLightOfACompactPsf) {
   const auto otf = gaussian_otf(4);
   const TargetImage image = render_target(one(rectangle({50, 40}, 30, 20, 12), 0.25), *otf, frame(100, 80));
   double deficit = 0;
-  for (const double value : image.values) deficit += 1 - value;
+  for (const double value : image.values()) deficit += 1 - value;
   EXPECT_NEAR(deficit, 0.75 * 600, 1e-7);
 }
 
@@ -224,7 +224,7 @@ TEST(RenderTarget, PolygonsThatLeaveTheFrameGoOnBeyondIt) {
   const TargetImage large = render_target(one(moved), *otf, frame(400, 400));
   for (int row = 0; row < 100; ++row)
     for (int column = 0; column < 100; ++column)
-      EXPECT_NEAR(window.at(column, row), large.at(column + 150, row + 150), 3e-7);
+      EXPECT_NEAR(window.at(row, column), large.at(row + 150, column + 150), 3e-7);
 }
 
 TEST(RenderTarget, BytesDoNotDependOnThreadsOrMemory) {
@@ -233,9 +233,9 @@ TEST(RenderTarget, BytesDoNotDependOnThreadsOrMemory) {
   TargetOptions options = frame(80, 80);
   const TargetImage many = render_target(scene, *otf, options);
   options.working_bytes = 100000;
-  EXPECT_EQ(render_target(scene, *otf, options).values, many.values);
+  EXPECT_EQ(render_target(scene, *otf, options).values(), many.values());
   const ThreadLimit one_thread(1);
-  EXPECT_EQ(render_target(scene, *otf, options).values, many.values);
+  EXPECT_EQ(render_target(scene, *otf, options).values(), many.values());
 }
 
 TEST(RenderTarget, RefusesInPlainWords) {

@@ -213,11 +213,11 @@ TargetImage render_target(const TargetScene& scene, const Otf& otf, const Target
   transform_outlines(
       regions, around.period, otf.cutoff_cpmm() * options.pitch_um * 1e-3, options.working_bytes,
       [&](int k, int l_max, std::span<const Complex> scene_column) { folder.add(k, l_max, scene_column); });
-  TargetImage image{options.columns, options.rows, folder.picture()};
+  TargetImage image(options.rows, options.columns, folder.picture());
   const double scale = 1 / (static_cast<double>(around.period.columns) * around.period.rows);
-  for (double& value : image.values) value *= scale;
-  FarField(regions, around.far).add_to(image.values, options.columns, options.rows);
-  for (double& value : image.values) value += scene.ground;
+  for (double& value : image.values()) value *= scale;
+  FarField(regions, around.far).add_to(image.values(), options.columns, options.rows);
+  for (double& value : image.values()) value += scene.ground;
   return image;
 }
 

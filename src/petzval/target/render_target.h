@@ -2,6 +2,7 @@
 // Exact pictures of polygons.
 #pragma once
 
+#include <petzval/base/grid.h>
 #include <petzval/target/polygon.h>
 #include <petzval/wave/otf.h>
 #include <petzval/wave/photosite.h>
@@ -19,16 +20,8 @@ struct TargetOptions {
   std::size_t working_bytes = std::size_t{640} << 20;
 };
 
-/// Relative irradiance, row-major from the top.
-struct TargetImage {
-  int columns = 0, rows = 0;
-  std::vector<double> values;
-
-  double at(int column, int row) const {
-    return values[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                  static_cast<std::size_t>(column)];
-  }
-};
+/// Relative irradiance.
+using TargetImage = Grid<double>;
 
 /// scene ⊗ PSF ⊗ photosite at every pixel centre, without sampling of the scene: the transform of every
 /// polygon by Gauss' theorem along its outline, up to the cut-off of the OTF; times OTF and photosite;

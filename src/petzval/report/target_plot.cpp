@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "target_plot.h"
-
-#include <fmt/format.h>
-#include <petzval/base/units.h>
-#include <petzval/base/whole_file.h>
 #include <petzval/numeric/fft.h>
 #include <petzval/report/heat_map.h>
 #include <petzval/report/svg_plot.h>
+#include <petzval/report/target_plot.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::app {
+namespace petzval {
 
 namespace {
 
@@ -121,14 +117,9 @@ Plot mtf(const Otf& otf, const TargetOptions& options) {
 
 }  // namespace
 
-void write_target_plot(const std::string& path, const TargetOptics& optics, const Otf& otf,
-                       const TargetOptions& options) {
+std::string target_plot_svg(const Otf& otf, const TargetOptions& options, const std::string& title) {
   const SampledPsf psf = sampled_psf(otf);
-  const std::string title = fmt::format(
-      "{} PSF{}, {} photosite, {:g} um pixels", optics.psf,
-      optics.psf == "gaussian" || optics.psf == "lens" ? "" : fmt::format(" at f/{:g}", optics.f_number),
-      optics.photosite, optics.pitch_um);
-  write_whole_file(path, plot_grid_svg({psf_picture(psf), psf_sections(psf), mtf(otf, options)}, 2, title));
+  return plot_grid_svg({psf_picture(psf), psf_sections(psf), mtf(otf, options)}, 2, title);
 }
 
-}  // namespace petzval::app
+}  // namespace petzval
