@@ -3,8 +3,8 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
-#include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/version.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/sensor/lens_facts.h>
