@@ -10,13 +10,15 @@
 #include <petzval/scene/scene_file.h>
 #include <petzval/sensor/sensor.h>
 
-// The three steps of a camera: light on the sensor, a raw image, a picture.
+// The lens by itself, and the three steps of a camera: light on the sensor, a raw image, a picture.
+#include <petzval/simulate/analysis.h>
 #include <petzval/simulate/camera.h>
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/outputs.h>
 #include <petzval/simulate/render.h>
+#include <petzval/simulate/target.h>
 
 // How work is done, and what goes wrong.
 #include <petzval/base/context.h>
