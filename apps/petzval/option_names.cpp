@@ -28,8 +28,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> other_na
      {"scene.radiance_unit", "--scene-unit"}}};
 
 /// Endings that say a unit.
-constexpr std::array<std::string_view, 12> units{"_mm", "_um", "_nm", "_m",  "_deg", "_s",
-                                                 "_ev", "_k",  "_c",  "_sr", "_px",  "_lx"};
+constexpr std::array<std::string_view, 13> units{"_cpmm", "_mm", "_um", "_nm", "_m",  "_deg", "_s",
+                                                 "_ev",   "_k",  "_c",  "_sr", "_px", "_lx"};
 
 bool is_name(std::string_view text) {
   return !text.empty() && std::islower(static_cast<unsigned char>(text.front())) &&

@@ -162,6 +162,7 @@ TEST(Mtf, BadFrequenciesAndWeightsAreErrors) {
   const Lens lens = read_lens("cooke-triplet").lens;
   const FieldTableRequest request = FieldTableRequest::of(lens);
   MtfOptions options;
+  EXPECT_THROW(mtf_table(lens, request, options), InputError) << "no frequencies";
   options.frequencies_cpmm = {-1};
   EXPECT_THROW(mtf_table(lens, request, options), InputError);
   options.frequencies_cpmm = {10};

@@ -49,6 +49,20 @@ TEST(Analysis, GivesTablesThatProgramsCanRead) {
   }
 }
 
+TEST(Analysis, RefusesLensesThatAreNone) {
+  Lens lens = read_lens("cooke-triplet").lens;
+  lens.surfaces[0].stop = true;  // beside the one that it has
+  EXPECT_THROW(analyse("spots", lens), InputError);
+  lens.surfaces[0].stop = false;
+  lens.surfaces[0].curvature_per_mm = std::nan("");
+  try {
+    analyse("spots", lens);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("surfaces[0].radius_mm"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Analysis, NamesThoseThatThereAre) {
   try {
     analyse("sopts", read_lens("cooke-triplet").lens);

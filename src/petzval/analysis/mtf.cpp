@@ -123,6 +123,8 @@ class Autocorrelation {
 };
 
 void check(const FieldTableRequest& request, const MtfOptions& options) {
+  if (options.frequencies_cpmm.empty())
+    throw InputError("`frequencies_cpmm` is empty; spatial frequencies in cycles/mm would be right");
   for (const double frequency : options.frequencies_cpmm)
     if (!(frequency >= 0) || !std::isfinite(frequency))
       throw InputError(fmt::format("a spatial frequency of {:g} cycles/mm; it must be 0 or more", frequency));

@@ -334,6 +334,7 @@ AnalysisResult analyse(std::string_view name, const Lens& lens, const AnalysisRe
       names += fmt::format("{}{}", names.empty() ? "" : ", ", each.name);
       continue;
     }
+    lens.validate();
     AnalysisRequest asked = request;
     const FieldTableRequest own = FieldTableRequest::of(lens);
     if (asked.at.fields.empty()) asked.at.field_kind = own.field_kind, asked.at.fields = own.fields;

@@ -9,8 +9,10 @@
 #include <petzval/image/formats/tiff.h>
 #include <petzval/measure/sfr/picture_planes.h>
 
+#include <cctype>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 namespace petzval {
 
@@ -54,12 +56,25 @@ PicturePlanes from_png(const std::string& path, PictureTransfer transfer) {
   return picture;
 }
 
+/// Whether a description calls the numbers linear: the word by itself, which "non-linear" has not.
+bool says_linear(std::string_view description) {
+  constexpr std::string_view word = "linear";
+  const auto in_word = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '-'; };
+  for (std::size_t at = 0; (at = description.find(word, at)) != description.npos; at += word.size()) {
+    const bool begins = at == 0 || !in_word(description[at - 1]);
+    const std::size_t end = at + word.size();
+    const bool ends = end == description.size() || !in_word(description[end]);
+    const std::string_view before = description.substr(0, at);
+    if (begins && ends && !before.ends_with("non ") && !before.ends_with("not ")) return true;
+  }
+  return false;
+}
+
 PicturePlanes from_tiff(const std::string& path, PictureTransfer transfer) {
   const TiffImage tiff = read_tiff(path);
   const bool floats = std::holds_alternative<std::vector<float>>(tiff.samples);
-  const bool says_linear = tiff.description.find("linear") != std::string::npos;
-  const bool linear =
-      transfer == PictureTransfer::linear || (transfer == PictureTransfer::stated && (floats || says_linear));
+  const bool linear = transfer == PictureTransfer::linear ||
+                      (transfer == PictureTransfer::stated && (floats || says_linear(tiff.description)));
   PicturePlanes picture = std::visit(
       [&](const auto& samples) {
         using Sample = typename std::decay_t<decltype(samples)>::value_type;
