@@ -24,20 +24,6 @@ struct DevelopCommand {
   int bits = 8;
 };
 
-const char* name_of(Demosaic method) {
-  switch (method) {
-    case Demosaic::bilinear:
-      return "bilinear";
-    case Demosaic::malvar:
-      return "malvar";
-    case Demosaic::gradient:
-      return "gradient";
-    case Demosaic::general:
-      return "general";
-  }
-  return "";
-}
-
 void run_develop(const DevelopCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs)
     require_extension(path, display_picture_extensions(), "a picture");
@@ -62,7 +48,7 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
     const nlohmann::ordered_json json = {{"columns", picture.planes.columns},
                                          {"rows_of_pixels", picture.planes.rows},
                                          {"mosaic", mosaic_text(raw.mosaic, raw.channels)},
-                                         {"demosaic", name_of(report.demosaic)},
+                                         {"demosaic", report.demosaic},
                                          {"neutral", report.neutral},
                                          {"temperature_k", report.temperature_k},
                                          {"defects_corrected", report.defects},
@@ -71,7 +57,7 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
   }
   if (shared.quiet) return;
   fmt::print("{} x {} pixels, {}, demosaic {}\n", picture.planes.columns, picture.planes.rows,
-             mosaic_text(raw.mosaic, raw.channels), name_of(report.demosaic));
+             mosaic_text(raw.mosaic, raw.channels), report.demosaic);
   fmt::print("  white {:.4f}{}, {} defects corrected\n", fmt::join(report.neutral, " "),
              report.temperature_k > 0 ? fmt::format(", light of {:.0f} K", report.temperature_k) : "",
              report.defects);

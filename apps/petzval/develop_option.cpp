@@ -29,8 +29,10 @@ void DevelopChoice::add_to(CLI::App& command, bool after_light) {
                   "Colour matrix: auto (from the raw file), or none, to see the channels as they are")
       ->check(CLI::IsMember({"auto", "none"}))
       ->capture_default_str();
-  command.add_option("--demosaic", demosaic, "auto, bilinear, malvar, gradient or general")
-      ->check(CLI::IsMember({"auto", "bilinear", "malvar", "gradient", "general"}))
+  std::vector<std::string> methods{"auto"};
+  for (const DemosaicMethod& method : demosaic_methods()) methods.push_back(method.name);
+  command.add_option("--demosaic", demosaic, fmt::format("{}", fmt::join(methods, ", ")))
+      ->check(CLI::IsMember(methods))
       ->capture_default_str();
   command.add_option("--flat", flat, "A raw file of a uniform surface, to correct the shading by");
   command.add_flag("--keep-defects", keep_defects, "Leave hot and dead pixels as they are");
@@ -64,7 +66,7 @@ Development DevelopChoice::development() const {
   if (!sensor.empty()) development.white_balance.sensor = read_sensor(sensor);
   DevelopOptions& options = development.options = given;
   options.defects = !keep_defects;
-  if (demosaic != "auto") options.demosaic = demosaic_method(demosaic);
+  if (demosaic != "auto") options.demosaic = demosaic;
   options.colours = matrix == "auto";
   options.tone = tone == "soft" ? ToneCurve::soft : ToneCurve::none;
   options.space = display_space(space);

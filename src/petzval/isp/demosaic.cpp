@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/isp/bayer.h>
@@ -121,12 +122,28 @@ Planes general(const LinearMosaic& mosaic) {
 
 }  // namespace
 
-Demosaic demosaic_method(const std::string& name) {
-  if (name == "bilinear") return Demosaic::bilinear;
-  if (name == "malvar") return Demosaic::malvar;
-  if (name == "gradient") return Demosaic::gradient;
-  if (name == "general") return Demosaic::general;
-  throw InputError(fmt::format("no demosaic \"{}\"; bilinear, malvar, gradient and general are known", name));
+const std::vector<DemosaicMethod>& demosaic_methods() {
+  static const std::vector<DemosaicMethod> methods{
+      {"bilinear", "mean of the nearest of each channel, weighted by a triangle", false, bilinear},
+      {"malvar", "Malvar, He & Cutler 2004: bilinear with Laplacian corrections, linear", true, bayer_malvar},
+      {"gradient", "Pekkucuksen & Altunbasak 2010: colour differences, weighted by their gradients", true,
+       bayer_gradient},
+      {"general", "bilinear, and the detail of the pixel's own channel handed to the others", false,
+       general}};
+  return methods;
+}
+
+const DemosaicMethod& demosaic_method(const std::string& name) {
+  std::vector<std::string> names;
+  for (const DemosaicMethod& method : demosaic_methods()) {
+    if (method.name == name) return method;
+    names.push_back(method.name);
+  }
+  throw InputError(fmt::format("no demosaic \"{}\"; {} would be right", name, fmt::join(names, ", ")));
+}
+
+const DemosaicMethod& usual_demosaic_method(const LinearMosaic& mosaic) {
+  return demosaic_method(is_bayer(mosaic) ? "gradient" : "general");
 }
 
 bool is_bayer(const LinearMosaic& mosaic) {
@@ -139,14 +156,13 @@ bool is_bayer(const LinearMosaic& mosaic) {
   return (c[0] == 1 && c[3] == 1 && other(c[1], c[2])) || (c[1] == 1 && c[2] == 1 && other(c[0], c[3]));
 }
 
-Planes demosaiced(const LinearMosaic& mosaic, Demosaic method) {
+Planes demosaiced(const LinearMosaic& mosaic, const std::string& name) {
+  const DemosaicMethod& method = demosaic_method(name);
   if (mosaic.channels.size() == 1) return {mosaic.columns, mosaic.rows, {mosaic.values}};
-  if (method == Demosaic::bilinear) return bilinear(mosaic);
-  if (method == Demosaic::general) return general(mosaic);
-  if (!is_bayer(mosaic))
+  if (method.bayer_only && !is_bayer(mosaic))
     throw InputError(
         "this demosaic is for Bayer mosaics of red, green and blue; general or bilinear would be right");
-  return method == Demosaic::malvar ? bayer_malvar(mosaic) : bayer_gradient(mosaic);
+  return method.interpolate(mosaic);
 }
 
 }  // namespace petzval

@@ -63,7 +63,7 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   balance_white(mosaic, done.neutral);
   tell_mosaic("white-balance", mosaic);
 
-  done.demosaic = options.demosaic.value_or(is_bayer(mosaic) ? Demosaic::gradient : Demosaic::general);
+  done.demosaic = options.demosaic.value_or(usual_demosaic_method(mosaic).name);
   Planes planes = demosaiced(mosaic, done.demosaic);
   mosaic = {};
   if (step) step("demosaic", planes);

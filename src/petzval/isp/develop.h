@@ -20,9 +20,9 @@ struct DevelopOptions {
   /// Response to white; empty: the image's own, or without one as if the scene were grey on average.
   std::vector<double> neutral = {};
   bool grey_world = false;
-  std::optional<Demosaic> demosaic = {};    ///< absent: gradient for Bayer mosaics, general for others
-  std::optional<CameraMatrix> matrix = {};  ///< absent: from the image's calibrations
-  bool colours = true;                      ///< false: channels 0, 1, 2 are shown as red, green, blue
+  std::optional<std::string> demosaic = {};  ///< a demosaic_method(); absent: the usual one of the mosaic
+  std::optional<CameraMatrix> matrix = {};   ///< absent: from the image's calibrations
+  bool colours = true;                       ///< false: channels 0, 1, 2 are shown as red, green, blue
   double denoise_strength = 0, sharpen_amount = 0, sharpen_sigma_px = 1;
   double exposure_ev = 0;
   ToneCurve tone = ToneCurve::none;
@@ -34,7 +34,7 @@ struct DevelopReport {
   std::vector<double> neutral = {};
   double temperature_k = 0;  ///< of the light; 0: not known
   int defects = 0;
-  Demosaic demosaic = Demosaic::general;
+  std::string demosaic = {};
 };
 
 /// Told of each step with what it made; the planes of a mosaic are one.
