@@ -16,4 +16,9 @@ Planes bayer_malvar(const LinearMosaic& mosaic);
 /// pixel; red and blue follow from green and the differences.
 Planes bayer_gradient(const LinearMosaic& mosaic);
 
+/// Adaptive interpolation (Hamilton & Adams, US patent 5,629,734, 1997): green along the row or the column,
+/// whichever the picture changes less along, with the curvature of the pixel's own colour; then red and blue
+/// likewise along the diagonals, with the curvature of green.
+Planes bayer_hamilton_adams(const LinearMosaic& mosaic);
+
 }  // namespace petzval

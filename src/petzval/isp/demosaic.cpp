@@ -126,6 +126,8 @@ const std::vector<DemosaicMethod>& demosaic_methods() {
   static const std::vector<DemosaicMethod> methods{
       {"bilinear", "mean of the nearest of each channel, weighted by a triangle", false, bilinear},
       {"malvar", "Malvar, He & Cutler 2004: bilinear with Laplacian corrections, linear", true, bayer_malvar},
+      {"hamilton-adams", "Hamilton & Adams 1997: along the edge, with the curvature of the other colour",
+       true, bayer_hamilton_adams},
       {"gradient", "Pekkucuksen & Altunbasak 2010: colour differences, weighted by their gradients", true,
        bayer_gradient},
       {"general", "bilinear, and the detail of the pixel's own channel handed to the others", false,
