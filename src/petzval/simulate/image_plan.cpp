@@ -169,9 +169,9 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
 /// A stored table is what it is: the scene stands where it was made for.
 ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, TableDetail,
                  const Context& context) {
-  const std::optional<double> distance_mm = object_to_sensor_mm(camera.table);
-  const std::optional<double> distance_m =
-      distance_mm ? std::optional(*distance_mm / mm_per_m) : std::nullopt;
+  std::optional<double> distance_m;
+  if (const std::optional<double> distance_mm = object_to_sensor_mm(camera.table))
+    distance_m = *distance_mm / mm_per_m;
   Scene scene = std::holds_alternative<Scene>(input)
                     ? std::get<Scene>(std::move(input))
                     : read(*std::get<const SceneRequest*>(input), distance_m, true, context);
