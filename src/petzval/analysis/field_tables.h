@@ -29,7 +29,8 @@ struct DistortionRow {
   bool lit = true;                      ///< false: no ray passes; heights and percentages are NaN
   double image_height_mm = 0;           ///< real chief ray
   double paraxial_image_height_mm = 0;  ///< f tan θ or m h at this wavelength
-  /// (real − paraxial)/paraxial; at zero field its limit, zero.
+  /// (real − paraxial)/paraxial; at zero field its limit, which is zero where the sensor is in paraxial
+  /// focus.
   double distortion_percent = 0;
   /// Against f θ; only for objects at infinity.
   std::optional<double> distortion_ftheta_percent;
