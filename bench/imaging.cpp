@@ -168,7 +168,7 @@ void product_768x576(benchmark::State& state) {
 }
 BENCHMARK(product_768x576)->Arg(2)->Arg(3)->Arg(4)->Unit(benchmark::kMillisecond);
 
-/// The same light through plain sections of 16 pixels with FFTW, kernels included.
+/// The same light through plain sections of 16 pixels, each with its own transform, kernels included.
 void sections_768x576(benchmark::State& state) {
   const ThreadLimit one_thread(1);
   const double pitch_um = 6.25;

@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/numeric/fft.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -76,6 +77,43 @@ TEST(Fft, ManyThreadsGiveTheBytesOfOne) {
     equal[i] = spectrum == expected ? 1 : 0;
   });
   for (const int value : equal) EXPECT_EQ(value, 1);
+}
+
+// Of seventeen lines some fill a vector of any machine and some are left over.
+TEST(LineFft, LinesTogetherGiveTheBytesOfEachAlone) {
+  for (const int size : {1, 2, 15, 16, 60, 97, 180, 1024}) {
+    const LineFft fft(size);
+    const std::size_t count = 17, step = static_cast<std::size_t>(size) + 1;
+    AlignedVector<std::complex<double>> lines(count * step);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (auto& value : lines) value = {uniform(random), uniform(random)};
+    for (const auto transform :
+         {&LineFft::forward, &LineFft::inverse, &LineFft::forward_real, &LineFft::inverse_real}) {
+      AlignedVector<std::complex<double>> one_by_one = lines;
+      for (std::size_t j = 0; j < count; ++j) (fft.*transform)(one_by_one.data() + j * step, 1, 0);
+      (fft.*transform)(lines.data(), count, static_cast<std::ptrdiff_t>(step));
+      EXPECT_TRUE(lines == one_by_one) << size;
+    }
+  }
+}
+
+TEST(LineFft, IsTheSumThatDefinesIt) {
+  constexpr int size = 60;
+  const AlignedVector<double> real = random_image<double>(size);
+  AlignedVector<std::complex<double>> line(size), spectrum(size / 2 + 1);
+  std::copy(real.begin(), real.end(), reinterpret_cast<double*>(spectrum.data()));
+  std::copy(real.begin(), real.end(), line.begin());
+  LineFft(size).forward(line.data());
+  LineFft(size).forward_real(spectrum.data());
+  for (int k = 0; k <= size / 2; ++k) {
+    const std::complex<double> sum = dft(real, 1, size, 0, k);
+    EXPECT_LT(std::abs(line[static_cast<std::size_t>(k)] - sum), 4e-14);
+    EXPECT_LT(std::abs(spectrum[static_cast<std::size_t>(k)] - sum), 4e-14);
+  }
+  LineFft(size).inverse_real(spectrum.data());
+  for (std::size_t i = 0; i < real.size(); ++i)
+    EXPECT_NEAR(reinterpret_cast<const double*>(spectrum.data())[i] / size, real[i], 1e-14);
 }
 
 TEST(Fft, RefusesWhatItCannotTransform) {

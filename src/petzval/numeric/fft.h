@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real two-dimensional Fourier transforms. fft.cpp is the only file that knows which library makes them
-// (FFTW).
+// Real two-dimensional Fourier transforms, and those of lines.
 #pragma once
 
 #include <complex>
 #include <cstddef>
-#include <memory>
 #include <new>
 #include <vector>
 
 namespace petzval {
 
-/// Memory aligned for the widest vectors of the machine; transforms accept nothing else.
+template <typename Real>
+class ComplexLines;
+template <typename Real>
+class RealLines;
+
+/// Memory aligned for the widest vectors of the machine.
 template <typename T>
 struct AlignedAllocator {
   using value_type = T;
@@ -33,11 +36,10 @@ using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 ///     AlignedVector<float> image(fft.size());
 ///     AlignedVector<std::complex<float>> spectrum(fft.spectrum_size());
 ///     fft.forward(image, spectrum);   // Σ image[r][c] exp(−2πi(kr/rows + lc/columns)), l = 0 … columns/2
-///     fft.inverse(spectrum, image);   // exponent +, not normalised: comes back times size(); ruins the
-///     spectrum
+///     fft.inverse(spectrum, image);   // exponent +, not normalised: comes back times size()
 ///
-/// Cheap to copy: plans of one size are made once per process and shared. Both transforms may be called from
-/// many threads at once. Plans are estimated, never timed, so that the bytes are the same in every run.
+/// The inverse leaves something else in the spectrum. Cheap to copy: what a size needs is made once per
+/// process and shared. Both transforms may be called from many threads at once.
 template <typename Real>
 class RealFft2 {
  public:
@@ -57,15 +59,18 @@ class RealFft2 {
   void inverse(AlignedVector<std::complex<Real>>& spectrum, AlignedVector<Real>& image) const;
 
  private:
-  struct Plans;
+  void check(std::size_t image_size, std::size_t spectrum_size) const;
+
   int rows_, columns_;
-  std::shared_ptr<const Plans> plans_;
+  const RealLines<Real>* along_rows_;
+  const ComplexLines<Real>* along_columns_;
 };
 
 extern template class RealFft2<float>;
 extern template class RealFft2<double>;
 
-/// Transforms of one line in double precision, in place. Plans are shared and estimated as those of RealFft2.
+/// Transforms of lines in double precision, in place: `count` of them, `step` complex numbers apart. Many at
+/// once take less time than one by one.
 ///
 /// Complex lines hold size() numbers. A real line of size() numbers lies in the same memory as its spectrum
 /// of size()/2 + 1 complex numbers: it is addressed through a pointer to the latter.
@@ -76,16 +81,14 @@ class LineFft {
 
   int size() const { return size_; }
   /// Σ line[j] exp(−2πi jk/size).
-  void forward(std::complex<double>* line) const;
+  void forward(std::complex<double>* lines, std::size_t count = 1, std::ptrdiff_t step = 0) const;
   /// Exponent +, not normalised.
-  void inverse(std::complex<double>* line) const;
-  void forward_real(std::complex<double>* line) const;
-  void inverse_real(std::complex<double>* line) const;
+  void inverse(std::complex<double>* lines, std::size_t count = 1, std::ptrdiff_t step = 0) const;
+  void forward_real(std::complex<double>* lines, std::size_t count = 1, std::ptrdiff_t step = 0) const;
+  void inverse_real(std::complex<double>* lines, std::size_t count = 1, std::ptrdiff_t step = 0) const;
 
  private:
-  struct Plans;
   int size_;
-  std::shared_ptr<const Plans> plans_;
 };
 
 /// The smallest even size of at least `at_least` (≥ 1) that transforms fast: 2^a·3^b·5^c, a ≥ 1.

@@ -57,6 +57,7 @@ class Band {
 
   void spread(int first, int count) {
     stride_ = static_cast<std::size_t>(columns_) + SpreadingKernel::lanes + 2;
+    stride_ += stride_ % 2;  // a whole number of complex ones
     cells_.assign(stride_ * static_cast<std::size_t>(count), 0);
     for (int start = first - width + 1; start < first + count; ++start) {
       const auto row = static_cast<std::size_t>((start % rows_ + rows_) % rows_);
@@ -69,6 +70,8 @@ class Band {
     }
   }
   double* row_cells(int row) { return cells_.data() + static_cast<std::size_t>(row) * stride_; }
+  /// From one row_line() to the next.
+  std::ptrdiff_t line_step() const { return static_cast<std::ptrdiff_t>(stride_ / 2); }
   Complex* row_line(int row) { return reinterpret_cast<Complex*>(row_cells(row)); }
 
  private:
@@ -136,13 +139,19 @@ void NonuniformFft2::transform(const PointMasses& points, int alias_period, std:
       Band band(points, order, columns_, rows_);
       const int top = static_cast<int>(band_index) * band_rows, count = std::min(band_rows, rows_ - top);
       band.spread(top, count);
-      for (int r = 0; r < count; ++r) row_fft.forward_real(band.row_line(r));
+      row_fft.forward_real(band.row_line(0), static_cast<std::size_t>(count), band.line_step());
       for (int k = first; k < end; ++k) {
         Complex* column = slab.data() + static_cast<std::size_t>(k - first) * rows + top;
         for (int r = 0; r < count; ++r) column[r] = band.row_line(r)[k];
       }
     });
-    // Columns, those that fold onto each other one after the other.
+    constexpr std::size_t batch = 16;
+    const auto columns = static_cast<std::size_t>(end - first);
+    parallel_for((columns + batch - 1) / batch, [&](std::size_t index) {
+      column_fft.forward(slab.data() + index * batch * rows, std::min(batch, columns - index * batch),
+                         static_cast<std::ptrdiff_t>(rows));
+    });
+    // Columns that fold onto each other are visited one after the other.
     parallel_for(static_cast<std::size_t>(alias_period / 2 + 1), [&](std::size_t residue) {
       std::vector<Complex> values(2 * static_cast<std::size_t>(l_max_) + 1);
       for (int k = first; k < end; ++k) {
@@ -155,8 +164,7 @@ void NonuniformFft2::transform(const PointMasses& points, int alias_period, std:
           k += step - 1;
           continue;
         }
-        Complex* column = slab.data() + static_cast<std::size_t>(k - first) * rows;
-        column_fft.forward(column);
+        const Complex* column = slab.data() + static_cast<std::size_t>(k - first) * rows;
         const double k_correction = column_correction_[static_cast<std::size_t>(k)];
         for (int l = -l_max_; l <= l_max_; ++l)
           values[static_cast<std::size_t>(l + l_max_)] =

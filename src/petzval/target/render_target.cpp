@@ -179,22 +179,25 @@ std::vector<double> AliasFolder::picture() {
   const auto rows = static_cast<std::size_t>(period.rows);
   const std::size_t half = static_cast<std::size_t>(period.columns) / 2 + 1;
   const LineFft down(period.rows), across(period.columns);
-  parallel_for(half, [&](std::size_t column) { down.inverse(spectrum_.data() + column * rows); });
+  constexpr std::size_t block = 16;  // lines at a time, so that they share cache lines and vectors
+  parallel_for((half + block - 1) / block, [&](std::size_t index) {
+    down.inverse(spectrum_.data() + index * block * rows, std::min(block, half - index * block),
+                 static_cast<std::ptrdiff_t>(rows));
+  });
 
   const auto width = static_cast<std::size_t>(options_.columns),
              height = static_cast<std::size_t>(options_.rows);
   const auto left = static_cast<std::size_t>(-period.origin.x),
              top = static_cast<std::size_t>(-period.origin.y);
   std::vector<double> values(width * height);
-  constexpr std::size_t block = 16;  // rows at a time, so that columns are read by whole cache lines
   parallel_for((height + block - 1) / block, [&](std::size_t index) {
     const std::size_t first = index * block, count = std::min(block, height - first);
     AlignedVector<Complex> lines(half * count);
     for (std::size_t column = 0; column < half; ++column)
       for (std::size_t r = 0; r < count; ++r)
         lines[r * half + column] = spectrum_[column * rows + top + first + r];
+    across.inverse_real(lines.data(), count, static_cast<std::ptrdiff_t>(half));
     for (std::size_t r = 0; r < count; ++r) {
-      across.inverse_real(lines.data() + r * half);
       const auto* line = reinterpret_cast<const double*>(lines.data() + r * half) + left;
       std::copy(line, line + width, values.begin() + static_cast<std::ptrdiff_t>((first + r) * width));
     }
