@@ -88,13 +88,34 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
   return command;
 }
 
-void refuse_unknown_command(const CLI::App& program, const std::vector<std::string>& words) {
+namespace {
+
+/// \throws InputError for a word like an option that the command has not. \param way  of commands to this
+/// one.
+void refuse_unknown_options(const CLI::App& command, const std::string& way,
+                            const std::vector<std::string>& words) {
+  if (command.get_allow_extras()) return;  // they are those of another command
+  std::vector<std::string> names{"--help", "--help-all"};
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& word : words) {
+    if (word == "--") return;
+    const std::string name = word.substr(0, word.find('='));
+    if (!name.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw InputError(fmt::format("{} has no option {}; the nearest are {} (see {} --help)", way, name,
+                                 fmt::join(nearest_names(name, names), ", "), way));
+  }
+}
+
+}  // namespace
+
+void refuse_unknown_words(const CLI::App& program, const std::vector<std::string>& words) {
   const CLI::App* at = &program;
   std::string way = program.get_name();
   for (const std::string& word : words) {
-    if (word.starts_with('-')) return;
+    if (word.starts_with('-')) break;
     const std::vector<const CLI::App*> known = at->get_subcommands([](const CLI::App*) { return true; });
-    if (known.empty()) return;
+    if (known.empty()) break;
     std::vector<std::string> names;
     for (const CLI::App* command : known) names.push_back(command->get_name());
     const auto found = std::find(names.begin(), names.end(), word);
@@ -104,6 +125,7 @@ void refuse_unknown_command(const CLI::App& program, const std::vector<std::stri
     way += " " + word;
     at = known[static_cast<std::size_t>(found - names.begin())];
   }
+  refuse_unknown_options(*at, way, words);
 }
 
 namespace {

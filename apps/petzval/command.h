@@ -36,9 +36,9 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
                       const std::string& description, const std::string& example, bool prints_numbers,
                       std::function<void()> work);
 
-/// \throws InputError when the words of a command line name a subcommand that does not exist, with the
-/// nearest that do.
-void refuse_unknown_command(const CLI::App& program, const std::vector<std::string>& words);
+/// \throws InputError when the words of a command line name a command or an option that does not exist, with
+/// the nearest that do.
+void refuse_unknown_words(const CLI::App& program, const std::vector<std::string>& words);
 
 /// What a word of an option has to be: "a number", "a whole number", "a value".
 std::string right_word(const CLI::Option& option);

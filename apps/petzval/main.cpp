@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The petzval program: parses the command line and turns exceptions into exit codes.
+#include "help.h"
 #include "option_names.h"
 #include "program.h"
 
@@ -55,7 +56,8 @@ int main(int argc, char** argv) {
   app::add_all_commands(program, shared);
   std::vector<std::string> words = app::with_help_option({argv + 1, argv + argc});
   try {
-    app::refuse_unknown_command(program, words);
+    app::refuse_unknown_words(program, words);
+    app::arrange_help(program, words);
     std::reverse(words.begin(), words.end());  // as CLI11 wants them
     program.parse(std::move(words));
     // Results on stdout are results: a full disk behind a pipe is a failure too.

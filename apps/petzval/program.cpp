@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program.h"
 
+#include "help.h"
+
 #include <fmt/format.h>
 #include <petzval/base/version.h>
 
@@ -23,6 +25,7 @@ std::pair<CLI::App*, std::string> reached(CLI::App& program) {
 
 void add_all_commands(CLI::App& program, Shared& shared) {
   program.set_version_flag("--version", std::string("petzval ") + version());
+  program.set_help_flag("-h,--help", "Prints this help");
   program.require_subcommand(1);
   add_lens_commands(program, shared);
   add_glass_commands(program, shared);
@@ -39,6 +42,7 @@ void add_all_commands(CLI::App& program, Shared& shared) {
   add_measure_command(program, shared);
   add_sweep_command(program, shared);
   add_demo_command(program, shared);
+  add_help_commands(program);
 }
 
 std::string usage_message(CLI::App& program, const CLI::ParseError& error) {

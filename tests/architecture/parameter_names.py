@@ -49,7 +49,7 @@ def names_of_program(source):
 
 def options(program, words=()):
     """Options of a command and of those below it."""
-    text = subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([program, *words, "--help-all"], capture_output=True, text=True, check=True).stdout
     found = set(re.findall(r"--[a-z][a-z0-9-]+", text.split("Example:")[0]))
     below = text.partition("Subcommands:")[2]
     for command in re.findall(r"^  ([a-z][a-z-]*) ", below, re.MULTILINE):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program as a whole: version, help, wrong usage."""
 
+import re
 import subprocess
 import unittest
 
@@ -74,9 +75,49 @@ class Help(ProgramTest):
 
     def test_options_are_in_kebab_case(self):
         for command in leaf_commands():
-            text = self.assert_succeeds(*command, "--help")
+            text = self.assert_succeeds(*command, "--help-all")
             with self.subTest(command=" ".join(command)):
                 self.assertNotRegex(text, r"\s--\w*[A-Z_]\w*")
+
+    def test_options_of_every_day_come_first(self):
+        short, whole = (self.assert_succeeds("image", option) for option in ("--help", "--help-all"))
+        for option in ("--lens", "--sensor", "--focus", "--f-number", "--output"):
+            self.assertIn(option, short)
+        for option in ("--scene-negative-zero", "--sharpen-radius"):
+            self.assertNotIn(option, short)
+            self.assertIn(option, whole)
+        self.assertLess(len(short.splitlines()), 50)
+        headings = re.findall(r"^([A-Z][a-z].*):$", whole, re.MULTILINE)
+        for heading in ("Scene", "Lens", "Focus", "Sensor", "Exposure of the sensor", "Output"):
+            self.assertIn(heading, headings)
+
+    def test_a_mistyped_option_names_the_nearest(self):
+        self.assert_refused("image", "studio", "--lense", "dgauss-50mm", words=["no option --lense", "--lens,"])
+        self.assert_refused("lens", "mtf", "dgauss-50mm", "--frequencie=3", words=["--frequencies"])
+
+    def test_completion_offers_commands_options_and_names(self):
+        script = self.write("completion", self.assert_succeeds("completion"))
+
+        def offered(*words):
+            listing = ("source \"$0\"; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _petzval; "
+                       "printf '%s\\n' \"${COMPREPLY[@]}\"")
+            done = subprocess.run(["bash", "-c", listing, script, "petzval", *words], capture_output=True, text=True,
+                                  check=True)
+            return done.stdout.split()
+
+        self.assertEqual(offered("ren"), ["render"])
+        self.assertEqual(offered("lens", "mt"), ["mtf"])
+        self.assertIn("--frequencies", offered("lens", "mtf", "--fre"))
+        self.assertIn("dgauss-50mm", offered("image", "studio", "--lens", "dg"))
+        self.assertEqual(offered("image", "--method", "ex"), ["exact"])
+        self.assertIn("dgauss-50mm", offered("lens", "info", "dg"))
+
+    def test_the_man_page_has_every_command_and_option(self):
+        page = self.assert_succeeds("manual").replace("\\-", "-")
+        for command in leaf_commands():
+            self.assertIn(".SS petzval " + " ".join(command) + "\n", page)
+        for option in re.findall(r"--[a-z][a-z-]+", self.assert_succeeds("image", "--help-all").split("Example")[0]):
+            self.assertIn(option, page + "--help-all")
 
 
 if __name__ == "__main__":
