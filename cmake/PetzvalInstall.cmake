@@ -6,12 +6,42 @@ set(PETZVAL_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/petzval)
 set(PETZVAL_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/petzval)
 
 install(TARGETS petzval EXPORT petzvalTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/petzval DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h")
+
+# The public headers, and those that they include; all others are the library's own.
+set(PETZVAL_PUBLIC_HEADERS petzval.h measure/colour_chart.h measure/photon_transfer.h
+  measure/picture_comparison.h measure/sfr/measure_edge.h optics/table_file.h report/lens_drawing.h target/formats/polygon_file.h
+  target/test_charts.h)
+function(petzval_install_headers)
+  set(waiting ${PETZVAL_PUBLIC_HEADERS})
+  set(installed)
+  while(waiting)
+    list(POP_FRONT waiting header)
+    if(header IN_LIST installed)
+      continue()
+    endif()
+    list(APPEND installed ${header})
+    file(STRINGS ${PROJECT_SOURCE_DIR}/src/petzval/${header} lines REGEX "^#include <petzval/")
+    foreach(line IN LISTS lines)
+      string(REGEX REPLACE "^#include <petzval/([^>]*)>.*" "\\1" included ${line})
+      list(APPEND waiting ${included})
+    endforeach()
+    get_filename_component(folder ${header} DIRECTORY)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/petzval/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/petzval/${folder})
+  endwhile()
+  list(SORT installed)
+  string(REPLACE ";" "\n" installed "${installed}")
+  file(WRITE ${PROJECT_BINARY_DIR}/public_headers.txt "${installed}\n")
+endfunction()
+petzval_install_headers()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/ DESTINATION ${PETZVAL_INSTALL_DATADIR} PATTERN "*.py" EXCLUDE)
+# Found from the data: a prefix holds share/petzval and libexec/petzval, wherever it is moved.
+install(TARGETS petzval_read_hdf5 RUNTIME DESTINATION libexec/petzval)
 if(PETZVAL_BUILD_APPS)
   # The program finds its data in ../share/petzval beside itself, so the whole tree may be moved.
   install(TARGETS petzval_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${PROJECT_BINARY_DIR}/share/petzval.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${PROJECT_BINARY_DIR}/share/petzval.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME petzval)
 endif()
 
 install(EXPORT petzvalTargets NAMESPACE petzval:: DESTINATION ${PETZVAL_INSTALL_CMAKEDIR})

@@ -84,6 +84,10 @@ void set_default_data_directory(const std::string& path) {
   data_folders([&](DataFolders& folders) { folders.usual = path; });
 }
 
+std::string default_data_directory() {
+  return data_folders().usual;
+}
+
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension) {
   std::vector<std::string> names;
   std::error_code error;

@@ -18,6 +18,8 @@ void set_data_directory(const std::string& path);
 /// Sets the one that counts where nobody says otherwise. A program that links the installed package has it
 /// set to the package's own data. Not checked here.
 void set_default_data_directory(const std::string& path);
+/// As it was set, or nothing.
+std::string default_data_directory();
 
 /// A file given by the user: a path that exists is taken as it is; a bare name (no '/') means
 /// `<data>/<kind>/<name><extension>`. \param what  for the message: "lens", "sensor".

@@ -37,11 +37,15 @@ void write_table(const LensDataTable& table, const std::string& path);
 
 enum class TableOrigin {
   petzval,   ///< begins with the checksum, or is refused
-  elsewhere  ///< no checksum is asked for: a process of its own reads it, which a damaged file may crash
+  elsewhere  ///< no checksum is asked for: a program of its own reads it, which a damaged file may crash
 };
 
 /// Reads a table and checks everything: layout, sizes (before any memory is taken for them), axes, values.
 /// \throws InputError naming file and dataset.
 LensDataTable read_table(const std::string& path, TableOrigin origin = TableOrigin::petzval);
+
+/// Reads a table without a checksum and writes it with one, in this process, which a damaged file may crash.
+/// \throws InputError, Failure as both.
+void seal_table(const std::string& path, const std::string& sealed);
 
 }  // namespace petzval

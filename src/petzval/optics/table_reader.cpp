@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <petzval/base/child_process.h>
 #include <petzval/base/error.h>
+#include <petzval/base/helper_process.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/scratch_folder.h>
 #include <petzval/optics/psf_squares.h>
@@ -239,13 +239,13 @@ LensDataTable read_file(const std::string& path, bool sealed) {
   return table;
 }
 
-/// A table that may crash HDF5: a process of its own reads it and writes it with a seal.
+/// A table that may crash HDF5: a program of its own reads it and writes it with a seal.
 LensDataTable read_apart(const std::string& path) {
   const ScratchFolder folder;
   const std::string sealed = folder.path() + "/sealed.h5";
-  const ChildEnd end = run_in_child([&] { write_table(read_file(path, false), sealed); });
-  if (end == ChildEnd::crashed) throw InputError(path, "is damaged: the HDF5 library crashes on it");
-  if (end == ChildEnd::endless) throw InputError(path, "is damaged: the HDF5 library finds no end");
+  const HelperEnd end = run_helper(helper_program("petzval-read-hdf5"), {"table", path, sealed});
+  if (end == HelperEnd::crashed) throw InputError(path, "is damaged: the HDF5 library crashes on it");
+  if (end == HelperEnd::endless) throw InputError(path, "is damaged: the HDF5 library finds no end");
   return read_table(sealed);
 }
 
@@ -255,6 +255,10 @@ LensDataTable read_table(const std::string& path, TableOrigin origin) {
   if (origin == TableOrigin::elsewhere) return read_apart(path);
   check_table_seal(path);
   return read_file(path, true);
+}
+
+void seal_table(const std::string& path, const std::string& sealed) {
+  write_table(read_file(path, false), sealed);
 }
 
 }  // namespace petzval

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/base/child_process.h>
 #include <petzval/base/error.h>
+#include <petzval/base/helper_process.h>
 #include <petzval/base/nameless_file.h>
-#include <petzval/scene/formats/mat_hdf5.h>
 #include <petzval/scene/formats/mat_hdf5_apart.h>
 #include <petzval/scene/formats/mat_hdf5_array.h>
 #include <sys/mman.h>
@@ -42,12 +41,13 @@ MappedRecords mat_hdf5_records(const std::string& path, const std::vector<std::s
   const NamelessFile file;
   if (!file) throw Failure("there is no room for files in $TMPDIR or /var/tmp");
   // Much more than any sound file takes: 10 s a megabyte, which may unpack to a gigabyte.
-  ChildLimits limits;
+  HelperLimits limits;
   limits.processor_s = 5 + 1e-5 * size_of_file(path);
-  const ChildEnd end =
-      run_in_child([&] { write_mat_hdf5_records(path, variables, file.descriptor()); }, limits);
-  if (end == ChildEnd::crashed) refuse_damaged_mat(path, "the HDF5 library crashes on it");
-  if (end == ChildEnd::endless) refuse_damaged_mat(path, "the HDF5 library finds no end");
+  std::vector<std::string> words{"mat", path};
+  words.insert(words.end(), variables.begin(), variables.end());
+  const HelperEnd end = run_helper(helper_program("petzval-read-hdf5"), words, file.descriptor(), limits);
+  if (end == HelperEnd::crashed) refuse_damaged_mat(path, "the HDF5 library crashes on it");
+  if (end == HelperEnd::endless) refuse_damaged_mat(path, "the HDF5 library finds no end");
 
   struct stat about {};
   if (fstat(file.descriptor(), &about) != 0) throw Failure(path + ": its variables are lost");

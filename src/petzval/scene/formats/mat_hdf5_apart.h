@@ -19,8 +19,8 @@ struct MappedRecords {
   std::span<std::byte> records;
 };
 
-/// write_mat_hdf5_records in a child process, into a file without a name. \throws InputError, Failure as it
-/// does; InputError if HDF5 crashed on the file, or found no end.
+/// write_mat_hdf5_records in a program of its own (petzval-read-hdf5), into a file without a name. \throws
+/// InputError, Failure as it does; InputError if HDF5 crashed on the file, or found no end.
 MappedRecords mat_hdf5_records(const std::string& path, const std::vector<std::string>& variables);
 
 }  // namespace petzval
