@@ -49,6 +49,10 @@ ColourMatrix operator*(const ColourMatrix& a, const ColourMatrix& b) {
   return plain(eigen(a) * eigen(b));
 }
 
+ColourMatrix inverse(const ColourMatrix& matrix) {
+  return plain(eigen(matrix).inverse());
+}
+
 Xyz operator*(const ColourMatrix& m, Xyz c) {
   return {m[0][0] * c.x + m[0][1] * c.y + m[0][2] * c.z, m[1][0] * c.x + m[1][1] * c.y + m[1][2] * c.z,
           m[2][0] * c.x + m[2][1] * c.y + m[2][2] * c.z};

@@ -18,6 +18,8 @@ struct LinearRgb {
 /// A linear map of tristimulus values; row-major.
 using ColourMatrix = std::array<std::array<double, 3>, 3>;
 ColourMatrix operator*(const ColourMatrix& a, const ColourMatrix& b);
+/// Of a matrix that has one.
+ColourMatrix inverse(const ColourMatrix& matrix);
 Xyz operator*(const ColourMatrix& matrix, Xyz colour);
 
 /// White of sRGB and of Rec. 709: D65 as x = 0.3127, y = 0.3290 (IEC 61966-2-1), Y = 1.

@@ -13,7 +13,7 @@
 namespace petzval {
 
 /// Patches of the chart, the six greys along the bottom.
-constexpr int chart_columns = 6, chart_rows = 4;
+inline constexpr int chart_columns = 6, chart_rows = 4;
 
 /// Where the chart is: the centres of its corner patches, in pixels (pixel centres at half-integers): dark
 /// skin, bluish green, black, white, which is top left, top right, bottom right, bottom left of an upright

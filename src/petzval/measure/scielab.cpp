@@ -82,19 +82,6 @@ Samples seen(const Samples& plane, int columns, int rows, const std::vector<Gaus
   return sum;
 }
 
-/// Inverse by Cramer's rule.
-ColourMatrix inverse(const ColourMatrix& m) {
-  ColourMatrix result{};
-  const auto minor = [&](std::size_t r, std::size_t c) {
-    const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-    return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1];
-  };
-  const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) result[c][r] = minor(r, c) / determinant;
-  return result;
-}
-
 /// The picture as it is seen, in CIELAB.
 std::vector<Lab> seen_lab(const ViewedPicture& picture, double per_degree) {
   std::array<Samples, 3> planes;
