@@ -23,7 +23,7 @@ struct SfrCommand {
   std::string csv, plot, profile, annotate;
   std::vector<std::string> rois, against;
   std::optional<double> pitch_um;
-  int edge_order = 1;
+  int edge_order = 0;
 };
 
 PixelBox box_of(const std::string& text) {
@@ -93,8 +93,9 @@ PixelBox box_around(const std::vector<EdgeSample>& samples) {
 
 class Measurement {
  public:
-  Measurement(const SfrCommand& command, const PicturePlanes& picture, const std::vector<Channel>& channels)
-      : command_(command), channels_(channels), guide_(picture.luminance()) {
+  Measurement(const SfrCommand& command, const PicturePlanes& picture, const std::vector<Channel>& channels,
+              const Shared& shared)
+      : command_(command), channels_(channels), shared_(shared), guide_(picture.luminance()) {
     options_.edge_order = command.edge_order;
     options_.clip_low = picture.clip_low, options_.clip_high = picture.clip_high;
     options_.code_levels = picture.code_levels;
@@ -130,6 +131,11 @@ class Measurement {
     std::vector<MeasuredEdge> edges;
     for (auto& result : results) std::move(result.begin(), result.end(), std::back_inserter(edges));
     if (edges.empty()) throw InputError(command_.image, faults.empty() ? "no edge" : faults.front());
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+      if (!faults[i].empty())
+        note(shared_, fmt::format("{}: the edge from {:.0f},{:.0f} to {:.0f},{:.0f} is left out: {}",
+                                  command_.image, jobs[i].edge->from.x, jobs[i].edge->from.y,
+                                  jobs[i].edge->to.x, jobs[i].edge->to.y, faults[i]));
     return edges;
   }
 
@@ -148,10 +154,10 @@ class Measurement {
   EdgeMeasurement measure(const Channel& channel, std::vector<EdgeSample> samples,
                           const FoundEdge* edge) const {
     SfrOptions options = options_;
-    if (edge != nullptr)
-      options.missing_target = [=, this](double x, double y) {
-        return missing_target_at(found_, *edge, x, y);
-      };
+    if (edge != nullptr) {
+      options.start = edge->line();
+      options.missing_target = [=](double x, double y) { return missing_target_at(*edge, x, y); };
+    }
     return measure_edge(std::move(samples), channel.lattices.front().step, options);
   }
 
@@ -212,6 +218,7 @@ class Measurement {
 
   const SfrCommand& command_;
   const std::vector<Channel>& channels_;
+  const Shared& shared_;
   Plane guide_;
   SfrOptions options_;
   FoundEdges found_;
@@ -236,7 +243,7 @@ void run(const SfrCommand& command, const Shared& shared) {
   const PicturePlanes picture = read_picture_planes(command.image, transfer);
   const std::vector<Channel> channels = channels_of(command, picture);
   SfrReport report{command.image, picture.columns, picture.rows, command.pitch_um,
-                   Measurement(command, picture, channels).run()};
+                   Measurement(command, picture, channels, shared).run()};
   StagedFiles files;
   if (!command.csv.empty()) write_sfr_csv(files.stage(command.csv), report);
   if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), report, others);
@@ -274,9 +281,10 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->check(CLI::IsMember({"stated", "srgb", "linear"}))
       ->capture_default_str();
   command
-      ->add_option("--edge-order", options->edge_order,
-                   "1: straight edges, up to 5: bent by a polynomial of that order")
-      ->check(CLI::Range(1, 5))
+      ->add_option(
+          "--edge-order", options->edge_order,
+          "0: bent as far as the pixels show; 1: straight; up to 5: bent by a polynomial of that order")
+      ->check(CLI::Range(0, 5))
       ->capture_default_str();
   command
       ->add_option("--method", options->method,

@@ -68,7 +68,7 @@ TEST(FindEdges, ARectanglesEdgesMeasureAsHalfPlanesDo) {
     for (const FoundEdge& edge : found.edges) {
       SfrOptions options;
       const double ignorant = worst_error(shot, measure_edge(samples_about(shot.plane, edge), 1, options));
-      options.missing_target = [&](double x, double y) { return missing_target_at(found, edge, x, y); };
+      options.missing_target = [&](double x, double y) { return missing_target_at(edge, x, y); };
       const EdgeMeasurement m = measure_edge(samples_about(shot.plane, edge), 1, options);
       EXPECT_LT(worst_error(shot, m), 3e-4);
       EXPECT_GT(ignorant, 1e-3);
@@ -94,7 +94,7 @@ TEST(FindEdges, WhatIsMissingFromAHalfPlaneIsAnAreaIntegral) {
         sum += cell * cell * std::pow(std::hypot(px - x, py - y), -3);
   // Beyond the half square of 1000 px lie another ∮ (x·n)/r³ ds = 2√2/1000; the outline found is good to some
   // hundredths of a pixel, and so is the field to 1 %.
-  EXPECT_NEAR(missing_target_at(found, *right, x, y), sum + 2 * std::sqrt(2.0) / 1000, 3e-4);
+  EXPECT_NEAR(missing_target_at(*right, x, y), sum + 2 * std::sqrt(2.0) / 1000, 3e-4);
 }
 
 TEST(FindEdges, ChartsAndBlur) {

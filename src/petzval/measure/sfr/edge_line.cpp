@@ -126,22 +126,75 @@ std::vector<EdgeSample> thinned(std::span<const EdgeSample> samples) {
   return few;
 }
 
+/// A start of the fit, and the values' fifth and ninety-fifth percentile.
+struct Levels {
+  double dark = 0, bright = 0;
+};
+
+Levels levels_of(const std::vector<EdgeSample>& samples) {
+  std::vector<double> values;
+  for (const EdgeSample& s : samples) values.push_back(s.value);
+  std::sort(values.begin(), values.end());
+  if (!(values.back() > values.front())) throw InputError("all values are equal: there is no edge");
+  return {values[values.size() / 20], values[values.size() - 1 - values.size() / 20]};
+}
+
+/// The guess that a fit has come to. \throws InputError as guess_edge().
+EdgeGuess guess_of(Vector5 fitted, double cost, std::size_t fitted_samples, const Overview& o,
+                   std::span<const EdgeSample> samples, double spacing) {
+  if (fitted[4] < fitted[3]) {
+    std::swap(fitted[3], fitted[4]);
+    fitted[0] = -fitted[0];
+    fitted[1] += pi;
+  }
+  EdgeGuess guess;
+  guess.line.normal_rad = std::remainder(fitted[1], 2 * pi);
+  guess.line.centre_x = o.x + fitted[0] * std::cos(fitted[1]);
+  guess.line.centre_y = o.y + fitted[0] * std::sin(fitted[1]);
+  guess.dark = fitted[3];
+  guess.bright = fitted[4];
+  guess.scale_px = std::exp(fitted[2]);
+  guess.rms_residual = std::sqrt(cost / static_cast<double>(fitted_samples));
+  if (!(guess.bright - guess.dark > 4 * guess.rms_residual))
+    throw InputError(fmt::format("no edge stands out: a step of {:.3g} among differences of {:.3g} from it",
+                                 guess.bright - guess.dark, guess.rms_residual));
+  double low = 0, high = 0, farthest = 1;
+  const EdgeFrame frame(guess.line);
+  for (const EdgeSample& s : samples) {
+    const EdgeFrame::Place place = frame.at(s.x, s.y);
+    low = std::min(low, place.distance), high = std::max(high, place.distance);
+    farthest = std::max(farthest, std::abs(place.along));  // half_length is 1 so far
+  }
+  guess.line.half_length = farthest;
+  if (std::min(-low, high) < 2 * spacing)
+    throw InputError("the edge runs along the rim; there must be pixels on both of its sides");
+  return guess;
+}
+
 }  // namespace
 
+EdgeFrame::EdgeFrame(const EdgeLine& line)
+    : line_(line), cos_(std::cos(line.normal_rad)), sin_(std::sin(line.normal_rad)) {}
+
+EdgeFrame::Place EdgeFrame::at(double x, double y) const {
+  const double dx = x - line_.centre_x, dy = y - line_.centre_y;
+  Place place{(dy * cos_ - dx * sin_) / line_.half_length, dx * cos_ + dy * sin_};
+  if (line_.bend.empty()) return place;
+  double offset = 0, slope = 0, power = 1;
+  for (std::size_t k = 0; k < line_.bend.size(); ++k) {
+    slope += static_cast<double>(k + 1) * line_.bend[k] * power / line_.half_length;
+    offset += line_.bend[k] * (power *= place.along);
+  }
+  place.distance = (place.distance - offset) / std::sqrt(1 + slope * slope);
+  return place;
+}
+
 double EdgeLine::along(double x, double y) const {
-  return ((y - centre_y) * std::cos(normal_rad) - (x - centre_x) * std::sin(normal_rad)) / half_length;
+  return EdgeFrame(*this).at(x, y).along;
 }
 
 double EdgeLine::distance(double x, double y) const {
-  const double straight = (x - centre_x) * std::cos(normal_rad) + (y - centre_y) * std::sin(normal_rad);
-  if (bend.empty()) return straight;
-  const double t = along(x, y);
-  double offset = 0, slope = 0, power = 1;
-  for (std::size_t k = 0; k < bend.size(); ++k) {
-    slope += static_cast<double>(k + 1) * bend[k] * power / half_length;
-    offset += bend[k] * (power *= t);
-  }
-  return (straight - offset) / std::sqrt(1 + slope * slope);
+  return EdgeFrame(*this).at(x, y).distance;
 }
 
 double EdgeLine::angle_deg() const {
@@ -154,49 +207,30 @@ double EdgeLine::angle_deg() const {
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
   const Overview o = overview_of(samples);
   const std::vector<EdgeSample> few = thinned(samples);
-  std::vector<double> values;
-  for (const EdgeSample& s : few) values.push_back(s.value);
-  std::sort(values.begin(), values.end());
-  const double dark = values[values.size() / 20], bright = values[values.size() - 1 - values.size() / 20];
-  if (!(values.back() > values.front())) throw InputError("all values are equal: there is no edge");
-
+  const Levels levels = levels_of(few);
   const LogisticFit fit(few, o);
   Vector5 best = Vector5::Zero();
   double best_cost = HUGE_VAL;
   for (const double direction : {gradient_direction(samples, spacing, o), std::atan2(o.slope_y, o.slope_x)})
     for (const double scale : {0.5, 4.0}) {
       Vector5 start;
-      start << 0, direction, std::log(scale * spacing), dark, bright;
+      start << 0, direction, std::log(scale * spacing), levels.dark, levels.bright;
       const Vector5 end = fit.run(start);
       const double cost = fit.cost(end);
       if (cost < best_cost) best_cost = cost, best = end;
     }
-  if (best[4] < best[3]) {
-    std::swap(best[3], best[4]);
-    best[0] = -best[0];
-    best[1] += pi;
-  }
-  EdgeGuess guess;
-  guess.line.normal_rad = std::remainder(best[1], 2 * pi);
-  guess.line.centre_x = o.x + best[0] * std::cos(best[1]);
-  guess.line.centre_y = o.y + best[0] * std::sin(best[1]);
-  guess.dark = best[3];
-  guess.bright = best[4];
-  guess.scale_px = std::exp(best[2]);
-  guess.rms_residual = std::sqrt(best_cost / static_cast<double>(few.size()));
-  if (!(guess.bright - guess.dark > 4 * guess.rms_residual))
-    throw InputError(fmt::format("no edge stands out: a step of {:.3g} among differences of {:.3g} from it",
-                                 guess.bright - guess.dark, guess.rms_residual));
-  double low = 0, high = 0;
-  for (const EdgeSample& s : samples) {
-    const double d = guess.line.distance(s.x, s.y);
-    low = std::min(low, d), high = std::max(high, d);
-    guess.line.half_length =
-        std::max(guess.line.half_length, std::abs(guess.line.along(s.x, s.y) * guess.line.half_length));
-  }
-  if (std::min(-low, high) < 2 * spacing)
-    throw InputError("the edge runs along the rim; there must be pixels on both of its sides");
-  return guess;
+  return guess_of(best, best_cost, few.size(), o, samples, spacing);
+}
+
+EdgeGuess guess_edge(std::span<const EdgeSample> samples, const EdgeLine& start) {
+  const Overview o = overview_of(samples);
+  const std::vector<EdgeSample> few = thinned(samples);
+  const Levels levels = levels_of(few);
+  const LogisticFit fit(few, o);
+  Vector5 at;
+  at << -start.distance(o.x, o.y), start.normal_rad, 0, levels.dark, levels.bright;
+  const Vector5 end = fit.run(at);
+  return guess_of(end, fit.cost(end), few.size(), o, samples, 1);
 }
 
 }  // namespace petzval

@@ -26,6 +26,21 @@ struct EdgeLine {
   double angle_deg() const;
 };
 
+/// The coordinates of many places about a line.
+class EdgeFrame {
+ public:
+  explicit EdgeFrame(const EdgeLine& line);
+  struct Place {
+    double along = 0, distance = 0;
+  };
+  /// EdgeLine::along() and EdgeLine::distance().
+  Place at(double x, double y) const;
+
+ private:
+  const EdgeLine& line_;
+  double cos_, sin_;
+};
+
 /// A first guess: line, width and levels of the straight edge with a logistic profile that fits the samples
 /// best, by Levenberg-Marquardt from two starts, the structure of the gradient and the plane through all
 /// values. Works for blurs as wide as the ROI.
@@ -40,5 +55,7 @@ struct EdgeGuess {
 /// \throws InputError when no edge stands out: a step below four times the residual, or one that runs past
 /// the samples.
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing);
+/// The same from one start, a line that is known to within the blur.
+EdgeGuess guess_edge(std::span<const EdgeSample> samples, const EdgeLine& start);
 
 }  // namespace petzval

@@ -4,6 +4,7 @@
 
 #include <petzval/measure/sfr/quantisation_noise.h>
 
+#include <Eigen/Core>
 #include <complex>
 #include <span>
 #include <vector>
@@ -17,6 +18,9 @@ inline constexpr double usual_tail_px = 0.06;
 /// A sample by its distance from the edge.
 struct EdgePoint {
   double distance = 0, value = 0;
+  double along = 0;    ///< place along the edge, −1 to 1
+  double light = 0;    ///< expected value over that of the bright side; both only for light that varies
+  double missing = 0;  ///< SfrOptions::missing_target there [1/pixel]
 };
 
 struct EdgeSpreadOptions {
@@ -24,49 +28,99 @@ struct EdgeSpreadOptions {
   double knot_px = 0.25;  ///< spacing of the splines
   double blur_px = 1;     ///< scale of the transition, for the prior of the tail's second term
   double noise = 0;       ///< standard deviation of the values, 0: not known yet
+  /// Weight of the roughness of the profile against the data; negative: chosen by the evidence.
+  double smoothing = -1;
+  /// The light on the target may rise or fall linearly, along the edge and across it.
+  bool varying_light = false;
 };
 
 /// E(d) = dark + step · (½ + atan(d/b)/π) − tail1 d/(d² + b²) − tail3 d/(d² + b²)² + Σ c_j B_j(d), b = 1
 /// pixel, B_j quintic B-splines within ±core. Far away it is dark or dark + step ∓ A/|d|: the tail that
 /// diffraction gives an edge. All of it is linear in the unknowns and is fitted to the samples as they lie,
 /// without bins, so there is no bin and no derivative to correct for, and the transform of E′ is known in
-/// closed form. A weak prior keeps the tail sensible where noise hides it; where samples leave gaps (edges
-/// along the pixel grid) a penalty on the third derivative, 1e-12 of the weight of the data, joins the
-/// splines smoothly.
+/// closed form. A weak prior keeps the tail sensible where noise hides it.
+///
+/// Third differences of the splines' coefficients cost as much as the restricted likelihood of the samples
+/// finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows
+/// itself to be, without noise it is free but for 1e-10 of the weight of the data, which joins the splines
+/// where samples leave gaps.
+///
+/// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
+/// as K₃/r³, and K₃ is half of what the edge keeps.
+///
+/// With light that varies, l (p₁ t + p₂ d) is fitted besides, for a sample at t along the edge whose value is
+/// expected to be l of the bright side's: uneven light and vignetting take the same share of both sides. It
+/// belongs to no transform.
 class EdgeSpreadModel {
  public:
   /// \throws InputError when the points do not determine the model.
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
 
-  double value(double distance) const;
-  double slope(double distance) const;
+  /// The profile at a distance, in the middle of the edge and without what varies.
+  double value(double distance) const { return evaluate(distance).value; }
+  double slope(double distance) const { return evaluate(distance).slope; }
+  struct ValueAndSlope {
+    double value = 0, slope = 0;
+  };
+  ValueAndSlope evaluate(double distance) const;
+  /// What light that varies, and a target that is no half-plane, add at a point.
+  double variation(const EdgePoint& point) const;
+  /// Coefficients of that over their standard deviations, and the largest share of the step that they make
+  /// within `reach_px` of the edge.
+  struct Variation {
+    double significance = 0, share = 0;
+  };
+  Variation variation_over(double reach_px, double noise) const;
+
   double dark() const { return dark_; }
   double step() const { return step_; }
   /// A/step: what the edge still misses at a distance d is this over d [pixels].
   double tail_px() const;
+  double core_px() const { return options_.core_px; }
   /// ∫ E′(d) exp(−2πifd) dd / step.
   std::complex<double> transform(double frequency_cpp) const;
-  /// Standard deviation of |transform| that noise of the given variances at the points and their rounding
-  /// would make. `variance[i]` belongs to the i-th point that the model was made from.
-  std::vector<double> modulus_deviation(std::span<const double> frequencies_cpp,
-                                        std::span<const EdgePoint> points, std::span<const double> variance,
-                                        const QuantisationNoise& rounding) const;
-  /// Number of unknowns that the data settle.
-  std::size_t unknowns() const { return coefficients_.size(); }
+  /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.
+  double unknowns() const;
+  double smoothing() const { return options_.smoothing; }
+
+  /// Standard deviations of |transform|: of noise of the given variances at the points, of their rounding,
+  /// and of what smoothing may have taken away (the spread of the posterior, which holds on average for
+  /// profiles as rough as this one). `variance[i]` belongs to the i-th point that the model was made from.
+  class Deviation {
+   public:
+    Deviation(const EdgeSpreadModel& model, std::span<const EdgePoint> points,
+              std::span<const double> variance, const QuantisationNoise& rounding);
+    double of_modulus(double frequency_cpp) const;
+
+   private:
+    const EdgeSpreadModel& model_;
+    Eigen::MatrixXd spread_;  ///< covariance of the right side of the normal equations
+  };
 
  private:
-  static constexpr int fixed = 4;  ///< dark, step, tail1, tail3; the splines follow
+  static constexpr int closed_forms = 4;  ///< dark, step, tail1, tail3
+  static constexpr int light_terms = 2;
   static constexpr int support = 6;
-  int spline_values(double distance, double* values) const;  ///< the first, −support outside
-  void fixed_values(double distance, double* values) const;
-  /// d transform·step / d unknown.
-  std::vector<std::complex<double>> transform_row(double frequency_cpp) const;
+  struct Row {
+    double values[closed_forms + light_terms + support];
+    int fixed = 0;    ///< of them before the splines
+    int first = 0;    ///< unknown of the first spline
+    int splines = 0;  ///< that are not zero
+    int unknown(int i) const { return i < fixed ? i : first + i - fixed; }
+    int size() const { return fixed + splines; }
+  };
+  int fixed() const { return closed_forms + (options_.varying_light ? light_terms : 0); }
+  Row row_of(const EdgePoint& point) const;
+  Eigen::VectorXcd transform_row(double frequency_cpp) const;
+  void add_priors(Eigen::MatrixXd& normal, double step_guess) const;
+  Eigen::MatrixXd roughness() const;
 
   EdgeSpreadOptions options_;
   int splines_ = 0;
   double dark_ = 0, step_ = 1;
-  std::vector<double> coefficients_;
-  std::vector<double> factor_;  ///< lower Cholesky factor of the normal matrix, column-major
+  Eigen::VectorXd coefficients_;
+  Eigen::MatrixXd data_normal_;  ///< of the data alone
+  Eigen::MatrixXd factor_;       ///< lower Cholesky factor of the whole normal matrix
 };
 
 }  // namespace petzval

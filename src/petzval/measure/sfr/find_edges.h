@@ -10,26 +10,26 @@
 
 namespace petzval {
 
-/// The outlines of a target, as corners joined by straight lines, the bright side to the same hand all along.
-struct TargetOutline {
-  std::vector<std::vector<ContourPoint>> corners;
-  std::vector<bool> closed;
+/// A straight piece of an outline, the bright side to the same hand all along.
+struct OutlineSide {
+  ContourPoint from, to;
 };
 
-/// A straight stretch of an outline.
+/// A stretch of an outline without corners, straight or bent a little.
 struct FoundEdge {
   ContourPoint from, to;       ///< its ends, at the corners
   bool corner_at_from = true;  ///< false: it runs out of the picture there
   bool corner_at_to = true;
   double reach_dark_px = 0, reach_bright_px = 0;  ///< free of other edges so far on either side
-  std::size_t outline = 0, side = 0;              ///< which line of TargetOutline it is
   /// Where samples are taken, from the middle of the edge towards `to` [pixels].
   double sampled_from = 0, sampled_to = 0;
+  std::vector<OutlineSide> neighbours;  ///< all other sides that are near enough to matter
   double length_px() const;
+  /// The line from end to end, its normal from dark to bright.
+  EdgeLine line() const;
 };
 
 struct FoundEdges {
-  TargetOutline outline;
   std::vector<FoundEdge> edges;
 };
 
@@ -39,9 +39,10 @@ struct EdgeSearchOptions {
 };
 
 /// Edges of rectangles, checkerboards, stars and anything else that stands out by its brightness: contours at
-/// the level halfway between dark and bright, divided into straight lines (Ramer 1972; Douglas & Peucker
-/// 1973, within 0.75 pixels or what noise and blur make of it). Edges of blurred targets have rounded
-/// corners; what is rounded is left out. \throws InputError if there is none.
+/// the level halfway between dark and bright of the picture, smoothed as its noise asks for, divided into
+/// straight lines (Ramer 1972; Douglas & Peucker 1973, within 0.75 pixels). Lines that meet at less than 8°
+/// are one edge. Edges of blurred targets have rounded corners; what is rounded is left out. The time grows
+/// with the pixels and the sides of the outlines. \throws InputError if there is no edge.
 FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options = {});
 
 /// The samples about a found edge: as far along it as corners do not disturb it, and as far to both sides as
@@ -54,7 +55,7 @@ std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
 const FoundEdge* edge_along(const FoundEdges& found, const EdgeLine& line);
 
 /// At (x, y): ∬ r⁻³ dA over what is bright beyond the edge's half-plane, minus that over what is missing from
-/// it [1/pixel]; see SfrOptions::missing_target.
-double missing_target_at(const FoundEdges& found, const FoundEdge& edge, double x, double y);
+/// it [1/pixel], as far as its outline lies within 200 pixels of the edge; see SfrOptions::missing_target.
+double missing_target_at(const FoundEdge& edge, double x, double y);
 
 }  // namespace petzval

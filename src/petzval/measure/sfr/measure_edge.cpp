@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace petzval {
 
@@ -19,25 +20,29 @@ namespace {
 /// out.
 struct Profile {
   std::vector<EdgePoint> points;
-  std::vector<std::size_t> sample;  ///< of each point
+  std::vector<std::size_t> sample;                     ///< of each point
+  std::vector<double> variation;                       ///< what does not belong to the profile at each point
+  std::vector<EdgeSpreadModel::ValueAndSlope> fitted;  ///< of the profile at each point
   double low = 0, high = 0;
 };
 
 /// From the edge outwards as long as a pixel's width of distances holds a quarter of what it holds at the
 /// edge.
 Profile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& line) {
-  std::vector<double> distance;
+  std::vector<EdgeFrame::Place> places;
+  places.reserve(samples.size());
   double reach = 0;
+  const EdgeFrame frame(line);
   for (const EdgeSample& s : samples) {
-    distance.push_back(line.distance(s.x, s.y));
-    reach = std::max(reach, std::abs(distance.back()));
+    places.push_back(frame.at(s.x, s.y));
+    reach = std::max(reach, std::abs(places.back().distance));
   }
   const int half = static_cast<int>(reach / 2) + 1;
   std::vector<int> count(2 * static_cast<std::size_t>(half) + 1);  // of cells two pixels wide
   const auto cell = [&](double d) {
     return static_cast<std::size_t>(half + static_cast<int>(std::lround(d / 2)));
   };
-  for (const double d : distance) ++count[cell(d)];
+  for (const EdgeFrame::Place& place : places) ++count[cell(place.distance)];
   const auto middle = static_cast<std::size_t>(half);
   const int enough = std::max(4, count[middle] / 4);
   std::size_t first = middle, last = middle;
@@ -47,10 +52,11 @@ Profile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& li
   profile.low = 2 * (static_cast<double>(first) - half) - 1;
   profile.high = 2 * (static_cast<double>(last) - half) + 1;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (distance[i] >= profile.low && distance[i] <= profile.high) {
-      profile.points.push_back({distance[i], samples[i].value});
+    if (places[i].distance >= profile.low && places[i].distance <= profile.high) {
+      profile.points.push_back({places[i].distance, samples[i].value, places[i].along, 0});
       profile.sample.push_back(i);
     }
+  profile.variation.assign(profile.points.size(), 0.0);
   return profile;
 }
 
@@ -60,73 +66,78 @@ struct Noise {
   double all = 0;
 };
 
-Noise noise_about(const Profile& profile, const EdgeSpreadModel& model) {
+/// \param unknowns  of the profile, that the data settle.
+Noise noise_about(const Profile& profile, const EdgeSpreadModel& model, double unknowns) {
   double sum[2] = {0, 0}, weight[2] = {0, 0};
-  for (const EdgePoint& point : profile.points) {
-    const double expected = model.value(point.distance);
-    const double residual = point.value - expected;
+  for (std::size_t i = 0; i < profile.points.size(); ++i) {
+    const double expected = profile.fitted[i].value;
+    const double residual = profile.points[i].value - expected - profile.variation[i];
     const int side = expected > model.dark() + 0.5 * model.step() ? 1 : 0;
     sum[side] += residual * residual;
     weight[side] += 1;
   }
   // The unknowns of the profile take their share of the residuals.
   const double n = static_cast<double>(profile.points.size());
-  const double freedom = std::max(0.1, 1 - static_cast<double>(model.unknowns()) / n);
+  const double freedom = std::max(0.1, 1 - unknowns / n);
   return {sum[0] / std::max(1.0, weight[0]) / freedom, sum[1] / std::max(1.0, weight[1]) / freedom,
           (sum[0] + sum[1]) / n / freedom};
 }
 
-EdgeSpreadOptions model_options(const Profile& profile, double scale_px, double noise) {
-  // Beyond five times the rise a profile has nothing but its tail; the tail needs a third of the range.
-  const double rise = 4.39 * scale_px;
-  EdgeSpreadOptions options;
-  options.core_px = std::min(8 + 4 * rise, 0.7 * std::min(-profile.low, profile.high));
-  options.blur_px = std::max(1.0, 0.5 * rise);
-  options.noise = noise;
-  // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
-  options.knot_px = options.core_px > 45 ? 0.5 : 0.25;
-  return options;
+/// Takes the logistic profile of the guess for the fitted one.
+void fit_logistic(Profile& profile, const EdgeGuess& guess) {
+  const double step = guess.bright - guess.dark;
+  profile.fitted.clear();
+  for (const EdgePoint& point : profile.points) {
+    const double share = 1 / (1 + std::exp(-point.distance / guess.scale_px));
+    profile.fitted.push_back({guess.dark + step * share, step / guess.scale_px * share * (1 - share)});
+  }
 }
 
-/// A profile as alignment sees it.
-struct Spread {
-  std::function<double(double)> value, slope;
+/// What a Gauss-Newton step would do to direction and bends.
+struct Alignment {
+  static constexpr int most = 6;
+  int order = 1;
+  double change[most] = {};  ///< of bend[k − 1] for k = 1 … order; 0 is an offset, left to the profile
+  double significance[most] = {};  ///< over its standard deviation
 };
 
-Spread logistic(const EdgeGuess& guess) {
-  const double step = guess.bright - guess.dark, scale = guess.scale_px;
-  const auto share = [=](double d) { return 1 / (1 + std::exp(-d / scale)); };
-  return {[=](double d) { return guess.dark + step * share(d); },
-          [=](double d) { return step / scale * share(d) * (1 - share(d)); }};
-}
-
-/// One Gauss-Newton step for direction and bends: residual ≈ −E′(d) ∂d/∂p δp. An offset is left to the
-/// profile. \returns the largest shift of the line anywhere [pixels].
-double align(EdgeLine& line, const Profile& profile, const std::vector<EdgeSample>& samples,
-             const Spread& spread) {
-  const auto unknowns = static_cast<Eigen::Index>(line.bend.size());
-  const Eigen::Index n = unknowns + 1;  // bend[0] … and an offset, which the profile takes
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`. \param noise  standard deviation.
+Alignment alignment(const Profile& profile, int order, double reach_px, double noise) {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Alignment::most, Alignment::most>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Alignment::most, 1>;
+  const Eigen::Index n = order + 1;
+  Matrix normal = Matrix::Zero(n, n);
+  Vector right = Vector::Zero(n), row(n);
   for (std::size_t i = 0; i < profile.points.size(); ++i) {
     const EdgePoint& point = profile.points[i];
-    const double slope = spread.slope(point.distance);
-    const EdgeSample& sample = samples[profile.sample[i]];
-    const double t = line.along(sample.x, sample.y);
-    Eigen::VectorXd row(n);
-    double power = 1;
-    for (Eigen::Index k = 0; k < n; ++k, power *= t) row[k] = -slope * power;
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    right += row * (point.value - spread.value(point.distance));
+    if (std::abs(point.distance) > reach_px) continue;
+    const EdgeSpreadModel::ValueAndSlope& at = profile.fitted[i];
+    double power = -at.slope;
+    for (Eigen::Index k = 0; k < n; ++k, power *= point.along) row[k] = power;
+    normal.noalias() += row * row.transpose();
+    right += row * (point.value - profile.variation[i] - at.value);
   }
-  normal = normal.selfadjointView<Eigen::Lower>();
   normal.diagonal() *= 1 + 1e-12;
-  const Eigen::VectorXd change = normal.ldlt().solve(right);
+  const Eigen::LDLT<Matrix> ldlt(normal);
+  const Vector change = ldlt.solve(right);
   if (!change.allFinite()) throw InputError("the edge is too short to tell its direction");
+  Alignment result;
+  result.order = order;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Vector unit = ldlt.solve(Vector::Unit(n, k));
+    result.change[k] = change[k];
+    result.significance[k] =
+        std::abs(change[k]) / std::max(1e-300, noise * std::sqrt(std::max(0.0, unit[k])));
+  }
+  return result;
+}
+
+/// \returns the largest shift of the line anywhere [pixels].
+double align(EdgeLine& line, const Alignment& alignment) {
   double shift = 0;
-  for (Eigen::Index k = 1; k < n; ++k) {
-    line.bend[static_cast<std::size_t>(k - 1)] += change[k];
-    shift += std::abs(change[k]);
+  for (int k = 1; k <= alignment.order; ++k) {
+    line.bend[static_cast<std::size_t>(k - 1)] += alignment.change[k];
+    shift += std::abs(alignment.change[k]);
   }
   return shift;
 }
@@ -194,41 +205,50 @@ double middle_of(const EdgeSpreadModel& model, double low, double high) {
   return 0.5 * (from + to);
 }
 
-MtfLevel find_level(const EdgeSpreadModel& model, double level, double highest_cpp) {
+/// Where contrast falls below a level for the first time, from values a 512th of a cycle apart.
+MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vector<double>& contrast,
+                    double step_cpp) {
   MtfLevel result{level, NAN, NAN};
-  constexpr double step = 1.0 / 512;
-  for (double f = step; f <= highest_cpp + 1e-9; f += step) {
-    const double here = std::abs(model.transform(f));
-    if (here < level) {
-      double low = f - step, high = f;
-      for (int i = 0; i < 40; ++i) {
-        const double middle = 0.5 * (low + high);
-        (std::abs(model.transform(middle)) < level ? high : low) = middle;
-      }
-      result.frequency_cpp = 0.5 * (low + high);
+  const auto below = std::find_if(contrast.begin(), contrast.end(), [&](double c) { return c < level; });
+  if (below == contrast.begin() || below == contrast.end()) return result;
+  double high = step_cpp * static_cast<double>(below - contrast.begin()), low = high - step_cpp;
+  double high_rest = *below - level, low_rest = *(below - 1) - level;
+  for (int i = 0; i < 20 && high - low > 1e-12; ++i) {
+    // Alternately where a chord passes and in the middle, so that both ends close in.
+    double at = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * low_rest / (low_rest - high_rest);
+    at = std::clamp(at, low, high);
+    const double rest = std::abs(model.transform(at)) - level;
+    if (std::abs(rest) < 1e-14) {
+      low = high = at;
       break;
     }
+    (rest < 0 ? high : low) = at;
+    (rest < 0 ? high_rest : low_rest) = rest;
   }
+  result.frequency_cpp = 0.5 * (low + high);
   return result;
 }
 
-void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Profile& profile,
-                 const std::vector<double>& variance, const QuantisationNoise& rounding, double comb_px) {
-  for (int percent = 90; percent >= 10; percent -= 10)
-    result.mtf.push_back(find_level(model, percent / 100.0, std::max(1.0, result.frequencies_cpp.back())));
-  std::vector<double> at;
-  for (const MtfLevel& level : result.mtf)
-    if (std::isfinite(level.frequency_cpp)) at.push_back(level.frequency_cpp);
-  const std::vector<double> deviation = model.modulus_deviation(at, profile.points, variance, rounding);
-  std::size_t i = 0;
-  for (MtfLevel& level : result.mtf) {
-    if (!std::isfinite(level.frequency_cpp)) continue;
-    constexpr double h = 1e-4;
-    const double slope = (std::abs(model.transform(level.frequency_cpp + h)) -
-                          std::abs(model.transform(level.frequency_cpp - h))) /
-                         (2 * h);
-    level.deviation_cpp = std::hypot(deviation[i++], alias_deviation(model, comb_px, level.frequency_cpp)) /
-                          std::max(1e-9, std::abs(slope));
+void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model,
+                 const EdgeSpreadModel::Deviation& deviation, double comb_px) {
+  constexpr double step = 1.0 / 512;
+  const double highest = std::max(1.0, result.frequencies_cpp.back());
+  std::vector<double> contrast{1};
+  // Until the last level is passed, and no farther.
+  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
+    contrast.push_back(std::abs(model.transform(f)));
+  for (int percent = 90; percent >= 10; percent -= 10) {
+    MtfLevel level = find_level(model, percent / 100.0, contrast, step);
+    if (std::isfinite(level.frequency_cpp)) {
+      constexpr double h = 1e-4;
+      const double slope = (std::abs(model.transform(level.frequency_cpp + h)) -
+                            std::abs(model.transform(level.frequency_cpp - h))) /
+                           (2 * h);
+      level.deviation_cpp = std::hypot(deviation.of_modulus(level.frequency_cpp),
+                                       alias_deviation(model, comb_px, level.frequency_cpp)) /
+                            std::max(1e-9, std::abs(slope));
+    }
+    result.mtf.push_back(level);
   }
 }
 
@@ -237,10 +257,11 @@ void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const Pr
   const double low = std::ceil(profile.low / spacing) * spacing;
   double least = 0, most = 1;
   for (double d = low; d <= profile.high; d += spacing) {
-    const double value = (model.value(d) - model.dark()) / model.step();
+    const auto at = model.evaluate(d);
+    const double value = (at.value - model.dark()) / model.step();
     result.distance_px.push_back(d);
     result.esf.push_back(value);
-    result.lsf.push_back(model.slope(d) / model.step());
+    result.lsf.push_back(at.slope / model.step());
     least = std::min(least, value), most = std::max(most, value);
   }
   result.overshoot = most - 1;
@@ -260,94 +281,267 @@ std::vector<double> usual_frequencies() {
   return frequencies;
 }
 
+/// A smooth function of the place about an edge, by interpolation between 13 × 11 Chebyshev nodes along and
+/// across.
+class SmoothAboutEdge {
+ public:
+  SmoothAboutEdge(const std::function<double(double x, double y)>& function, const EdgeLine& line,
+                  double low_px, double high_px)
+      : line_(straight(line)),
+        frame_(line_),
+        middle_(0.5 * (low_px + high_px)),
+        half_(0.5 * (high_px - low_px)) {
+    const double c = std::cos(line.normal_rad), s = std::sin(line.normal_rad);
+    for (int i = 0; i < nodes_along; ++i)
+      for (int j = 0; j < nodes_across; ++j) {
+        const double t = line.half_length * node(i, nodes_along), d = middle_ + half_ * node(j, nodes_across);
+        values_[i][j] = function(line.centre_x + d * c - t * s, line.centre_y + d * s + t * c);
+      }
+  }
+  double operator()(double x, double y) const {
+    double along[nodes_along], across[nodes_across];
+    const EdgeFrame::Place place = frame_.at(x, y);
+    weights(std::clamp(place.along, -1.0, 1.0), nodes_along, along);
+    weights(std::clamp((place.distance - middle_) / half_, -1.0, 1.0), nodes_across, across);
+    double sum = 0;
+    for (int i = 0; i < nodes_along; ++i)
+      for (int j = 0; j < nodes_across; ++j) sum += along[i] * across[j] * values_[i][j];
+    return sum;
+  }
+
+ private:
+  static constexpr int nodes_along = 13, nodes_across = 11;
+  static double node(int i, int count) { return std::cos(pi * (i + 0.5) / count); }
+  /// Barycentric weights over their sum.
+  static void weights(double x, int count, double* result) {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+      const double rest = x - node(i, count);
+      if (rest == 0) {
+        std::fill(result, result + count, 0.0);
+        result[i] = 1;
+        return;
+      }
+      result[i] = (i % 2 == 0 ? 1 : -1) * std::sin(pi * (i + 0.5) / count) / rest;
+      sum += result[i];
+    }
+    for (int i = 0; i < count; ++i) result[i] /= sum;
+  }
+
+  static EdgeLine straight(EdgeLine line) {
+    line.bend.clear();
+    return line;
+  }
+
+  EdgeLine line_;
+  EdgeFrame frame_;
+  double middle_, half_;
+  double values_[nodes_along][nodes_across];
+};
+
+/// Line and profile of one edge, fitted in turn.
+class EdgeFit {
+ public:
+  EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess, const SfrOptions& options)
+      : samples_(samples), guess_(guess), line_(guess.line), noise_(1e-4 * (guess.bright - guess.dark)) {
+    line_.bend.assign(static_cast<std::size_t>(std::max(1, options.edge_order)), 0);
+    if (options.missing_target) find_missing(options.missing_target);
+  }
+
+  void run(const SfrOptions& options) {
+    bend_by_guess(options.edge_order);
+    settle();
+    if (options.edge_order == 0) bend_by_evidence();
+    if (options.varying_light) vary_by_evidence();
+    place_samples();
+    comb_px_ = sample_comb_px(profile_.points);
+    if (comb_px_ > 0) join_rows(profile_.points);
+    smoothing_ = -1;
+    fit_profile();
+  }
+
+  const EdgeLine& line() const { return line_; }
+  const Profile& profile() const { return profile_; }
+  const EdgeSpreadModel& model() const { return *model_; }
+  double unknowns() const { return unknowns_; }
+  double comb_px() const { return comb_px_; }
+  double light_variation() const { return light_variation_; }
+
+ private:
+  static constexpr double significant = 5, least_bend_px = 2e-3, least_variation = 4e-3;
+
+  void find_missing(const std::function<double(double, double)>& missing_target) {
+    double low = 0, high = 0;
+    const EdgeFrame frame(line_);
+    for (const EdgeSample& s : samples_) {
+      const double d = frame.at(s.x, s.y).distance;
+      low = std::min(low, d), high = std::max(high, d);
+    }
+    const SmoothAboutEdge smooth(missing_target, line_, low, high);
+    for (const EdgeSample& s : samples_) missing_.push_back(smooth(s.x, s.y));
+  }
+
+  void place_samples() {
+    profile_ = profile_along(samples_, line_);
+    for (std::size_t i = 0; i < profile_.points.size(); ++i) {
+      EdgePoint& point = profile_.points[i];
+      if (!missing_.empty()) point.missing = missing_[profile_.sample[i]];
+      if (!varying_light_) continue;
+      const double step = model_->step(), bright = model_->dark() + step;
+      const double share = std::clamp((model_->value(point.distance) - model_->dark()) / step, 0.0, 1.0);
+      point.light = (model_->dark() + share * step) / std::max(bright, 1e-3 * step);
+    }
+  }
+
+  void fit_profile() {
+    // Beyond five times the rise a profile has nothing but its tail; the tail needs a third of the range.
+    const double rise = 4.39 * guess_.scale_px;
+    EdgeSpreadOptions options;
+    options.core_px = std::min(8 + 4 * rise, 0.7 * std::min(-profile_.low, profile_.high));
+    options.blur_px = std::max(1.0, 0.5 * rise);
+    options.noise = noise_;
+    // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
+    options.knot_px = options.core_px > 45 ? 0.5 : 0.25;
+    options.varying_light = varying_light_;
+    options.smoothing = smoothing_;
+    model_.emplace(profile_.points, options);
+    if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
+    profile_.fitted.clear();
+    for (std::size_t i = 0; i < profile_.points.size(); ++i) {
+      profile_.variation[i] = model_->variation(profile_.points[i]);
+      profile_.fitted.push_back(model_->evaluate(profile_.points[i].distance));
+    }
+    if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
+    noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
+  }
+
+  Alignment alignment_of(int order) const { return alignment(profile_, order, model_->core_px(), noise_); }
+
+  /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
+  /// scatters.
+  void bend_by_guess(int asked) {
+    if (asked == 1) return;
+    EdgeLine bent = line_;
+    bent.bend.assign(static_cast<std::size_t>(asked == 0 ? 3 : asked), 0);
+    const double reach = 6 * guess_.scale_px + 1;
+    constexpr int rounds = 12;
+    for (int round = 0; round < rounds; ++round) {
+      Profile profile = profile_along(samples_, bent);
+      fit_logistic(profile, guess_);
+      const double shift = align(bent, alignment(profile, static_cast<int>(bent.bend.size()), reach, 1));
+      if (shift < 1e-3) break;
+    }
+    double offset = 0;
+    for (std::size_t k = 1; k < bent.bend.size(); ++k) offset = std::max(offset, std::abs(bent.bend[k]));
+    constexpr double plainly_bent_px = 0.1;
+    if (asked > 1 || offset > plainly_bent_px) line_ = bent;
+  }
+
+  void settle() {
+    constexpr int most_rounds = 40;
+    // Half a thousandth of a pixel over the length of an edge changes no SFR by 1e-6.
+    constexpr double at_rest_px = 2e-5;
+    for (int round = 0; round < most_rounds; ++round) {
+      // How smooth the profile is shows once the line is nearly at rest.
+      constexpr int choosing_round = 1;
+      smoothing_ = round == choosing_round ? -1 : smoothing_;
+      place_samples();
+      fit_profile();
+      smoothing_ = model_->smoothing();
+      const double shift = align(line_, alignment_of(static_cast<int>(line_.bend.size())));
+      turn_by_bend(line_);
+      if (round >= 2 && shift < std::max(at_rest_px, 1e-3 * noise_ / model_->step())) break;
+    }
+  }
+
+  void bend_by_evidence() {
+    if (line_.bend.size() > 1) return;  // it is bent already
+    const Alignment bends = alignment_of(3);
+    const auto shown = [&](int k) {
+      return bends.significance[k] > significant && std::abs(bends.change[k]) > least_bend_px;
+    };
+    if (!shown(2) && !shown(3)) return;
+    line_.bend.assign(shown(3) ? 3 : 2, 0);
+    settle();
+  }
+
+  void vary_by_evidence() {
+    varying_light_ = true;
+    place_samples();
+    fit_profile();
+    const double reach = std::min(-profile_.low, profile_.high);
+    const EdgeSpreadModel::Variation variation = model_->variation_over(reach, noise_);
+    varying_light_ = variation.significance > significant && variation.share > least_variation;
+    if (!varying_light_) return;
+    settle();
+    light_variation_ = 2 * model_->variation_over(reach, noise_).share;
+  }
+
+  const std::vector<EdgeSample>& samples_;
+  const EdgeGuess& guess_;
+  EdgeLine line_;
+  Profile profile_;
+  std::optional<EdgeSpreadModel> model_;
+  std::vector<double> missing_;
+  double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
+  bool varying_light_ = false;
+};
+
 }  // namespace
 
-EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_step,
+EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double lattice_step,
                              const SfrOptions& options) {
-  if (options.edge_order < 1 || options.edge_order > 5)
-    throw InputError(fmt::format("an edge of order {}: 1 (straight) to 5 is right", options.edge_order));
-  const EdgeGuess guess = guess_edge(samples, lattice_step);
-  EdgeLine line = guess.line;
-  line.bend.assign(static_cast<std::size_t>(options.edge_order), 0);
-
-  std::optional<EdgeSpreadModel> model;
-  Profile profile;
-  // A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
-  // scatters.
-  constexpr int rounds_of_guess = 12;
-  for (int round = 0; round < rounds_of_guess && options.edge_order > 1; ++round)
-    align(line, profile_along(samples, line), samples, logistic(guess));
-  double noise = 1e-4 * (guess.bright - guess.dark), missing_scale = 0;
-  constexpr int most_rounds = 40;
-  // Half a thousandth of a pixel over the length of an edge changes no SFR by 1e-6; noise-free edges get
-  // there at once.
-  constexpr double at_rest_px = 1e-6;
-  for (int round = 0; round < most_rounds; ++round) {
-    profile = profile_along(samples, line);
-    if (options.missing_target && missing_scale != 0)
-      for (std::size_t i = 0; i < profile.points.size(); ++i) {
-        const EdgeSample& s = samples[profile.sample[i]];
-        profile.points[i].value -= missing_scale * options.missing_target(s.x, s.y);
-      }
-    model.emplace(profile.points, model_options(profile, guess.scale_px, noise));
-    if (!(model->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
-    noise = std::sqrt(noise_about(profile, *model).all);
-    // K₃ of the PSF is half the edge's tail.
-    missing_scale = options.missing_target ? 0.5 * model->tail_px() * model->step() : 0;
-    const double shift =
-        align(line, profile, samples,
-              {[&](double d) { return model->value(d); }, [&](double d) { return model->slope(d); }});
-    turn_by_bend(line);
-    if (round > 2 && shift < std::max(at_rest_px, 1e-3 * noise / model->step())) break;
-  }
-
-  const double comb_px = sample_comb_px(profile.points);
-  if (comb_px > 0) {
-    join_rows(profile.points);
-    model.emplace(profile.points, model_options(profile, guess.scale_px, noise));
-  }
+  if (options.edge_order < 0 || options.edge_order > 5)
+    throw InputError(fmt::format("an edge of order {}: 1 (straight) to 5, or 0 (by the evidence) is right",
+                                 options.edge_order));
+  const EdgeGuess guess =
+      options.start ? guess_edge(samples, *options.start) : guess_edge(samples, lattice_step);
+  EdgeFit fit(samples, guess, options);
+  fit.run(options);
+  const EdgeSpreadModel& model = fit.model();
+  const Profile& profile = fit.profile();
 
   EdgeMeasurement result;
-  result.line = line;
+  result.line = fit.line();
   result.samples = profile.points.size();
-  result.dark = model->dark();
-  result.bright = model->dark() + model->step();
-  result.tail_px = model->tail_px();
-  result.middle_px = middle_of(*model, profile.low, profile.high);
-  result.rise_px = rise_of(*model, profile.low, profile.high);
+  result.dark = model.dark();
+  result.bright = model.dark() + model.step();
+  result.tail_px = model.tail_px();
+  result.light_variation = fit.light_variation();
+  result.middle_px = middle_of(model, profile.low, profile.high);
+  result.rise_px = rise_of(model, profile.low, profile.high);
   refuse_clipped(profile, samples, options, result.rise_px);
-  const Noise spread = noise_about(profile, *model);
+  const Noise spread = noise_about(profile, model, fit.unknowns());
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);
   std::vector<double> variance, unrounded;
   for (const EdgePoint& point : profile.points) {
-    const double value = model->value(point.distance);
-    const double share = std::clamp((value - model->dark()) / model->step(), 0.0, 1.0);
+    const double value = model.value(point.distance);
+    const double share = std::clamp((value - model.dark()) / model.step(), 0.0, 1.0);
     unrounded.push_back(
         std::abs(point.distance) > 1.5 * result.rise_px ? usual_tail_at(point.distance, result) : value);
     variance.push_back(spread.dark + share * (spread.bright - spread.dark));
   }
   const QuantisationNoise rounding(options.code_levels, unrounded, variance);
+  const EdgeSpreadModel::Deviation deviation(model, profile.points, variance, rounding);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
   for (const double f : result.frequencies_cpp) {
-    const std::complex<double> value = model->transform(f);
+    const std::complex<double> value = model.transform(f);
     result.sfr.push_back(std::abs(value));
     result.phase_rad.push_back(std::arg(value));
+    result.sfr_deviation.push_back(
+        std::hypot(deviation.of_modulus(f), alias_deviation(model, fit.comb_px(), f)));
   }
-  result.sfr_deviation = model->modulus_deviation(result.frequencies_cpp, profile.points, variance, rounding);
-  for (std::size_t i = 0; i < result.sfr.size(); ++i)
-    result.sfr_deviation[i] =
-        std::hypot(result.sfr_deviation[i], alias_deviation(*model, comb_px, result.frequencies_cpp[i]));
   // With rows half a pixel apart the alias of Nyquist's frequency lies beyond what lenses and pixels
   // pass.
-  if (constexpr double harmless_px = 0.5; comb_px > harmless_px)
+  if (constexpr double harmless_px = 0.5; fit.comb_px() > harmless_px)
     result.notes.push_back(
         fmt::format("the edge runs along the pixel grid or its diagonal, so that its profile is known only "
                     "every {:.2f} pixels; a tilt "
                     "by half a degree is enough to tell what lies between",
-                    comb_px));
-  fill_levels(result, *model, profile, variance, rounding, comb_px);
-  fill_curves(result, *model, profile);
+                    fit.comb_px()));
+  fill_levels(result, model, deviation, fit.comb_px());
+  fill_curves(result, model, profile);
   return result;
 }
 

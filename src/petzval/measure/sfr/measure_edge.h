@@ -14,7 +14,10 @@
 namespace petzval {
 
 struct SfrOptions {
-  int edge_order = 1;                   ///< 1 (a straight line) to 5
+  /// 1 (a straight line) to 5; 0: straight, unless the samples show a bend, which then gets order 2 or 3.
+  int edge_order = 0;
+  /// Light that varies linearly on both sides is told from the edge, if the samples show that it does.
+  bool varying_light = true;
   std::vector<double> frequencies_cpp;  ///< empty: 0, 0.01, … 1
   /// Contrast that the PSF's far tail takes away or adds where the target is not a half-plane: at (x, y), the
   /// sum of ∬ r⁻³ dA [1/pixel] over what is bright beyond the half-plane minus what is missing from it.
@@ -24,6 +27,8 @@ struct SfrOptions {
   std::optional<double> clip_low, clip_high;
   /// The light of each code value, rising, where values have been rounded to them; empty: they have not.
   std::vector<double> code_levels;
+  /// Where the edge is known to run already; its direction points from dark to bright.
+  std::optional<EdgeLine> start;
 };
 
 /// Contrast at which SFR falls below a level for the first time.
@@ -46,6 +51,8 @@ struct EdgeMeasurement {
   std::vector<double> sfr_deviation;          ///< standard deviation from noise and rounding
   std::vector<MtfLevel> mtf;                  ///< at 0.9, 0.8, … 0.1
   std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
+  /// What the light of either side changes by over the samples, over the step; 0 if it is even.
+  double light_variation = 0;
   std::size_t samples = 0;
   std::vector<std::string> notes;
 
@@ -53,9 +60,11 @@ struct EdgeMeasurement {
 };
 
 /// Measures one edge: guess → edge line and profile fitted in turn until the line rests (EdgeSpreadModel
-/// holds how the profile is fitted and transformed). Nothing is tapered, binned or smoothed. \param
-/// lattice_step  spacing of the samples [pixels]. \throws InputError when there is no edge, its samples are
-/// clipped, or it is too short to be measured.
-EdgeMeasurement measure_edge(std::vector<EdgeSample> samples, double lattice_step, const SfrOptions& options);
+/// holds how the profile is fitted and transformed). Nothing is tapered or binned. A bend and light that
+/// varies are taken up where they stand out from the noise five times over and are large enough to matter.
+/// \param lattice_step  spacing of the samples [pixels]. \throws InputError when there is no edge, its
+/// samples are clipped, or it is too short to be measured.
+EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double lattice_step,
+                             const SfrOptions& options);
 
 }  // namespace petzval

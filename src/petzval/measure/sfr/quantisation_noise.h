@@ -2,8 +2,10 @@
 // What rounding to whole code values does to quantities that are measured from many pixels.
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,8 +26,11 @@ class QuantisationNoise {
   QuantisationNoise(std::span<const double> levels, std::span<const double> values,
                     std::span<const double> variance);
 
-  /// Variance of Σ influence_i · value_i. `influence` has one entry a sample.
-  double variance(std::span<const double> influence) const;
+  /// Tells the entries of the row that sample i has in a linear fit which are not zero.
+  using RowOf =
+      std::function<void(std::size_t i, const std::function<void(int unknown, double value)>& entry)>;
+  /// Adds the covariance of Σ row_i · value_i to the lower half of a matrix.
+  void add_spread(const RowOf& row_of, Eigen::MatrixXd& covariance) const;
 
  private:
   static constexpr int harmonics = 6;
@@ -35,9 +40,9 @@ class QuantisationNoise {
     double lower = 0, upper = 0;           ///< share in this window and in the next
     std::complex<double> turn[harmonics];  ///< amplitude · exp(2πikx)
   };
-  std::vector<std::size_t> cell_of_;  ///< of each sample
-  std::vector<double> step_;          ///< size of a step at each sample
-  std::vector<Cell> cells_;           ///< by rising value
+  std::vector<std::vector<std::size_t>> samples_;  ///< of each cell
+  std::vector<double> step_;                       ///< size of a step at each sample
+  std::vector<Cell> cells_;                        ///< by rising value
 };
 
 }  // namespace petzval
