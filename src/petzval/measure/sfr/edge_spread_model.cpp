@@ -181,8 +181,10 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
         options_.smoothing = std::min(smoothing, most);
       }
   } else {
-    best = solve(std::max(options_.smoothing, least_smoothing));
+    options_.smoothing = std::max(options_.smoothing, least_smoothing);
+    best = solve(options_.smoothing);
   }
+  priors_ = normal - data_normal_ + options_.smoothing * penalty;
   coefficients_ = best.solution;
   factor_ = best.llt.matrixL();
   dark_ = coefficients_[0];
@@ -258,8 +260,7 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
     }
   }
   // What the priors say of the profile is as uncertain as they are weak.
-  const Eigen::MatrixXd whole = model.factor_ * model.factor_.transpose();
-  spread_.triangularView<Eigen::Lower>() += mean * (whole - model.data_normal_);
+  spread_.triangularView<Eigen::Lower>() += mean * model.priors_;
   rounding.add_spread(
       [&](std::size_t i, const std::function<void(int, double)>& entry) {
         const Row row = model.row_of(points[i]);

@@ -120,6 +120,7 @@ class EdgeSpreadModel {
   double dark_ = 0, step_ = 1;
   Eigen::VectorXd coefficients_;
   Eigen::MatrixXd data_normal_;  ///< of the data alone
+  Eigen::MatrixXd priors_;       ///< of the priors and the roughness
   Eigen::MatrixXd factor_;       ///< lower Cholesky factor of the whole normal matrix
 };
 

@@ -355,8 +355,10 @@ class EdgeFit {
     if (options.varying_light) vary_by_evidence();
     place_samples();
     comb_px_ = sample_comb_px(profile_.points);
-    if (comb_px_ > 0) join_rows(profile_.points);
-    smoothing_ = -1;
+    if (comb_px_ > 0) {
+      join_rows(profile_.points);
+      smoothing_ = -1;
+    }
     fit_profile();
   }
 
