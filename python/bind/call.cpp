@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "call.h"
 
+#include <nanobind/stl/string.h>
 #include <signal.h>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -10,9 +10,17 @@ namespace petzval::python {
 
 namespace {
 
-using ApertureWords = std::initializer_list<std::pair<std::string_view, PixelAperture>>;
-const ApertureWords aperture_words{
-    {"point", PixelAperture::point}, {"box", PixelAperture::box}, {"photosite", PixelAperture::photosite}};
+/// Of "box", "point", or the text of a photosite (Sensor.photosite).
+PixelAperture aperture_of(const std::string& text) {
+  return text == "box"     ? PixelAperture::box
+         : text == "point" ? PixelAperture::point
+                           : PixelAperture::photosite;
+}
+
+std::string aperture_text(const SpectralImage& image) {
+  if (image.pixel_aperture() == PixelAperture::photosite) return image.photosite;
+  return image.pixel_aperture() == PixelAperture::box ? "box" : "point";
+}
 
 Array<float> values_view(nb::handle self) {
   auto& image = nb::cast<SpectralImage&>(self);
@@ -30,7 +38,8 @@ SpectralImage of_array(const FloatsIn& values, const Numbers& wavelengths_nm, do
                     "would be right",
                     values.ndim(), wavelengths_nm.size()));
   SpectralImage image(static_cast<int>(values.shape(2)), static_cast<int>(values.shape(1)), wavelengths_nm,
-                      pitch_um, choice("pixel_aperture", aperture, aperture_words));
+                      pitch_um, aperture_of(aperture));
+  if (image.pixel_aperture() == PixelAperture::photosite) image.photosite = aperture;
   for (int band = 0; band < image.bands(); ++band)
     image.store_band(band,
                      {values.data() + static_cast<std::size_t>(band) * image.band_size(), image.band_size()});
@@ -40,27 +49,21 @@ SpectralImage of_array(const FloatsIn& values, const Numbers& wavelengths_nm, do
 using Curve = std::pair<Numbers, Numbers>;
 /// Everything but the values, for pickle.
 using State =
-    std::tuple<Numbers, double, std::string, std::string, std::string,
+    std::tuple<Numbers, double, std::string, std::string,
                std::optional<std::tuple<std::string, double, double, double>>, std::optional<Curve>>;
 
 State state_of(const SpectralImage& image) {
-  State state{image.wavelengths_nm(),
-              image.pitch_um(),
-              std::string(word_of(image.pixel_aperture(), aperture_words)),
-              image.provenance,
-              image.photosite,
-              {},
-              {}};
+  State state{image.wavelengths_nm(), image.pitch_um(), aperture_text(image), image.provenance, {}, {}};
   if (const auto& lens = image.lens)
-    std::get<5>(state) = {lens->name, lens->focal_length_mm, lens->f_number, lens->exit_pupil_mm};
-  if (const auto& light = image.illuminant) std::get<6>(state) = {light->wavelengths_nm(), light->values()};
+    std::get<4>(state) = {lens->name, lens->focal_length_mm, lens->f_number, lens->exit_pupil_mm};
+  if (const auto& light = image.illuminant) std::get<5>(state) = {light->wavelengths_nm(), light->values()};
   return state;
 }
 
 SpectralImage of_state(const FloatsIn& values, const State& state) {
-  const auto& [wavelengths_nm, pitch_um, aperture, provenance, photosite, lens, light] = state;
+  const auto& [wavelengths_nm, pitch_um, aperture, provenance, lens, light] = state;
   SpectralImage image = of_array(values, wavelengths_nm, pitch_um, aperture);
-  image.provenance = provenance, image.photosite = photosite;
+  image.provenance = provenance;
   if (lens) {
     const auto& [name, focal_length_mm, f_number, exit_pupil_mm] = *lens;
     image.lens = LensFacts{name, focal_length_mm, f_number, exit_pupil_mm};
@@ -106,9 +109,8 @@ void bind_light(nb::module_& module) {
       .def_prop_ro("shape",
                    [](const SpectralImage& i) { return nb::make_tuple(i.bands(), i.rows(), i.columns()); })
       .def_prop_ro("pitch_um", &SpectralImage::pitch_um)
-      .def_prop_ro(
-          "pixel_aperture",
-          [](const SpectralImage& i) { return std::string(word_of(i.pixel_aperture(), aperture_words)); })
+      .def_prop_ro("pixel_aperture", aperture_text,
+                   "box, point, or what the photosite is like (Sensor.photosite).")
       .def_ro("provenance", &SpectralImage::provenance, "How it came about, in one line.")
       .def_ro("lens", &SpectralImage::lens, nb::rv_policy::copy, "LensFacts, or None.")
       .def(

@@ -277,11 +277,12 @@ void bind_sensor_test(nb::module_& module) {
 void bind_chart(nb::module_& module) {
   module.def(
       "measure_colour",
-      [](const std::string& picture, const std::string& light, bool match_exposure) {
+      [](const std::string& picture, const std::string& light, bool match_exposure,
+         const std::optional<std::array<std::array<double, 2>, 4>>& corners) {
         const ViewedPicture viewed = read_viewed_picture(picture);
         const Spectrum spectrum = illuminant(light);
-        const ChartDifference d =
-            compare_chart(viewed, find_chart(viewed, spectrum), spectrum, match_exposure);
+        const ChartCorners at = corners ? ChartCorners{*corners} : find_chart(viewed, spectrum);
+        const ChartDifference d = compare_chart(viewed, at, spectrum, match_exposure);
         nb::dict columns, units;
         nb::list names;
         Numbers x, y, ab, d2000;
@@ -298,6 +299,7 @@ void bind_chart(nb::module_& module) {
             fmt::format("mean DE2000 {:.2f}, max {:.2f}", d.mean_delta_e_2000, d.max_delta_e_2000), "");
       },
       nb::arg("picture"), nb::kw_only(), nb::arg("light") = "D65", nb::arg("match_exposure") = true,
+      nb::arg("corners").none() = nb::none(),
       "Colour differences of a ColorChecker that is found in a picture file (.png, .tif), as a Table of its "
       "24 patches.");
 }

@@ -29,8 +29,8 @@ RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const nb::o
                    const std::string& metering, double compensation_ev, const std::string& gain_mode,
                    double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
                    const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-                   const std::string& illuminant_name, int threads, std::uint64_t seed,
-                   const nb::object& progress) {
+                   const std::string& illuminant_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm,
+                   int threads, std::uint64_t seed, const nb::object& progress) {
   ExposeOptions options;
   options.exposure = exposure_from(exposure);
   options.metering = choice<Metering::Rule>(
@@ -40,6 +40,7 @@ RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const nb::o
   options.temperature_c = temperature_c, options.serial = serial;
   for (const std::string& name : without) options.without.insert(noise_source(name));
   options.frames = frames, options.bracket_ev = bracket_ev;
+  options.f_number = f_number, options.exit_pupil_mm = exit_pupil_mm;
   if (!illuminant_name.empty()) options.illuminant = illuminant(illuminant_name);
   Call call({threads, seed, progress});
   return call([&](const Context& context) { return expose(light, sensor, options, context); });
@@ -51,6 +52,7 @@ RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const nb::o
       nb::arg("gain_mode") = "", nb::arg("analog_gain") = 1.0, nb::arg("temperature_c").none() = nb::none(), \
       nb::arg("serial").none() = nb::none(), nb::arg("without") = std::vector<std::string>(),                \
       nb::arg("frames") = 1, nb::arg("bracket_ev") = Numbers(), nb::arg("illuminant") = "",                  \
+      nb::arg("f_number").none() = nb::none(), nb::arg("exit_pupil_mm").none() = nb::none(),                 \
       nb::arg("threads") = 0, nb::arg("seed") = 1, nb::arg("progress").none() = nb::none()
 
 constexpr const char* expose_text =
@@ -58,7 +60,9 @@ constexpr const char* expose_text =
     "`without`: noise sources "
     "to switch off (shot, dark, read, dsnu, prnu, column, row, defects, crosstalk, microlens, linearity). "
     "`frames` are averaged, exposures of "
-    "`bracket_ev` merged. `illuminant`: for white balance; empty: as the light says. Raises InputError; "
+    "`bracket_ev` merged. `illuminant`: for white balance; empty: as the light says. `f_number` (for "
+    "exposure values) and `exit_pupil_mm` (from the sensor, negative in front of it; for microlenses): the "
+    "lens's, where they are known. Raises InputError; "
     "Cancelled.";
 
 RawImage expose_of_camera(const SpectralImage& light, const CameraInPython& camera, const auto&... options) {
@@ -289,10 +293,11 @@ void bind_raw(nb::module_& module) {
          const std::string& metering, double compensation_ev, const std::string& gain_mode,
          double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
          const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-         const std::string& light_name, int threads, std::uint64_t seed, const nb::object& progress) {
+         const std::string& light_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm, int threads,
+         std::uint64_t seed, const nb::object& progress) {
         return expose_to(light, self, exposure, metering, compensation_ev, gain_mode, analog_gain,
-                         temperature_c, serial, without, frames, bracket_ev, light_name, threads, seed,
-                         progress);
+                         temperature_c, serial, without, frames, bracket_ev, light_name, f_number,
+                         exit_pupil_mm, threads, seed, progress);
       },
       PETZVAL_EXPOSE_ARGUMENTS, expose_text);
   add(
@@ -301,10 +306,11 @@ void bind_raw(nb::module_& module) {
          const std::string& metering, double compensation_ev, const std::string& gain_mode,
          double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
          const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-         const std::string& light_name, int threads, std::uint64_t seed, const nb::object& progress) {
+         const std::string& light_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm, int threads,
+         std::uint64_t seed, const nb::object& progress) {
         return expose_of_camera(light, self, exposure, metering, compensation_ev, gain_mode, analog_gain,
-                                temperature_c, serial, without, frames, bracket_ev, light_name, threads, seed,
-                                progress);
+                                temperature_c, serial, without, frames, bracket_ev, light_name, f_number,
+                                exit_pupil_mm, threads, seed, progress);
       },
       PETZVAL_EXPOSE_ARGUMENTS, expose_text);
   module.def("develop", develop_raw, nb::arg("raw"), nb::kw_only(), nb::arg("white_balance") = "as-shot",

@@ -24,7 +24,7 @@ RenderRequest request(const CameraInPython& camera, const std::string& scene, Ma
                       bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
                       Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
                       double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra,
-                      bool skip_unsupported, const std::string& checkpoint) {
+                      bool skip_unsupported, const std::string& checkpoint, const std::string& sampling) {
   RenderRequest r;
   r.scene = scene, r.camera = camera.value();
   if (size) r.columns = size->first, r.rows = size->second;
@@ -35,6 +35,9 @@ RenderRequest request(const CameraInPython& camera, const std::string& scene, Ma
   r.diffraction = diffraction, r.max_depth = max_depth, r.scene_unit_mm = scene_unit_mm,
   r.sky_cd_m2 = sky_cd_m2;
   r.absolute_spectra = absolute_spectra, r.skip_unsupported = skip_unsupported, r.checkpoint = checkpoint;
+  r.sampling = choice<RenderRequest::Sampling>("sampling", sampling,
+                                               {{"exit-pupil", RenderRequest::Sampling::exit_pupil},
+                                                {"rear-disk", RenderRequest::Sampling::rear_disk}});
   return r;
 }
 
@@ -43,11 +46,12 @@ Rendering render(const CameraInPython& camera, const std::string& scene, Maybe<s
                  bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
                  Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
                  double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra, bool skip_unsupported,
-                 const std::string& checkpoint, int threads, std::uint64_t seed, const nb::object& progress) {
+                 const std::string& checkpoint, const std::string& sampling, int threads, std::uint64_t seed,
+                 const nb::object& progress) {
   const RenderRequest asked =
       request(camera, scene, size, wavelengths_nm, samples_per_pixel, noise, first_surfaces, zones, pinhole,
               film_diagonal_mm, aperture_diameter_mm, diffraction, max_depth, scene_unit_mm, sky_cd_m2,
-              absolute_spectra, skip_unsupported, checkpoint);
+              absolute_spectra, skip_unsupported, checkpoint, sampling);
   Call call({threads, seed, progress});
   return call([&](const Context& context) { return render_scene(asked, context); });
 }
@@ -139,14 +143,26 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
              nb::arg("aperture_diameter_mm").none() = nb::none(), nb::arg("diffraction") = false,
              nb::arg("max_depth").none() = nb::none(), nb::arg("scene_unit_mm") = 1000.0,
              nb::arg("sky_cd_m2").none() = nb::none(), nb::arg("absolute_spectra") = false,
-             nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "", nb::arg("threads") = 0,
-             nb::arg("seed") = 1, nb::arg("progress").none() = nb::none(),
+             nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "",
+             nb::arg("sampling") = "exit-pupil", nb::arg("threads") = 0, nb::arg("seed") = 1,
+             nb::arg("progress").none() = nb::none(),
              "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the "
              "sensor, path-traced through every "
              "surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS error over mean "
              "light is reached. `zones`: "
              "(left, right, top, bottom) in fractions of the picture, for focus \"auto\". Raises InputError; "
              "Cancelled.");
+  module.def(
+      "list_unsupported",
+      [](const std::string& scene) {
+        RenderRequest r;
+        r.scene = scene;
+        std::vector<std::pair<std::string, std::string>> all;
+        for (const UnsupportedFeature& each : unsupported_features(r))
+          all.emplace_back(each.place, each.what);
+        return all;
+      },
+      nb::arg("scene"), "[(place, what)] of what a three-dimensional scene has and Petzval has not.");
   camera.def(
       "autofocus", focus_on, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
       nb::arg("zones") = Zones(), nb::arg("focus_measure") = "sml", nb::arg("focus_search") = "brent",

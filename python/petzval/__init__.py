@@ -16,7 +16,7 @@ from ._petzval import (Camera, Edge, Edges, FirstOrder, FocusRun, Frame, GainMod
                        Lens, LensDataTable, LensFacts, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
                        Scene, SceneRequest, Sensor, SensorTest, SpectralImage, Surface, SurfaceList, TableCamera,
                        __version__, analyses, bundled_names, chart_names, compare, data_directory, develop,
-                       measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
+                       list_unsupported, measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
 from ._petzval import _set_default_data_directory
 from ._sweep import sweep
 from ._tables import Analysis, Table, TracedRays

@@ -38,7 +38,8 @@ class Note(UserWarning):
 
 
 # Parameters of the library that Python calls otherwise.
-_KEYWORDS = {"losses": "fresnel, coating or absorption", "zones": "zones", "set": "settings"}
+_KEYWORDS = {"losses": "fresnel, coating or absorption", "matrix": "colours",
+             "set": "settings", "substitute": "substitutions", "wavelength": "wavelengths_nm"}
 
 
 def keyword(parameter):

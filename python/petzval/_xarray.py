@@ -48,8 +48,8 @@ def psfs(stack):
          "image_height": (by_point, stack.image_height_mm, {"units": "mm"})},
         coords={"field": ("field", stack.fields, {"units": field_units, "type": stack.field_type}),
                 "wavelength": _axis("wavelength", stack.wavelengths_nm, "nm"),
-                "y": ("y", stack.y_um, {"units": "um", "long_name": "tangential, away from the axis"}),
-                "x": ("x", stack.x_um, {"units": "um", "long_name": "sagittal"})},
+                "y": ("y", stack.y_um, {"units": "µm", "long_name": "tangential, away from the axis"}),
+                "x": ("x", stack.x_um, {"units": "µm", "long_name": "sagittal"})},
         attrs={"spacing_um": stack.spacing_um})
 
 
