@@ -56,3 +56,7 @@ def _input_error(file, line, column, problem, remedy, parameter):
     """Of the parts of the library's error, where what is not known is empty or 0."""
     return InputError(with_keywords(problem), with_keywords(remedy), file or None, line or None, column or None,
                       keyword(parameter) if parameter else None)
+
+
+for _each in (Error, InputError, Failure, Cancelled, Note):
+    _each.__module__ = "petzval"  # where users find them

@@ -136,7 +136,6 @@ def test_seeds(camera, light):
     assert np.array_equal(first, again) and not np.array_equal(first, other)
 
 
-@pytest.mark.slow
 def test_memory_does_not_grow():
     """10,000 small images: what the process holds after the last is what it held after the first thousand."""
     camera = pz.Camera("edmund-54852", f_number=4, focus="1.2m", sensor="24x16@100")
