@@ -15,8 +15,7 @@ FieldTableRequest at(const std::vector<double>& fields, const std::vector<double
   return {Fields::Kind::angle_deg, fields, wavelengths_nm};
 }
 
-/// The image on the axis of a small stop is Airy's, and grows with the wavelength: the sum of squares of the
-/// samples, ∬ PSF², is 0.23 λ⁻² N⁻² of Airy's pattern, ∫|MTF|² over its disk.
+/// The image of a small stop on the axis is Airy's: ∬ PSF² is ∬ MTF² (Parseval), (λN)⁻² times a number.
 TEST(PsfStack, OfASmallStopIsAirys) {
   Lens lens = read_lens("double-gauss").lens;
   lens.aperture = {Aperture::Kind::f_number, 32};
