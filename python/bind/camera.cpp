@@ -263,7 +263,10 @@ void bind_plan(nb::module_& module) {
 
 Camera CameraInPython::value() const {
   Camera camera;
-  if (lens) camera.lens = *lens;
+  if (lens) {
+    lens->validate();
+    camera.lens = *lens;
+  }
   if (sensor) camera.sensor = *sensor;
   camera.focus = focus, camera.f_number = f_number, camera.blades = blades;
   camera.image_distance_mm = image_distance_mm, camera.move_lens_mm = move_lens_mm;
@@ -285,7 +288,11 @@ std::shared_ptr<Sensor> sensor_from(const nb::object& sensor) {
 }
 
 Lens lens_to_look_at(const nb::object& lens_or_camera) {
-  if (nb::isinstance<Lens>(lens_or_camera)) return nb::cast<Lens>(lens_or_camera);
+  if (nb::isinstance<Lens>(lens_or_camera)) {
+    const auto& lens = nb::cast<const Lens&>(lens_or_camera);
+    lens.validate();  // Python may have altered any number of it
+    return lens;
+  }
   const Camera camera = std::get<Camera>(optics_of(nb::cast<const CameraInPython&>(lens_or_camera)));
   Call call;
   return call([&](const Context& context) { return lens_in_use(camera, context); });

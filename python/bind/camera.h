@@ -21,7 +21,7 @@ struct CameraInPython {
   Camera::Apertures apertures = Camera::Apertures::as_given;
   Losses losses = {};
 
-  /// A copy of all of it, which other threads do not alter.
+  /// A copy of all of it, which other threads do not alter. \throws InputError unless the lens is valid.
   Camera value() const;
 };
 
@@ -29,7 +29,7 @@ struct CameraInPython {
 std::shared_ptr<Lens> lens_from(const nb::object& lens);
 std::shared_ptr<Sensor> sensor_from(const nb::object& sensor);
 
-/// The lens of a Camera as it is used, or a Lens as it stands.
+/// The lens of a Camera as it is used, or a Lens as it stands. \throws InputError unless it is valid.
 Lens lens_to_look_at(const nb::object& lens_or_camera);
 
 void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module);

@@ -103,10 +103,15 @@ std::string repr(const Lens& lens) {
                      nb::cast<std::string>(nb::repr(dict_of(aperture_of(lens)))));
 }
 
+FirstOrder paraxial(const Lens& lens, std::optional<double> wavelength_nm) {
+  lens.validate();  // Python may have altered any number of it
+  return first_order(lens, wavelength_nm);
+}
+
 /// A number of FirstOrder as a property of the lens, at its reference wavelength.
 template <double FirstOrder::*member>
 double first_order_number(const Lens& lens) {
-  return first_order(lens).*member;
+  return paraxial(lens, {}).*member;
 }
 
 void bind_first_order(nb::module_& module) {
@@ -204,7 +209,7 @@ void bind_lens(nb::module_& module) {
                    "Focal length at the reference wavelength.")
       .def_prop_ro("bfl_mm", first_order_number<&FirstOrder::bfl_mm>, "Last vertex to rear focal point.")
       .def_prop_ro("f_number", first_order_number<&FirstOrder::f_number>, "Paraxial, at infinity.")
-      .def("first_order", &first_order, nb::arg("wavelength_nm").none() = nb::none(),
+      .def("first_order", paraxial, nb::arg("wavelength_nm").none() = nb::none(),
            "Paraxial optics at a wavelength; None: the reference wavelength.")
       .def("validate", &Lens::validate, "Raises InputError that says which entry is wrong.")
       .def(
@@ -224,13 +229,20 @@ void bind_lens(nb::module_& module) {
           nb::arg("path"),
           "Writes .json, .iset.json, .dat, .zmx or .seq, whole or not at all. A warning tells what a format "
           "leaves out.")
-      .def("to_json", &lens_to_json, "As native JSON text; every number survives.")
+      .def(
+          "to_json",
+          [](const Lens& self) {
+            self.validate();
+            return lens_to_json(self);
+          },
+          "As native JSON text; every number survives.")
       .def_static(
           "from_json",
           [](const std::string& text) { return std::make_shared<Lens>(lens_from_json(text, "text")); },
           nb::arg("text"))
       .def("__repr__", repr)
       .def("__reduce__", [](const Lens& self) {
+        self.validate();
         std::vector<Material> glasses;
         for (const Surface& surface : self.surfaces)
           if (std::holds_alternative<std::shared_ptr<const Glass>>(surface.material.kind()))

@@ -6,6 +6,7 @@ import pickle
 import re
 import warnings
 
+import numpy as np
 import pytest
 
 import petzval as pz
@@ -92,3 +93,21 @@ def test_every_parameter_is_a_keyword():
     known = keywords(_petzval) | set(dir(_petzval))
     unknown = {each for each in named if _errors.keyword(each).partition(",")[0] not in known}
     assert unknown == NOT_IN_PYTHON
+
+
+@pytest.mark.parametrize("spoil", [
+    lambda lens: setattr(lens, "surfaces", []), lambda lens: setattr(lens.surfaces[3], "stop", False),
+    lambda lens: setattr(lens.surfaces[2], "thickness_mm", float("nan")),
+    lambda lens: setattr(lens.surfaces[0], "asphere", {-3: 1.0}), lambda lens: setattr(lens.surfaces[0], "shape", {"kind": "qcon"}),
+    lambda lens: setattr(lens.surfaces[3], "blades", (10**6, 0)), lambda lens: setattr(lens, "wavelengths_nm", []),
+    lambda lens: setattr(lens, "aperture", {"f_number": 0})])
+def test_a_spoilt_lens_is_refused(spoil):
+    lens = pz.Lens("cooke-triplet")
+    spoil(lens)
+    rays = np.zeros((1, 3)), np.ones((1, 3))
+    for use in (lens.first_order, lens.psf, lens.spots, lens.draw, lens.to_json, lens.validate, lambda: lens.trace(*rays),
+                lambda: pickle.dumps(lens), lambda: lens.save("lens.json"), lambda: lens.altered("name", "x"),
+                lambda: pz.Camera(lens, sensor="8x8@100").image("studio"), lambda: pz.target(rectangle=(9, 9, 5), lens=lens)):
+        with pytest.raises(pz.InputError):
+            use()
+    assert repr(lens) and repr(lens.surfaces)
