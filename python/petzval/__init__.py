@@ -2,7 +2,7 @@
 """Digital-camera simulation from the glass up (docs/PYTHON.md).
 
     import petzval as pz
-    camera = pz.Camera("edmund-54852", f_number=2.8, focus="1.2m", sensor="imx363")
+    camera = pz.Camera("edmund-54852", f_number=2.8, focus="1.2m", sensor="example-vga")
     light = camera.image("studio")               # SpectralImage
     picture = pz.develop(camera.expose(light))   # Picture
 

@@ -27,6 +27,13 @@ def test_python_page(tmp_path, monkeypatch):
         assert runner.run(examples).failed == 0
 
 
+def test_readme(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    block = re.search(r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)
+    exec(block[1], {})
+    assert (tmp_path / "studio.png").stat().st_size > 10000
+
+
 @pytest.mark.parametrize("script", sorted(path.name for path in (ROOT / "examples" / "python").glob("*.py")))
 def test_example(script, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
