@@ -16,10 +16,10 @@ PATH=$folder/tools/bin:$PATH auditwheel repair --plat manylinux_2_35_x86_64 --wh
 
 [[ ${2-} == --try ]] || exit 0
 debootstrap --variant=minbase --include=python3,python3-venv,python3-pip bookworm "$folder/bare"
-"$folder/tools/bin/pip" download --quiet --only-binary :all: --dest "$folder/bare/root" numpy
-cp "$folder"/petzval-*.whl "$folder/bare/root"
-chroot "$folder/bare" bash -c 'cd /root && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
-chroot "$folder/bare" /root/v/bin/python -W ignore -c '
+"$folder/tools/bin/pip" download --quiet --only-binary :all: --dest "$folder/bare/opt" numpy
+cp "$folder"/petzval-*.whl "$folder/bare/opt"
+chroot "$folder/bare" bash -c 'cd /opt && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
+chroot "$folder/bare" /opt/v/bin/python -W ignore -c '
 import petzval as pz
 camera = pz.Camera("edmund-54852", f_number=4, sensor=pz.Sensor("example-vga", {"columns": 64, "rows": 48, "pitch_um": 50}))
 light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
