@@ -33,7 +33,7 @@ void translate(const std::exception_ptr& thrown, void*) {
 
 void bind_errors(nb::module_& module) {
   nb::register_exception_translator(translate);
-  module.attr("__version__") = version();
+  module.def("_version", &version);
   module.def("set_data_directory", &set_data_directory, nb::arg("path"),
              "Takes bundled lenses, glasses, sensors and scenes from another folder, before any is read.");
   module.def("data_directory", &data_directory, "The folder of the bundled data.");

@@ -15,12 +15,13 @@ from ._errors import Cancelled, Error, Failure, InputError, Note
 from ._petzval import (Camera, Edge, Edges, FirstOrder, FocusRun, Frame, GainMode, Glass, GlassCatalogue, ImagePlan,
                        Lens, LensDataTable, LensFacts, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
                        Scene, SceneRequest, Sensor, SensorTest, SpectralImage, Surface, SurfaceList, TableCamera,
-                       __version__, analyses, bundled_names, chart_names, compare, data_directory, develop,
+                       analyses, bundled_names, chart_names, compare, data_directory, develop,
                        list_unsupported, measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
-from ._petzval import _set_default_data_directory
+from ._petzval import _set_default_data_directory, _version
 from ._sweep import sweep
 from ._tables import Analysis, Table, TracedRays
 
+__version__ = _version()
 _set_default_data_directory(str(_Path(__file__).parent / "data"))
 
 __all__ = [name for name in dir() if not name.startswith("_")] + ["__version__"]

@@ -11,7 +11,7 @@
 namespace petzval {
 namespace {
 
-FieldTableRequest at(const std::vector<double>& fields, const std::vector<double>& wavelengths_nm) {
+FieldTableRequest psf_request(const std::vector<double>& fields, const std::vector<double>& wavelengths_nm) {
   return {Fields::Kind::angle_deg, fields, wavelengths_nm};
 }
 
@@ -19,7 +19,7 @@ FieldTableRequest at(const std::vector<double>& fields, const std::vector<double
 TEST(PsfStack, OfASmallStopIsAirys) {
   Lens lens = read_lens("double-gauss").lens;
   lens.aperture = {Aperture::Kind::f_number, 32};
-  const PsfStack stack = psf_stack(lens, at({0}, {480, 640}), {.size = 256, .spacing_um = 4});
+  const PsfStack stack = psf_stack(lens, psf_request({0}, {480, 640}), {.size = 256, .spacing_um = 4});
   const auto sharpness = [&](std::size_t wavelength) {
     double sum = 0;
     for (std::size_t i = 0; i < stack.psf_cells(); ++i)
@@ -41,7 +41,7 @@ TEST(PsfStack, OfASmallStopIsAirys) {
 
 TEST(PsfStack, AGridThatIsChosenHoldsAll) {
   const Lens lens = read_lens("cooke-triplet").lens;
-  const PsfStack stack = psf_stack(lens, at({0, 14, 20}, {480, 640}));
+  const PsfStack stack = psf_stack(lens, psf_request({0, 14, 20}, {480, 640}));
   EXPECT_EQ(stack.values.size(), 6 * stack.psf_cells());
   EXPECT_LE(stack.size, PsfOptions().largest_size);
   for (const double share : stack.captured) EXPECT_GT(share, 0.98);
@@ -52,7 +52,7 @@ TEST(PsfStack, AGridThatIsChosenHoldsAll) {
   }
   // The same grid asked for gives the same PSFs.
   const PsfStack again =
-      psf_stack(lens, at({14}, {640}), {.size = stack.size, .spacing_um = stack.spacing_um});
+      psf_stack(lens, psf_request({14}, {640}), {.size = stack.size, .spacing_um = stack.spacing_um});
   const auto cells = static_cast<std::ptrdiff_t>(stack.psf_cells());
   EXPECT_TRUE(std::equal(again.values.begin(), again.values.end(), stack.values.begin() + 3 * cells));
 }
@@ -60,7 +60,7 @@ TEST(PsfStack, AGridThatIsChosenHoldsAll) {
 TEST(PsfStack, SaysWhereNoRayPasses) {
   const Lens lens = read_lens("double-gauss").lens;
   try {
-    psf_stack(lens, at({0, 60}, {550}));
+    psf_stack(lens, psf_request({0, 60}, {550}));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("60"), std::string::npos) << error.what();
