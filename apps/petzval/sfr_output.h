@@ -2,9 +2,7 @@
 // What petzval sfr says about the edges that it has measured.
 #pragma once
 
-#include <petzval/measure/sfr/find_edges.h>
-#include <petzval/measure/sfr/iso_esfr.h>
-#include <petzval/measure/sfr/measure_edge.h>
+#include <petzval/measure/sfr/measure_picture.h>
 
 #include <optional>
 #include <string>
@@ -13,21 +11,6 @@
 #include "command.h"
 
 namespace petzval::app {
-
-struct MeasuredEdge {
-  std::string channel;
-  PixelBox roi;
-  EdgeMeasurement exact;
-  std::optional<IsoEsfr> iso;               ///< with --method iso
-  std::optional<double> lateral_offset_px;  ///< from green, along the normal, with all channels
-
-  const std::vector<double>& frequencies() const {
-    return iso ? iso->frequencies_cpp : exact.frequencies_cpp;
-  }
-  const std::vector<double>& sfr() const { return iso ? iso->sfr : exact.sfr; }
-  double mtf50() const { return iso ? iso->mtf50_cpp : exact.mtf50().frequency_cpp; }
-  double angle_deg() const { return iso ? iso->angle_deg : exact.line.angle_deg(); }
-};
 
 struct SfrReport {
   std::string image;

@@ -17,6 +17,7 @@
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/outputs.h>
+#include <petzval/simulate/psf_stack.h>
 #include <petzval/simulate/render.h>
 #include <petzval/simulate/target.h>
 

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Measurement: sharpness of edges, differences of pictures, colours of a chart, noise of a sensor.
+#include <fmt/format.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/measure/colour_chart.h>
+#include <petzval/measure/photon_transfer.h>
+#include <petzval/measure/picture_comparison.h>
+#include <petzval/measure/sfr/measure_picture.h>
+
+#include <cmath>
+
+#include "call.h"
+#include "picture.h"
+
+namespace petzval::python {
+
+namespace {
+
+template <typename Number>
+using Maybe = std::optional<Number>;
+using DoublesIn = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+
+// ---- edges
+
+PicturePlanes planes_of(const PictureInPython& picture) {
+  PicturePlanes result{picture.columns, picture.rows, {}, picture.channels == 3, {}, {}, {}};
+  for (std::size_t c = 0; c < picture.channels; ++c) {
+    Plane plane{picture.columns, picture.rows, {}};
+    for (std::size_t i = c; i < picture.values.size(); i += picture.channels)
+      plane.values.push_back(picture.values[i]);
+    result.planes.push_back(std::move(plane));
+  }
+  return result;
+}
+
+PicturePlanes planes_of(const SpectralImage& image) {
+  PicturePlanes result{image.columns(), image.rows(), {}, false, {}, {}, {}};
+  for (int band = 0; band < image.bands(); ++band) {
+    const auto values = image.band(band);
+    result.planes.push_back({image.columns(), image.rows(), {values.begin(), values.end()}});
+  }
+  return result;
+}
+
+PicturePlanes planes_of(const RawImage& raw) {
+  Plane plane{raw.columns, raw.rows, {}};
+  for (int row = 0; row < raw.rows; ++row)
+    for (int column = 0; column < raw.columns; ++column) plane.values.push_back(raw.pixel(row, column));
+  return {raw.columns, raw.rows, {plane}, false, {}, {}, {}};
+}
+
+/// (row, column) or (row, column, channel), linear.
+PicturePlanes planes_of(const DoublesIn& values) {
+  if (values.ndim() != 2 && values.ndim() != 3)
+    throw InputError(fmt::format(
+        "`picture` of {} dimensions; (row, column) or (row, column, channel) would be right", values.ndim()));
+  const std::size_t channels = values.ndim() == 3 ? values.shape(2) : 1;
+  const int rows = static_cast<int>(values.shape(0)), columns = static_cast<int>(values.shape(1));
+  PicturePlanes result{columns, rows, {}, channels == 3, {}, {}, {}};
+  for (std::size_t c = 0; c < channels; ++c) {
+    Plane plane{columns, rows, {}};
+    for (std::size_t i = c; i < values.size(); i += channels) plane.values.push_back(values.data()[i]);
+    result.planes.push_back(std::move(plane));
+  }
+  return result;
+}
+
+PicturePlanes planes_from(const nb::object& picture, const std::string& transfer) {
+  if (nb::isinstance<PictureInPython>(picture)) return planes_of(nb::cast<const PictureInPython&>(picture));
+  if (nb::isinstance<SpectralImage>(picture)) return planes_of(nb::cast<const SpectralImage&>(picture));
+  if (nb::isinstance<RawImage>(picture)) return planes_of(nb::cast<const RawImage&>(picture));
+  if (nb::isinstance<nb::str>(picture))
+    return read_picture_planes(nb::cast<std::string>(picture),
+                               choice<PictureTransfer>("transfer", transfer,
+                                                       {{"stated", PictureTransfer::stated},
+                                                        {"srgb", PictureTransfer::srgb},
+                                                        {"linear", PictureTransfer::linear}}));
+  return planes_of(nb::cast<DoublesIn>(picture));
+}
+
+struct Edges {
+  std::vector<MeasuredEdge> all;
+};
+
+Edges measured(const nb::object& picture, const nb::object& roi, const std::string& channel,
+               const std::string& bayer, int edge_order, const std::string& method,
+               const std::string& transfer, int threads, const nb::object& progress) {
+  SfrRequest request{
+      {}, channel, bayer, edge_order, choice<bool>("method", method, {{"exact", false}, {"iso", true}})};
+  if (!roi.is_none()) {
+    std::vector<std::array<int, 4>> boxes;
+    if (!nb::try_cast(roi, boxes)) boxes = {nb::cast<std::array<int, 4>>(roi)};
+    for (const auto& [x, y, width, height] : boxes) request.rois.push_back({x, y, width, height});
+  }
+  const PicturePlanes planes = planes_from(picture, transfer);
+  const std::string name = nb::isinstance<nb::str>(picture) ? nb::cast<std::string>(picture) : "the picture";
+  Call call({threads, 1, progress});
+  return call([&](const Context& context) { return Edges{measure_sfr(planes, request, name, context)}; });
+}
+
+/// Of all edges, the middle one; an edge whose SFR stays above one half has none.
+double median_mtf50(const Edges& edges) {
+  Numbers values;
+  for (const MeasuredEdge& edge : edges.all)
+    if (std::isfinite(edge.mtf50())) values.push_back(edge.mtf50());
+  if (values.empty()) return NAN;
+  std::ranges::sort(values);
+  return values.size() % 2 ? values[values.size() / 2]
+                           : 0.5 * (values[values.size() / 2 - 1] + values[values.size() / 2]);
+}
+
+void bind_sfr(nb::module_& module) {
+  using Edge = MeasuredEdge;
+  nb::class_<Edge>(module, "Edge",
+                   "Spatial frequency response of one edge. Frequencies in cycles/pixel, lengths in pixels.")
+      .def_ro("channel", &Edge::channel, "Empty for luminance.")
+      .def_prop_ro(
+          "roi", [](const Edge& e) { return nb::make_tuple(e.roi.x, e.roi.y, e.roi.width, e.roi.height); },
+          "(x, y, width, height)")
+      .def_prop_ro(
+          "mtf50", &Edge::mtf50,
+          "Frequency at which the SFR first falls below one half [cycles/pixel]; NaN if it does not.")
+      .def_prop_ro(
+          "mtf50_deviation", [](const Edge& e) { return e.exact.mtf50().deviation_cpp; },
+          "Standard deviation from noise and rounding.")
+      .def_prop_ro("angle_deg", &Edge::angle_deg, "From the nearer pixel axis, clockwise in the picture.")
+      .def_prop_ro("frequencies_cpp", [](const Edge& e) { return array_of(e.frequencies()); })
+      .def_prop_ro("sfr", [](const Edge& e) { return array_of(e.sfr()); })
+      .def_prop_ro("sfr_deviation", [](const Edge& e) { return array_of(e.exact.sfr_deviation); })
+      .def_prop_ro(
+          "rise_px", [](const Edge& e) { return e.exact.rise_px; }, "10 % to 90 %.")
+      .def_prop_ro(
+          "distance_px", [](const Edge& e) { return array_of(e.exact.distance_px); }, "Of the profile.")
+      .def_prop_ro(
+          "esf", [](const Edge& e) { return array_of(e.exact.esf); }, "Edge spread, over the step.")
+      .def_prop_ro(
+          "lsf", [](const Edge& e) { return array_of(e.exact.lsf); }, "Line spread [1/pixel].")
+      .def_prop_ro("notes", [](const Edge& e) { return e.exact.notes; })
+      .def_ro("lateral_offset_px", &Edge::lateral_offset_px,
+              "From green along the normal, with all channels; else None.")
+      .def("__repr__", [](const Edge& e) {
+        return fmt::format("<Edge{}{} at {:.3f} degrees: MTF50 {:.4f} cycles/pixel>",
+                           e.channel.empty() ? "" : " ", e.channel, e.angle_deg(), e.mtf50());
+      });
+  nb::class_<Edges>(module, "Edges", "The measured edges of a picture.")
+      .def("__len__", [](const Edges& e) { return e.all.size(); })
+      .def("__getitem__",
+           [](const Edges& e, std::ptrdiff_t i) {
+             if (i < 0) i += static_cast<std::ptrdiff_t>(e.all.size());
+             if (i < 0 || i >= static_cast<std::ptrdiff_t>(e.all.size()))
+               throw nb::index_error("there is no such edge");
+             return e.all[static_cast<std::size_t>(i)];
+           })
+      .def_prop_ro("mtf50", median_mtf50, "Median of the edges' [cycles/pixel].")
+      .def("__repr__", [](const Edges& e) {
+        return fmt::format("<Edges: {}, median MTF50 {:.4f} cycles/pixel>", e.all.size(), median_mtf50(e));
+      });
+  module.def("sfr", measured, nb::arg("picture"), nb::arg("roi").none() = nb::none(), nb::kw_only(),
+             nb::arg("channel") = "luminance", nb::arg("bayer") = "", nb::arg("edge_order") = 0,
+             nb::arg("method") = "exact", nb::arg("transfer") = "stated", nb::arg("threads") = 0,
+             nb::arg("progress").none() = nb::none(),
+             "Spatial frequency response of slanted edges. `picture`: a Picture, SpectralImage, Raw (with "
+             "`bayer`), an array of linear light (row, column) or "
+             "(row, column, channel), or a file. `roi`: (x, y, width, height) of an edge, or a list of them; "
+             "None: every straight edge that stands out. "
+             "`channel`: luminance, red, green, blue or all. `edge_order`: 0, bent as far as the pixels "
+             "show, 1, straight, up to 5. `method`: "
+             "exact or iso.");
+}
+
+// ---- pictures
+
+/// Its values as `compare` has those of files.
+ComparablePicture comparable_from(const nb::object& picture, const char* name) {
+  if (nb::isinstance<nb::str>(picture)) return read_comparable_picture(nb::cast<std::string>(picture));
+  ComparablePicture result;
+  result.name = name;
+  if (nb::isinstance<SpectralImage>(picture)) {
+    const auto& image = nb::cast<const SpectralImage&>(picture);
+    result.columns = image.columns(), result.rows = image.rows(),
+    result.bands = static_cast<std::size_t>(image.bands());
+    result.wavelengths_nm = image.wavelengths_nm(), result.pitch_um = image.pitch_um(),
+    result.units = "W.m^-2.nm^-1";
+    result.values = LargeFloats(std::vector<float>(image.values().begin(), image.values().end()));
+    return result;
+  }
+  const auto values = nb::cast<DoublesIn>(picture);
+  if (values.ndim() != 2 && values.ndim() != 3)
+    throw InputError(
+        fmt::format("`{}` of {} dimensions; (row, column) or (row, column, channel) would be right", name,
+                    values.ndim()));
+  result.rows = static_cast<int>(values.shape(0)), result.columns = static_cast<int>(values.shape(1));
+  result.bands = values.ndim() == 3 ? values.shape(2) : 1;
+  result.interleaved = true;
+  result.values = std::vector<double>(values.data(), values.data() + values.size());
+  return result;
+}
+
+void bind_comparison(nb::module_& module) {
+  nb::class_<PictureDifference>(module, "PictureDifference", "How far one picture is from a reference.")
+      .def_ro("relative_l2", &PictureDifference::relative_l2)
+      .def_ro("max_error_over_peak", &PictureDifference::max_error_over_peak)
+      .def_ro("psnr_db", &PictureDifference::psnr_db)
+      .def_ro("peak", &PictureDifference::peak)
+      .def("__repr__", [](const PictureDifference& d) {
+        return fmt::format(
+            "<PictureDifference: relative_l2={:.4g}, max_error_over_peak={:.4g}, psnr_db={:.2f}>",
+            d.relative_l2, d.max_error_over_peak, d.psnr_db);
+      });
+  module.def(
+      "compare",
+      [](const nb::object& picture, const nb::object& reference) {
+        ComparablePicture a = comparable_from(picture, "picture"),
+                          b = comparable_from(reference, "reference");
+        if (a.bands == b.bands + 1) drop_full_opacity(a);
+        if (b.bands == a.bands + 1) drop_full_opacity(b);
+        return compare_pictures(a, b).all;
+      },
+      nb::arg("picture"), nb::arg("reference"),
+      "How far a picture is from a reference, both a SpectralImage, an array or a file. Raises InputError "
+      "saying what differs in kind.");
+}
+
+// ---- sensors
+
+void bind_sensor_test(nb::module_& module) {
+  nb::class_<SensorTest>(module, "SensorTest", "What noise tells of a sensor (EMVA 1288).")
+      .def_prop_ro("dn_per_e", [](const SensorTest& t) { return t.transfer.dn_per_e; })
+      .def_prop_ro("dark_noise_e", [](const SensorTest& t) { return t.transfer.dark_noise_e; })
+      .def_prop_ro("saturation_e", [](const SensorTest& t) { return t.transfer.saturation_e; })
+      .def_prop_ro("dynamic_range_db", [](const SensorTest& t) { return t.transfer.dynamic_range_db; })
+      .def_prop_ro("snr_max_db", [](const SensorTest& t) { return t.transfer.snr_max_db; })
+      .def_prop_ro("dsnu_e", [](const SensorTest& t) { return t.uniformity.dsnu_e; })
+      .def_prop_ro("prnu_percent", [](const SensorTest& t) { return t.uniformity.prnu_percent; })
+      .def_prop_ro(
+          "mean_dn",
+          [](const SensorTest& t) {
+            Numbers values;
+            for (const TransferPoint& p : t.transfer.points) values.push_back(p.mean_dn);
+            return array_of(std::move(values));
+          },
+          "Of the photon-transfer curve.")
+      .def_prop_ro("temporal_variance_dn2", [](const SensorTest& t) {
+        Numbers values;
+        for (const TransferPoint& p : t.transfer.points) values.push_back(p.temporal_variance_dn2);
+        return array_of(std::move(values));
+      });
+  module.def(
+      "test_sensor",
+      [](const Sensor& sensor, const std::string& channel, int side, int levels, int stack,
+         std::uint64_t seed, int threads, const nb::object& progress) {
+        const std::vector<std::string> names = sensor.require_electronics().channel_names();
+        std::size_t number = 0;
+        while (number < names.size() && names[number] != channel) ++number;
+        if (channel.empty()) number = 0;
+        if (number == names.size())
+          throw InputError(fmt::format("`channel` {}: {} would be right", channel, fmt::join(names, " or ")));
+        CaptureOptions options;
+        options.seed = seed;
+        Call call({threads, seed, progress});
+        return call([&](const Context& context) {
+          return result_within(context, [&](const ProgressCallback&) {
+            return test_sensor(sensor, options, static_cast<int>(number), side, levels, stack);
+          });
+        });
+      },
+      nb::arg("sensor"), nb::kw_only(), nb::arg("channel") = "", nb::arg("side") = 256,
+      nb::arg("levels") = 24, nb::arg("stack") = 32, nb::arg("seed") = 1, nb::arg("threads") = 0,
+      nb::arg("progress").none() = nb::none(),
+      "Exposes a sensor as EMVA 1288 wants it and evaluates a channel.");
+}
+
+// ---- colour
+
+void bind_chart(nb::module_& module) {
+  module.def(
+      "measure_colour",
+      [](const std::string& picture, const std::string& light, bool match_exposure,
+         const std::optional<std::array<std::array<double, 2>, 4>>& corners) {
+        const ViewedPicture viewed = read_viewed_picture(picture);
+        const Spectrum spectrum = illuminant(light);
+        const ChartCorners at = corners ? ChartCorners{*corners} : find_chart(viewed, spectrum);
+        const ChartDifference d = compare_chart(viewed, at, spectrum, match_exposure);
+        nb::dict columns, units;
+        nb::list names;
+        Numbers x, y, ab, d2000;
+        for (const PatchDifference& p : d.patches)
+          names.append(p.name), x.push_back(p.x), y.push_back(p.y), ab.push_back(p.delta_e_ab),
+              d2000.push_back(p.delta_e_2000);
+        columns["patch"] = names, columns["x_px"] = array_of(std::move(x)),
+        columns["y_px"] = array_of(std::move(y));
+        columns["delta_e_ab"] = array_of(std::move(ab)), columns["delta_e_2000"] = array_of(std::move(d2000));
+        for (const char* each : {"patch", "delta_e_ab", "delta_e_2000"}) units[each] = "";
+        units["x_px"] = "px", units["y_px"] = "px";
+        return call_python(
+            "petzval._tables", "Table", columns, units,
+            fmt::format("mean DE2000 {:.2f}, max {:.2f}", d.mean_delta_e_2000, d.max_delta_e_2000), "");
+      },
+      nb::arg("picture"), nb::kw_only(), nb::arg("light") = "D65", nb::arg("match_exposure") = true,
+      nb::arg("corners").none() = nb::none(),
+      "Colour differences of a ColorChecker that is found in a picture file (.png, .tif), as a Table of its "
+      "24 patches.");
+}
+
+}  // namespace
+
+void bind_measure(nb::module_& module) {
+  bind_sfr(module);
+  bind_comparison(module);
+  bind_sensor_test(module);
+  bind_chart(module);
+}
+
+}  // namespace petzval::python

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "glass.h"
+
+namespace petzval::python {
+
+namespace {
+
+std::size_t digits(double value) {
+  char text[32];
+  return static_cast<std::size_t>(std::to_chars(text, text + sizeof text, value).ptr - text);
+}
+
+/// The shortest number whose reciprocal the curvature is.
+double radius_of(double curvature) {
+  if (curvature == 0) return std::numeric_limits<double>::infinity();
+  const double nearest = 1 / curvature;
+  double best = nearest;
+  for (const double each : {std::nextafter(nearest, -HUGE_VAL), std::nextafter(nearest, HUGE_VAL)})
+    if (1 / each == curvature && (1 / best != curvature || digits(each) < digits(best))) best = each;
+  return best;
+}
+
+double curvature_of(const std::optional<double>& radius_mm) {
+  if (!radius_mm || std::isinf(*radius_mm)) return 0;
+  if (!(*radius_mm != 0) || std::isnan(*radius_mm))
+    throw InputError(fmt::format(
+        "`radius_mm` {}; a length other than 0, or None for a flat surface, would be right", *radius_mm));
+  return 1 / *radius_mm;
+}
+
+/// A dict that cannot be altered: altering the lens takes an assignment of a whole one.
+nb::object read_only(const nb::object& dict) {
+  return nb::steal(PyDictProxy_New(dict.ptr()));
+}
+
+nb::object shape_of(const Surface& surface) {
+  if (!surface.shape) return nb::none();
+  nb::dict dict;
+  dict["kind"] = surface.shape->kind;
+  for (const auto& [name, numbers] : surface.shape->parameters)
+    dict[name.c_str()] = numbers.size() == 1 ? nb::cast(numbers[0]) : nb::object(tuple_of(numbers));
+  return read_only(dict);
+}
+
+void set_shape(Surface& surface, const nb::object& shape) {
+  surface.shape.reset();
+  if (shape.is_none()) return;
+  AddedShape added;
+  for (const auto& [key, value] : dict_of(shape)) {
+    const auto name = nb::cast<std::string>(key);
+    if (name == "kind")
+      added.kind = nb::cast<std::string>(value);
+    else
+      added.parameters[name] =
+          nb::isinstance<nb::sequence>(value) ? nb::cast<Numbers>(value) : Numbers{nb::cast<double>(value)};
+  }
+  surface.shape = std::move(added);
+}
+
+std::string repr(SurfaceView& view) {
+  const Surface& s = view.get();
+  std::string text =
+      fmt::format("Surface(radius_mm={}, thickness_mm={}",
+                  s.curvature_per_mm == 0 ? "None" : number_repr(radius_of(s.curvature_per_mm)),
+                  number_repr(s.thickness_mm));
+  if (!s.material.is_air()) text += fmt::format(", glass='{}'", s.material.description());
+  if (s.semi_diameter_mm) text += ", semi_diameter_mm=" + number_repr(*s.semi_diameter_mm);
+  if (s.stop) text += ", stop=True";
+  if (s.conic != 0) text += ", conic=" + number_repr(s.conic);
+  if (!s.asphere.empty()) text += ", asphere=" + nb::cast<std::string>(nb::repr(nb::cast(s.asphere)));
+  if (s.shape) text += ", shape=" + nb::cast<std::string>(nb::repr(dict_of(shape_of(s))));
+  return text + ")";
+}
+
+void bind_surface_itself(nb::module_& module) {
+  using View = SurfaceView;
+  nb::class_<View>(
+      module, "Surface",
+      "A surface and the gap behind it. One that was taken from `lens.surfaces` alters that lens.")
+      .def(
+          "__init__",
+          [](View* self, std::optional<double> radius_mm, double thickness_mm, const nb::object& glass,
+             std::optional<double> semi_diameter_mm, bool stop, double conic,
+             const std::map<int, double>& asphere, const nb::object& shape, std::pair<int, double> blades) {
+            Surface s;
+            s.curvature_per_mm = curvature_of(radius_mm);
+            s.thickness_mm = thickness_mm;
+            s.material = material_from(glass);
+            s.semi_diameter_mm = semi_diameter_mm;
+            s.stop = stop;
+            s.conic = conic;
+            s.asphere = asphere;
+            s.blades = {blades.first, blades.second};
+            set_shape(s, shape);
+            new (self) View(std::move(s));
+          },
+          nb::arg("radius_mm").none() = nb::none(), nb::arg("thickness_mm") = 0.0,
+          nb::arg("glass").none() = nb::none(), nb::kw_only(),
+          nb::arg("semi_diameter_mm").none() = nb::none(), nb::arg("stop") = false, nb::arg("conic") = 0.0,
+          nb::arg("asphere") = std::map<int, double>(), nb::arg("shape").none() = nb::none(),
+          nb::arg("blades") = std::pair(0, 0.0))
+      .def_prop_rw(
+          "radius_mm", [](View& v) { return radius_of(v.get().curvature_per_mm); },
+          [](View& v, std::optional<double> r) { v.get().curvature_per_mm = curvature_of(r); },
+          nb::for_setter(nb::arg("value").none()),
+          "Above 0 when the centre of curvature lies behind the surface; inf (or None) is flat.")
+      .def_prop_rw(
+          "curvature_per_mm", [](View& v) { return v.get().curvature_per_mm; },
+          [](View& v, double c) { v.get().curvature_per_mm = c; }, "1/radius [1/mm].")
+      .def_prop_rw(
+          "thickness_mm", [](View& v) { return v.get().thickness_mm; },
+          [](View& v, double t) { v.get().thickness_mm = t; },
+          "To the next vertex; of the last surface to the image.")
+      .def_prop_rw(
+          "glass", [](View& v) { return v.get().material; },
+          [](View& v, const nb::object& g) { v.get().material = material_from(g); },
+          nb::for_setter(nb::arg("value").none()),
+          "Glass behind the surface; a name, a Glass, or None for air is taken.")
+      .def_prop_rw(
+          "semi_diameter_mm", [](View& v) { return v.get().semi_diameter_mm; },
+          [](View& v, std::optional<double> d) { v.get().semi_diameter_mm = d; },
+          nb::for_setter(nb::arg("value").none()), "Clear semi-aperture; None: unbounded.")
+      .def_prop_rw(
+          "stop", [](View& v) { return v.get().stop; }, [](View& v, bool stop) { v.get().stop = stop; })
+      .def_prop_rw(
+          "conic", [](View& v) { return v.get().conic; }, [](View& v, double k) { v.get().conic = k; })
+      .def_prop_rw(
+          "asphere", [](View& v) { return read_only(nb::cast(v.get().asphere)); },
+          [](View& v, const std::map<int, double>& a) { v.get().asphere = a; },
+          "{power p of r: coefficient [mm^(1-p)]}; assign a whole dict.")
+      .def_prop_rw(
+          "shape", [](View& v) { return shape_of(v.get()); },
+          [](View& v, const nb::object& shape) { set_shape(v.get(), shape); },
+          nb::for_setter(nb::arg("value").none()),
+          "{\"kind\": …, parameters} of a kind of surface beyond conics and powers, or None.")
+      .def_prop_rw(
+          "blades", [](View& v) { return std::pair(v.get().blades.count, v.get().blades.rotation_deg); },
+          [](View& v, std::pair<int, double> b) {
+            v.get().blades = {b.first, b.second};
+          },
+          "(count, rotation [degrees]) of the blades of the stop; (0, 0): round.")
+      .def("__repr__", repr)
+      .def("__getstate__",
+           [](View& v) {
+             const Surface& s = v.get();
+             return nb::make_tuple(
+                 s.curvature_per_mm, s.thickness_mm, s.material, s.stop, s.blades.count,
+                 s.blades.rotation_deg, s.semi_diameter_mm, s.conic, s.asphere,
+                 dict_of(shape_of(s).is_none() ? nb::object(nb::dict()) : dict_of(shape_of(s))));
+           })
+      .def("__setstate__", [](View& self, const nb::tuple& t) {
+        Surface s;
+        s.curvature_per_mm = nb::cast<double>(t[0]);
+        s.thickness_mm = nb::cast<double>(t[1]);
+        s.material = nb::cast<Material>(t[2]);
+        s.stop = nb::cast<bool>(t[3]);
+        s.blades = {nb::cast<int>(t[4]), nb::cast<double>(t[5])};
+        s.semi_diameter_mm = nb::cast<std::optional<double>>(t[6]);
+        s.conic = nb::cast<double>(t[7]);
+        s.asphere = nb::cast<std::map<int, double>>(t[8]);
+        const auto shape = nb::cast<nb::dict>(t[9]);
+        set_shape(s, shape.size() == 0 ? nb::object(nb::none()) : nb::object(shape));
+        new (&self) View(std::move(s));
+      });
+}
+
+}  // namespace
+
+std::vector<Surface> surfaces_from(const nb::iterable& surfaces) {
+  std::vector<Surface> result;
+  for (const nb::handle each : surfaces) result.push_back(nb::cast<SurfaceView&>(each).get());
+  return result;
+}
+
+void bind_surface(nb::module_& module) {
+  bind_surface_itself(module);
+  nb::class_<SurfaceList>(module, "SurfaceList", "The surfaces of a lens, front to back, as a list.")
+      .def("__len__", [](const SurfaceList& list) { return list.lens->surfaces.size(); })
+      .def("__getitem__",
+           [](const SurfaceList& list, std::ptrdiff_t i) { return SurfaceView(list.lens, list.place(i)); })
+      .def("__setitem__",
+           [](SurfaceList& list, std::ptrdiff_t i, SurfaceView& surface) {
+             list.lens->surfaces[list.place(i)] = Surface(surface.get());
+           })
+      .def("__delitem__",
+           [](SurfaceList& list, std::ptrdiff_t i) {
+             list.lens->surfaces.erase(list.lens->surfaces.begin() +
+                                       static_cast<std::ptrdiff_t>(list.place(i)));
+           })
+      .def(
+          "append",
+          [](SurfaceList& list, SurfaceView& surface) {
+            list.lens->surfaces.push_back(Surface(surface.get()));
+          },
+          nb::arg("surface"))
+      .def(
+          "insert",
+          [](SurfaceList& list, std::ptrdiff_t i, SurfaceView& surface) {
+            const auto count = static_cast<std::ptrdiff_t>(list.lens->surfaces.size());
+            if (i < 0) i += count;
+            list.lens->surfaces.insert(list.lens->surfaces.begin() + std::clamp<std::ptrdiff_t>(i, 0, count),
+                                       Surface(surface.get()));
+          },
+          nb::arg("index"), nb::arg("surface"))
+      .def("__repr__", [](const SurfaceList& list) {
+        std::string text = "[";
+        for (std::size_t i = 0; i < list.lens->surfaces.size(); ++i) {
+          SurfaceView view(list.lens, i);
+          text += (i ? ",\n " : "") + repr(view);
+        }
+        return text + "]";
+      });
+}
+
+}  // namespace petzval::python

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lenses, surfaces, sensors, cameras, scenes and arrays as Python's objects."""
+
+import copy
+import math
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import petzval as pz
+
+
+def test_altering_a_surface_alters_the_lens():
+    lens = pz.Lens("edmund-54852")
+    gap, length = lens.surfaces[4], lens.total_track_mm
+    gap.thickness_mm += 0.1
+    assert lens.surfaces[4].thickness_mm == gap.thickness_mm
+    assert math.isclose(lens.total_track_mm, length + 0.1)
+
+
+def test_a_camera_refers_to_its_lens():
+    lens = pz.Lens("edmund-54852")
+    camera = pz.Camera(lens)
+    assert camera.lens is lens
+    camera.lens.surfaces[4].thickness_mm = 0.7
+    assert lens.surfaces[4].thickness_mm == 0.7
+
+
+def test_a_surface_outlives_its_lens():
+    surface = pz.Lens("edmund-54852").surfaces[0]
+    assert surface.radius_mm == 4.727
+    lens = pz.Lens("cooke-triplet")
+    last = lens.surfaces[-1]
+    del lens.surfaces[-1]
+    with pytest.raises(IndexError):
+        last.thickness_mm
+
+
+def test_surfaces_are_a_list():
+    lens = pz.Lens("cooke-triplet")
+    count = len(lens.surfaces)
+    lens.surfaces.append(pz.Surface(100, 1))
+    lens.surfaces.insert(0, pz.Surface(thickness_mm=2))
+    assert [len(lens.surfaces), lens.surfaces[0].thickness_mm, lens.surfaces[-1].radius_mm] == [count + 2, 2, 100]
+    del lens.surfaces[0]
+    lens.surfaces = list(lens.surfaces)[:-1]
+    assert len(list(lens.surfaces)) == count
+    for index in (count, -count - 1):
+        with pytest.raises(IndexError):
+            lens.surfaces[index]
+
+
+@pytest.mark.parametrize("name", pz.bundled_names("lenses"))
+def test_radii_survive(name):
+    """Setting a radius to what it is changes no bit of the lens."""
+    lens = pz.Lens(name)
+    text = lens.to_json()
+    for surface in lens.surfaces:
+        curvature = surface.curvature_per_mm
+        surface.radius_mm = surface.radius_mm
+        assert surface.curvature_per_mm == curvature
+    assert lens.to_json() == text
+
+
+def test_a_lens_built_in_python():
+    """A plano-convex lens: f = R/(n − 1)."""
+    lens = pz.Lens(surfaces=[pz.Surface(50, 5, "N-BK7", semi_diameter_mm=10, stop=True), pz.Surface(None, 90)],
+                   aperture={"f_number": 8})
+    assert lens.efl_mm == pytest.approx(50 / (pz.Glass("N-BK7").index(587.5618) - 1), rel=1e-12)
+    with pytest.raises(pz.InputError, match="stop"):
+        pz.Lens(surfaces=[pz.Surface(50, 5, "N-BK7")], aperture={"f_number": 8})
+    with pytest.raises(TypeError):
+        lens.surfaces[0].asphere[4] = 1e-6  # to no effect, if it were a dict
+    lens.surfaces[0].asphere = {4: 1e-6}
+    assert dict(lens.surfaces[0].asphere) == {4: 1e-6}
+
+
+def test_glass():
+    """Schott's data sheet of N-BK7: nd 1.51680, Vd 64.17, n(F) 1.52238, n(C) 1.51432."""
+    glass = pz.Glass("N-BK7")
+    assert (round(glass.nd, 5), round(glass.vd, 2)) == (1.5168, 64.17)
+    assert np.round(glass.index([486.1327, 656.2725]), 5).tolist() == [1.52238, 1.51432]
+    assert pz.Glass.constant(1.7).index(500) == 1.7 and pz.Glass("air").is_air
+    assert "SCHOTT:N-BK7" in pz.GlassCatalogue()
+
+
+@pytest.mark.parametrize("make", [
+    lambda: pz.Glass("N-BK7"), lambda: pz.Glass.model(1.6, 40), lambda: pz.Glass.table([400, 700], [1.6, 1.5]),
+    lambda: pz.Sensor("imx363"), lambda: pz.Sensor("640x480@5"), lambda: pz.Sensor("four-thirds-20mp")])
+def test_pickles_are_equal(make):
+    value = make()
+    assert pickle.loads(pickle.dumps(value)) == value
+
+
+@pytest.mark.parametrize("name", pz.bundled_names("sensors"))
+def test_sensors_survive(name):
+    sensor = pz.Sensor(name, {"columns": 96, "rows": 64, "pitch_um": 40})
+    again = pickle.loads(pickle.dumps(sensor))
+    assert again == sensor and repr(again) == repr(sensor)
+    if sensor.has_electronics:
+        wall = pz.SpectralImage(np.full((31, 64, 96), 1e-4, np.float32), range(400, 701, 10), 40, sensor.photosite)
+        raw, same = (each.expose(wall, seed=3, exit_pupil_mm=-20) for each in (sensor, again))
+        assert np.array_equal(raw.values, same.values)
+
+
+@pytest.mark.parametrize("name", pz.bundled_names("lenses"))
+def test_lenses_survive(name):
+    lens = pz.Lens(name)
+    for again in (pickle.loads(pickle.dumps(lens)), copy.copy(lens), copy.deepcopy(lens), pz.Lens.from_json(lens.to_json())):
+        assert again.to_json() == lens.to_json() and again is not lens
+
+
+def test_own_glasses_survive(tmp_path):
+    (tmp_path / "mine.agf").write_text("NM MINE 2 0 1.6 50 0 1\nCD 1.0 0.01 0.2 0.02 0.3 50 0 0 0 0\nLD 0.35 2.0\n")
+    glasses = pz.GlassCatalogue([str(tmp_path / "mine.agf")])
+    lens = pz.Lens("cooke-triplet")
+    lens.surfaces[0].glass = glasses["MINE:MINE"]
+    again = pickle.loads(pickle.dumps(lens))
+    assert again.surfaces[0].glass == glasses["MINE:MINE"]
+    assert lens.altered("surfaces[1].thickness_mm", 6.0).surfaces[0].glass == glasses["MINE:MINE"]
+
+
+def test_cameras_survive(camera):
+    camera.coating, camera.blades, camera.fresnel = {2: ((400, 700), (0.01, 0.02))}, (6, 10), True
+    again = pickle.loads(pickle.dumps(camera))
+    assert repr(again) == repr(camera)
+    assert (again.blades, dict(again.coating), again.fresnel, again.focus) == ((6, 10), dict(camera.coating), True, "1.2m")
+
+
+def test_pictures_survive(camera, light):
+    raw = camera.expose(light)
+    picture = pz.develop(raw)
+    for value in (light, raw, picture):
+        assert np.array_equal(pickle.loads(pickle.dumps(value)).values, value.values)
+    assert pickle.loads(pickle.dumps(light)).provenance == light.provenance
+
+
+def test_arrays_share_memory(camera, light):
+    light.values[0, 0, 0] = 7
+    assert light.values[0, 0, 0] == 7 and np.asarray(light)[0, 0, 0] == 7 and np.from_dlpack(light)[0, 0, 0] == 7
+    assert np.asarray(light, dtype=np.float64).dtype == np.float64
+    assert not np.shares_memory(np.array(light, copy=True), light.values)
+    values = camera.image("studio", method="none").values  # the image lives as long as the view
+    assert values.base is not None and np.isfinite(values).all()
+
+
+def test_scenes_from_arrays(camera):
+    """A uniform wall at infinity on the axis gives E = L g_sensor (docs/CONVENTIONS.md, "Radiometry")."""
+    camera.focus = "infinity"
+    radiance = np.full((1, 40, 60), 0.5, np.float32)
+    light = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70))
+    g_sensor = camera.illumination([0], wavelengths_nm=[550])["g_sensor_sr"][0]
+    assert light.values[0, 31:33, 47:49].mean() == pytest.approx(0.5 * g_sensor, rel=2e-3)
+    scene = pz.Scene.from_reflectance(np.full((31, 4, 6), 0.18, np.float32), range(400, 701, 10), mean_luminance_cd_m2=50)
+    assert scene.mean_luminance_cd_m2 == pytest.approx(50)
+    with pytest.raises(pz.InputError, match="wavelength, row, column"):
+        pz.Scene(radiance, [500, 600])
+    with pytest.raises(pz.InputError):
+        pz.Scene(-radiance, [550])
+
+
+def test_depth_from_an_array(camera):
+    depth = np.full((40, 60), 1.2, np.float32)
+    radiance = np.full((1, 40, 60), 0.5, np.float32)
+    flat = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70, distance_m=1.2))
+    deep = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70, depth_m=depth), surround="extend")
+    assert deep.values[0, 20:40, 30:60] == pytest.approx(flat.values[0, 20:40, 30:60], rel=1e-3)
+
+
+def test_what_notebooks_show(camera, light):
+    assert camera.lens._repr_svg_().startswith("<svg") and camera._repr_svg_().startswith("<svg")
+    raw = camera.expose(light)
+    for value in (light, raw, pz.develop(raw)):
+        assert value._repr_png_().startswith(b"\x89PNG")
+    analysis = camera.mtf(frequencies_cpmm=[10], plots=True)
+    assert "<svg" in analysis._repr_html_() and "<table>" in analysis._repr_html_()
+    assert analysis.plot._repr_svg_().startswith("<svg")
+
+
+def test_xarray(camera, light):
+    pytest.importorskip("xarray")
+    array = light.to_xarray()
+    assert array.dims == ("wavelength", "y", "x") and np.shares_memory(array.values, light.values)
+    assert array.y.values[0] > 0 > array.y.values[-1] and array.attrs["units"] == "W m-2 nm-1"
+    psfs = camera.psf(wavelengths_nm=[550]).to_xarray()
+    assert psfs.psf.sum(("y", "x")).values == pytest.approx(1, abs=1e-6)
+    assert psfs.field.attrs["units"] == "mm"
+    spots = camera.spots().to_xarray()
+    assert spots.rms_radius_um.attrs["units"] == "µm" and spots.attrs["analysis"] == "spots"
+
+
+def test_sweep():
+    lens = pz.Lens("edmund-54852")
+
+    def focal_length(gap_mm):
+        return lens.altered("surfaces[4].thickness_mm", gap_mm).efl_mm
+    points = pz.sweep(focal_length, gap_mm=[0.5, 0.6, 0.7])
+    assert [point["gap_mm"] for point in points] == [0.5, 0.6, 0.7]
+    assert points[1]["result"] == pytest.approx(lens.efl_mm, rel=1e-12)
+    with pytest.raises(pz.Cancelled):
+        pz.sweep(focal_length, gap_mm=[0.5], progress=lambda *_: False)
+
+
+def test_optional_packages_are_not_imported():
+    script = ("import sys, petzval as pz\n"
+              "assert not {'numpy', 'xarray', 'matplotlib', 'torch', 'pandas'} & set(sys.modules)\n"
+              "pz.Camera('edmund-54852').spots()\n"
+              "assert 'numpy' in sys.modules and not {'xarray', 'matplotlib', 'torch', 'pandas'} & set(sys.modules)\n")
+    subprocess.run([sys.executable, "-c", script], check=True)

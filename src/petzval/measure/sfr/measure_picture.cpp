@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
+#include <petzval/measure/sfr/find_edges.h>
+#include <petzval/measure/sfr/measure_picture.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+/// One channel to measure: a plane and the pixels of it that count.
+struct Channel {
+  std::string name;
+  Plane plane;
+  std::vector<PixelLattice> lattices{{}};
+};
+
+std::vector<Channel> bayer_channels(const SfrRequest& request, const PicturePlanes& picture,
+                                    const std::string& name) {
+  std::string pattern = request.bayer;
+  std::transform(pattern.begin(), pattern.end(), pattern.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (pattern != "rggb" && pattern != "bggr" && pattern != "grbg" && pattern != "gbrg")
+    throw InputError(fmt::format("`bayer` {}: rggb, bggr, grbg or gbrg is right", request.bayer));
+  if (picture.planes.size() != 1) throw InputError(name, "a mosaic has one plane; this picture has several");
+  std::vector<Channel> channels;
+  for (const auto& [letter, colour] : {std::pair{'r', "red"}, {'g', "green"}, {'b', "blue"}}) {
+    if (request.channel != "all" && request.channel != "luminance" && request.channel != colour) continue;
+    Channel channel{colour, picture.planes[0], {}};
+    for (int i = 0; i < 4; ++i)
+      if (pattern[static_cast<std::size_t>(i)] == letter) channel.lattices.push_back({2, i % 2, i / 2});
+    channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
+std::vector<Channel> channels_of(const SfrRequest& request, const PicturePlanes& picture,
+                                 const std::string& name) {
+  if (!request.bayer.empty()) return bayer_channels(request, picture, name);
+  if (request.channel == "luminance") return {{"", picture.luminance()}};
+  if (!picture.rgb && request.channel != "all")
+    throw InputError(name,
+                     fmt::format("`channel` {} of a picture that is not RGB; luminance or all would be right",
+                                 request.channel));
+  std::vector<Channel> channels;
+  const std::vector<std::string> names{"red", "green", "blue"};
+  for (std::size_t c = 0; c < picture.planes.size(); ++c) {
+    const std::string band = picture.rgb ? names[c] : fmt::format("band {}", c + 1);
+    if (request.channel == "all" || request.channel == band) channels.push_back({band, picture.planes[c]});
+  }
+  return channels;
+}
+
+PixelBox box_around(const std::vector<EdgeSample>& samples) {
+  double left = HUGE_VAL, top = HUGE_VAL, right = 0, bottom = 0;
+  for (const EdgeSample& s : samples)
+    left = std::min(left, s.x), right = std::max(right, s.x), top = std::min(top, s.y),
+    bottom = std::max(bottom, s.y);
+  const int x = static_cast<int>(left), y = static_cast<int>(top);
+  return {x, y, static_cast<int>(right) - x + 1, static_cast<int>(bottom) - y + 1};
+}
+
+class Measurement {
+ public:
+  Measurement(const SfrRequest& request, const PicturePlanes& picture, const std::vector<Channel>& channels,
+              const std::string& name)
+      : request_(request), name_(name), channels_(channels), guide_(picture.luminance()) {
+    options_.edge_order = request.edge_order;
+    options_.clip_low = picture.clip_low, options_.clip_high = picture.clip_high;
+    options_.code_levels = picture.code_levels;
+    if (!request.bayer.empty()) guide_ = smoothed(guide_);
+    try {
+      found_ = find_edges(guide_);
+    } catch (const InputError&) {
+      if (request.rois.empty()) throw;  // with an ROI the surroundings are not needed
+    }
+  }
+
+  std::vector<MeasuredEdge> run(const Context& context, const ProgressCallback& progress) const {
+    struct Job {
+      std::optional<PixelBox> box;
+      const FoundEdge* edge;
+    };
+    std::vector<Job> jobs;
+    for (const PixelBox& box : request_.rois) jobs.push_back({box, nullptr});
+    if (request_.rois.empty())
+      for (const FoundEdge& edge : found_.edges) jobs.push_back({std::nullopt, &edge});
+    std::vector<std::vector<MeasuredEdge>> results(jobs.size());
+    std::vector<std::string> faults(jobs.size());
+    std::atomic<std::size_t> done = 0;
+    parallel_for(jobs.size(), [&](std::size_t i) {
+      try {
+        results[i] = jobs[i].box ? in_box(*jobs[i].box) : along(*jobs[i].edge);
+      } catch (const InputError& error) {
+        // Of many found edges some may be unfit; an ROI that was asked for may not.
+        if (jobs[i].box)
+          throw InputError(name_, fmt::format("`roi` {},{},{},{}: {}", jobs[i].box->x, jobs[i].box->y,
+                                              jobs[i].box->width, jobs[i].box->height, error.what()));
+        faults[i] = error.what();
+      }
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(jobs.size()), "edges");
+    });
+    std::vector<MeasuredEdge> edges;
+    for (auto& result : results) std::move(result.begin(), result.end(), std::back_inserter(edges));
+    if (edges.empty()) throw InputError(name_, faults.empty() ? "no edge" : faults.front());
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+      if (!faults[i].empty())
+        send_note(context, fmt::format("{}: the edge from {:.0f},{:.0f} to {:.0f},{:.0f} is left out: {}",
+                                       name_, jobs[i].edge->from.x, jobs[i].edge->from.y, jobs[i].edge->to.x,
+                                       jobs[i].edge->to.y, faults[i]));
+    return edges;
+  }
+
+ private:
+  /// A mosaic's pixels averaged by fours, so that contours do not follow its colours.
+  static Plane smoothed(const Plane& plane) {
+    Plane result = plane;
+    for (int r = 0; r + 1 < plane.rows; ++r)
+      for (int c = 0; c + 1 < plane.columns; ++c)
+        result.values[static_cast<std::size_t>(r) * static_cast<std::size_t>(plane.columns) +
+                      static_cast<std::size_t>(c)] =
+            (plane.at(c, r) + plane.at(c + 1, r) + plane.at(c, r + 1) + plane.at(c + 1, r + 1)) / 4;
+    return result;
+  }
+
+  EdgeMeasurement measure(const Channel& channel, const std::vector<EdgeSample>& samples,
+                          const FoundEdge* edge) const {
+    SfrOptions options = options_;
+    if (edge != nullptr) {
+      options.start = edge->line();
+      options.missing_target = [=](double x, double y) { return missing_target_at(*edge, x, y); };
+    }
+    return measure_edge(samples, channel.lattices.front().step, options);
+  }
+
+  static std::vector<EdgeSample> merged(
+      const Channel& channel, const std::function<std::vector<EdgeSample>(const PixelLattice&)>& of) {
+    std::vector<EdgeSample> samples;
+    for (const PixelLattice& lattice : channel.lattices) {
+      const std::vector<EdgeSample> some = of(lattice);
+      samples.insert(samples.end(), some.begin(), some.end());
+    }
+    return samples;
+  }
+
+  std::vector<MeasuredEdge> in_box(const PixelBox& box) const {
+    std::vector<MeasuredEdge> edges;
+    for (const Channel& channel : channels_) {
+      const auto samples = merged(
+          channel, [&](const PixelLattice& lattice) { return samples_in(channel.plane, box, lattice); });
+      MeasuredEdge edge{channel.name, box, measure(channel, samples, nullptr), {}, {}};
+      if (const FoundEdge* known = edge_along(found_, edge.exact.line))
+        edge.exact = measure(channel, samples, known);
+      if (request_.iso) edge.iso = iso_esfr(channel.plane, box);
+      edges.push_back(std::move(edge));
+    }
+    compare_channels(edges);
+    return edges;
+  }
+
+  std::vector<MeasuredEdge> along(const FoundEdge& found) const {
+    std::vector<MeasuredEdge> edges;
+    for (const Channel& channel : channels_) {
+      const auto samples = merged(
+          channel, [&](const PixelLattice& lattice) { return samples_about(channel.plane, found, lattice); });
+      if (samples.size() < 64) throw InputError("an edge with fewer than 64 pixels about it");
+      MeasuredEdge edge{channel.name, box_around(samples), measure(channel, samples, &found), {}, {}};
+      if (request_.iso) edge.iso = iso_esfr(channel.plane, edge.roi);
+      edges.push_back(std::move(edge));
+    }
+    compare_channels(edges);
+    return edges;
+  }
+
+  /// Where the other colours' edges lie, from green's.
+  static void compare_channels(std::vector<MeasuredEdge>& edges) {
+    const auto green =
+        std::find_if(edges.begin(), edges.end(), [](const MeasuredEdge& e) { return e.channel == "green"; });
+    if (green == edges.end() || edges.size() < 2) return;
+    const EdgeLine line = green->exact.line;
+    const double middle = green->exact.middle_px;
+    for (MeasuredEdge& edge : edges) {
+      const EdgeLine& other = edge.exact.line;
+      edge.lateral_offset_px =
+          line.distance(other.centre_x + edge.exact.middle_px * std::cos(other.normal_rad),
+                        other.centre_y + edge.exact.middle_px * std::sin(other.normal_rad)) -
+          middle;
+    }
+  }
+
+  const SfrRequest& request_;
+  const std::string& name_;
+  const std::vector<Channel>& channels_;
+  Plane guide_;
+  SfrOptions options_;
+  FoundEdges found_;
+};
+
+}  // namespace
+
+std::vector<MeasuredEdge> measure_sfr(const PicturePlanes& picture, const SfrRequest& request,
+                                      const std::string& name, const Context& context) {
+  return result_within(context, [&](const ProgressCallback& progress) {
+    const std::vector<Channel> channels = channels_of(request, picture, name);
+    return Measurement(request, picture, channels, name).run(context, progress);
+  });
+}
+
+}  // namespace petzval

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spatial frequency responses of the edges in a picture.
+#pragma once
+
+#include <petzval/base/context.h>
+#include <petzval/measure/sfr/edge_samples.h>
+#include <petzval/measure/sfr/iso_esfr.h>
+#include <petzval/measure/sfr/measure_edge.h>
+#include <petzval/measure/sfr/picture_planes.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+struct SfrRequest {
+  std::vector<PixelBox> rois = {};    ///< one edge each; empty: every straight edge that stands out
+  std::string channel = "luminance";  ///< "luminance", "red", "green", "blue" or "all"
+  std::string bayer =
+      {};              ///< "rggb", "bggr", "grbg" or "gbrg": the picture is a mosaic, each colour for itself
+  int edge_order = 0;  ///< as in SfrOptions
+  bool iso = false;    ///< iso_esfr() too
+};
+
+struct MeasuredEdge {
+  std::string channel;  ///< empty for luminance
+  PixelBox roi;
+  EdgeMeasurement exact;
+  std::optional<IsoEsfr> iso;               ///< if that was asked for
+  std::optional<double> lateral_offset_px;  ///< from green, along the normal, with all channels
+
+  const std::vector<double>& frequencies() const {
+    return iso ? iso->frequencies_cpp : exact.frequencies_cpp;
+  }
+  const std::vector<double>& sfr() const { return iso ? iso->sfr : exact.sfr; }
+  double mtf50() const { return iso ? iso->mtf50_cpp : exact.mtf50().frequency_cpp; }
+  double angle_deg() const { return iso ? iso->angle_deg : exact.line.angle_deg(); }
+};
+
+/// The edges in the order of the ROIs, or in which they are found; the channels of each one after the other.
+/// Of edges that are found, those that cannot be measured are left out, with a note. \param name  of the
+/// picture, for messages. \throws InputError when there is no edge to be measured, for an ROI without one,
+/// and for a channel that the picture has not; Cancelled.
+std::vector<MeasuredEdge> measure_sfr(const PicturePlanes& picture, const SfrRequest& request = {},
+                                      const std::string& name = "the picture", const Context& context = {});
+
+}  // namespace petzval
