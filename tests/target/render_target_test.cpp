@@ -74,7 +74,9 @@ TEST(RenderTarget, HalfPlaneThroughBladesIsTheClosedFormToo) {
   // The transfer function of straight blades from clipped polygons; edges along a spike, across it, and
   // between.
   const double wavelength = 550, f_number = 8;
-  for (const auto& [blades, angle_deg] : {std::pair{6, 10.0}, {5, 93.0}}) {
+  for (const auto& [count, edge_deg] : {std::pair{6, 10.0}, {5, 93.0}}) {
+    const int blades = count;
+    const double angle_deg = edge_deg;
     GeneralPupil pupil;
     pupil.shape = {blades, 10 * pi / 180, 0, 0};
     const TargetOptions options = frame(64, 64);

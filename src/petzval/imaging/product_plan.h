@@ -53,7 +53,8 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
                                         const std::optional<ProductPlan>& hint = {});
 
 /// Sections that fade into each other (SectionOptions::blend), which take PSFs of any size, each
-/// with a transform of its own: the largest whose estimated error is within the tolerance. `transform` stays 0.
+/// with a transform of its own: the largest whose estimated error is within the tolerance. `transform` stays
+/// 0.
 ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options);
 
 }  // namespace petzval
