@@ -100,7 +100,7 @@ void find_and_measure_36_edges(benchmark::State& state) {
     const FoundEdges found = find_edges(plane);
     for (const FoundEdge& edge : found.edges) {
       SfrOptions options;
-      options.missing_target = [&](double x, double y) { return missing_target_at(found, edge, x, y); };
+      options.missing_target = [&](double x, double y) { return missing_target_at(edge, x, y); };
       benchmark::DoNotOptimize(measure_edge(samples_about(plane, edge), 1, options));
     }
     state.counters["edges"] = static_cast<double>(found.edges.size());
