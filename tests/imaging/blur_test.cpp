@@ -20,19 +20,19 @@ constexpr double pitch_um = 6.25;
 TEST(ExactBlur, PutsTheKernelOfItsPlaceAtEveryPoint) {
   const LensDataTable table = make_table(comatic_recipe(0.4));
   const PsfField psfs(table, 550, pitch_um);
-  CellPlane source({41, 31, pitch_um});
-  source.row(15)[30] = 2;
+  CellPlane source({47, 37, pitch_um});
+  source.row(18)[30] = 2;
   source.row(0)[0] = 3;
   const CellPlane image = blur_exact(source, psfs, 0);
   const int radius = psfs.radius();
-  ASSERT_LE(radius, 10) << "the kernels must lie within the plane";
-  const Kernel inside = psfs.kernel_at(source.grid.x_mm(30.5), source.grid.y_mm(15.5));
+  ASSERT_LE(radius, 16) << "the kernels must lie within the plane";
+  const Kernel inside = psfs.kernel_at(source.grid.x_mm(30.5), source.grid.y_mm(18.5));
   const Kernel corner = psfs.kernel_at(source.grid.x_mm(0.5), source.grid.y_mm(0.5));
   for (int i = -radius; i <= radius; ++i)
     for (int j = -radius; j <= radius; ++j) {
       const auto at = static_cast<std::size_t>((i + radius) * inside.size() + j + radius);
       // The image is float.
-      EXPECT_NEAR(image.row(static_cast<std::size_t>(15 + i))[30 + j], 2 * inside.weights[at], 1e-7);
+      EXPECT_NEAR(image.row(static_cast<std::size_t>(18 + i))[30 + j], 2 * inside.weights[at], 1e-7);
       if (i >= 0 && j >= 0) {
         EXPECT_NEAR(image.row(static_cast<std::size_t>(i))[j], 3 * corner.weights[at], 2e-7);
       }
@@ -54,13 +54,13 @@ TEST(ExactBlur, MarginCellsSendLightInAndNoneIsKept) {
 }
 
 // Where the PSF is the same everywhere, sections of any size are a plain convolution: any difference is a
-// fault of layout, margins, flips or wrap-around. Rounding of a float transform: 3e-7 relative to the image's
-// norm.
+// fault of layout, margins, flips or wrap-around. A round spot is the same at every azimuth but for what its
+// splines bend: 1e-5 relative to the image's norm.
 TEST(SectionBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
   TableRecipe recipe;
   recipe.psf = [](double, double) {
-    return Psf{1, 0.01, {1.0F}, 1.0};
-  };  // a point: within one cell at any azimuth
+    return psf_of_spots({{0, 0, pitch_um, pitch_um, 1}}, 101, pitch_um / 10);
+  };
   const LensDataTable table = make_table(recipe);
   const PsfField psfs(table, 550, pitch_um);
   for (const SensorGeometry grid :
@@ -68,7 +68,7 @@ TEST(SectionBlur, IsAPlainConvolutionWhereThePsfIsConstant) {
     const CellPlane source = random_plane(grid);
     const CellPlane expected = blur_exact(source, psfs, 0);
     for (const int section : {1, 3, 8, 16, 100})
-      EXPECT_LT(relative_l2(blur_sections(source, psfs, 0, {section, 0}), expected), 3e-7)
+      EXPECT_LT(relative_l2(blur_sections(source, psfs, 0, {section, 0}), expected), 1e-5)
           << grid.columns << "×" << grid.rows << " in sections of " << section;
   }
 }
@@ -82,7 +82,7 @@ TEST_P(SectionAgainstExact, AgreesToRoundingWhenEachCellIsASection) {
   const PsfField psfs(table, 550, 25.0);
   for (const SensorGeometry grid : {SensorGeometry{120, 90, 25.0}, {111, 77, 25.0}, {60, 45, 25.0}}) {
     const CellPlane source = random_plane(grid);
-    EXPECT_LT(relative_l2(blur_sections(source, psfs, 2, {1, 0}), blur_exact(source, psfs, 2)), 2e-7);
+    EXPECT_LT(relative_l2(blur_sections(source, psfs, 2, {1, 0}), blur_exact(source, psfs, 2)), 5e-7);
   }
 }
 

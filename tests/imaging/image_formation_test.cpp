@@ -90,8 +90,8 @@ TEST(FormImage, AppliesGSourceBeforeTheBlur) {
   const SpectralImage image = form_image(wall(1), table, sensor, with_method(BlurMethod::none));
   for (const auto& [column, row] : {std::pair{60, 45}, {0, 45}, {60, 0}, {119, 89}}) {
     const double height = std::hypot(sensor.x_mm(column + 0.5), sensor.y_mm(row + 0.5));
-    // The curve between fields 1° apart; float.
-    EXPECT_NEAR(image.at(0, row, column), 0.25 * std::pow(std::cos(std::atan(height / 6)), 4), 2e-7);
+    // The curve between fields 1° apart; sums of floats.
+    EXPECT_NEAR(image.at(0, row, column), 0.25 * std::pow(std::cos(std::atan(height / 6)), 4), 5e-7);
   }
 }
 
@@ -274,7 +274,7 @@ TEST(FormImage, SaysByHowManyDegreesASceneIsTooSmall) {
   ASSERT_NE(at, std::string::npos) << text;
   const double short_by = std::stod(text.substr(at + 15));
   EXPECT_GT(short_by, 1.42);
-  EXPECT_LT(short_by, 2.5);
+  EXPECT_LT(short_by, 3.5);
   ImagingOptions options = with_method(BlurMethod::sections);
   options.surround = Surround::extend;
   ImagingReport report;
@@ -300,7 +300,7 @@ TEST(FormImage, RefusesWhatDoesNotFitTogether) {
   options.sections.transform = 17;
   EXPECT_NE(message(wall(1), options).find("transforms of 17"), std::string::npos);
   options = {};
-  options.supersample = 0;
+  options.supersample = 17;
   EXPECT_NE(message(wall(1), options).find("1 to 16"), std::string::npos);
   options = {};
   options.fit.polynomial_order = 6;
@@ -337,19 +337,19 @@ TEST(FormImage, ReportsWhatItDid) {
     return psf;
   };
   ImagingReport report;
-  form_image(wall(1), make_table(recipe), sensor, with_method(BlurMethod::sections), {}, &report);
-  EXPECT_EQ(report.margin_cells, 3);  // ⌈(16 µm·√2 + 0.25 µm)/10 µm⌉
-  EXPECT_EQ(report.transform_size, 24);
+  ImagingOptions options = with_method(BlurMethod::sections);
+  options.supersample = 1;
+  form_image(wall(1), make_table(recipe), sensor, options, {}, &report);
+  EXPECT_EQ(report.margin_cells, 6);  // ⌈(16 µm·√2 + 0.25 µm)/10 µm⌉ and 3 of the window
+  EXPECT_EQ(report.transform_size, 30);
+  EXPECT_EQ(report.cells_per_pixel, 1);
   EXPECT_EQ(report.scene_points_per_cell, 1);
   EXPECT_EQ(report.least_captured, 0.95);
   EXPECT_NEAR(report.brightest, 0.25, 1e-3);
-  bool captured = false, edges = false;
-  for (const std::string& note : report.notes) {
+  bool captured = false;
+  for (const std::string& note : report.notes)
     captured = captured || note.find("95.00 %") != std::string::npos;
-    edges = edges || note.find("leaves the frame is lost") != std::string::npos;
-  }
   EXPECT_TRUE(captured);
-  EXPECT_TRUE(edges);
 }
 
 }  // namespace

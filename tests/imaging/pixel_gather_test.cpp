@@ -2,10 +2,10 @@
 // Photosites and low-pass filters made of cells, against their transforms in closed form.
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/imaging/pixel_gather.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace petzval {
 namespace {
@@ -23,38 +23,63 @@ const Photosite plain, small = Photosite::square(0.5), wide = site(Photosite::Sh
                        round = site(Photosite::Shape::ellipse, 0.8, 0.8, 0.4),
                        filtered = site(Photosite::Shape::rectangle, 1, 1, 0.7);
 
-double worst_to_nyquist(const Photosite& wanted, const PixelTaps& taps, int boxes) {
+/// What the weights pass after a path, against the photosite, up to Nyquist's frequency: without the other
+/// frequencies of the kernels' samples.
+double worst_to_nyquist(const Photosite& wanted, const PixelTaps& taps, const LightPath& path) {
   double worst = 0;
   for (double fx = 0; fx <= 0.5; fx += 0.05)
-    for (double fy = 0; std::hypot(fx, fy) <= 0.5; fy += 0.05)
-      worst = std::max(worst, std::abs(taps.transform(fx, fy, boxes) - wanted.transform(fx, fy).real()));
+    for (double fy = 0; std::hypot(fx, fy) <= 0.5; fy += 0.05) {
+      double before = 1;
+      for (const double f : {fx, fy}) {
+        const double of_cell = f / taps.cells;
+        // Closed forms of a Gaussian of 0.65 cells, and of three means over a cell and one over its parts.
+        const double of_part = of_cell / path.source.parts;
+        const double means = of_cell == 0 ? 1 : std::pow(sinc(of_cell) / sinc(of_part), 3) * sinc(of_part);
+        before *= means * (path.window ? std::exp(-2 * std::pow(pi * 0.65 * of_cell, 2)) : 1);
+      }
+      worst = std::max(worst, std::abs(taps.transform(fx, fy) * before - wanted.transform(fx, fy).real()));
+    }
   return worst;
 }
 
-TEST(PixelGather, OneBoxTilesAPixelExactly) {
-  for (const int cells : {1, 2, 3, 8})
-    EXPECT_LT(worst_to_nyquist(plain, pixel_taps(plain, cells, 1), 1), 1e-12) << cells;
+TEST(PixelGather, GivesBackWhatThePathTookOff) {
+  for (const Photosite& wanted : {plain, small, wide, round, filtered})
+    for (const int parts : {2, 5})
+      for (const bool window : {true, false})
+        for (const int cells : {2, 3, 4, 8}) {
+          const LightPath path{SourceFilter(parts), window};
+          // Two cells hold a whole pixel's aperture, but not that of less.
+          if (cells == 2 && !wanted.is_plain()) continue;
+          EXPECT_LT(worst_to_nyquist(wanted, pixel_taps(wanted, cells, path), path), 0.01)
+              << wanted.text() << ", " << cells << " cells of " << parts << " parts, window " << window;
+        }
 }
 
-TEST(PixelGather, TapsPassWhatThePhotositeDoes) {
-  for (const Photosite& wanted : {small, wide, round, filtered})
-    for (const int boxes : {1, 2}) {
-      const int cells = cells_for(wanted, boxes, 1);
-      // cells_for looks along the axes and the diagonal; the rest of the plane lies between them.
-      EXPECT_LT(worst_to_nyquist(wanted, pixel_taps(wanted, cells, boxes), boxes), 0.011)
-          << wanted.text() << " of " << cells << " cells after " << boxes << " boxes";
-      EXPECT_GE(cells_for(wanted, boxes, 5), 5);
+// Whatever the cells: pixels that fill the sensor take all light, each cell's in equal parts.
+TEST(PixelGather, WeightsTakeAllLight) {
+  for (const int cells : {1, 2, 3, 4, 7}) {
+    const PixelTaps taps = pixel_taps(plain, cells, {SourceFilter(2), true});
+    const auto size = static_cast<std::size_t>(taps.size()), step = static_cast<std::size_t>(cells);
+    for (std::size_t phase = 0; phase < step; ++phase) {
+      double of_phase = 0;
+      for (std::size_t i = phase; i < size; i += step) of_phase += taps.terms[0].across[i];
+      EXPECT_NEAR(of_phase, 1.0 / cells, 1e-9) << cells << ", " << phase;
     }
-  // A cell that sees a mean and receives one: the pixel aperture once all the same.
-  EXPECT_LT(worst_to_nyquist(plain, pixel_taps(plain, 3, 2), 2), 0.012);
-  EXPECT_LT(worst_to_nyquist(plain, pixel_taps(plain, 8, 2), 2), 0.002);
+  }
+  for (const Photosite& wanted : {small, wide, round, filtered})
+    EXPECT_NEAR(pixel_taps(wanted, 3, {SourceFilter(2), true}).transform(0, 0), 1, 1e-9) << wanted.text();
 }
 
-TEST(PixelGather, WeightsAreSharesOfOne) {
-  for (const Photosite& wanted : {plain, small, wide, round, filtered}) {
-    const PixelTaps taps = pixel_taps(wanted, 4, 2);
-    EXPECT_NEAR(std::accumulate(taps.weights.begin(), taps.weights.end(), 0.0), 1, 1e-12);
-    for (const double weight : taps.weights) EXPECT_GE(weight, 0);
+// Of light that a perfect lens images, and of a real one: more cells, less error; the estimate is that of the
+// closed form.
+TEST(PixelGather, MoreCellsHoldMoreDetail) {
+  const auto mtf = [](double f) { return std::max(0.0, 1 - f / 2); };
+  double before = 1;
+  for (const int cells : {1, 2, 3, 4}) {
+    const LightPath path{SourceFilter(2), true};
+    const double error = taps_error(pixel_taps(plain, cells, path), plain, path, 0.8, mtf);
+    EXPECT_LT(error, before / 2) << cells;
+    before = error;
   }
 }
 
@@ -62,7 +87,7 @@ TEST(PixelGather, PixelsAreWhereTheCellsAre) {
   // Light that rises linearly: the mean over any symmetric photosite is the value at the pixel's centre.
   const SensorGeometry sensor{5, 4, 6.0};
   for (const Photosite& wanted : {plain, small, round, filtered}) {
-    const PixelTaps taps = pixel_taps(wanted, 4, 1);
+    const PixelTaps taps = pixel_taps(wanted, 4, {SourceFilter(2), true});
     CellPlane plane(grown(subdivided(sensor, 4), taps.reach));
     for (std::size_t row = 0; row < plane.rows(); ++row)
       for (std::size_t column = 0; column < plane.columns(); ++column)
@@ -75,7 +100,8 @@ TEST(PixelGather, PixelsAreWhereTheCellsAre) {
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 5; ++column)
         EXPECT_NEAR(pixels.row(static_cast<std::size_t>(row))[column],
-                    2 * sensor.x_mm(column + 0.5) + sensor.y_mm(row + 0.5), 1e-8);  // of 0.03, in floats
+                    2 * sensor.x_mm(column + 0.5) + sensor.y_mm(row + 0.5),
+                    1e-7);  // of 0.03, in floats, with weights of both signs
   }
 }
 
@@ -83,8 +109,8 @@ TEST(PixelGather, OtherShapesAreRefused) {
   Photosite star;
   star.shape = Photosite::Shape::polygon;
   star.vertices = {{0, 0}, {1, 0}, {0, 1}};
-  EXPECT_THROW(pixel_taps(star, 4, 1), InputError);
-  EXPECT_THROW(pixel_taps(site(Photosite::Shape::rectangle, 1.5, 1), 4, 1), InputError);
+  EXPECT_THROW(pixel_taps(star, 4, {SourceFilter(2), true}), InputError);
+  EXPECT_THROW(pixel_taps(site(Photosite::Shape::rectangle, 1.5, 1), 4, {}), InputError);
 }
 
 }  // namespace

@@ -39,10 +39,6 @@ double diffraction_mtf(double share) {
   return share >= 1 ? 0 : 2 / pi * (std::acos(share) - share * std::sqrt(1 - share * share));
 }
 
-double sinc(double x) {
-  return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
-}
-
 /// Modulus of a kernel's transform along its columns [cycles a cell].
 double modulus(const Kernel& kernel, double frequency) {
   double cosine = 0, sine = 0;
@@ -55,9 +51,9 @@ double modulus(const Kernel& kernel, double frequency) {
 }
 
 // Cells finer than the samples, whatever their azimuth: the transform of a kernel is that of the pupil's
-// autocorrelation times that of a cell. 4e-3 for the light beyond the window (0.6 %, modulated by half at
-// most), 2e-3 for what lines between fine samples bend. As squares of their own the samples would miss it by
-// up to 0.06.
+// autocorrelation times that of the window. 4e-3 for the light beyond the window (0.6 %, modulated by half at
+// most), 2e-3 for what splines between fine samples bend. As squares of their own the samples would miss it
+// by up to 0.06.
 TEST(PsfRefinement, KernelsHaveTheTransferOfTheirPsf) {
   TableRecipe recipe;
   recipe.psf = [](double, double) { return airy_psf(144); };
@@ -69,7 +65,8 @@ TEST(PsfRefinement, KernelsHaveTheTransferOfTheirPsf) {
       const Kernel kernel = psfs.kernel_at(height_mm * std::sin(a), height_mm * std::cos(a));
       for (const double share : {0.1, 0.25, 0.5, 0.75, 0.9}) {
         const double frequency = share * cell_um / lambda_n_um;
-        EXPECT_NEAR(modulus(kernel, frequency), diffraction_mtf(share) * sinc(frequency), 6e-3)
+        EXPECT_NEAR(modulus(kernel, frequency),
+                    diffraction_mtf(share) * std::exp(-2 * std::pow(pi * 0.65 * frequency, 2)), 6e-3)
             << cell_um << ' ' << azimuth_deg << ' ' << share;
       }
     }

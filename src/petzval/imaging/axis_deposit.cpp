@@ -52,6 +52,10 @@ std::vector<float> transposed(const std::vector<float>& values, std::size_t rows
   return result;
 }
 
+void add_scaled(const float* line, float weight, std::size_t count, float* sums) {
+  for (std::size_t i = 0; i < count; ++i) sums[i] += weight * line[i];
+}
+
 /// Lines of `count` values each go to cells, which are lines of as many: [cell + 1][value], with a cell more
 /// at either end.
 std::vector<float> gathered(const float* lines, std::size_t count, const std::vector<LineShare>& shares,
@@ -68,19 +72,18 @@ std::vector<float> gathered(const float* lines, std::size_t count, const std::ve
 
 }  // namespace
 
-void deposit_along_axes(const SampleSquare& psf, const PlacedLattice& lattice, Kernel& kernel) {
+void deposit_along_axes(const float* samples, std::size_t size, double weight, const PlacedLine& down,
+                        const PlacedLine& across, Kernel& kernel) {
   const auto cells = static_cast<std::size_t>(kernel.size());
-  const double start = kernel.radius + 0.5;
-  const auto shares = [&](std::size_t axis, double step) {
-    return line_shares(psf.size, lattice.first[axis] + start, step, cells);
+  const auto shares = [&](const PlacedLine& line) {
+    return line_shares(size, line.first + kernel.radius + 0.5, line.step, cells);
   };
-  const std::vector<float> rows = gathered(psf.samples, psf.size, shares(1, lattice.per_row[1]), cells);
-  const std::vector<float> turned = transposed(rows, cells + 3, psf.size);
-  const std::vector<float> sums = gathered(turned.data(), cells + 3, shares(0, lattice.per_column[0]), cells);
+  const std::vector<float> rows = gathered(samples, size, shares(down), cells);
+  const std::vector<float> turned = transposed(rows, cells + 3, size);
+  const std::vector<float> sums = gathered(turned.data(), cells + 3, shares(across), cells);
   for (std::size_t row = 0; row < cells; ++row)
     for (std::size_t column = 0; column < cells; ++column)
-      kernel.weights[row * cells + column] +=
-          double(psf.weight) * double(sums[(column + 1) * (cells + 3) + row + 1]);
+      kernel.weights[row * cells + column] += weight * double(sums[(column + 1) * (cells + 3) + row + 1]);
 }
 
 }  // namespace petzval

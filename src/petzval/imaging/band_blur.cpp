@@ -46,8 +46,9 @@ void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int marg
 
 void BandBlur::choose_product(const std::optional<ProductPlan>& hint) {
   const auto start = std::chrono::steady_clock::now();
-  plan_ = plan_product(*psfs_, grid_, options_.product, hint);
-  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, grid_, options_.product);
+  const SourceGrid source(grid_, margin_);
+  plan_ = plan_product(*psfs_, source, options_.product, hint);
+  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, source, options_.product);
   keep_coarser(plan, report_.product);
   if (!plan_) return use_sections({plan.tile, 0, true});
   report_.transform_size = std::max(report_.transform_size, plan.transform);

@@ -44,22 +44,14 @@ void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, cons
 
 void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& frame,
                        std::vector<std::string>& notes) {
-  const double corner_mm = half_diagonal_mm(frame), cell_mm = frame.pitch_um * mm_per_um;
-  double last_mm = corner_mm, missing_mm = 0;
-  for (const BandPlan& plan : plans) {
-    last_mm = std::min(last_mm, plan.map.last_height_mm());
-    missing_mm = std::max(missing_mm, corner_mm + (plan.margin - 1) * cell_mm - plan.map.last_height_mm());
-  }
+  const double corner_mm = half_diagonal_mm(frame);
+  double last_mm = corner_mm;
+  for (const BandPlan& plan : plans) last_mm = std::min(last_mm, plan.map.last_height_mm());
   if (last_mm < corner_mm)
     notes.push_back(
         fmt::format("the last chief ray of the lens data table lands {:.4f} mm from the axis: beyond, "
                     "towards the corners at {:.4f} mm, the image is dark",
                     last_mm, corner_mm));
-  else if (missing_mm > 0)
-    notes.push_back(
-        fmt::format("the lens data table ends {:.4f} mm short of the places whose light could just reach "
-                    "the corners: no light comes from there",
-                    missing_mm));
 }
 
 int points_per_cell(const std::vector<BandPlan>& plans, const SensorGeometry& frame) {

@@ -4,11 +4,13 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/band_blur.h>
+#include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/coverage.h>
 #include <petzval/imaging/depth_image.h>
 #include <petzval/imaging/image_frame.h>
 #include <petzval/imaging/layer_plan.h>
 #include <petzval/imaging/layer_stack.h>
+#include <petzval/imaging/positive_light.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/sensor/lens_facts.h>
 
@@ -33,13 +35,13 @@ class DepthImaging {
                DepthReport& report)
       : scene_(scene),
         camera_(camera),
-        options_(options),
         progress_(progress),
         report_(report),
         law_(camera.lens),
-        pixel_um_(sensor.pitch_um),
-        frame_(options.cells_of(sensor)),
-        layers_(lay_depth_layers(scene, camera.lens, law_, sensor.pitch_um, depth)) {
+        sensor_(sensor),
+        layers_(lay_depth_layers(scene, camera.lens, law_, sensor.pitch_um, depth)),
+        options_(with_cells(options)),
+        frame_(options_.cells_of(sensor)) {
     report_.layers = layers_.layers;
     report_.pupil_to_sensor_mm = law_.pupil_to_sensor_mm();
     if (const auto m = scene.distance_m(); m && *m * mm_per_m <= law_.pupil_to_sensor_mm())
@@ -52,9 +54,10 @@ class DepthImaging {
   /// The two ends of the scene, where blur is largest, tell whether the frame is covered.
   void look_at_ends() {
     for (const std::size_t layer : {layers_.layers.size() - 1, std::size_t{0}}) {
-      if (ends_.contains(layer)) continue;
-      const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
-      const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), pixel_um_);
+      if (layer + 1 != layers_.layers.size() && layers_.layers.size() == 1) continue;
+      if (!ends_.contains(layer)) ends_.emplace(layer, table_of(layer));
+      const LensDataTable& table = ends_.at(layer);
+      const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
       const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
       std::vector<std::string> notes;
       check_coverage(planar.blank(scene_.wavelengths_nm().front()), plans, frame_, options_.surround, notes);
@@ -64,11 +67,14 @@ class DepthImaging {
             fmt::format("layer at {}: {}", named_distance(layers_.layers[layer].distance_m), note));
       says().scene_points_per_cell = std::max(says().scene_points_per_cell, points_per_cell(plans, frame_));
     }
+    says().cells_per_pixel = options_.cells_per_pixel();
+    path_ = options_.light_path(says().scene_points_per_cell);
+    taps_ = pixel_taps(options_.photosite, options_.cells_per_pixel(), path_);
   }
 
-  /// The planes of all bands, in cells.
+  /// The pixels of all bands. Layers hide each other pixel by pixel.
   std::vector<CellPlane> planes() {
-    LayerStack stack(frame_, scene_.bands());
+    LayerStack stack(sensor_, scene_.bands());
     for (layer_ = 0; layer_ < layers_.layers.size(); ++layer_)
       if (layers_.layers[layer_].share > 0) add_layer(stack);
     return std::move(stack).planes();
@@ -77,15 +83,27 @@ class DepthImaging {
  private:
   ImagingReport& says() { return report_.image; }
 
+  /// The options with the cells that the largest layer needs; its table is kept for when its turn comes.
+  ImagingOptions with_cells(const ImagingOptions& options) {
+    if (options.supersample != 0) return options;
+    const auto largest =
+        std::max_element(layers_.layers.begin(), layers_.layers.end(),
+                         [](const DepthLayer& a, const DepthLayer& b) { return a.share < b.share; });
+    const auto layer = static_cast<std::size_t>(largest - layers_.layers.begin());
+    const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
+    const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
+    return with_cells_chosen(planar.light(scene_.bands() / 2), table, sensor_, options);
+  }
+
   LensDataTable table_of(std::size_t layer) const {
-    return layer_table(camera_, layers_, layer, pixel_um_,
+    return layer_table(camera_, layers_, layer, sensor_.pitch_um,
                        [&](double fraction, const std::string& what) { tell(0.5 * fraction, what); });
   }
 
   void add_layer(LayerStack& stack) {
     const auto end = ends_.extract(layer_);
     const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_);
-    const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), pixel_um_);
+    const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
     const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
     const LightCentres centres(table);
     BandBlur blur(table, centres, options_, says());
@@ -105,9 +123,9 @@ class DepthImaging {
     blur.prepare(wavelength_nm, grid, plan.margin);
     const auto imaged = [&](const Scene& scene, Surround surround) {
       const auto start_of_ideal = std::chrono::steady_clock::now();
-      CellPlane ideal = ideal_irradiance(scene, 0, plan.map, grid, says().scene_points_per_cell, surround);
+      CellPlane ideal = source_light(scene, 0, plan.map, grid, path_.source, surround);
       says().distortion_seconds += seconds_since(start_of_ideal);
-      return blur(std::move(ideal));
+      return gathered(blur(std::move(ideal)), taps_);
     };
     BlurredLayer layer;
     layer.light = imaged(planar.light(band), options_.surround);
@@ -127,15 +145,17 @@ class DepthImaging {
 
   const Scene& scene_;
   const DepthCamera& camera_;
-  const ImagingOptions& options_;
   const ProgressCallback& progress_;
   DepthReport& report_;
   const DefocusLaw law_;
-  const double pixel_um_;
-  const SensorGeometry frame_;
+  const SensorGeometry sensor_;
   const DepthLayers layers_;
-  std::map<std::size_t, LensDataTable> ends_;  ///< tables of the farthest and the nearest layer
+  std::map<std::size_t, LensDataTable> ends_;  ///< tables of the farthest, the nearest and the largest layer
   std::size_t layer_ = 0;                      ///< at work
+  const ImagingOptions options_;
+  const SensorGeometry frame_;
+  LightPath path_;
+  PixelTaps taps_;
 };
 
 }  // namespace
@@ -151,14 +171,14 @@ SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, co
   SpectralImage image = blank_image(scene, sensor, options);
   DepthImaging imaging(scene, camera, sensor, options, depth, progress, says);
   imaging.look_at_ends();
-  const PixelTaps taps = image_taps(options, says.image);
   std::vector<CellPlane> planes = imaging.planes();
   for (int band = 0; band < scene.bands(); ++band) {
-    put_band(gathered(std::move(planes[static_cast<std::size_t>(band)]), taps), band, image, says.image);
-    planes[static_cast<std::size_t>(band)] = {};
+    CellPlane& pixels = planes[static_cast<std::size_t>(band)];
+    put_band(without_negative_light(std::move(pixels)), band, image, says.image);
+    pixels = {};
   }
   image.lens = lens_facts(camera.lens.name, first_order(camera.lens));
-  note_result(options, says.image);
+  note_result(says.image);
   return image;
 }
 

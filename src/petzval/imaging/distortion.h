@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which part of the scene each cell of the image sees, and the irradiance there before blur.
+// Which part of the scene each place of the image sees.
 #pragma once
 
-#include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/plane_sampling.h>
 #include <petzval/scene/scene.h>
+#include <petzval/sensor/sensor.h>
 
 #include <algorithm>
 #include <optional>
@@ -61,6 +61,10 @@ class SceneMap {
     double finest_samples_per_mm() const {
       return std::max(samples_per_mm, samples_per_mm + 2 * square * samples_slope);
     }
+    /// The samples that a millimetre along an axis spans at a place on that axis.
+    double samples_per_mm_along(double place_mm) const {
+      return samples_per_mm + 2 * place_mm * place_mm * samples_slope;
+    }
   };
   Surroundings around(double x_mm, double y_mm) const;
   /// For RowView.
@@ -83,16 +87,5 @@ struct SeenExtent {
   double columns = 0, rows = 0, radius = 0;
 };
 SeenExtent seen_extent(const SceneMap& map, const SensorGeometry& grid);
-
-/// Irradiance before blur: radiance × g_source, at every cell of a grid.
-///
-/// \param parts  the scene is taken at up to parts × parts points of each cell, spread evenly, and averaged:
-/// 1 (the centre)
-///   where a sample of the scene is no smaller than a cell, more where it is finer, so that it is averaged
-///   over the cell's footprint. Between sample centres radiance is bilinear; within half a sample of the
-///   scene's edge it is that of the edge.
-/// \param surround  what lies beyond the scene; `error` here means zero (form_image() looks before).
-CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                           int parts, Surround surround);
 
 }  // namespace petzval

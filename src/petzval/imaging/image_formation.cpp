@@ -4,8 +4,10 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/band_blur.h>
+#include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/coverage.h>
 #include <petzval/imaging/image_frame.h>
+#include <petzval/imaging/positive_light.h>
 #include <petzval/sensor/lens_facts.h>
 
 #include <algorithm>
@@ -62,7 +64,7 @@ class BandProgress {
 class BandByBand {
  public:
   BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
-             const ImagingOptions& options, const std::vector<BandPlan>& plans, const PixelTaps& taps,
+             const ImagingOptions& options, const std::vector<BandPlan>& plans, const LightPath& path,
              const ProgressCallback& progress, ImagingReport& report, const TakeBand& take)
       : scene_(scene),
         table_(table),
@@ -70,7 +72,8 @@ class BandByBand {
         frame_(frame),
         options_(options),
         plans_(plans),
-        taps_(taps),
+        path_(path),
+        taps_(pixel_taps(options.photosite, options.cells_per_pixel(), path)),
         progress_(scene.bands(), progress),
         report_(report),
         take_(take) {}
@@ -122,8 +125,8 @@ class BandByBand {
   void work(std::size_t band, Place& place) {
     const BandPlan& plan = plans_[band];
     const auto start = std::chrono::steady_clock::now();
-    CellPlane ideal = ideal_irradiance(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
-                                       report_.scene_points_per_cell, options_.surround);
+    CellPlane ideal = source_light(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
+                                   path_.source, options_.surround);
     place.says.distortion_seconds = seconds_since(start);
 
     const auto start_of_blur = std::chrono::steady_clock::now();
@@ -132,7 +135,7 @@ class BandByBand {
       progress_.tell(band, fraction, what);
     });
     place.says.blur_seconds += seconds_since(start_of_blur);
-    place.pixels = gathered(std::move(blurred), taps_);
+    place.pixels = without_negative_light(gathered(std::move(blurred), taps_));
     place.seconds += seconds_since(start);
   }
 
@@ -161,7 +164,8 @@ class BandByBand {
   const SensorGeometry& frame_;
   const ImagingOptions& options_;
   const std::vector<BandPlan>& plans_;
-  const PixelTaps& taps_;
+  const LightPath path_;
+  const PixelTaps taps_;
   BandProgress progress_;
   ImagingReport& report_;
   const TakeBand& take_;
@@ -176,21 +180,21 @@ SectionOptions ImagingOptions::section_options() const {
   return {sections.section, sections.transform, method == BlurMethod::blended};
 }
 
-int ImagingOptions::cells_per_pixel() const {
-  return cells_for(photosite, method == BlurMethod::none ? 1 : 2, supersample);
-}
-
 SensorGeometry ImagingOptions::cells_of(const SensorGeometry& sensor) const {
   const int cells = cells_per_pixel();
-  const int reach = photosite.is_plain() ? 0 : pixel_taps(photosite, cells, 0).reach;
-  return grown(subdivided(sensor, cells), reach);
+  return grown(subdivided(sensor, cells), taps_reach(photosite, cells));
+}
+
+LightPath ImagingOptions::light_path(int points) const {
+  constexpr int least_parts = 2;  // a plain mean over a cell would leave too much beyond its frequency
+  return {SourceFilter(std::max(least_parts, points)), method != BlurMethod::none};
 }
 
 void ImagingOptions::validate() const {
   constexpr int most = 16;
-  if (supersample < 1 || supersample > most)
-    throw InputError(fmt::format("supersampling of {}: 1 to {} is right", supersample, most));
-  pixel_taps(photosite, supersample, 0);
+  if (supersample < 0 || supersample > most)
+    throw InputError(fmt::format("supersampling of {}: 1 to {} is right, or 0 to choose", supersample, most));
+  check_photosite(photosite);
   product.validate();
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
@@ -201,28 +205,29 @@ std::optional<double> object_to_sensor_mm(const LensDataTable& table) {
 }
 
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
+                const ImagingOptions& asked, const TakeBand& take, const ProgressCallback& progress,
                 ImagingReport* report) {
   ImagingReport own;
   ImagingReport& says = report != nullptr ? *report : own;
   says = {};
 
   // Everything that can be refused is refused before the work starts.
-  options.validate();
+  asked.validate();
   scene.validate();
   table.validate();
   check_distances(scene, table);
   SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
+  const ImagingOptions options = with_cells_chosen(scene, table, sensor, asked);
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   check_coverage(scene, plans, frame, options.surround, says.notes);
   note_dark_corners(plans, frame, says.notes);
   says.scene_points_per_cell = points_per_cell(plans, frame);
 
-  const PixelTaps taps = image_taps(options, says);
-
-  BandByBand(scene, table, frame, options, plans, taps, progress, says, take).form();
-  note_result(options, says);
+  says.cells_per_pixel = options.cells_per_pixel();
+  const LightPath path = options.light_path(says.scene_points_per_cell);
+  BandByBand(scene, table, frame, options, plans, path, progress, says, take).form();
+  note_result(says);
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,

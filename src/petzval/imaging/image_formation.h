@@ -5,6 +5,7 @@
 #include <petzval/base/progress.h>
 #include <petzval/image/spectral_image.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/pixel_gather.h>
 #include <petzval/imaging/product_plan.h>
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/imaging/section_blur.h>
@@ -33,16 +34,19 @@ struct ImagingOptions {
   ProductOptions product = {};
   SectionOptions sections = {};  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
-  RadialFit fit = {};   ///< of distortion and g_source over image height
-  int supersample = 1;  ///< S: source cells are S × S to a pixel, 1 to 16
+  RadialFit fit = {};  ///< of distortion and g_source over image height
+  /// S: source cells are S × S to a pixel, 1 to 16; 0: as many as the tolerance needs (with_cells_chosen).
+  int supersample = 0;
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
 
-  /// S, or more if the photosite needs it (cells_for).
-  int cells_per_pixel() const;
-  /// The cells whose light makes the pixels of a sensor: S × S to a pixel, and those that a filter reaches
-  /// beyond.
+  /// S; as long as it is not chosen 1, with which a frame needs the widest margin.
+  int cells_per_pixel() const { return supersample == 0 ? 1 : supersample; }
+  /// The cells whose light makes the pixels of a sensor: S × S to a pixel, and those about the frame that its
+  /// pixels share in.
   SensorGeometry cells_of(const SensorGeometry& sensor) const;
+  /// What light goes through on its way to the cells of a pixel. \param points  of the scene along a cell.
+  LightPath light_path(int points) const;
   bool by_sections() const { return method == BlurMethod::sections || method == BlurMethod::blended; }
   /// The sections of the method.
   SectionOptions section_options() const;
@@ -62,7 +66,8 @@ struct ImagingReport {
   /// transform that is not direct stands for blended sections of `tile` cells, which PSFs beyond its
   /// transforms need.
   ProductPlan product = {};
-  int scene_points_per_cell = 1;      ///< scene samples averaged in a cell: this squared
+  int scene_points_per_cell = 1;      ///< parts of a cell whose means over the scene are taken: this squared
+  double sampling_error = 0;          ///< of the cells, estimated for the middle band
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
   /// What the steps took; of bands that were formed side by side, their shares of the time that all took.
@@ -74,16 +79,14 @@ struct ImagingReport {
 /// (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source, blur):
 ///
 /// 1. A grid of source cells, S × S to a pixel, covers the frame and as much around it as a PSF reaches.
-/// 2. Each cell takes the scene's radiance at the object point whose light is centred on it, times g_source:
-///    LightCentres, ideal_irradiance().
-/// 3. Its light is spread by the PSF of its place, integrated over the cells: ProductBlur, blur_sections() or
-/// blur_exact().
-///    The light of a cell starts from its centre, so that scenes much finer than a cell want S > 1.
-///    Light may come in from outside the frame; light that leaves it is lost.
-/// 4. The cells in and about a pixel share in it as its photosite and filter say (pixel_taps). From S = 3 on
-/// the pixel
-///    aperture is the photosite's, once, whatever the scene; below, the cells themselves are as large as
-///    details of a scene that is finer than they, and blur it by their size again.
+/// 2. Parts of cells take the scene's mean radiance over what they see about the object point whose light is
+/// centred on them, times g_source (SceneRows), and cells share in their light (SourceFilter).
+/// 3. The light of a cell is spread by the PSF of its place, seen through a window (PsfField): ProductBlur,
+/// blur_sections() or blur_exact(). Light may come in from outside the frame; light that leaves it is lost.
+/// 4. The cells in and about a pixel share in it (PixelTaps): the pixel's aperture is the photosite's, and
+/// what source filter and window took off below the pixels' frequency is given back.
+/// 5. Where weights of either sign leave less than no light, the pixels about it make it good
+/// (without_negative_light).
 ///
 /// \param scene  radiance; its bands must lie within the table's wavelengths, its distance must be the
 /// table's (to

@@ -10,10 +10,6 @@ namespace petzval {
 /// A black image of a scene's bands, of the pixels of a sensor and their aperture.
 SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, const ImagingOptions& options);
 
-/// The taps that make pixels of cells, whose number goes into the report with what a user should know of it.
-/// \param report  knows already how many points of the scene a cell sees.
-PixelTaps image_taps(const ImagingOptions& options, ImagingReport& report);
-
 /// Puts into the report how dark and how bright the pixels of a band are. Bands come in order.
 void note_extremes(const CellPlane& pixels, int band, ImagingReport& report);
 
@@ -21,6 +17,6 @@ void note_extremes(const CellPlane& pixels, int band, ImagingReport& report);
 void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report);
 
 /// Adds to the report what a user should know of the image whose bands were put.
-void note_result(const ImagingOptions& options, ImagingReport& report);
+void note_result(ImagingReport& report);
 
 }  // namespace petzval

@@ -20,11 +20,16 @@ double radical_inverse(int index, int base) {
   return value;
 }
 
+/// The cells of a kernel whose light lands in the picture, from its middle.
+struct LitPart {
+  int right, below;  ///< the last columns and rows
+};
+
 /// Σ of squares of what interpolation along one axis adds to the kernel at a place. \param at  of the place,
 /// in cells of the axis. \param kernel_there  the kernel at a place of the axis.
 template <typename KernelThere>
-double squared_error(const Kernel& exact, int at, int tile, const std::vector<double>& nodes,
-                     const KernelThere& kernel_there) {
+double squared_error(const Kernel& exact, const LitPart& lit, int at, int tile,
+                     const std::vector<double>& nodes, const KernelThere& kernel_there) {
   const int first = at / tile * tile;
   const std::vector<double> weights = lagrange_weights(nodes, double(at - first) / tile);
   std::vector<double> difference = exact.weights;
@@ -34,24 +39,39 @@ double squared_error(const Kernel& exact, int at, int tile, const std::vector<do
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= weights[a] * kernel.weights[i];
   }
   double sum = 0;
-  for (const double value : difference) sum += value * value;
+  for (int row = -exact.radius; row <= lit.below; ++row) {
+    const double* values =
+        difference.data() + static_cast<std::ptrdiff_t>(row + exact.radius) * exact.size() + exact.radius;
+    for (int column = -exact.radius; column <= lit.right; ++column) sum += values[column] * values[column];
+  }
   return sum;
 }
 
 /// Of a layout of tiles, at cells counted outwards.
 class ErrorAtPlaces {
  public:
-  ErrorAtPlaces(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes)
-      : psfs_(psfs), across_(grid.columns), down_(grid.rows), tile_(tile), nodes_(lobatto_nodes(nodes)) {}
+  ErrorAtPlaces(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes)
+      : psfs_(psfs),
+        across_(grid.cells.columns),
+        down_(grid.cells.rows),
+        margin_(grid.margin),
+        tile_(tile),
+        nodes_(lobatto_nodes(nodes)) {}
   const OutwardAxis& across() const { return across_; }
   const OutwardAxis& down() const { return down_; }
+  int columns_in_picture() const { return std::max(1, across_.count() - margin_); }
+  int rows_in_picture() const { return std::max(1, down_.count() - margin_); }
   /// Σd²/(1 + Σh²).
   double square(int column, int row) const {
     const Kernel exact = kernel(column, row);
     double square = 0;
     for (const double weight : exact.weights) square += weight * weight;
-    return (squared_error(exact, column, tile_, nodes_, [&](double at) { return kernel(at, row); }) +
-            squared_error(exact, row, tile_, nodes_, [&](double at) { return kernel(column, at); })) /
+    const auto last = [&](const OutwardAxis& axis, int at) {
+      return std::min(exact.radius, axis.count() - margin_ - 1 - at);
+    };
+    const LitPart lit{last(across_, column), last(down_, row)};
+    return (squared_error(exact, lit, column, tile_, nodes_, [&](double at) { return kernel(at, row); }) +
+            squared_error(exact, lit, row, tile_, nodes_, [&](double at) { return kernel(column, at); })) /
            (1 + square);
   }
 
@@ -63,7 +83,7 @@ class ErrorAtPlaces {
 
   const PsfField& psfs_;
   OutwardAxis across_, down_;
-  int tile_;
+  int margin_, tile_;
   std::vector<double> nodes_;
 };
 
@@ -73,14 +93,15 @@ struct Place {
   int column, row;
 };
 
-/// Cells evenly over a quadrant that lie within a radius, the outermost first, and their share of all.
+/// Cells of the picture, evenly over a quadrant, that lie within a radius, the outermost first, and their
+/// share of all.
 struct Places {
   std::vector<Place> inside;
   double share = 0;
 };
 Places places_within(const ErrorAtPlaces& errors, double radius) {
   constexpr int most = 256;  // along a side
-  const int columns = errors.across().count(), rows = errors.down().count();
+  const int columns = errors.columns_in_picture(), rows = errors.rows_in_picture();
   const int across = (columns + most - 1) / most, down = (rows + most - 1) / most;
   Places places;
   std::size_t all = 0;
@@ -123,8 +144,7 @@ double square_at(const ErrorAtPlaces& errors, int place) {
 
 }  // namespace
 
-KernelError kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
-                         double limit) {
+KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
   constexpr int at_once = KernelError::first_places;
   KernelError error;
@@ -141,7 +161,7 @@ KernelError kernel_error(const PsfField& psfs, const SensorGeometry& grid, int t
   return error;
 }
 
-KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SensorGeometry& grid,
+KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
                               int tile, int nodes) {
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
   std::array<double, KernelError::first_places> squares{};
@@ -155,10 +175,10 @@ KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, co
 
 namespace {
 
-/// Cells inside the last height of a table, the outermost first, and shells of them.
+/// Cells of the picture inside the last height of a table, the outermost first, and shells of them.
 class Rim {
  public:
-  Rim(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes)
+  Rim(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes)
       : errors_(psfs, grid, tile, nodes),
         sampled_(places_within(errors_, psfs.last_height_mm() / (psfs.cell_um() * mm_per_um) + 1)) {}
 
@@ -182,7 +202,7 @@ class Rim {
 
 }  // namespace
 
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit) {
+RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
   const Rim cells(psfs, grid, tile, nodes);
   RimError rim;
   if (cells.is_too_small()) return rim;
@@ -217,7 +237,7 @@ RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, i
   return rim;
 }
 
-RimError rim_error_like(const RimError& known, const PsfField& psfs, const SensorGeometry& grid, int tile,
+RimError rim_error_like(const RimError& known, const PsfField& psfs, const SourceGrid& grid, int tile,
                         int nodes, double limit) {
   if (!known.ring.empty()) return rim_error(psfs, grid, tile, nodes, limit);
   const Rim cells(psfs, grid, tile, nodes);

@@ -9,6 +9,15 @@
 
 namespace petzval {
 
+/// The cells from which light comes, and by how many they reach beyond the picture on every side: of an error
+/// that lands beside the picture nothing is seen.
+struct SourceGrid {
+  SensorGeometry cells;
+  int margin = 0;
+
+  SourceGrid(const SensorGeometry& all, int beyond = 0) : cells(all), margin(beyond) {}
+};
+
 /// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
 /// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
 /// kernels differs from it.
@@ -20,12 +29,12 @@ struct KernelError {
 
 /// \param limit  no more is added up once the error is sure to be above it: then what is returned is above
 /// it, but not the error.
-KernelError kernel_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes,
+KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes,
                          double limit = std::numeric_limits<double>::infinity());
 
 /// The same for PSFs that differ little from others of which it is known: places are alike, so a few tell by
 /// how much all have changed.
-KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SensorGeometry& grid,
+KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
                               int tile, int nodes);
 
 /// Cells whose distance from the axis lies between two radii [cells].
@@ -47,11 +56,11 @@ struct RimError {
 };
 
 /// \param limit  for the RMS error of the rim, as a part of the whole grid's.
-RimError rim_error(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes, double limit);
+RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit);
 
 /// The same for PSFs that differ little from others of which it is known: unless that found a ring, the
 /// outermost cells tell by how much all have changed.
-RimError rim_error_like(const RimError& known, const PsfField& psfs, const SensorGeometry& grid, int tile,
+RimError rim_error_like(const RimError& known, const PsfField& psfs, const SourceGrid& grid, int tile,
                         int nodes, double limit);
 
 }  // namespace petzval

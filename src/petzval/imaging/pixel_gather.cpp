@@ -4,153 +4,175 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/pixel_gather.h>
+#include <petzval/imaging/smooth_psf.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <cstddef>
 
 namespace petzval {
 
 namespace {
 
-constexpr int most_cells = 16;
+/// Pixels from a pixel's middle to the last cells that share in it.
+constexpr double pixels_reached = 3;
 
-/// Full axes of a shape, in pitches.
-using Axes = std::array<double, 2>;
+/// Frequencies of a kernel's samples that look like another, in units of the cells' own.
+constexpr std::array<int, 4> aliases{-2, -1, 1, 2};
 
-/// The area of each of S × S cells of a pixel under a centred shape, of sum 1.
-std::vector<double> area_shares(Photosite::Shape shape, const Axes& axes, int cells) {
-  constexpr int strips = 32;  // along a cell
-  std::vector<double> shares;
-  for (int row = 0; row < cells; ++row)
-    for (int column = 0; column < cells; ++column) {
-      const double left = (column - cells / 2.0) / cells, right = left + 1.0 / cells;
-      double area = 0;
-      for (int strip = 0; strip < strips; ++strip) {
-        const double y = (row + (strip + 0.5) / strips - cells / 2.0) / cells;
-        const double v = 2 * y / axes[1];
-        double half = std::abs(v) < 1 ? axes[0] / 2 : 0;
-        if (shape == Photosite::Shape::ellipse) half *= std::sqrt(std::max(0.0, 1 - v * v));
-        area += std::max(0.0, std::min(right, half) - std::max(left, -half));
-      }
-      shares.push_back(area);
+/// The weights along one axis that are the best for an aperture, from the middle outwards.
+class AxisWeights {
+ public:
+  AxisWeights(int cells, int size, const LightPath& path) : cells_(cells), size_(size) {
+    const int count = static_cast<int>(most_cycles_a_cell * cells / step_cpp);
+    const auto unknowns = static_cast<Eigen::Index>(half());
+    normal_ = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    Eigen::VectorXd row(unknowns);
+    for (int i = 0; i < count; ++i) {
+      const double f = (i + 0.5) * step_cpp, source = path.source.transform(f / cells);
+      for (Eigen::Index k = 0; k < unknowns; ++k) row[k] = wave(k, f);
+      const double of_edges = 1 / (f * f + longest_cpp * longest_cpp);
+      const auto through = [&](double at) { return source * nominal_mtf(at) * path.of_window(at / cells); };
+      double squares = 0;
+      for (const int alias : aliases)
+        if (path.window) squares += std::pow(through(f - alias * cells), 2);
+      normal_ += of_edges * (squares + std::pow(through(f), 2)) * row * row.transpose();
+      frequencies_.push_back(f);
+      rows_.push_back(of_edges * through(f) * nominal_mtf(f) * row);
     }
-  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
-  for (double& share : shares) share /= sum;
-  return shares;
-}
+  }
 
-/// Of cell centres about the middle of the pixel, along axis 0 (columns) or 1 (rows) [pitches²].
-double variance(const std::vector<double>& shares, int cells, int axis) {
-  double sum = 0;
-  for (int row = 0; row < cells; ++row)
-    for (int column = 0; column < cells; ++column) {
-      const double at = ((axis == 0 ? column : row) + 0.5 - cells / 2.0) / cells;
-      sum += shares[static_cast<std::size_t>(row * cells + column)] * at * at;
+  /// \param aperture  its transform over frequency [cycles/pixel], real. \param tiles  whether it fills the
+  /// pixel: then every cell gives all its light to pixels.
+  template <typename Aperture>
+  std::vector<double> best(const Aperture& aperture, bool tiles) const {
+    const auto unknowns = static_cast<Eigen::Index>(half());
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+    for (std::size_t i = 0; i < frequencies_.size(); ++i) right += aperture(frequencies_[i]) * rows_[i];
+    // Lagrange multipliers for what must hold exactly.
+    const Eigen::Index laws = tiles ? (cells_ + 1) / 2 : 1;
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(unknowns + laws, unknowns + laws);
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(unknowns + laws);
+    system.topLeftCorner(unknowns, unknowns) = normal_;
+    all.head(unknowns) = right;
+    for (Eigen::Index law = 0; law < laws; ++law) {
+      for (Eigen::Index k = 0; k < unknowns; ++k)
+        system(unknowns + law, k) = system(k, unknowns + law) = wave(k, double(law));
+      if (law == 0) all[unknowns] = aperture(0.0);
     }
-  return sum;
-}
+    const Eigen::VectorXd found = system.completeOrthogonalDecomposition().solve(all);
+    std::vector<double> weights(static_cast<std::size_t>(size_));
+    for (int k = 0; k < half(); ++k)
+      weights[static_cast<std::size_t>(size_ / 2 + k)] =
+          weights[static_cast<std::size_t>((size_ - 1) / 2 - k)] = found[k];
+    return weights;
+  }
 
-/// The two dots of a filter along one axis, each linear between the cells about it: weights of cells −reach …
-/// reach.
-struct Dots {
-  std::vector<double> weights;
-  double added_variance = 0;  ///< by being linear [pitches²]
+ private:
+  static constexpr double most_cycles_a_cell = 3, step_cpp = 0.02, longest_cpp = 0.03;
+  static double nominal_mtf(double f_cpp) { return std::exp(-std::abs(f_cpp)); }
+  int half() const { return (size_ + 1) / 2; }
+  /// What the k-th weight and its mirror image pass.
+  double wave(Eigen::Index k, double f_cpp) const {
+    const bool middle = size_ % 2 != 0 && k == 0;
+    const double place = (double(k) + (size_ % 2 != 0 ? 0.0 : 0.5)) / cells_;
+    return (middle ? 1 : 2) * std::cos(2 * pi * f_cpp * place);
+  }
+
+  int cells_, size_;
+  Eigen::MatrixXd normal_;
+  std::vector<double> frequencies_;
+  std::vector<Eigen::VectorXd> rows_;
 };
 
-Dots dots_of(double separation, int cells, int reach) {
-  const double at = std::abs(separation) / 2 * cells;
-  const int below = static_cast<int>(at);
-  const double beyond = at - below;
-  Dots dots{std::vector<double>(static_cast<std::size_t>(2 * reach + 1)),
-            beyond * (1 - beyond) / (double(cells) * cells)};
-  for (const int side : {-1, 1}) {
-    dots.weights[static_cast<std::size_t>(reach + side * below)] += (1 - beyond) / 2;
-    if (beyond > 0) dots.weights[static_cast<std::size_t>(reach + side * (below + 1))] += beyond / 2;
+/// A part of a photosite that is a product of what it passes along either axis.
+struct Strip {
+  double share = 1;        ///< of the area
+  double width, height;    ///< of its rectangles [pitches]
+  double from_middle = 0;  ///< of two rectangles, one above and one below the middle
+};
+
+std::vector<Strip> strips_of(const Photosite& site) {
+  if (site.shape == Photosite::Shape::rectangle) return {{1, site.width, site.height}};
+  constexpr int count = 8;
+  std::vector<Strip> strips;
+  double sum = 0;
+  for (int i = 0; i < count; ++i) {
+    const double low = double(i) / count, high = double(i + 1) / count;
+    const auto area = [](double v) { return (v * std::sqrt(1 - v * v) + std::asin(v)) / 2; };
+    const double share = area(high) - area(low);
+    const double height = site.height / (2 * count);
+    strips.push_back({share, site.width * share * count, height, (i + 0.5) * height});
+    sum += share;
   }
-  return dots;
+  for (Strip& strip : strips) strip.share /= sum;
+  return strips;
 }
 
-/// The axes of the shape whose area shares have these variances, or as near as cells come to it.
-Axes matching_axes(const Photosite& site, int cells, const Axes& wanted) {
-  Axes axes{site.width, site.height};
-  constexpr int rounds = 4, halvings = 40;
-  for (int round = 0; round < rounds; ++round)
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      double low = 0.5 / cells, high = 1;
-      for (int i = 0; i < halvings; ++i) {
-        axes[a] = (low + high) / 2;
-        (variance(area_shares(site.shape, axes, cells), cells, axis) < wanted[a] ? low : high) = axes[a];
-      }
-      if (site.shape == Photosite::Shape::rectangle && axis == 1)
-        return axes;  // they do not depend on each other
-    }
-  return axes;
+double sum_of_waves(const std::vector<double>& weights, double f_cpp, int cells) {
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    sum += weights[i] * std::cos(2 * pi * f_cpp * (double(i) + 0.5 - double(weights.size()) / 2) / cells);
+  return sum;
 }
 
 }  // namespace
 
-double PixelTaps::transform(double fx_cpp, double fy_cpp, int boxes) const {
-  double sum = 0;
-  for (int row = 0; row < size(); ++row)
-    for (int column = 0; column < size(); ++column) {
-      const double x = (column + 0.5 - size() / 2.0) / cells, y = (row + 0.5 - size() / 2.0) / cells;
-      sum += weights[static_cast<std::size_t>(row * size() + column)] *
-             std::cos(2 * pi * (fx_cpp * x + fy_cpp * y));
-    }
-  return sum * std::pow(sinc(fx_cpp / cells) * sinc(fy_cpp / cells), boxes);
+double LightPath::of_window(double frequency) const {
+  return window ? window_transform(frequency) : 1;
 }
 
-PixelTaps pixel_taps(const Photosite& site, int cells, int boxes) {
+double PixelTaps::transform(double fx_cpp, double fy_cpp) const {
+  double sum = 0;
+  for (const Term& term : terms)
+    sum += sum_of_waves(term.across, fx_cpp, cells) * sum_of_waves(term.down, fy_cpp, cells);
+  return sum;
+}
+
+void check_photosite(const Photosite& site) {
   if ((site.shape != Photosite::Shape::rectangle && site.shape != Photosite::Shape::ellipse) ||
       !(site.width <= 1 && site.height <= 1))
     throw InputError(
         fmt::format("a photosite {}: a rectangle or ellipse within the pixel is right", site.text()));
   site.validate();
+}
+
+int taps_reach(const Photosite& site, int cells) {
+  const double apart = std::max(std::abs(site.separation_x), std::abs(site.separation_y)) / 2;
+  return static_cast<int>((pixels_reached - 0.5 + apart) * cells);
+}
+
+PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path) {
+  check_photosite(site);
   PixelTaps taps;
   taps.cells = cells;
-  const auto reach = [&](double separation) {
-    return static_cast<int>(std::ceil(std::abs(separation) / 2 * cells));
-  };
-  taps.reach = std::max(reach(site.separation_x), reach(site.separation_y));
-  const Dots across = dots_of(site.separation_x, cells, taps.reach),
-             down = dots_of(site.separation_y, cells, taps.reach);
-
-  Axes axes{site.width, site.height};
-  if (!site.is_plain() || boxes > 1) {
-    const double per_axis = site.shape == Photosite::Shape::ellipse ? 1.0 / 16 : 1.0 / 12;
-    const double boxed = boxes / (12.0 * cells * cells);
-    axes = matching_axes(site, cells,
-                         {per_axis * site.width * site.width - boxed - across.added_variance,
-                          per_axis * site.height * site.height - boxed - down.added_variance});
+  taps.reach = taps_reach(site, cells);
+  const AxisWeights axis(cells, taps.size(), path);
+  taps.terms.clear();
+  for (const Strip& strip : strips_of(site)) {
+    const auto across = [&](double f) {
+      return sinc(strip.width * f) * std::cos(pi * site.separation_x * f);
+    };
+    const auto down = [&](double f) {
+      return strip.share * sinc(strip.height * f) * std::cos(2 * pi * strip.from_middle * f) *
+             std::cos(pi * site.separation_y * f);
+    };
+    taps.terms.push_back({axis.best(down, site.height == 1 && site.shape == Photosite::Shape::rectangle),
+                          axis.best(across, site.width == 1 && site.shape == Photosite::Shape::rectangle)});
   }
-  const std::vector<double> shares = area_shares(site.shape, axes, cells);
-  const int size = taps.size();
-  taps.weights.assign(static_cast<std::size_t>(size * size), 0);
-  for (int row = 0; row < cells; ++row)
-    for (int column = 0; column < cells; ++column)
-      for (int i = 0; i <= 2 * taps.reach; ++i)
-        for (int j = 0; j <= 2 * taps.reach; ++j)
-          taps.weights[static_cast<std::size_t>((row + i) * size + column + j)] +=
-              shares[static_cast<std::size_t>(row * cells + column)] *
-              down.weights[static_cast<std::size_t>(i)] * across.weights[static_cast<std::size_t>(j)];
   return taps;
 }
 
-int cells_for(const Photosite& site, int boxes, int least) {
-  if (site.is_plain()) return least;
-  constexpr double good = 0.01, nyquist_cpp = 0.5, step_cpp = 0.05;
-  for (int cells = least; cells < most_cells; ++cells) {
-    const PixelTaps taps = pixel_taps(site, cells, boxes);
-    double worst = 0;
-    for (double f = step_cpp; f <= nyquist_cpp + step_cpp / 2; f += step_cpp)
-      for (const auto& [x, y] : {std::pair{f, 0.0}, {0.0, f}, {f * std::sqrt(0.5), f * std::sqrt(0.5)}})
-        worst = std::max(worst, std::abs(taps.transform(x, y, boxes) - site.transform(x, y).real()));
-    if (worst <= good) return cells;
-  }
-  return most_cells;
+double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath& path, double f_cpp,
+                  const std::function<double(double)>& mtf) {
+  const double out = taps.transform(f_cpp, 0) * path.source.transform(f_cpp / taps.cells);
+  const auto through = [&](double at) { return mtf(std::abs(at)) * path.of_window(at / taps.cells); };
+  double squares = std::pow(out * through(f_cpp) - site.transform(f_cpp, 0).real() * mtf(f_cpp), 2);
+  if (path.window)
+    for (const int alias : aliases) squares += std::pow(out * through(f_cpp - alias * taps.cells), 2);
+  return std::sqrt(squares);
 }
 
 CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
@@ -159,14 +181,25 @@ CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
   CellPlane result =
       CellPlane::unset({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});
   const auto step = static_cast<std::size_t>(taps.cells), size = static_cast<std::size_t>(taps.size());
-  parallel_for(result.rows(), [&](std::size_t row) {
-    for (std::size_t column = 0; column < result.columns(); ++column) {
-      double sum = 0;
-      for (std::size_t i = 0; i < size; ++i) {
-        const float* cells = plane.row(row * step + i) + column * step;
-        for (std::size_t j = 0; j < size; ++j) sum += taps.weights[i * size + j] * double(cells[j]);
+  constexpr std::size_t rows_at_once = 8;
+  parallel_for((result.rows() + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {
+    std::vector<double> column_sums(plane.columns()), pixels(result.columns());
+    const std::size_t end = std::min(result.rows(), (block + 1) * rows_at_once);
+    for (std::size_t row = block * rows_at_once; row < end; ++row) {
+      std::fill(pixels.begin(), pixels.end(), 0.0);
+      for (const PixelTaps::Term& term : taps.terms) {
+        std::fill(column_sums.begin(), column_sums.end(), 0.0);
+        for (std::size_t i = 0; i < size; ++i) {
+          const float* cells = plane.row(row * step + i);
+          const double weight = term.down[i];
+          for (std::size_t j = 0; j < column_sums.size(); ++j) column_sums[j] += weight * double(cells[j]);
+        }
+        for (std::size_t column = 0; column < pixels.size(); ++column)
+          for (std::size_t j = 0; j < size; ++j)
+            pixels[column] += term.across[j] * column_sums[column * step + j];
       }
-      result.row(row)[column] = static_cast<float>(sum);
+      std::transform(pixels.begin(), pixels.end(), result.row(row),
+                     [](double sum) { return static_cast<float>(sum); });
     }
   });
   return result;

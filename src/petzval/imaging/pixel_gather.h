@@ -3,35 +3,56 @@
 #pragma once
 
 #include <petzval/imaging/cell_plane.h>
+#include <petzval/imaging/source_light.h>
 #include <petzval/wave/photosite.h>
 
+#include <functional>
 #include <vector>
 
 namespace petzval {
 
-/// With what weights the cells in and about a pixel share in its value: (cells + 2·reach)² of sum 1,
-/// row-major, none negative.
-struct PixelTaps {
-  int cells = 1;  ///< S: along a side of a pixel
-  int reach = 0;  ///< cells beyond the edge of the pixel
-  std::vector<double> weights{1};
+/// What light has gone through on its way to the cells, beside the lens: the source filter, and the window of
+/// the kernels unless there is no blur.
+struct LightPath {
+  SourceFilter source;
+  bool window = true;
 
-  int size() const { return cells + 2 * reach; }
-  /// What they pass at a frequency [cycles/pixel], with `boxes` means over a cell before them.
-  double transform(double fx_cpp, double fy_cpp, int boxes) const;
+  /// What the window leaves of a frequency [cycles a cell].
+  double of_window(double frequency) const;
 };
 
-/// Taps that stand for a photosite together with `boxes` means over a cell that the light has gone through
-/// already: that of the source cell (if the scene is finer than it) and that of the receiving one. They are
-/// the area shares of the cells under a shape whose size is such that the variance of everything is the
-/// photosite's; the four dots of the filter are linear between cells, and that is made good too. One box
-/// alone tiles a whole square pixel exactly. \param site  rectangle or ellipse within the pixel. \throws
-/// InputError for another.
-PixelTaps pixel_taps(const Photosite& site, int cells, int boxes);
+/// With what weights the cells in and about a pixel share in its value: Σ over terms of down[i] · across[j],
+/// of sum 1. Some weights are negative: they give back what the light lost on its path.
+struct PixelTaps {
+  struct Term {
+    std::vector<double> down, across;  ///< size() each
+  };
+  int cells = 1;  ///< S: along a side of a pixel
+  int reach = 0;  ///< cells beyond the edge of the pixel
+  std::vector<Term> terms{{{1}, {1}}};
 
-/// The smallest number of cells along a pixel, from `least` to 16, whose taps pass what the photosite does to
-/// 0.01 at every frequency up to Nyquist's; `least` for a whole square pixel without a filter.
-int cells_for(const Photosite& site, int boxes, int least);
+  int size() const { return cells + 2 * reach; }
+  /// What they pass at a frequency [cycles/pixel], without the path.
+  double transform(double fx_cpp, double fy_cpp) const;
+};
+
+/// \throws InputError for another photosite than a rectangle or ellipse within the pixel.
+void check_photosite(const Photosite& site);
+
+/// PixelTaps::reach of the weights for a photosite after a path.
+int taps_reach(const Photosite& site, int cells);
+
+/// The weights that stand for a photosite after a path: the best in the sense of least squares for edges at
+/// all places, through a lens whose MTF is exp(−|f|) with f in cycles/pixel. They are found along either
+/// axis; the dots of a filter are a product of such, an ellipse a sum of eight strips. \throws InputError as
+/// check_photosite().
+PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path);
+
+/// By how much a frequency along the columns comes out wrong, relative to its contrast in the scene: what is
+/// missing, and what comes out at the kernels' other frequencies in its place. \param f_cpp  [cycles/pixel].
+/// \param mtf  of the lens over frequency [cycles/pixel].
+double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath& path, double f_cpp,
+                  const std::function<double(double)>& mtf);
 
 /// \param plane  S × S cells to a pixel and taps.reach more all around. \returns the plane of pixels.
 CellPlane gathered(CellPlane plane, const PixelTaps& taps);

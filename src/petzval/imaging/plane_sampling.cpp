@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Without vectors nothing is done at once: all is left to averaged().
-void look(const SceneMapSteps&, const CellRow&, std::size_t, std::size_t, double*, double*, float*) {}
+// Without vectors nothing is done at once: all is left to SceneRows.
+void look(const SceneMapSteps&, const CellRow&, std::size_t, std::size_t, RowView&) {}
 
 std::size_t sample(const PlaneView&, const RowView&, double, std::size_t from, float*) {
   return from;
@@ -48,7 +48,7 @@ HWY_ATTR HWY_INLINE Vector gathered(const SceneMapStep* steps, double SceneMapSt
 
 /// What the cells [first, end) and their mirror images see. Arrays have room for whole vectors.
 HWY_ATTR void look(const SceneMapSteps& map, const CellRow& cells, std::size_t first, std::size_t end,
-                   double* right, double* down, float* g_source_sr) {
+                   RowView& view) {
   const Doubles d;
   const std::size_t lanes = hn::Lanes(d);
   const auto set = [&](double value) { return hn::Set(d, value); };
@@ -60,25 +60,36 @@ HWY_ATTR void look(const SceneMapSteps& map, const CellRow& cells, std::size_t f
     const Vector step = hn::Floor(hn::Mul(square, set(map.steps_per_square)));
     const Vector further = hn::NegMulAdd(step, set(1 / map.steps_per_square), square);
     const auto k = hn::PromoteTo(Wide(), hn::DemoteTo(HalfIntegers(), step));
-    const Vector ratio = hn::MulAdd(further, gathered(map.steps, &SceneMapStep::samples_slope, k),
-                                    gathered(map.steps, &SceneMapStep::samples_per_mm, k));
+    const Vector slope = gathered(map.steps, &SceneMapStep::samples_slope, k);
+    const Vector ratio = hn::MulAdd(further, slope, gathered(map.steps, &SceneMapStep::samples_per_mm, k));
     const Vector g = hn::MulAdd(further, gathered(map.steps, &SceneMapStep::g_source_slope, k),
                                 gathered(map.steps, &SceneMapStep::g_source_sr, k));
     const Vector left = hn::Mul(ratio, x), below = hn::Mul(ratio, y);
-    const auto light = hn::DemoteTo(HalfFloats(), g);
-    hn::StoreU(hn::Neg(left), d, right + at);
-    hn::StoreU(below, d, down + at);
-    hn::StoreU(light, HalfFloats(), g_source_sr + at);
+    // The samples that a cell spans along an axis: the derivative of ratio × its place.
+    const auto spanned = [&](Vector place) {
+      const Vector twice = hn::Mul(hn::Mul(place, place), hn::Add(slope, slope));
+      return hn::DemoteTo(HalfFloats(), hn::Mul(hn::Add(ratio, twice), set(cells.pitch_mm)));
+    };
+    const auto light = hn::DemoteTo(HalfFloats(), g), across = spanned(x), along = spanned(y);
     const std::size_t mirrored = cells.count - at - lanes;
-    hn::StoreU(hn::Reverse(d, left), d, right + mirrored);
-    hn::StoreU(hn::Reverse(d, below), d, down + mirrored);
-    hn::StoreU(hn::Reverse(HalfFloats(), light), HalfFloats(), g_source_sr + mirrored);
+    hn::StoreU(hn::Neg(left), d, view.right.data() + at);
+    hn::StoreU(hn::Reverse(d, left), d, view.right.data() + mirrored);
+    hn::StoreU(below, d, view.down.data() + at);
+    hn::StoreU(hn::Reverse(d, below), d, view.down.data() + mirrored);
+    const HalfFloats half;
+    const auto both = [&](auto values, std::vector<float>& to) {
+      hn::StoreU(values, half, to.data() + at);
+      hn::StoreU(hn::Reverse(half, values), half, to.data() + mirrored);
+    };
+    both(light, view.g_source_sr);
+    both(across, view.width);
+    both(along, view.height);
   }
 }
 
-/// Places along one axis: the samples before them, and how far they are beyond.
+/// Places along one axis: the samples nearest to them, and how far they are beyond.
 struct Places {
-  Vector before, beyond;
+  Vector nearest, beyond;
   hn::Mask<Doubles> inside;
 };
 
@@ -86,55 +97,72 @@ HWY_ATTR HWY_INLINE Places places_at(Vector from_middle, double size, double roo
   const Doubles d;
   const Vector at = hn::Add(from_middle, hn::Set(d, size / 2));
   const auto inside = hn::And(hn::Gt(at, hn::Set(d, room)), hn::Lt(at, hn::Set(d, size - room)));
-  const Vector u = hn::Sub(at, hn::Set(d, 0.5)), before = hn::Floor(u);
-  return {before, hn::Sub(u, before), inside};
+  const Vector nearest = hn::Floor(at);
+  return {nearest, hn::Sub(hn::Sub(at, nearest), hn::Set(d, 0.5)), inside};
 }
 
-/// Pairs of samples that are neighbours in a row, at byte offsets.
-HWY_ATTR HWY_INLINE hn::Vec<Floats> pairs_at(const float* samples, hn::Vec<Wide> offsets) {
-  return hn::BitCast(Floats(),
-                     hn::GatherOffset(Wide(), reinterpret_cast<const std::int64_t*>(samples), offsets));
+/// LinearMean, several at a time.
+struct Means {
+  hn::Vec<Floats> before, here, after;
+};
+
+HWY_ATTR HWY_INLINE Means means_of(hn::Vec<Floats> beyond, hn::Vec<Floats> length) {
+  const Floats f;
+  const auto half = hn::Mul(length, hn::Set(f, 0.5F)), zero = hn::Zero(f);
+  const auto scale = hn::Div(hn::Set(f, 0.5F), length);
+  const auto side = [&](auto middle) {
+    const auto to = hn::Max(hn::Add(middle, half), zero), from = hn::Max(hn::Sub(middle, half), zero);
+    return hn::Mul(hn::Mul(hn::Sub(to, from), hn::Add(to, from)), scale);
+  };
+  const auto before = side(hn::Neg(beyond)), after = side(beyond);
+  return {before, hn::Sub(hn::Sub(hn::Set(f, 1.0F), before), after), after};
 }
 
 HWY_ATTR std::size_t sample(const PlaneView& view, const RowView& cells, double down_sign, std::size_t from,
                             float* irradiance) {
   const Doubles d;
   const Floats f;
+  const hn::Rebind<std::int32_t, Floats> integers;
   const std::size_t half = hn::Lanes(d), lanes = hn::Lanes(f);
   const Vector sign = hn::Set(d, down_sign), columns = hn::Set(d, view.columns);
-  const float *here = view.radiance, *next = here + static_cast<std::ptrdiff_t>(view.columns);
+  const auto stride = static_cast<std::ptrdiff_t>(view.columns);
   const std::size_t end = cells.g_source_sr.size() - cells.dark;
   if (from < cells.dark) return from;
   for (; from + lanes <= end; from += lanes) {
-    const Places across_low = places_at(hn::LoadU(d, cells.right.data() + from), view.columns, view.room),
-                 across_high =
-                     places_at(hn::LoadU(d, cells.right.data() + from + half), view.columns, view.room);
-    const Places down_low =
-                     places_at(hn::Mul(sign, hn::LoadU(d, cells.down.data() + from)), view.rows, view.room),
-                 down_high = places_at(hn::Mul(sign, hn::LoadU(d, cells.down.data() + from + half)),
-                                       view.rows, view.room);
+    const auto across_at = [&](std::size_t first) {
+      return places_at(hn::LoadU(d, cells.right.data() + first), view.columns, view.room);
+    };
+    const auto down_at = [&](std::size_t first) {
+      return places_at(hn::Mul(sign, hn::LoadU(d, cells.down.data() + first)), view.rows, view.room);
+    };
+    const Places across_low = across_at(from), across_high = across_at(from + half);
+    const Places down_low = down_at(from), down_high = down_at(from + half);
     const auto inside =
         hn::And(hn::And(across_low.inside, across_high.inside), hn::And(down_low.inside, down_high.inside));
-    if (!hn::AllTrue(d, inside)) return from;
+    const auto width = hn::LoadU(f, cells.width.data() + from),
+               height = hn::LoadU(f, cells.height.data() + from);
+    if (!hn::AllTrue(d, inside) || !hn::AllTrue(f, hn::Le(hn::Max(width, height), hn::Set(f, 1.0F))) ||
+        !hn::AllTrue(f, hn::Gt(hn::Min(width, height), hn::Zero(f))))
+      return from;
 
-    const auto offsets = [&](const Places& across, const Places& down) {
-      const Vector index = hn::MulAdd(down.before, columns, across.before);
-      return hn::ShiftLeft<2>(hn::PromoteTo(Wide(), hn::DemoteTo(HalfIntegers(), index)));
-    };
     const auto both = [&](Vector low, Vector high) {
       return hn::Combine(f, hn::DemoteTo(HalfFloats(), high), hn::DemoteTo(HalfFloats(), low));
     };
-    const auto low = offsets(across_low, down_low), high = offsets(across_high, down_high);
-    const auto upper_low = pairs_at(here, low), upper_high = pairs_at(here, high),
-               lower_low = pairs_at(next, low), lower_high = pairs_at(next, high);
-    const auto right = both(across_low.beyond, across_high.beyond),
-               below = both(down_low.beyond, down_high.beyond);
-    const auto between = [&](auto pairs_high, auto pairs_low) {
-      const auto left = hn::ConcatEven(f, pairs_high, pairs_low);
-      return hn::MulAdd(right, hn::Sub(hn::ConcatOdd(f, pairs_high, pairs_low), left), left);
+    const auto index_of = [&](const Places& across, const Places& down) {
+      return hn::DemoteTo(HalfIntegers(), hn::MulAdd(down.nearest, columns, across.nearest));
     };
-    const auto upper = between(upper_high, upper_low), lower = between(lower_high, lower_low);
-    const auto radiance = hn::MulAdd(below, hn::Sub(lower, upper), upper);
+    const auto index =
+        hn::Combine(integers, index_of(across_high, down_high), index_of(across_low, down_low));
+    const Means right = means_of(both(across_low.beyond, across_high.beyond), width),
+                below = means_of(both(down_low.beyond, down_high.beyond), height);
+    const auto row = [&](std::ptrdiff_t offset) {
+      const float* samples = view.radiance + offset;
+      const auto sides = hn::Mul(right.before, hn::GatherIndex(f, samples - 1, index));
+      const auto inner = hn::MulAdd(right.here, hn::GatherIndex(f, samples, index), sides);
+      return hn::MulAdd(right.after, hn::GatherIndex(f, samples + 1, index), inner);
+    };
+    const auto radiance = hn::MulAdd(below.after, row(stride),
+                                     hn::MulAdd(below.here, row(0), hn::Mul(below.before, row(-stride))));
     hn::StoreU(hn::Mul(radiance, hn::LoadU(f, cells.g_source_sr.data() + from)), f, irradiance + from);
   }
   return from;
@@ -160,6 +188,8 @@ HWY_EXPORT(width);
 void RowView::look(const SceneMapSteps& map, const CellRow& cells) {
   right.resize(cells.count);
   down.resize(cells.count);
+  width.resize(cells.count);
+  height.resize(cells.count);
   g_source_sr.resize(cells.count);
   // Bright cells reach as far as the last height, but for one that rounding might darken.
   const double bright_mm = std::sqrt(std::max(0.0, map.last_height_squared - cells.y_mm * cells.y_mm));
@@ -170,7 +200,7 @@ void RowView::look(const SceneMapSteps& map, const CellRow& cells) {
   const std::size_t lanes = sampled_at_once();
   if (cells.count < 2 * lanes) dark = middle;
   if (dark == middle) return;
-  HWY_DYNAMIC_DISPATCH(look)(map, cells, dark, middle, right.data(), down.data(), g_source_sr.data());
+  HWY_DYNAMIC_DISPATCH(look)(map, cells, dark, middle, *this);
 }
 
 std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,

@@ -24,10 +24,12 @@ struct CellRow {
   std::size_t count;
 };
 
-/// Where the cells of a row look, from the middle of the scene [samples], and how much of that light arrives.
-/// The row as far from the axis on its other side looks as far down as this one looks up.
+/// What the cells of a row see: the middles of rectangles, from the middle of the scene, their sides, and how
+/// much of that light arrives. The row as far from the axis on its other side sees as far down as this one
+/// sees up.
 struct RowView {
-  std::vector<double> right, down;
+  std::vector<double> right, down;   ///< [samples]
+  std::vector<float> width, height;  ///< [samples]
   std::vector<float> g_source_sr;
   std::size_t dark = 0;  ///< cells at either end that are not known, most of them without light
 
@@ -42,9 +44,30 @@ struct PlaneView {
   double room;  ///< from an edge of the scene, where the neighbours of a place are sure to exist
 };
 
-/// Radiance × g_source, bilinear between sample centres, at the cells [from, …) of a row for as long as they
-/// see the inside of the scene and light from the lens. SIMD: places in double, light in float; scalar code
-/// with the same result to rounding is averaged() of distortion.cpp.
+/// How three neighbouring samples share in the mean over a stretch of the straight lines between them.
+///
+/// \param beyond  of the middle of the stretch, from the middle sample, −½ to ½. \param length  of the
+/// stretch, more than 0 and at most 1 [samples].
+struct LinearMean {
+  double before, here, after;
+
+  LinearMean(double beyond, double length) : before(side(-beyond, length)), after(side(beyond, length)) {
+    here = 1 - before - after;
+  }
+
+ private:
+  /// The mean of max(0, x) over [beyond − length/2, beyond + length/2].
+  static double side(double beyond, double length) {
+    const double high = beyond + length / 2, low = beyond - length / 2;
+    const double to = high > 0 ? high : 0, from = low > 0 ? low : 0;
+    return (to * to - from * from) / (2 * length);
+  }
+};
+
+/// Mean radiance × g_source of the cells [from, …) of a row for as long as they see the inside of the scene,
+/// no more than a sample of it along either side, and light from the lens. Between sample centres radiance is
+/// bilinear, and the mean is exact, so that the light of a sample is the same wherever it falls on the cells.
+/// SIMD: places in double, light in float; scalar code with the same result to rounding is SceneRows's.
 /// \param down  1, or −1 for the row on the other side of the axis.
 /// \return the first cell that is not done.
 std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,

@@ -28,18 +28,18 @@ constexpr double kernel_fixed_ns = 1700;  // of a kernel, whatever its size
 constexpr double deposit_ns = 2.5;        // per sample of a PSF and cell of a kernel
 
 /// Kernels that a layout needs, and what one costs without its transform.
-double kernel_count(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
-  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(plan.tile)),
-               down = std::ceil(OutwardAxis(grid.rows).count() / double(plan.tile));
+double kernel_count(const PsfField& psfs, const SourceGrid& grid, const ProductPlan& plan) {
+  const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(plan.tile)),
+               down = std::ceil(OutwardAxis(grid.cells.rows).count() / double(plan.tile));
   const double sets = psfs.mirror_symmetric() ? 1 : 2;
   return sets * ((plan.nodes - 1) * across + 1) * ((plan.nodes - 1) * down + 1);
 }
 double kernel_ns(const PsfField& psfs) {
   const double size = 2.0 * psfs.radius() + 1;
-  return kernel_fixed_ns + deposit_ns * (psfs.deposited_samples() + size * size);
+  return kernel_fixed_ns + deposit_ns * (psfs.coefficients() + size * size);
 }
 
-double kernel_bytes(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan) {
+double kernel_bytes(const PsfField& psfs, const SourceGrid& grid, const ProductPlan& plan) {
   if (plan.direct) {
     const double taps = 2.0 * psfs.radius() + 1;
     return kernel_count(psfs, grid, plan) * taps * taps * sizeof(float);
@@ -49,7 +49,7 @@ double kernel_bytes(const PsfField& psfs, const SensorGeometry& grid, const Prod
 }
 
 /// Gathered sums that might do, and what they would cost.
-ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, int tile, int nodes) {
+ProductPlan direct_candidate(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes) {
   constexpr double product_ns = 0.036;  // per product
   constexpr double mix_ns = 0.1;        // per weight of a kernel that goes into a mixture
   constexpr double add_ns = 5;          // per cell whose light is prepared and added
@@ -58,17 +58,17 @@ ProductPlan direct_candidate(const PsfField& psfs, const SensorGeometry& grid, i
   plan.nodes = nodes;
   plan.direct = true;
   const double taps = 2.0 * psfs.radius() + 1, extent = tile + 2.0 * psfs.radius();
-  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(tile));
+  const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(tile));
   const double per_row_and_tile =
       extent * (nodes * taps * taps * product_ns + add_ns) + double(nodes) * nodes * taps * taps * mix_ns;
-  plan.filter_ns = 2 * across * grid.rows * per_row_and_tile;
+  plan.filter_ns = 2 * across * grid.cells.rows * per_row_and_tile;
   plan.kernels_ns = kernel_count(psfs, grid, plan) * kernel_ns(psfs);
   plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
   return plan;
 }
 
 /// A layout that might do, and what it would cost.
-ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int transform, int tile, int nodes) {
+ProductPlan candidate(const PsfField& psfs, const SourceGrid& grid, int transform, int tile, int nodes) {
   constexpr double line_ns = 8;           // of a vector, per element of a line: transformed, turned, filtered
   constexpr double fetch_ns = 0.04;       // per byte of transfer functions
   constexpr double kernel_line_ns = 1.1;  // of a vector, per element and halving of a kernel's line
@@ -76,8 +76,8 @@ ProductPlan candidate(const PsfField& psfs, const SensorGeometry& grid, int tran
   plan.tile = tile;
   plan.nodes = nodes;
   plan.transform = transform;
-  const double across = std::ceil(OutwardAxis(grid.columns).count() / double(tile)),
-               down = std::ceil(OutwardAxis(grid.rows).count() / double(tile));
+  const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(tile)),
+               down = std::ceil(OutwardAxis(grid.cells.rows).count() / double(tile));
   const double lanes = double(lane_count()), columns = transform / lanes;
   const double lines = nodes * std::ceil(tile / lanes) + (nodes * nodes + 1) * columns +
                        std::ceil((tile + 2 * psfs.radius()) / lanes);
@@ -103,11 +103,11 @@ void each_layout(int room, const ProductOptions& options, const Use& use) {
         use(tile, nodes);
 }
 
-std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& grid,
+std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid,
                                     const ProductOptions& options) {
   constexpr int most_direct_radius = 16;  // far beyond where transforms have won
   std::vector<ProductPlan> plans;
-  const int widest = std::max(OutwardAxis(grid.columns).count(), OutwardAxis(grid.rows).count());
+  const int widest = std::max(OutwardAxis(grid.cells.columns).count(), OutwardAxis(grid.cells.rows).count());
   if (options.direct.value_or(true) && psfs.radius() <= most_direct_radius)
     each_layout(std::min(TileTransform::largest, widest), options,
                 [&](int tile, int nodes) { plans.push_back(direct_candidate(psfs, grid, tile, nodes)); });
@@ -125,9 +125,9 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SensorGeometry& 
 
 /// Gives the plan what cells at the rim need kernels of their own, and the error that it has then. Whether
 /// that keeps it within the limit.
-bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, const RimError& rim, ProductPlan& plan) {
+bool mend_rim(const PsfField& psfs, const SourceGrid& grid, const RimError& rim, ProductPlan& plan) {
   constexpr double scatter_ns = 1;  // of exact_blur, per weight
-  const double size = 2.0 * psfs.radius() + 1, cells = double(grid.columns) * grid.rows;
+  const double size = 2.0 * psfs.radius() + 1, cells = double(grid.cells.columns) * grid.cells.rows;
   plan.rim_error = rim;
   plan.exact = rim.ring;
   plan.exact_ns = rim.ring_share * cells * (kernel_ns(psfs) + scatter_ns * size * size);
@@ -136,8 +136,8 @@ bool mend_rim(const PsfField& psfs, const SensorGeometry& grid, const RimError& 
 }
 
 /// The plan of a neighbouring band, if it serves.
-std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs,
-                                     const SensorGeometry& grid, const ProductOptions& options) {
+std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs, const SourceGrid& grid,
+                                     const ProductOptions& options) {
   if (!hint.direct && hint.tile + 2 * psfs.radius() > hint.transform) return {};
   ProductPlan plan = hint.direct ? direct_candidate(psfs, grid, hint.tile, hint.nodes)
                                  : candidate(psfs, grid, hint.transform, hint.tile, hint.nodes);
@@ -163,7 +163,7 @@ void ProductOptions::validate() const {
         fmt::format("tiles of {} cells: 2 to {} are right, or 0 to choose", tile, TileTransform::largest));
 }
 
-std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
+std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint) {
   options.validate();
@@ -194,7 +194,7 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeomet
   return best;
 }
 
-ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options) {
+ProductPlan plan_blended(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options) {
   options.validate();
   ProductPlan plan;
   plan.tile = std::max(TileTransform::largest, psfs.radius());

@@ -48,13 +48,13 @@ struct ProductOptions {
 /// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
 /// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the
 /// source. \param hint  what served a neighbouring band: it is kept if, by a few places, it still serves.
-std::optional<ProductPlan> plan_product(const PsfField& psfs, const SensorGeometry& grid,
+std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint = {});
 
 /// Sections that fade into each other (SectionOptions::blend), which take PSFs of any size, each
 /// with a transform of its own: the largest whose estimated error is within the tolerance. `transform` stays
 /// 0.
-ProductPlan plan_blended(const PsfField& psfs, const SensorGeometry& grid, const ProductOptions& options);
+ProductPlan plan_blended(const PsfField& psfs, const SourceGrid& grid, const ProductOptions& options);
 
 }  // namespace petzval

@@ -2,12 +2,10 @@
 // Integrating finely sampled PSFs over the cells of an image.
 #pragma once
 
-#include <petzval/imaging/sample_scatter.h>
 #include <petzval/wave/psf.h>
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace petzval {
@@ -33,12 +31,6 @@ struct Kernel {
   double sum() const;
   /// Of the weights' positions from the middle cell [cells]. Needs a positive sum.
   Moments moments() const;
-  /// Moves the moments to the wanted ones by letting every weight hand shares to the eight cells about it; at
-  /// the rim it keeps them. The sum is kept. To make a kernel narrower, or to move a peak that is finer than
-  /// a cell by a part of one, shares must be negative: beside the peak that leaves lobes below zero, but none
-  /// deeper than a twentieth of the highest weight. What they would go beyond it stays undone in the spread;
-  /// the centroid is met all the same.
-  void match(const Moments& wanted);
 
  private:
   std::size_t index(int row, int column) const {
@@ -66,8 +58,6 @@ class MergedPsf {
   MergedPsf(const Psf& psf, double origin_um, int merged, const LightMoments& light);
   explicit MergedPsf(const Psf& psf, double origin_um = 0, int merged = 1)
       : MergedPsf(psf, origin_um, merged, light_moments(psf, origin_um)) {}
-  /// What a kernel of cells as fine as samples holds that was deposited along (0, 1).
-  MergedPsf(const Kernel& fine, double spacing_um);
 
   int size() const { return size_; }
   double spacing_um() const { return spacing_um_; }
@@ -77,44 +67,24 @@ class MergedPsf {
   double first_um() const { return first_um_; }
   const Moments& moments() const { return light_.sums; }
   const LightMoments& light() const { return light_; }
-  /// The samples of a row.
-  const float* row(std::size_t index) const {
-    return samples_.data() + index * static_cast<std::size_t>(size_);
-  }
-  /// What is lit of it.
-  SampleSquare square(double weight) const {
-    return {samples_.data(), lit_.data(), static_cast<std::size_t>(size_), static_cast<float>(weight)};
-  }
+  const std::vector<float>& samples() const { return samples_; }
 
  private:
-  void find_light();
-
   int size_;
   double spacing_um_, origin_um_, first_um_;
   LightMoments light_;
-  std::vector<float> samples_;   ///< row-major
-  std::vector<LitSamples> lit_;  ///< of every row
+  std::vector<float> samples_;  ///< row-major
 };
 
 /// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.
 struct Placement {
   double weight = 1;
   std::array<double, 2> stretch{1, 1};
+  bool across_axis = false;  ///< seen from the other side of the axis: turned by half a turn
 };
 
-/// Adds a PSF to a kernel, with its tangential direction along `direction` (x', y') of image space,
-/// integrated over cells: between samples light is linear, and the cells share in it as they lie under its
-/// shadows on the two axes; samples too coarse for that are squares, cut into parts that are not. What falls
-/// outside the kernel is left out.
-void deposit(const MergedPsf& psf, const Placement& placement, const std::array<double, 2>& direction,
-             double cell_um, Kernel& kernel);
-/// What one PSF contributes to a mixture.
-struct WeightedPsf {
-  const MergedPsf* psf;
-  double weight;
-};
-/// The same with Σ weight · psf as they are, made from kernels; neighbours of one spacing at once.
-void deposit(std::span<const WeightedPsf> psfs, const std::array<double, 2>& direction, double cell_um,
-             Kernel& kernel);
+/// Adds a PSF to a lattice whose rows run along its tangential direction, integrated over squares as wide as
+/// the lattice's spacing: between samples light is linear. What falls outside is left out.
+void deposit(const MergedPsf& psf, const Placement& placement, double spacing_um, Kernel& lattice);
 
 }  // namespace petzval

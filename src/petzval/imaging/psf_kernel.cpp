@@ -11,8 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -103,7 +101,7 @@ std::vector<Extent> extents_of(const LensDataTable& table, std::size_t wavelengt
                       "samples of sum 1 at a positive spacing are right",
                       table.wavelengths_nm[wavelength]));
     const Psf& psf = table.psf[table.index(field, wavelength)];
-    const double radius = std::ceil((extents[field]->reach_um + psf.spacing_um) / cell_um);
+    const double radius = std::ceil((extents[field]->reach_um + psf.spacing_um) / cell_um) + window_reach;
     if (!(radius <= max_radius))
       throw InputError(
           fmt::format("a PSF reaches {} µm, {} cells of {} µm: at most {} cells are right; a larger "
@@ -152,26 +150,17 @@ Psf turned_about_axis(const Psf& psf) {
   return round;
 }
 
-/// How fine samples must be at a height [µm]: about a sixth of a cell (a step of the ladder of spacings), an
-/// eighth near the axis, where PSFs turn from cell to cell; and no coarser than the PSF's own half width.
-/// \param light  of the PSF.
-double needed_spacing_um(const LightMoments& light, double cell_um, double height_mm) {
-  constexpr double turning_cells = 24;
-  const Moments& moments = light.sums;
-  const double s = moments.mean[0] / light.sum, t = moments.mean[1] / light.sum;
-  const double variance = std::min(moments.uu / light.sum - s * s, moments.vv / light.sum - t * t);
-  const double parts = height_mm * um_per_mm < turning_cells * cell_um ? 8 : 4 * std::numbers::sqrt2;
-  return std::min(cell_um / parts, std::sqrt(std::max(0.0, variance)));
-}
+/// Steps of a lattice along a cell: of light seen through the window, cubic splines between them miss
+/// 5·10⁻⁵.
+constexpr double lattice_steps = 4;
 
-MergedPsf merged_psf(const Psf& table, double origin_um, double cell_um, double height_mm) {
+MergedPsf merged_psf(const Psf& table, double origin_um, double cell_um) {
   // Of samples as fine as a sixteenth of a cell it does not matter what lies between them.
   constexpr double parts_of_cell = 4, fine_parts = 16;
   const Psf psf =
       table.spacing_um * fine_parts > cell_um ? refined_psf(table, cell_um / parts_of_cell) : table;
-  const LightMoments light = light_moments(psf, origin_um);
-  const int merged = static_cast<int>(needed_spacing_um(light, cell_um, height_mm) / psf.spacing_um);
-  return MergedPsf(psf, origin_um, merged < 3 ? 1 : merged - (merged + 1) % 2, light);
+  const int merged = static_cast<int>(cell_um / parts_of_cell / psf.spacing_um);
+  return MergedPsf(psf, origin_um, merged < 3 ? 1 : merged - (merged + 1) % 2, light_moments(psf, origin_um));
 }
 
 }  // namespace
@@ -208,8 +197,7 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
       const double height_mm = layer.height_mm[field], origin_um = centres.offset_mm(entry) * um_per_mm;
       symmetric[field] = is_mirror_symmetric(psf);
       const Psf whole = symmetric[field] != 0 && psf.size % 2 == 0 ? with_partner(psf) : psf;
-      merged[field] =
-          merged_psf(height_mm == 0 ? turned_about_axis(whole) : whole, origin_um, cell_um, height_mm);
+      merged[field] = merged_psf(height_mm == 0 ? turned_about_axis(whole) : whole, origin_um, cell_um);
     });
     for (std::size_t field = 0; field < fields; ++field) {
       mirror_symmetric_ = mirror_symmetric_ && symmetric[field] != 0;
@@ -219,44 +207,54 @@ PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell
     layers_.push_back(std::move(layer));
   }
   const std::size_t intervals = std::max<std::size_t>(1, layers_[0].psfs.size() - 1);
-  std::vector<SampleLattice> lattices;
-  for (std::size_t i = 0; i < intervals; ++i) lattices.push_back(lattice_of(i));
-  series_ = std::make_unique<PsfSeries>(layers_[0].height_mm, std::move(lattices), 2 * cell_um * mm_per_um);
+  std::vector<double> coefficients;
+  for (std::size_t i = 0; i < intervals; ++i) coefficients.push_back(std::pow(2.0 * half_of(i) + 1, 2));
+  series_ = std::make_unique<PsfSeries>(layers_[0].height_mm, coefficients, 2 * cell_um * mm_per_um);
 }
 
-SampleLattice PsfField::lattice_of(std::size_t interval) const {
-  SampleLattice lattice{std::numeric_limits<double>::infinity(), 0};
-  for (const Layer& layer : layers_) {
-    const std::size_t fields = layer.psfs.size();
-    for (std::size_t field = interval; field < std::min(interval + 2, fields); ++field) {
-      const MergedPsf& psf = layer.psfs[field];
-      const double needed = needed_spacing_um(psf.light(), cell_um_, layer.height_mm[field]);
-      lattice.spacing_um = std::min(lattice.spacing_um, std::max(psf.spacing_um(), needed));
-    }
-    // All four that go into what lies between two fields.
+double PsfField::spacing_um() const {
+  return cell_um_ / lattice_steps;
+}
+
+int PsfField::half_of(std::size_t interval) const {
+  double half_side_um = 0;
+  // Of all four that go into what lies between two fields.
+  for (const Layer& layer : layers_)
     for (std::size_t field = interval - std::min<std::size_t>(interval, 1);
-         field < std::min(interval + 3, fields); ++field)
-      lattice.half_side_um = std::max(lattice.half_side_um, layer.half_side_um[field]);
-  }
-  // The nearest on a ladder from the cell down, so that neighbouring intervals mostly have the same.
-  const double octaves = std::log2(cell_um_ / lattice.spacing_um);
-  lattice.spacing_um = cell_um_ / std::exp2(std::round(2 * octaves) / 2);
+         field < std::min(interval + 3, layer.psfs.size()); ++field)
+      half_side_um = std::max(half_side_um, layer.half_side_um[field]);
+  return static_cast<int>(std::ceil(half_side_um / spacing_um()));
+}
+
+Kernel PsfField::mixture_at(double height_mm, std::size_t interval,
+                            const std::array<double, 2>& beyond) const {
+  Kernel lattice(half_of(interval));
+  for (const Layer& layer : layers_)
+    for (const FieldShare& share : field_shares(layer.height_mm, height_mm))
+      add(layer, layer.psfs[share.field], share, height_mm, beyond, lattice);
   return lattice;
 }
 
-MergedPsf PsfField::psf_at(double height_mm, const SampleLattice& lattice) const {
-  Kernel samples(lattice.half());
-  for (const Layer& layer : layers_)
-    for (const FieldShare& share : field_shares(layer.height_mm, height_mm))
-      add(layer, layer.psfs[share.field], layer.weight * share.weight, {0, share.across_axis ? -1.0 : 1.0},
-          height_mm, lattice.spacing_um, samples);
-  return {samples, lattice.spacing_um};
+SmoothPsf PsfField::psf_at(double height_mm, std::size_t interval) const {
+  const Moments wanted = moments_at(height_mm);
+  const Kernel as_stretched = mixture_at(height_mm, interval, {1, 1});
+  // What the mixture's spread misses; what little is left then is the window's to make good.
+  const Moments own = as_stretched.moments();
+  const auto missing = [&](double wanted_square, double own_square, std::size_t axis) {
+    constexpr double least = 0.8, most = 1.25;
+    const double wanted_variance = wanted_square - wanted.mean[axis] * wanted.mean[axis];
+    const double own_variance =
+        (own_square - own.mean[axis] * own.mean[axis]) / (lattice_steps * lattice_steps);
+    if (!(wanted_variance > 0 && own_variance > 0)) return 1.0;
+    return std::clamp(std::sqrt(wanted_variance / own_variance), least, most);
+  };
+  const std::array<double, 2> beyond{missing(wanted.uu, own.uu, 0), missing(wanted.vv, own.vv, 1)};
+  return {mixture_at(height_mm, interval, beyond), 1 / lattice_steps, wanted};
 }
 
-double PsfField::deposited_samples() const {
-  const double side =
-      2.0 * lattice_of(layers_[0].psfs.size() / 2 - (layers_[0].psfs.size() > 1 ? 1 : 0)).half() + 1;
-  return side * side;
+double PsfField::coefficients() const {
+  const std::size_t intervals = std::max<std::size_t>(1, layers_[0].psfs.size() - 1);
+  return std::pow(2.0 * half_of(intervals / 2) + 1, 2);
 }
 
 Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
@@ -267,7 +265,6 @@ Kernel PsfField::kernel_at(double x_mm, double y_mm) const {
                                                           : interpolated_otf(direction, height_mm);
   const double sum = kernel.sum();
   for (double& weight : kernel.weights) weight /= sum;
-  kernel.match(moments_at(direction, height_mm));
   return kernel;
 }
 
@@ -286,23 +283,18 @@ PsfField::MomentCurves::MomentCurves(const std::vector<double>& height_mm,
   tt_ = curve(Start::even, [](const Moments& m) { return m.vv; });
 }
 
-Moments PsfField::moments_at(const std::array<double, 2>& direction, double height_mm) const {
-  double s = 0, t = 0, ss = 0, st = 0, tt = 0;
+Moments PsfField::moments_at(double height_mm) const {
+  Moments sums;
   for (const Layer& layer : layers_) {
     const Moments moments = layer.moments.at(height_mm);
-    s += layer.weight / cell_um_ * moments.mean[0];
-    t += layer.weight / cell_um_ * moments.mean[1];
-    ss += layer.weight / (cell_um_ * cell_um_) * moments.uu;
-    st += layer.weight / (cell_um_ * cell_um_) * moments.uv;
-    tt += layer.weight / (cell_um_ * cell_um_) * moments.vv;
+    const double weight = layer.weight / cell_um_, weight_squared = weight / cell_um_;
+    sums.mean[0] -= weight * moments.mean[0];  // columns run along −s
+    sums.mean[1] += weight * moments.mean[1];
+    sums.uu += weight_squared * moments.uu;
+    sums.uv -= weight_squared * moments.uv;
+    sums.vv += weight_squared * moments.vv;
   }
-  // Picture columns run along −x', rows along +y'; e_t = (a, b), e_s = (b, −a).
-  const auto [a, b] = direction;
-  constexpr double of_cell = 1.0 / 12;
-  return {{-a * t - b * s, b * t - a * s},
-          a * a * tt + 2 * a * b * st + b * b * ss + of_cell,
-          a * b * (ss - tt) + (a * a - b * b) * st,
-          b * b * tt - 2 * a * b * st + a * a * ss + of_cell};
+  return sums;
 }
 
 PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {
@@ -312,10 +304,9 @@ PsfField::Pair PsfField::pair_at(const Layer& layer, double height_mm) {
   return {&layer.psfs[i], &layer.psfs[i + 1], std::clamp((height_mm - layer.height_mm[i]) / span, 0.0, 1.0)};
 }
 
-void PsfField::add(const Layer& layer, const MergedPsf& psf, double weight,
-                   const std::array<double, 2>& direction, double height_mm, double cell_um,
-                   Kernel& kernel) const {
-  if (weight == 0) return;
+void PsfField::add(const Layer& layer, const MergedPsf& psf, const FieldShare& share, double height_mm,
+                   const std::array<double, 2>& beyond, Kernel& lattice) const {
+  if (share.weight == 0) return;
   constexpr double least = 0.5, most = 2;
   const Moments own = psf.moments(), wanted = layer.moments.at(height_mm);
   const double light = psf.sum();
@@ -327,27 +318,31 @@ void PsfField::add(const Layer& layer, const MergedPsf& psf, double weight,
   };
   const double s = stretch(wanted.uu, wanted.mean[0], own.uu, own.mean[0]);
   const double t = stretch(wanted.vv, wanted.mean[1], own.vv, own.mean[1]);
-  deposit(psf, {weight, {s, t}}, direction, cell_um, kernel);
+  deposit(psf, {layer.weight * share.weight, {beyond[0] * s, beyond[1] * t}, share.across_axis}, spacing_um(),
+          lattice);
 }
 
 void PsfField::prepare(const std::vector<double>& heights_mm) const {
   if (interpolation_ == PsfInterpolation::psf)
-    series_->prepare(heights_mm,
-                     [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
+    series_->prepare(heights_mm, [&](double mm, std::size_t interval) { return psf_at(mm, interval); });
 }
 
 Kernel PsfField::interpolated_psf(const std::array<double, 2>& direction, double height_mm) const {
   Kernel kernel(reach_.radius);
   const PsfSeries::Mixture psfs =
-      series_->at(height_mm, [&](double mm, const SampleLattice& lattice) { return psf_at(mm, lattice); });
-  deposit(psfs, direction, cell_um_, kernel);
+      series_->at(height_mm, [&](double mm, std::size_t interval) { return psf_at(mm, interval); });
+  sample_mixture(psfs, 1 / lattice_steps, moments_at(height_mm), direction, kernel);
   return kernel;
 }
 
 Kernel PsfField::interpolated_otf(const std::array<double, 2>& direction, double height_mm) const {
+  const int half = static_cast<int>(std::ceil(reach_.radius * lattice_steps));
   const auto kernel_of = [&](const Layer& layer, const MergedPsf& psf) {
-    Kernel kernel(reach_.radius);
-    add(layer, psf, 1, direction, height_mm, cell_um_, kernel);
+    Kernel lattice(half), kernel(reach_.radius);
+    add(layer, psf, {0, 1, false}, height_mm, {1, 1}, lattice);
+    const Moments wanted = moments_at(height_mm);
+    const SmoothPsf smooth(lattice, 1 / lattice_steps, wanted);
+    sample_mixture(std::array{WeightedPsf{&smooth, 1}}, 1 / lattice_steps, wanted, direction, kernel);
     return kernel;
   };
   std::vector<Kernel> of_layers;

@@ -2,6 +2,7 @@
 // From the PSFs of a lens data table to the weights with which one cell's light reaches the cells about it.
 #pragma once
 
+#include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/psf_deposit.h>
 #include <petzval/imaging/psf_series.h>
@@ -33,13 +34,11 @@ PsfReach psf_reach(const LensDataTable& table, double wavelength_nm, double cell
 /// The kernels of one wavelength at every place of the image.
 ///
 /// For light that lands about (x', y') the PSFs of the four fields about that height (field_shares()), at the
-/// bracketing wavelengths, are stretched to the widths of the height, mixed, rotated to the azimuth of (x',
-/// y'), integrated over the cells and normalised to sum 1 (after Maeda, Catrysse & Wandell 2005,
-/// section 2.2.3; the sum is the OTF at zero frequency). Integrated: light is linear between the fine samples
-/// and falls on the cells under it, so that the energy is exact and nothing is missed between sampling
-/// points. What a cell receives is blind to where within the cell it arrives; Kernel::match() gives the
-/// kernel the centroid and the spread of the PSF whatever the cells are. Beyond the heights of the table its
-/// last PSF holds.
+/// bracketing wavelengths, are stretched to the widths of the height, mixed, seen through a round window
+/// (SmoothPsf), rotated to the azimuth of (x', y'), taken at the middles of the cells and normalised to sum 1
+/// (after Maeda, Catrysse & Wandell 2005, section 2.2.3; the sum is the OTF at zero frequency). The kernel
+/// has the centroid of the PSF, and its spread and that of the window, wherever the cells lie. Beyond the
+/// heights of the table its last PSF holds.
 class PsfField {
  public:
   /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
@@ -53,8 +52,8 @@ class PsfField {
   double cell_um() const { return cell_um_; }
   /// The height from which on kernels are those of the last field, turned.
   double last_height_mm() const { return layers_[0].height_mm.back(); }
-  /// Samples of the table that a kernel is made of, about.
-  double deposited_samples() const;
+  /// Coefficients that a kernel is made of, about.
+  double coefficients() const;
   /// Whether all PSFs are the same left and right of the tangential plane, as those of a centred lens are;
   /// then mirrored places have mirrored kernels.
   bool mirror_symmetric() const { return mirror_symmetric_; }
@@ -95,15 +94,19 @@ class PsfField {
     double weight_high;
   };
   static Pair pair_at(const Layer& layer, double height_mm);
-  /// Of the PSF at this height, taken up by cells [cells].
-  Moments moments_at(const std::array<double, 2>& direction, double height_mm) const;
-  /// Lays a PSF down, stretched to the spread that PSFs have at this height.
-  void add(const Layer& layer, const MergedPsf& psf, double weight, const std::array<double, 2>& direction,
-           double height_mm, double cell_um, Kernel& kernel) const;
-  /// For the PSFs between two fields: as fine as theirs, as wide as their light.
-  SampleLattice lattice_of(std::size_t interval) const;
-  /// The mixture of fields and wavelengths for a height.
-  MergedPsf psf_at(double height_mm, const SampleLattice& lattice) const;
+  /// Of the PSF at this height [cells], its tangential direction along the rows' growing numbers.
+  Moments moments_at(double height_mm) const;
+  /// Lays a PSF down on a lattice, stretched to the spread that PSFs have at this height, and by factors
+  /// along s and t beyond it.
+  void add(const Layer& layer, const MergedPsf& psf, const FieldShare& share, double height_mm,
+           const std::array<double, 2>& beyond, Kernel& lattice) const;
+  /// The mixture of fields and wavelengths for a height, stretched so.
+  Kernel mixture_at(double height_mm, std::size_t interval, const std::array<double, 2>& beyond) const;
+  double spacing_um() const;
+  /// Of the lattice for the PSFs of an interval between two fields: as wide as their light.
+  int half_of(std::size_t interval) const;
+  /// mixture_at() with the spread of the height.
+  SmoothPsf psf_at(double height_mm, std::size_t interval) const;
   Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
   Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
 

@@ -31,7 +31,7 @@ constexpr int shortest_block(int size) {
 /// the second one, conjugate, follows the blocks: [row of frequencies]{re, −im}.
 class TileTransform {
  public:
-  static constexpr std::array sizes = {32, 64, 96, 128, 192, 256};
+  static constexpr std::array sizes = {32, 64, 96, 128, 192, 256, 384, 512, 768, 1024};
   static constexpr int largest = sizes.back();
   /// \param size  of a side, one of `sizes`. \throws InputError for another.
   explicit TileTransform(int size);

@@ -99,12 +99,14 @@ Lens focused_on(const MountedLens& lens, const Camera& camera, std::optional<dou
   return here.lens();
 }
 
-/// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image.
+/// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
+/// little beyond, from where PSFs spread into the corner.
 double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
-  if (sensor) return sensor->geometry.half_diagonal_mm();
+  constexpr double beyond = 1.02;
+  if (sensor) return beyond * sensor->geometry.half_diagonal_mm();
   const double pitch_um = scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
                                                 : natural_depth_pitch_um(scene, lens);
-  return pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
+  return beyond * pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
 }
 
 /// Every `step`th of the wavelengths, and the last.
@@ -207,11 +209,6 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
   if (!request || !fills_frame(*request, optics, plan.options)) return;
   const double fills_deg = filling_angle_deg(plan, plan.frame);
   plan.scene.set_horizontal_angle_deg(std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0)));
-  send_note(context,
-            fmt::format("the {} is made {:.2f} degrees wide, to fill the frame and the margin of the PSF "
-                        "(`scene.horizontal_angle_deg` sets another)",
-                        is_builtin_scene(request->name) ? "chart" : "photograph",
-                        plan.scene.horizontal_angle_deg()));
 }
 
 ImageOptions with_photosite(ImageOptions options, const Optics& optics) {

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/band_plan.h>
+#include <petzval/imaging/cell_choice.h>
+#include <petzval/imaging/light_centre.h>
+#include <petzval/imaging/pixel_gather.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace petzval {
+
+namespace {
+
+constexpr int most_cells = 8;
+
+/// The MTF of a table's PSFs along both axes, RMS over the frame.
+class FrameMtf {
+ public:
+  FrameMtf(const LensDataTable& table, double wavelength_nm, const SensorGeometry& sensor) : squares_(steps) {
+    const std::size_t wavelength = bracketing_wavelengths(table, wavelength_nm).front().first;
+    const double corner_mm = half_diagonal_mm(sensor);
+    double weights = 0;
+    for (std::size_t field = 0; field < table.fields.size(); ++field) {
+      const std::size_t entry = table.index(field, wavelength);
+      const double height_mm = table.real_image_height_mm.at(entry);
+      // The area of the frame about a height grows with it; the axis stands for the first step.
+      const double weight = std::max(height_mm, corner_mm / double(2 * table.fields.size()));
+      if (height_mm > corner_mm && weights > 0) break;
+      add(table.psf.at(entry), sensor.pitch_um, weight);
+      weights += weight;
+    }
+    for (double& square : squares_) square /= weights;
+  }
+
+  double operator()(double f_cpp) const {
+    const double at = f_cpp / step_cpp;
+    const auto below = static_cast<std::size_t>(at);
+    if (below + 1 >= squares_.size()) return 0;
+    const double beyond = at - double(below);
+    return std::sqrt((1 - beyond) * squares_[below] + beyond * squares_[below + 1]);
+  }
+
+ private:
+  static constexpr double step_cpp = 0.1;
+  static constexpr std::size_t steps = 250;
+
+  void add(const Psf& psf, double pitch_um, double weight) {
+    const auto size = static_cast<std::size_t>(psf.size);
+    std::vector<double> across(size), down(size);
+    double sum = 0;
+    for (std::size_t i = 0; i < size; ++i)
+      for (std::size_t j = 0; j < size; ++j) {
+        const double light = double(psf.values[i * size + j]);
+        across[j] += light;
+        down[i] += light;
+        sum += light;
+      }
+    if (!(sum > 0)) return;
+    const double step = psf.spacing_um / pitch_um;
+    for (std::size_t k = 0; k < steps; ++k) {
+      const double f = double(k) * step_cpp;
+      if (f * step > 0.5) break;  // the samples say no more
+      for (const std::vector<double>* light : {&across, &down}) {
+        double real = 0, imaginary = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+          const double turn = 2 * pi * f * step * double(i);
+          real += (*light)[i] * std::cos(turn);
+          imaginary += (*light)[i] * std::sin(turn);
+        }
+        squares_[k] += weight * (real * real + imaginary * imaginary) / (2 * sum * sum);
+      }
+    }
+  }
+
+  std::vector<double> squares_;
+};
+
+/// Samples of a scene along a side of a pixel, on the axis.
+double samples_per_pixel(const Scene& scene, const LensDataTable& table, double wavelength_nm,
+                         const SensorGeometry& sensor, const RadialFit& fit) {
+  const LightProfile lens(RadialProfiles(table, fit).at_wavelength(wavelength_nm));
+  const double corner_mm = half_diagonal_mm(sensor), pitch_mm = sensor.pitch_um * mm_per_um;
+  const SceneMap map(lens, object_to_sensor_mm(table), scene, corner_mm);
+  return map.around(pitch_mm, 0).finest_samples_per_mm() * pitch_mm;
+}
+
+}  // namespace
+
+DetailSpectrum detail_of(const Scene& scene, int band) {
+  const std::span<const float> light = scene.band(band);
+  auto columns = static_cast<std::size_t>(scene.columns()), rows = static_cast<std::size_t>(scene.rows());
+  std::vector<float> finer;  // means of the squares before
+  const float* values = light.data();
+  DetailSpectrum detail;
+  while (columns >= 2 && rows >= 2) {
+    const std::size_t across = columns / 2, down = rows / 2;
+    std::vector<float> means(across * down);
+    std::vector<double> squares(down), sums(down);
+    parallel_for(down, [&](std::size_t row) {
+      const float *upper = values + 2 * row * columns, *lower = upper + columns;
+      for (std::size_t column = 0; column < across; ++column) {
+        const std::array<double, 4> four{double(upper[2 * column]), double(upper[2 * column + 1]),
+                                         double(lower[2 * column]), double(lower[2 * column + 1])};
+        const double mean = (four[0] + four[1] + four[2] + four[3]) / 4;
+        for (const double one : four) squares[row] += (one - mean) * (one - mean) / 4;
+        sums[row] += mean;
+        means[row * across + column] = static_cast<float>(mean);
+      }
+    });
+    double variance = 0, sum = 0;
+    for (std::size_t row = 0; row < down; ++row) {
+      variance += squares[row];
+      sum += sums[row];
+    }
+    detail.variances.push_back(variance / double(across * down));
+    detail.mean = sum / double(across * down);
+    finer = std::move(means);
+    values = finer.data();
+    columns = across;
+    rows = down;
+  }
+  return detail;
+}
+
+double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
+                      int cells, const LightPath& path, const std::function<double(double)>& mtf) {
+  const PixelTaps taps = pixel_taps(site, cells, path);
+  // Where in its octave the detail of a square's side lies [cycles a side], evenly.
+  constexpr std::array<double, 4> places{0.28, 0.34, 0.40, 0.46};
+  double error = 0, light = detail.mean * detail.mean;
+  double side = 1;  // of the smallest square [samples]
+  for (const double variance : detail.variances) {
+    for (const double place : places) {
+      const double cycles = place / side, f = cycles * samples_per_pixel;
+      // Straight lines between samples: less of this, and some of its images beyond the samples' own
+      // frequency.
+      for (const double of_sample : {cycles, 1 - cycles}) {
+        const double contrast = std::pow(sinc(of_sample), 2), at = of_sample / cycles * f;
+        const double share = variance / double(places.size()) * contrast * contrast;
+        error += share * std::pow(taps_error(taps, site, path, at, mtf), 2);
+        light += share * std::pow(site.transform(at, 0).real() * mtf(at), 2);
+      }
+    }
+    side *= 2;
+  }
+  return light > 0 ? std::sqrt(error / light) : 0;
+}
+
+ImagingOptions with_cells_chosen(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                                 ImagingOptions options) {
+  if (options.supersample != 0) return options;
+  // One cell holds little more than what the tolerance of a preview asks for.
+  constexpr double of_a_preview = 3e-3;
+  const int fewest = options.product.tolerance < of_a_preview ? 2 : 1;
+  options.supersample = 2;
+  if (options.method == BlurMethod::none || table.psf.empty()) return options;
+  const int middle = scene.bands() / 2;
+  const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
+  const FrameMtf mtf(table, wavelength_nm, sensor);
+  const DetailSpectrum detail = detail_of(scene, middle);
+  const double samples = samples_per_pixel(scene, table, wavelength_nm, sensor, options.fit);
+  const LightPath path{SourceFilter(2), true};
+  const double limit = options.product.tolerance / 2;
+  for (options.supersample = fewest; options.supersample < most_cells; ++options.supersample)
+    if (sampling_error(detail, samples, options.photosite, options.supersample, path, mtf) <= limit) break;
+  return options;
+}
+
+}  // namespace petzval

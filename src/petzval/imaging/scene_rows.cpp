@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/panorama_band.h>
+#include <petzval/imaging/plane_sampling.h>
+#include <petzval/imaging/scene_rows.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace petzval {
+
+namespace {
+
+/// A stretch of one axis of a scene: the three samples that share in it, and how much of it lies in the
+/// scene.
+struct Stretch {
+  std::array<std::size_t, 3> samples{};
+  std::array<double, 3> weights{};
+
+  Stretch(double middle, double length, int count, Surround surround) {
+    const double nearest = std::floor(middle), inside = share_inside(middle, length, count, surround);
+    const LinearMean mean(middle - nearest - 0.5, length);
+    weights = {inside * mean.before, inside * mean.here, inside * mean.after};
+    for (int i = 0; i < 3; ++i)
+      samples[static_cast<std::size_t>(i)] =
+          static_cast<std::size_t>(std::clamp(nearest + i - 1, 0.0, double(count - 1)));
+  }
+
+ private:
+  static double share_inside(double middle, double length, int count, Surround surround) {
+    if (surround == Surround::extend) return 1;
+    const double from = std::max(0.0, middle - length / 2), to = std::min(double(count), middle + length / 2);
+    return std::max(0.0, to - from) / length;
+  }
+};
+
+}  // namespace
+
+SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
+                     Surround surround)
+    : scene_(scene), map_(map), grid_(grid), parts_(parts), surround_(surround), radiance_(scene.band(band)) {
+  if (scene.is_panorama()) panorama_ = std::make_unique<PanoramaBand>(scene, band);
+}
+
+SceneRows::~SceneRows() = default;
+
+double SceneRows::mean_radiance(const Rectangle& seen) const {
+  const Stretch across(seen.column, seen.width, scene_.columns(), surround_),
+      down(seen.row, seen.height, scene_.rows(), surround_);
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float* samples = radiance_.data() + down.samples[i] * static_cast<std::size_t>(scene_.columns());
+    double of_row = 0;
+    for (std::size_t j = 0; j < 3; ++j) of_row += across.weights[j] * double(samples[across.samples[j]]);
+    sum += down.weights[i] * of_row;
+  }
+  return sum;
+}
+
+double SceneRows::cell(double x_mm, double y_mm) const {
+  const double pitch_mm = grid_.pitch_um * mm_per_um;
+  const SceneMap::Surroundings near = map_.around(x_mm, y_mm);
+  constexpr double rounding = 1e-6;
+  const double samples = near.finest_samples_per_mm() * pitch_mm;
+  const int count = static_cast<int>(std::clamp(std::ceil(samples - rounding), 1.0, double(parts_)));
+  const double part_mm = pitch_mm / count;
+  double sum = 0;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) {
+      const double x = x_mm + (j - (count - 1) / 2.0) * part_mm, y = y_mm + (i - (count - 1) / 2.0) * part_mm;
+      const SceneMap::Place place = near.place(x, y);
+      if (place.g_source_sr == 0) continue;
+      if (panorama_) {
+        sum += place.g_source_sr *
+               panorama_->radiance(place.column - scene_.columns() / 2.0, place.row - scene_.rows() / 2.0);
+        continue;
+      }
+      constexpr double least = 1e-9;  // a length to divide by
+      const auto side = [&](double at_mm) {
+        return std::clamp(std::abs(near.samples_per_mm_along(at_mm)) * part_mm, least, 1.0);
+      };
+      sum += place.g_source_sr * mean_radiance({place.column, place.row, side(x), side(y)});
+    }
+  return sum / (double(count) * count);
+}
+
+void SceneRows::write(std::size_t row, float* irradiance) const {
+  const auto columns = static_cast<std::size_t>(grid_.columns);
+  const double pitch_mm = grid_.pitch_um * mm_per_um, y_mm = grid_.y_mm(double(row) + 0.5);
+  // From a cell's middle to the farthest sample that it needs, and one more for rounding.
+  const PlaneView view{radiance_.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
+  RowView cells;
+  if (!panorama_) cells.look(map_.steps(), {pitch_mm, y_mm, columns});
+  const std::size_t at_once = sampled_at_once();
+  for (std::size_t column = 0; column < columns;) {
+    if (!panorama_) column = sample_row(view, cells, 1, column, irradiance);
+    const std::size_t end = panorama_ ? columns : std::min(columns, column + at_once);
+    for (; column < end; ++column)
+      irradiance[column] = static_cast<float>(cell(grid_.x_mm(double(column) + 0.5), y_mm));
+  }
+}
+
+CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                           int parts, Surround surround) {
+  CellPlane plane = CellPlane::unset(grid);
+  const SceneRows rows(scene, band, map, grid, parts, surround);
+  parallel_for(plane.rows(), [&](std::size_t row) { rows.write(row, plane.row(row)); });
+  return plane;
+}
+
+}  // namespace petzval

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The light of a scene on a grid of cells before blur, row by row.
+#pragma once
+
+#include <petzval/imaging/cell_plane.h>
+#include <petzval/imaging/distortion.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace petzval {
+
+class PanoramaBand;
+
+/// Irradiance before blur, radiance × g_source, on the rows of a grid: the mean of each cell over what it
+/// sees of the scene.
+///
+/// The radiance of a planar scene is bilinear between the centres of its samples, and that of the edge within
+/// half a sample of it. A cell sees a rectangle with the sides that the map gives it; rectangles of
+/// neighbouring cells meet, and the mean is exact. So the flux of each sample is the same wherever it falls
+/// on the cells, to the square of the angle by which the map turns them. A cell that sees more than a sample
+/// along a side is cut into parts that do not. In a panorama parts count at their middles.
+class SceneRows {
+ public:
+  /// \param parts  a cell is cut into at most parts × parts. \param surround  what lies beyond the scene;
+  /// `error` here means zero (form_image() looks before). Everything given must outlive the rows.
+  SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
+            Surround surround);
+  ~SceneRows();
+  SceneRows(const SceneRows&) = delete;
+  SceneRows& operator=(const SceneRows&) = delete;
+
+  /// Writes a row of the grid. From any thread.
+  void write(std::size_t row, float* irradiance) const;
+  const SensorGeometry& grid() const { return grid_; }
+
+ private:
+  /// A rectangle of the scene: its middle and its sides, in samples.
+  struct Rectangle {
+    double column, row, width, height;
+  };
+  double mean_radiance(const Rectangle& seen) const;
+  double cell(double x_mm, double y_mm) const;
+
+  const Scene& scene_;
+  const SceneMap& map_;
+  SensorGeometry grid_;
+  int parts_;
+  Surround surround_;
+  std::span<const float> radiance_;
+  std::unique_ptr<PanoramaBand> panorama_;
+};
+
+/// All rows of SceneRows.
+CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                           int parts, Surround surround);
+
+}  // namespace petzval

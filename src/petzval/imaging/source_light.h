@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the light of a scene to that of source cells, each of which has one kernel.
+#pragma once
+
+#include <petzval/imaging/cell_plane.h>
+#include <petzval/imaging/distortion.h>
+
+#include <vector>
+
+namespace petzval {
+
+/// How source cells share in the light of parts of cells: three means over a cell's width, one after the
+/// other. What is finer than cells can hold would come back as detail that is not there; a plain mean over a
+/// cell leaves a third of it at the frequency of the cells' own, three leave a thirtieth.
+struct SourceFilter {
+  int parts = 1;                   ///< a cell is as wide as so many
+  std::vector<double> weights{1};  ///< of the parts about a cell, of sum 1; as many on either side
+
+  /// \param parts  at least 2; 1: cells are taken as they are.
+  explicit SourceFilter(int parts);
+  SourceFilter() = default;
+  /// Parts beyond the edge of a cell.
+  int reach() const { return (static_cast<int>(weights.size()) - parts) / 2; }
+  /// What it leaves of a frequency [cycles a cell], with the mean over a part before it.
+  double transform(double frequency) const;
+};
+
+/// The light of source cells: SceneRows on parts of cells, filtered.
+CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                       const SourceFilter& filter, Surround surround);
+
+}  // namespace petzval
