@@ -108,7 +108,7 @@ void ImageChoice::add_method_options(CLI::App& command) {
       ->capture_default_str();
   command
       .add_option("--supersample", image.imaging.supersample,
-                  "Source cells along a side of a pixel; 3 or more for scenes finer than a pixel")
+                  "Cells along a side of a pixel, 1 to 16; 0: as many as --tolerance needs")
       ->capture_default_str();
   command.add_option("--interpolate", interpolate, "What is interpolated between the table's fields")
       ->check(CLI::IsMember({"psf", "otf"}))

@@ -122,7 +122,7 @@ ImageOptions image_options(const std::string& method, Maybe<double> tolerance, i
 /// The keywords of every way to an image, after those of the scene.
 #define PETZVAL_IMAGE_ARGUMENTS                                                                              \
   nb::kw_only(), nb::arg("method") = "product", nb::arg("tolerance").none() = nb::none(),                    \
-                 nb::arg("supersample") = 1, nb::arg("surround") = "error", nb::arg("interpolate") = "psf",  \
+                 nb::arg("supersample") = 0, nb::arg("surround") = "error", nb::arg("interpolate") = "psf",  \
                  nb::arg("fit") = "monotone", nb::arg("section").none() = nb::none(), nb::arg("layers") = 0, \
                  nb::arg("least_scene_angle_deg").none() = nb::none(), nb::arg("threads") = 0,               \
                  nb::arg("progress").none() = nb::none()
@@ -176,8 +176,8 @@ constexpr const char* image_text =
     "The light of a flat scene on the sensor. `scene`: a name, a SceneRequest, or a Scene in memory. "
     "`method` of the blur: "
     "product (to a relative L2 error of `tolerance`, 1e-3), blended, sections, exact or none; `supersample`: "
-    "source cells along "
-    "a side of a pixel; `surround` of a scene that is too small: error, zero or extend; `layers` of a scene "
+    "cells along a side of a pixel, 0: as many as the tolerance needs; `surround` of a scene that is too "
+    "small: error, zero or extend; `layers` of a scene "
     "with depth, 0: as "
     "many as needed. `progress(fraction, what)` may return False to stop. Raises InputError; Cancelled.";
 constexpr const char* plan_text =

@@ -47,9 +47,8 @@ TEST(Image, SaysWhatItWasMadeOf) {
   ASSERT_TRUE(light.lens);
   EXPECT_NEAR(light.lens->focal_length_mm, 50, 1);
   EXPECT_TRUE(light.illuminant);
-  EXPECT_TRUE(std::ranges::any_of(notes, [](const std::string& note) {
-    return note.find("degrees wide, to fill the frame") != std::string::npos;
-  }));
+  EXPECT_GE(report.imaging.cells_per_pixel, 2);
+  for (const std::string& note : notes) ADD_FAILURE() << "nothing to act on: " << note;
 }
 
 TEST(Image, OfASceneInMemoryIsThatOfTheSceneRead) {

@@ -151,24 +151,26 @@ double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, co
   return light > 0 ? std::sqrt(error / light) : 0;
 }
 
-ImagingOptions with_cells_chosen(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                                 ImagingOptions options) {
-  if (options.supersample != 0) return options;
-  // One cell holds little more than what the tolerance of a preview asks for.
-  constexpr double of_a_preview = 3e-3;
-  const int fewest = options.product.tolerance < of_a_preview ? 2 : 1;
-  options.supersample = 2;
-  if (options.method == BlurMethod::none || table.psf.empty()) return options;
+CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                        const ImagingOptions& options) {
+  const int asked = options.supersample;
+  if (options.method == BlurMethod::none || table.psf.empty()) return {asked == 0 ? 2 : asked, 0};
   const int middle = scene.bands() / 2;
   const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
   const FrameMtf mtf(table, wavelength_nm, sensor);
   const DetailSpectrum detail = detail_of(scene, middle);
   const double samples = samples_per_pixel(scene, table, wavelength_nm, sensor, options.fit);
   const LightPath path{SourceFilter(2), true};
-  const double limit = options.product.tolerance / 2;
-  for (options.supersample = fewest; options.supersample < most_cells; ++options.supersample)
-    if (sampling_error(detail, samples, options.photosite, options.supersample, path, mtf) <= limit) break;
-  return options;
+  const auto with = [&](int cells) {
+    return CellChoice{cells, sampling_error(detail, samples, options.photosite, cells, path, mtf)};
+  };
+  if (asked != 0) return with(asked);
+  // One cell holds little more than what the tolerance of a preview asks for.
+  constexpr double of_a_preview = 3e-3;
+  const double tolerance = options.product.tolerance;
+  CellChoice choice = with(tolerance < of_a_preview ? 2 : 1);
+  while (choice.cells < most_cells && choice.error > tolerance / 2) choice = with(choice.cells + 1);
+  return choice;
 }
 
 }  // namespace petzval

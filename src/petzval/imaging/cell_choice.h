@@ -23,10 +23,16 @@ DetailSpectrum detail_of(const Scene& scene, int band);
 double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
                       int cells, const LightPath& path, const std::function<double(double)>& mtf);
 
-/// The options with the number of cells to a pixel settled: as given, else the smallest whose
-/// sampling_error(), in the scene's middle band and through the table's MTF, RMS over the frame, is within
-/// half of the tolerance; 2 at least, but for tolerances of 3·10⁻³ and more, and 8 at most.
-ImagingOptions with_cells_chosen(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                                 ImagingOptions options);
+/// How many cells a pixel gets, and the sampling_error() that they leave.
+struct CellChoice {
+  int cells = 1;
+  double error = 0;
+};
+
+/// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and
+/// through the table's MTF, RMS over the frame, is within half of the tolerance: 2 at least, but for
+/// tolerances of 3·10⁻³ and more, and 8 at most.
+CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                        const ImagingOptions& options);
 
 }  // namespace petzval

@@ -84,15 +84,17 @@ class DepthImaging {
   ImagingReport& says() { return report_.image; }
 
   /// The options with the cells that the largest layer needs; its table is kept for when its turn comes.
-  ImagingOptions with_cells(const ImagingOptions& options) {
-    if (options.supersample != 0) return options;
+  ImagingOptions with_cells(ImagingOptions options) {
     const auto largest =
         std::max_element(layers_.layers.begin(), layers_.layers.end(),
                          [](const DepthLayer& a, const DepthLayer& b) { return a.share < b.share; });
     const auto layer = static_cast<std::size_t>(largest - layers_.layers.begin());
     const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
     const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
-    return with_cells_chosen(planar.light(scene_.bands() / 2), table, sensor_, options);
+    const CellChoice choice = choose_cells(planar.light(scene_.bands() / 2), table, sensor_, options);
+    options.supersample = choice.cells;
+    says().sampling_error = choice.error;
+    return options;
   }
 
   LensDataTable table_of(std::size_t layer) const {

@@ -217,7 +217,10 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
   table.validate();
   check_distances(scene, table);
   SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
-  const ImagingOptions options = with_cells_chosen(scene, table, sensor, asked);
+  const CellChoice choice = choose_cells(scene, table, sensor, asked);
+  ImagingOptions options = asked;
+  options.supersample = choice.cells;
+  says.sampling_error = choice.error;
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   check_coverage(scene, plans, frame, options.surround, says.notes);

@@ -14,6 +14,7 @@
 #include <petzval/scene/scene.h>
 #include <petzval/sensor/sensor.h>
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <string>
@@ -35,7 +36,7 @@ struct ImagingOptions {
   SectionOptions sections = {};  ///< `blend` follows from the method
   PsfInterpolation interpolation = PsfInterpolation::psf;
   RadialFit fit = {};  ///< of distortion and g_source over image height
-  /// S: source cells are S × S to a pixel, 1 to 16; 0: as many as the tolerance needs (with_cells_chosen).
+  /// S: source cells are S × S to a pixel, 1 to 16; 0: as many as the tolerance needs (choose_cells).
   int supersample = 0;
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
@@ -66,8 +67,10 @@ struct ImagingReport {
   /// transform that is not direct stands for blended sections of `tile` cells, which PSFs beyond its
   /// transforms need.
   ProductPlan product = {};
-  int scene_points_per_cell = 1;      ///< parts of a cell whose means over the scene are taken: this squared
-  double sampling_error = 0;          ///< of the cells, estimated for the middle band
+  int scene_points_per_cell = 1;  ///< parts of a cell whose means over the scene are taken: this squared
+  double sampling_error = 0;      ///< of the cells, estimated for the middle band
+  /// Relative L2 error of the picture, of cells and blur together: ProductPlan::estimated_error.
+  double estimated_error() const { return std::hypot(sampling_error, product.estimated_error); }
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
   /// What the steps took; of bands that were formed side by side, their shares of the time that all took.

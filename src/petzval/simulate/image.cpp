@@ -12,13 +12,16 @@ namespace petzval {
 
 namespace {
 
-std::string product_text(const ImagingOptions& options, const ProductPlan& plan, const std::string& between) {
+std::string product_text(const ImagingOptions& options, const ImagingReport& report,
+                         const std::string& between) {
+  const ProductPlan& plan = report.product;
   const std::string rim = plan.exact.empty()
                               ? ""
                               : fmt::format("every cell its own PSF {:.0f} to {:.0f} cells from the axis, ",
                                             plan.exact.from, plan.exact.to);
-  const std::string error = fmt::format("{}estimated error {:.1e} of {:g}; {} interpolated", rim,
-                                        plan.estimated_error, options.product.tolerance, between);
+  const std::string error = fmt::format(
+      "{} x {} cells a pixel, {}estimated error {:.1e} of {:g}; {} interpolated", report.cells_per_pixel,
+      report.cells_per_pixel, rim, report.estimated_error(), options.product.tolerance, between);
   if (plan.direct)
     return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,
                        plan.tile, error);
@@ -32,7 +35,7 @@ std::string method_text(const ImagingOptions& options, const ImagingReport& repo
   const std::string between = options.interpolation == PsfInterpolation::otf ? "OTFs" : "PSFs";
   if (options.method == BlurMethod::exact)
     return fmt::format("exact, every cell its own PSF; {} interpolated", between);
-  if (options.method == BlurMethod::product) return product_text(options, report.product, between);
+  if (options.method == BlurMethod::product) return product_text(options, report, between);
   return fmt::format("{3}sections of {0} x {0} cells, transforms of {1} x {1}; {2} interpolated",
                      options.sections.section, report.transform_size, between,
                      options.method == BlurMethod::blended ? "blended " : "");
