@@ -62,6 +62,17 @@ double level_not_reached(std::vector<float>& levels, double percent) {
   return levels[static_cast<std::size_t>(index)];
 }
 
+/// Whether three quarters of a picture are dark beside its brightest pixel: lights in darkness. Then the
+/// levels of the lights are left, a thousandth of the brightest and more.
+bool leave_lights(std::vector<float>& levels) {
+  constexpr double most_percent = 75;
+  constexpr float dark = 1e-5F, lit = 1e-3F;
+  const float brightest = *std::max_element(levels.begin(), levels.end());
+  if (level_not_reached(levels, most_percent) > double(dark * brightest)) return false;
+  std::erase_if(levels, [&](float level) { return level < lit * brightest; });
+  return true;
+}
+
 /// Linear sRGB of a map's colours, by place from 0 to 1.
 LinearRgb false_colour(double place) {
   static const std::array<LinearRgb, 256> colours = [] {
@@ -140,8 +151,10 @@ double PictureRenderer::level_for(const PictureOptions& options, std::vector<flo
   double level = options.white_level;
   std::string rule = "as asked for";
   if (options.exposure == PictureOptions::Exposure::percentile) {
-    level = percentile_of(levels, options.percentile);
-    rule = fmt::format("the {}th percentile", options.percentile);
+    std::vector<float> metered = levels;
+    const bool lights = leave_lights(metered);
+    level = percentile_of(metered, options.percentile);
+    rule = fmt::format("the {}th percentile{}", options.percentile, lights ? " of what is lit" : "");
   } else if (options.exposure == PictureOptions::Exposure::mean_grey) {
     level = mean_of(levels) / options.grey;
     rule = fmt::format("the mean is {} of it", options.grey);

@@ -19,7 +19,9 @@ namespace petzval {
 /// [W·m⁻²].
 struct PictureOptions {
   enum class Exposure {
-    percentile,  ///< the level that `percentile` % of the pixels do not exceed becomes white
+    /// The level that `percentile` % of the pixels do not exceed becomes white; of lights in darkness, which
+    /// fill less than a quarter of the picture, `percentile` % of the lit pixels.
+    percentile,
     mean_grey,   ///< the mean level becomes `grey` times white
     fixed        ///< the level `white_level` becomes white
   };

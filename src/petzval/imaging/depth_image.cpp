@@ -61,7 +61,7 @@ class DepthImaging {
       const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
       std::vector<std::string> notes;
       check_coverage(planar.blank(scene_.wavelengths_nm().front()), plans, frame_, options_.surround, notes);
-      if (notes.empty()) note_dark_corners(plans, frame_, notes);
+      if (notes.empty()) note_dark_corners(plans, sensor_, notes);
       for (const std::string& note : notes)
         says().notes.push_back(
             fmt::format("layer at {}: {}", named_distance(layers_.layers[layer].distance_m), note));

@@ -224,7 +224,7 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   check_coverage(scene, plans, frame, options.surround, says.notes);
-  note_dark_corners(plans, frame, says.notes);
+  note_dark_corners(plans, sensor, says.notes);
   says.scene_points_per_cell = points_per_cell(plans, frame);
 
   says.cells_per_pixel = options.cells_per_pixel();

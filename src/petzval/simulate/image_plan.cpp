@@ -102,11 +102,14 @@ Lens focused_on(const MountedLens& lens, const Camera& camera, std::optional<dou
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
 double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
-  constexpr double beyond = 1.02;
-  if (sensor) return beyond * sensor->geometry.half_diagonal_mm();
+  constexpr double pixels_beyond = 8;
+  const auto with_rim = [](double half_diagonal_mm, double pitch_um) {
+    return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
+  };
+  if (sensor) return with_rim(sensor->geometry.half_diagonal_mm(), sensor->geometry.pitch_um);
   const double pitch_um = scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
                                                 : natural_depth_pitch_um(scene, lens);
-  return beyond * pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
+  return with_rim(pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2, pitch_um);
 }
 
 /// Every `step`th of the wavelengths, and the last.
