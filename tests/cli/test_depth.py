@@ -33,7 +33,9 @@ class Depth(petzval_cli.ProgramTest):
     def test_one_depth_is_a_plane_there(self):
         self.depth_file("even.npy", lambda *_: 1.5)
         plane = self.image("plane.npy", "--scene-distance", "1.5m")
-        self.assertEqual(self.image("deep.npy", "--scene-distance", "1.5m", "--scene-depth", "even.npy"), plane)
+        deep = self.image("deep.npy", "--scene-distance", "1.5m", "--scene-depth", "even.npy")
+        # The chart's angle is found from the pupil, or from the sensor: rounding of floats.
+        self.assertLess(max(abs(a - b) for a, b in zip(deep, plane)), 1e-6 * max(plane))
         self.assertNotEqual(self.image("near.npy", "--scene-distance", "1.5m", "--scene-depth", "even.npy", "--focus", "900mm"),
                             plane)
 

@@ -62,7 +62,7 @@ TEST(NaturalSensor, HasTheScenesSamplesAndAsManyAsItCovers) {
   EXPECT_NO_THROW(form_image(scene, table, sensor, {}));
   ImagingOptions unblurred;
   unblurred.method = BlurMethod::none;
-  EXPECT_GE(natural_sensor(scene, table, unblurred).columns, 391);
+  EXPECT_GE(natural_sensor(scene, table, unblurred).columns, 399);
 }
 
 TEST(NaturalSensor, FollowsTheMagnificationOfFiniteObjects) {

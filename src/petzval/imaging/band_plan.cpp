@@ -8,7 +8,10 @@ namespace petzval {
 
 namespace {
 
-constexpr int source_margin = 1;  ///< cells beyond a source cell in whose light it shares
+/// Cells beyond a source cell in whose light it shares.
+int source_margin(int psf_margin) {
+  return psf_margin > 0 ? 1 : 0;
+}
 
 }  // namespace
 
@@ -32,7 +35,7 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
     if (options.by_sections()) transform_size(options.section_options(), margin);
     const LightProfile lens(profiles.at_wavelength(wavelength_nm), table, centres, wavelength_nm);
     SceneMap map(lens, object_to_sensor_mm(table), scene,
-                 half_diagonal_mm(grown(frame, margin + source_margin)));
+                 half_diagonal_mm(grown(frame, margin + source_margin(margin))));
     plans.push_back({std::move(map), margin, least_captured});
   }
   return plans;
@@ -41,7 +44,7 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
 SeenExtent seen_extent(const std::vector<BandPlan>& plans, const SensorGeometry& frame) {
   SeenExtent seen;
   for (const BandPlan& plan : plans) {
-    const SeenExtent band = seen_extent(plan.map, grown(frame, plan.margin + source_margin));
+    const SeenExtent band = seen_extent(plan.map, grown(frame, plan.margin + source_margin(plan.margin)));
     seen.columns = std::max(seen.columns, band.columns);
     seen.rows = std::max(seen.rows, band.rows);
     seen.radius = std::max(seen.radius, band.radius);

@@ -182,12 +182,13 @@ SectionOptions ImagingOptions::section_options() const {
 
 SensorGeometry ImagingOptions::cells_of(const SensorGeometry& sensor) const {
   const int cells = cells_per_pixel();
-  return grown(subdivided(sensor, cells), taps_reach(photosite, cells));
+  return grown(subdivided(sensor, cells), taps_reach(photosite, cells, method == BlurMethod::none));
 }
 
 LightPath ImagingOptions::light_path(int points) const {
   constexpr int least_parts = 2;  // a plain mean over a cell would leave too much beyond its frequency
-  return {SourceFilter(std::max(least_parts, points)), method != BlurMethod::none};
+  if (method == BlurMethod::none) return {SourceFilter(1), false};
+  return {SourceFilter(std::max(least_parts, points)), true};
 }
 
 void ImagingOptions::validate() const {

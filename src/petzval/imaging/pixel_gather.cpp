@@ -139,7 +139,8 @@ void check_photosite(const Photosite& site) {
   site.validate();
 }
 
-int taps_reach(const Photosite& site, int cells) {
+int taps_reach(const Photosite& site, int cells, bool exact) {
+  if (exact && site.is_plain()) return 0;
   const double apart = std::max(std::abs(site.separation_x), std::abs(site.separation_y)) / 2;
   return static_cast<int>((pixels_reached - 0.5 + apart) * cells);
 }
@@ -148,7 +149,12 @@ PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path) {
   check_photosite(site);
   PixelTaps taps;
   taps.cells = cells;
-  taps.reach = taps_reach(site, cells);
+  taps.reach = taps_reach(site, cells, path.is_exact());
+  if (taps.reach == 0) {
+    const std::vector<double> even(static_cast<std::size_t>(cells), 1.0 / cells);
+    taps.terms = {{even, even}};
+    return taps;
+  }
   const AxisWeights axis(cells, taps.size(), path);
   taps.terms.clear();
   for (const Strip& strip : strips_of(site)) {

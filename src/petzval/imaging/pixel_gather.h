@@ -17,6 +17,9 @@ struct LightPath {
   SourceFilter source;
   bool window = true;
 
+  /// Cells hold means over what they see, and no more.
+  bool is_exact() const { return !window && source.parts == 1; }
+
   /// What the window leaves of a frequency [cycles a cell].
   double of_window(double frequency) const;
 };
@@ -39,8 +42,9 @@ struct PixelTaps {
 /// \throws InputError for another photosite than a rectangle or ellipse within the pixel.
 void check_photosite(const Photosite& site);
 
-/// PixelTaps::reach of the weights for a photosite after a path.
-int taps_reach(const Photosite& site, int cells);
+/// PixelTaps::reach of the weights for a photosite. \param exact  cells hold means over what they see, and
+/// nothing else happened to the light: of these a whole square pixel is the plain mean.
+int taps_reach(const Photosite& site, int cells, bool exact);
 
 /// The weights that stand for a photosite after a path: the best in the sense of least squares for edges at
 /// all places, through a lens whose MTF is exp(−|f|) with f in cycles/pixel. They are found along either
