@@ -22,8 +22,8 @@ struct PictureOptions {
     /// The level that `percentile` % of the pixels do not exceed becomes white; of lights in darkness, which
     /// fill less than a quarter of the picture, `percentile` % of the lit pixels.
     percentile,
-    mean_grey,   ///< the mean level becomes `grey` times white
-    fixed        ///< the level `white_level` becomes white
+    mean_grey,  ///< the mean level becomes `grey` times white
+    fixed       ///< the level `white_level` becomes white
   };
   Exposure exposure = Exposure::percentile;
   double percentile = 99.5;
