@@ -10,6 +10,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/simulate/mounting.h>
 
 #include <algorithm>
 #include <cmath>
@@ -223,7 +224,10 @@ Lens LensChoice::read(const Shared& shared) const {
   options.glasses = glasses.read(shared);
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
+  const Lens before = file.lens;
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
+  if (before.object_distance_mm != file.lens.object_distance_mm)
+    note_unfocused_object(before, file.lens, context_of(shared));
   return std::move(file.lens);
 }
 

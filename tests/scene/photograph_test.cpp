@@ -2,6 +2,7 @@
 // Photographs lifted to spectra: they look as they did, and no surface gives back more light than it gets.
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/formats/tiff.h>
 #include <petzval/image/picture.h>
@@ -32,8 +33,7 @@ Photograph all_mixtures(int step) {
 /// The 8-bit picture that the scene's light makes, its illuminant as white.
 PngImage shown(const Scene& scene) {
   SpectralImage image(scene.columns(), scene.rows(), scene.wavelengths_nm(), 1);
-  std::vector<double> light;
-  for (const double nm : scene.wavelengths_nm()) light.push_back(scene.illuminant->at(nm));
+  const std::vector<double> light = band_light(*scene.illuminant, scene.wavelengths_nm());
   for (int band = 0; band < scene.bands(); ++band)
     std::copy(scene.band(band).begin(), scene.band(band).end(), image.band(band).begin());
   PictureOptions options;
@@ -92,8 +92,9 @@ TEST(Photograph, HasItsColoursByThePrintedMatrix) {
   std::vector<double> nm;
   for (int at = 380; at <= 730; ++at) nm.push_back(at);
   const std::vector<Xyz> weights = Observer::cie_1931().weights(nm);
+  const std::vector<double> light = band_light(*scene.illuminant, nm);
   double white = 0;
-  for (std::size_t i = 0; i < nm.size(); ++i) white += scene.illuminant->at(nm[i]) * weights[i].y;
+  for (std::size_t i = 0; i < nm.size(); ++i) white += light[i] * weights[i].y;
   double worst = 0;
   for (std::size_t pixel = 0; pixel < photograph.pixels(); ++pixel) {
     std::vector<double> spectrum;
@@ -116,7 +117,8 @@ TEST(Photograph, GivesBackNoMoreThanItGets) {
   options.wavelengths_nm = parse_wavelengths_nm("380:20:780");
   const Scene scene = photograph_scene(all_mixtures(51), options);
   for (int band = 0; band < scene.bands(); ++band) {
-    const double light = scene.illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(band)]);
+    const double light =
+        band_light(*scene.illuminant, scene.wavelengths_nm())[static_cast<std::size_t>(band)];
     for (const float radiance : scene.band(band)) {
       EXPECT_GE(radiance, 0);
       EXPECT_LE(radiance, light * (1 + 1e-6));  // rounding to float
@@ -133,7 +135,8 @@ TEST(Photograph, HasTheLuminanceAskedForAndGreysAreFlat) {
   const Scene scene = photograph_scene(greys, options);
   EXPECT_NEAR(scene.mean_luminance_cd_m2(), 45, 45 * 1e-6);
   for (int band = 0; band < scene.bands(); ++band) {
-    const double light = scene.illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(band)]);
+    const double light =
+        band_light(*scene.illuminant, scene.wavelengths_nm())[static_cast<std::size_t>(band)];
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(scene.band(band)[i] / light, greys.rgb[3 * i], 1e-6);
   }
 }

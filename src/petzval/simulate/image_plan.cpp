@@ -85,15 +85,27 @@ std::optional<double> object_in_focus_m(const Focus& focus, const Scene& scene, 
   return std::isinf(*asked_m) ? std::nullopt : asked_m;
 }
 
+/// Fields and wavelengths that best focus is sought over: the lens's own, unless the light is another.
+FieldTableRequest fields_in(const MountedLens& lens, const std::vector<double>& light_nm) {
+  FieldTableRequest at = FieldTableRequest::of(lens.lens());
+  if (focusing_wavelength_nm(lens, light_nm)) at.wavelengths_nm = light_nm;
+  return at;
+}
+
 /// The lens as it is used: focused as asked, the object where the scene is.
-Lens focused_on(const MountedLens& lens, const Camera& camera, std::optional<double> scene_distance_m,
-                const Context& context) {
+Lens focused_on(MountedLens lens, const Camera& camera, std::optional<double> scene_distance_m,
+                const std::vector<double>& light_nm, const Context& context) {
+  lens.set_focus_wavelength_nm(focusing_wavelength_nm(lens, light_nm));
   if (camera.focus.kind == Focus::Kind::automatic && !camera.image_distance_mm) {
     MountedLens focused = lens;
     focused.focus_at_m(scene_distance_m);
+    note_colour_shift(focused, context);
+    if (camera.defocus_mm != 0) focused.move_sensor_mm(camera.defocus_mm);
     return focused.lens();
   }
-  MountedLens here(focus(lens, camera.focus, {}, context));
+  MountedLens start = lens;
+  if (camera.focus.sought() && !asked_distance_m(camera.focus)) start.focus_at_m(scene_distance_m);
+  MountedLens here(focus(start, camera.focus, fields_in(lens, light_nm), context, camera.defocus_mm));
   // The sensor stays; only the object moves.
   if (here.object_distance_from_sensor_m() != scene_distance_m) here.place_object_at_m(scene_distance_m);
   return here.lens();
@@ -150,8 +162,11 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
     placed.place_object_at_m(scene.distance_m());
     if (!placed.lens().object_distance_mm) scene.set_distance_m({});  // so far away that this is infinity
   }
-  const Lens focused = focused_on(
-      lens, camera, deep ? object_in_focus_m(camera.focus, scene, lens) : scene.distance_m(), context);
+  const Lens focused =
+      focused_on(lens, camera, deep ? object_in_focus_m(camera.focus, scene, lens) : scene.distance_m(),
+                 scene.wavelengths_nm(), context);
+  if (camera.sensor && detail == TableDetail::full)
+    note_short_field(focused, camera.sensor->geometry, context);
   TableOptions table = table_options(camera, scene, detail);
   table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
   if (deep)
