@@ -11,6 +11,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "loss_option.h"
+#include "option_names.h"
 #include "output_option.h"
 #include "table_output.h"
 
@@ -60,7 +61,7 @@ void print_as_text(const AnalysisResult& result) {
     print_table(each.table);
     first = false;
   }
-  for (const std::string& remark : result.remarks) fmt::print("{}\n", remark);
+  for (const std::string& remark : result.remarks) fmt::print("{}\n", with_option_names(remark));
 }
 
 /// Frame, and fields and frequencies that nobody gave: centre, half way and corner of the sensor; quarter,

@@ -218,6 +218,9 @@ std::string find_scene_file(const std::string& name) {
       known.push_back(bundled);
     }
   for (const NamedChart& chart : named_charts()) known.push_back(chart.name);
+  if (name == "siemens" || name == "star" || name == "grid")
+    throw InputError(name,
+                     "no such file, and no scene of that name; studio has Siemens stars and a line grid");
   throw InputError(name, fmt::format("no such file, and no scene of that name; the nearest are {}",
                                      fmt::join(nearest_names(name, known), ", ")));
 }

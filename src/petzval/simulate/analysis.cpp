@@ -302,6 +302,9 @@ AnalysisResult best_focus(const Lens& lens, const AnalysisRequest& request, cons
                         fmt::format("mean MTF at {:g} cycles/mm", frequency), mtf.before, mtf.after});
   AnalysisResult result =
       result_of(lens, request.at, "places of the sensor, counted from where it is", std::move(table));
+  result.remarks.push_back(fmt::format(
+      "`focus` paraxial, best-spot or best-mtf@{:g} puts the sensor there, or `image_distance_mm` {:.5f}",
+      frequency, design_mm + mtf.shift_mm));
   if (request.plots) {
     MtfOptions through;
     through.frequencies_cpmm = {frequency};

@@ -48,6 +48,17 @@ Scene read(const SceneRequest& request, std::optional<double> expected_m, bool e
   return scene;
 }
 
+/// Without a sensor whose frame it would fill, a chart or a photograph of 4:3 is as wide as the fields of the
+/// lens.
+SceneRequest as_wide_as_fields(SceneRequest request, const Camera& camera) {
+  constexpr double across = 0.8;  // of the diagonal
+  const double view_deg = first_order(camera.lens).field_of_view_deg;
+  if (camera.sensor || !is_open(request) || request.options.horizontal_angle_deg) return request;
+  if (view_deg > 0 && view_deg < 170)
+    request.options.horizontal_angle_deg = 2 * degrees(std::atan(across * std::tan(radians(view_deg) / 2)));
+  return request;
+}
+
 std::optional<double> middle_from_sensor_m(const Scene& scene, MountedLens& lens) {
   const double depth_m = middle_depth_m(scene);
   if (std::isinf(depth_m)) return std::nullopt;
@@ -152,10 +163,11 @@ LensDataTable facts_alone(const Lens& lens) {
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context) {
   const MountedLens lens = mounted_lens(camera, context);
-  Scene scene = std::holds_alternative<Scene>(input)
-                    ? std::get<Scene>(std::move(input))
-                    : read(*std::get<const SceneRequest*>(input), lens.object_distance_from_sensor_m(),
-                           camera.focus.kind == Focus::Kind::design, context);
+  Scene scene =
+      std::holds_alternative<Scene>(input)
+          ? std::get<Scene>(std::move(input))
+          : read(as_wide_as_fields(*std::get<const SceneRequest*>(input), camera),
+                 lens.object_distance_from_sensor_m(), camera.focus.kind == Focus::Kind::design, context);
   const bool deep = !scene.depth_m.empty();
   if (scene.distance_m() && !deep) {
     MountedLens placed = lens;
