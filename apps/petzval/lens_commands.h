@@ -18,5 +18,7 @@ void add_lens_psf(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);
 void add_lens_steps(CLI::App& lens, Shared& shared);
 void add_lens_report(CLI::App& lens, Shared& shared);
+void add_lens_for_sensor(CLI::App& lens, Shared& shared);
+void add_lens_match(CLI::App& lens, Shared& shared);
 
 }  // namespace petzval::app
