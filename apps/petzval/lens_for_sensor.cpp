@@ -200,7 +200,7 @@ void add_lens_match(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<ForSensorCommand>();
   CLI::App* command = add_command(
       lens, shared, "match", "The bundled lenses that see a width at a distance, best corner first",
-      "petzval lens match --sensor third-inch-1280x960 --distance 400mm --width 60mm --scaled", true,
+      "petzval lens match --sensor third-inch-1280x960 --distance 1.5m --width 134mm", true,
       [options, &shared] { match(*options, shared); });
   command->add_option("--sensor", options->sensor, "Sensor, by name or file, or 768x576@6.25")->required();
   add_sensor_settings(*command, options->sensor_settings);
