@@ -211,5 +211,31 @@ TEST(Photograph, CoffeeComesBack) {
   EXPECT_GT(errors.share_within_1, 0.999);
 }
 
+/// A line and infrared light show no colours: surfaces are those that have the picture's colours under D65.
+TEST(Photograph, UnderLightWithoutColoursHasTheSurfacesThatItShows) {
+  const Photograph photograph = all_mixtures(5);
+  const auto made = [&](const char* light, double nm) {
+    PhotographOptions options;
+    options.illuminant = light;
+    options.wavelengths_nm = {nm};
+    return photograph_scene(photograph, options);
+  };
+  PhotographOptions fine;
+  fine.wavelengths_nm = parse_wavelengths_nm("380:5:730");
+  const Scene d65 = photograph_scene(photograph, fine);
+  for (const auto& [light, nm, band] : {std::tuple{"530nm", 530.0, 30}, {"850nm/30", 850.0, 70}}) {
+    const Scene scene = made(light, nm);
+    const double white = band_light(*scene.illuminant, scene.wavelengths_nm())[0];
+    const double d65_white =
+        band_light(*d65.illuminant, d65.wavelengths_nm())[static_cast<std::size_t>(band)];
+    for (std::size_t i = 0; i < photograph.pixels(); ++i)
+      EXPECT_NEAR(scene.band(0)[i] / white, d65.band(band)[i] / d65_white, 0.02) << light << ' ' << i;
+  }
+  // Of a line the mean luminance is 683 ȳ(530) times its mean radiance; infrared light is 1 W/m² on a white.
+  EXPECT_NEAR(made("530nm", 530).mean_luminance_cd_m2(), 100, 0.5);
+  const Scene infrared = made("850nm/30", 850);
+  EXPECT_NEAR(band_light(*infrared.illuminant, infrared.wavelengths_nm())[0] * M_PI, 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace petzval

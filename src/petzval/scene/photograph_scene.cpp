@@ -4,6 +4,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
+#include <petzval/colour/observer.h>
 #include <petzval/colour/rgb_to_spectrum.h>
 #include <petzval/scene/formats/name_file.h>
 #include <petzval/scene/photograph_scene.h>
@@ -11,6 +12,7 @@
 #include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace petzval {
@@ -38,6 +40,26 @@ bool shows_colours(const Spectrum& illuminant) {
   return is_visible(illuminant) && !is_narrow(illuminant);
 }
 
+/// The share of a light's luminance that a surface gives back.
+using Brightness = std::function<double(const SigmoidReflectance&)>;
+
+/// Under a light that need not be white.
+Brightness brightness_under(const Spectrum& light) {
+  constexpr double step_nm = 5;
+  std::vector<double> nm;
+  for (double at = first_told_nm; at <= last_told_nm; at += step_nm) nm.push_back(at);
+  std::vector<double> shares = band_light(light, nm);
+  const std::vector<Xyz> weights = Observer::cie_1931().weights(nm);
+  for (std::size_t i = 0; i < nm.size(); ++i) shares[i] *= weights[i].y;
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share /= sum;
+  return [nm, shares](const SigmoidReflectance& surface) {
+    double seen = 0;
+    for (std::size_t i = 0; i < nm.size(); ++i) seen += shares[i] * surface.at(nm[i]);
+    return seen;
+  };
+}
+
 void note_untold_bands(Scene& scene) {
   const std::string untold = runs_of_bands(scene.wavelengths_nm(),
                                            [](double nm) { return nm < first_told_nm || nm > last_told_nm; });
@@ -59,7 +81,7 @@ std::vector<double> bands_of_fit(const std::vector<double>& bands_nm) {
 }
 
 /// Fills a row of all bands with light × reflectance. \returns the sum of its luminous reflectances.
-double lift_row(const Photograph& photograph, int row, const ReflectanceColour& brightness,
+double lift_row(const Photograph& photograph, int row, const Brightness& brightness,
                 const ReflectanceTable& table, const std::vector<double>& light, Scene& scene) {
   const auto columns = static_cast<std::size_t>(photograph.columns);
   const float* const rgb = photograph.row(row).data();
@@ -68,7 +90,7 @@ double lift_row(const Photograph& photograph, int row, const ReflectanceColour& 
   for (std::size_t i = 0; i < columns; ++i) {
     const bool repeated = i > 0 && std::equal(rgb + 3 * i, rgb + 3 * i + 3, rgb + 3 * (i - 1));
     pixels[i] = repeated ? pixels[i - 1] : lifted(rgb + 3 * i, table);
-    luminous += pixels[i].factor * brightness.luminous_reflectance(pixels[i].reflectance);
+    luminous += pixels[i].factor * brightness(pixels[i].reflectance);
   }
   for (std::size_t band = 0; band < light.size(); ++band) {
     const double nm = std::clamp(scene.wavelengths_nm()[band], first_told_nm, last_told_nm);
@@ -92,7 +114,10 @@ Scene photograph_scene(const Photograph& photograph, const PhotographOptions& op
   const bool colours = shows_colours(illuminant), visible = is_visible(illuminant);
   const ReflectanceColour colour =
       colours ? ReflectanceColour(illuminant, bands_of_fit(bands)) : ReflectanceColour::d65();
-  const ReflectanceColour brightness = colours || !visible ? colour : ReflectanceColour(illuminant);
+  Brightness brightness = [&](const SigmoidReflectance& surface) {
+    return colour.luminous_reflectance(surface);
+  };
+  if (visible && !colours) brightness = brightness_under(illuminant);
   const ReflectanceTable table(colour);
 
   std::vector<double> luminous(static_cast<std::size_t>(photograph.rows));
