@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the lens data table of a lens that does not exist: third-order coma and nothing else, as strong as you like.
 
+    pip install h5py numpy
     comatic_table.py made.h5 [flare in um at the corner, 45 by default]
     petzval optics import made.h5 --from hdf5 -o comatic.h5
     petzval image points:9 --optics comatic.h5 --sensor 160x120@5 --wavelengths 550 -o comatic.png

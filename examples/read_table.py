@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads a lens data table and prints what it says of one wavelength.
 
+pip install h5py numpy
 petzval optics build edmund-54852 --wavelengths 587.56 --sensor third-inch-768x576 -o edmund.h5
 python3 read_table.py edmund.h5
 """

@@ -20,8 +20,20 @@ void CameraChoice::add_stop_and_focus(CLI::App& command, const Focus& usual) {
       "--focus", focus,
       fmt::format("Where the sensor stands: auto (sharp where the scene is), design (as in the "
                   "prescription), infinity, an object distance from the sensor (1.2m, 250mm), "
-                  "best-spot or best-mtf@CYCLES_PER_MM; default: {}",
+                  "paraxial, best-spot, best-mtf@CYCLES_PER_MM, or these of an object there "
+                  "(250mm+best-spot); default: {}",
                   usual.text()));
+  add_focus_corrections(command);
+}
+
+void CameraChoice::add_focus_corrections(CLI::App& command) {
+  command
+      .add_option("--focus-wavelength", focus_wavelength_nm,
+                  "What distances are focused for [nm]; default: the lens's reference wavelength, or the "
+                  "middle of --wavelengths where it lies outside of them")
+      ->check(positive_number());
+  command.add_option("--defocus", defocus_mm, "The sensor away from the lens, after focusing [mm]")
+      ->check(finite_number());
 }
 
 void CameraChoice::add_positions(CLI::App& command) {
@@ -73,6 +85,8 @@ std::vector<std::string> CameraChoice::given_lens_options() const {
   };
   add(f_number.has_value(), "--f-number");
   add(!focus.empty(), "--focus");
+  add(focus_wavelength_nm.has_value(), "--focus-wavelength");
+  add(defocus_mm != 0, "--defocus");
   add(!lens.settings.empty(), "--set");
   add(!lens.substitutions.empty(), "--substitute");
   add(!lens.glasses.paths.empty(), "--glass-catalogue");
@@ -98,6 +112,8 @@ Camera CameraChoice::settings(const Lens& of) const {
   camera.focus = focus.empty() ? usual_focus : Focus::parse(focus);
   camera.f_number = f_number;
   camera.image_distance_mm = image_distance_mm;
+  camera.focus_wavelength_nm = focus_wavelength_nm;
+  camera.defocus_mm = defocus_mm;
   camera.move_lens_mm = move_lens_mm.value_or(0);
   camera.apertures = apertures;
   if (of.surfaces.empty()) return camera;
@@ -123,7 +139,7 @@ Lens CameraChoice::used(const Lens& of, const std::optional<FieldTableRequest>& 
   Camera camera = settings(of);
   camera.apertures = Camera::Apertures::ignored;  // the caller has seen to them
   const Context context = context_of(shared);
-  return petzval::focus(mounted_lens(camera, context), camera.focus, request, context);
+  return petzval::focus(mounted_lens(camera, context), camera.focus, request, context, camera.defocus_mm);
 }
 
 }  // namespace petzval::app

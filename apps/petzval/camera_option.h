@@ -18,7 +18,8 @@ struct CameraChoice {
   LensChoice lens;
   std::string focus;  ///< as typed; empty: `usual_focus`
   Focus usual_focus = Focus::design();
-  std::optional<double> f_number, image_distance_mm, move_lens_mm;
+  std::optional<double> f_number, image_distance_mm, move_lens_mm, focus_wavelength_nm;
+  double defocus_mm = 0;
   BladeChoice blades;
   double field_azimuth_deg = 0;
   Camera::Apertures apertures = Camera::Apertures::as_given;
@@ -30,6 +31,7 @@ struct CameraChoice {
   void add_lens(CLI::App& command, bool positional,
                 bool required);  ///< LENS or --lens, --set, --substitute …
   void add_stop_and_focus(CLI::App& command, const Focus& usual);  ///< --f-number, --focus
+  void add_focus_corrections(CLI::App& command);                   ///< --focus-wavelength, --defocus
   void add_positions(CLI::App& command);                           ///< --image-distance, --move-lens
   void add_blades(CLI::App& command);                              ///< --blades, --blade-rotation
   void add_field_azimuth(CLI::App& command);                       ///< --field-azimuth

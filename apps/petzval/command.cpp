@@ -10,6 +10,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/simulate/mounting.h>
 
 #include <algorithm>
 #include <cmath>
@@ -90,6 +91,29 @@ CLI::App* add_command(CLI::App& parent, Shared& shared, const std::string& name,
 
 namespace {
 
+/// What does what people try first, where the nearest name would mislead.
+std::string advice_on(const std::string& way, const std::string& option) {
+  struct Advice {
+    const char *way, *option, *words;
+  };
+  static constexpr Advice known[] = {
+      {"petzval lens", "--object-distance",
+       "--focus 400mm puts the object there and focuses on it; --set object_distance_mm=400 moves the object "
+       "alone"},
+      {"petzval lens", "--distance", "--focus 400mm puts the object there and focuses on it"},
+      {"petzval render", "--scale",
+       "--size 200x150 makes the picture smaller, --scene-unit says how long the scene's unit is in mm"},
+      {"petzval image", "--distance", "--scene-distance 400mm would be right"},
+      {"petzval image", "--lux", "--illuminance 500 would be right"},
+      {"petzval image", "--iso",
+       "--analog-gain would be right; the output tells the ISO speed of the sensor"},
+      {"petzval image", "--aperture", "--f-number would be right"},
+      {"petzval lens", "--aperture", "--f-number would be right"}};
+  for (const Advice& each : known)
+    if (way.starts_with(each.way) && option == each.option) return each.words;
+  return "";
+}
+
 /// \throws InputError for a word like an option that the command has not. \param way  of commands to this
 /// one.
 void refuse_unknown_options(const CLI::App& command, const std::string& way,
@@ -102,6 +126,8 @@ void refuse_unknown_options(const CLI::App& command, const std::string& way,
     if (word == "--") return;
     const std::string name = word.substr(0, word.find('='));
     if (!name.starts_with("--") || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (const std::string advice = advice_on(way, name); !advice.empty())
+      throw InputError(fmt::format("{} has no option {}; {}", way, name, advice));
     throw InputError(fmt::format("{} has no option {}; the nearest are {} (see {} --help)", way, name,
                                  fmt::join(nearest_names(name, names), ", "), way));
   }
@@ -223,7 +249,10 @@ Lens LensChoice::read(const Shared& shared) const {
   options.glasses = glasses.read(shared);
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
+  const Lens before = file.lens;
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
+  if (before.object_distance_mm != file.lens.object_distance_mm)
+    note_unfocused_object(before, file.lens, context_of(shared));
   return std::move(file.lens);
 }
 

@@ -93,6 +93,7 @@ void add_compare_command(CLI::App& app, Shared& shared);
 void add_target_command(CLI::App& app, Shared& shared);
 void add_sfr_command(CLI::App& app, Shared& shared);
 void add_sense_command(CLI::App& app, Shared& shared);
+void add_sensor_commands(CLI::App& app, Shared& shared);
 void add_develop_command(CLI::App& app, Shared& shared);
 void add_measure_command(CLI::App& app, Shared& shared);
 void add_sweep_command(CLI::App& app, Shared& shared);

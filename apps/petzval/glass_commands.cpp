@@ -60,8 +60,22 @@ std::string summary_heading() {
 
 // --- list
 
-void list(const Shared& shared, const GlassCatalogue& all, const std::string& catalogue) {
-  const std::vector<GlassPointer> glasses = glasses_of(all, catalogue);
+/// Whether the name holds these letters, whatever their case.
+bool holds(const std::string& name, const std::string& letters) {
+  return std::search(name.begin(), name.end(), letters.begin(), letters.end(),
+                     [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); }) !=
+         name.end();
+}
+
+void list(const Shared& shared, const GlassCatalogue& all, const std::string& catalogue,
+          const std::string& letters) {
+  std::vector<GlassPointer> glasses = glasses_of(all, catalogue);
+  std::erase_if(glasses, [&](const GlassPointer& glass) { return !holds(glass->name, letters); });
+  if (glasses.empty())
+    throw InputError(
+        fmt::format("no glass has {} in its name; petzval glass find --nd 1.62 --vd 60 finds the "
+                    "nearest to an index",
+                    letters));
   if (shared.json) {
     json rows = json::array();
     for (const GlassPointer& glass : glasses) rows.push_back(summary_of(*glass));
@@ -203,11 +217,12 @@ void add_glass_commands(CLI::App& app, Shared& shared) {
   glass->require_subcommand(1);
   const auto own = std::make_shared<GlassChoice>();
 
-  const auto catalogue = std::make_shared<std::string>();
-  CLI::App* list_command =
-      add_command(*glass, shared, "list", "List glasses with nd, Vd and valid range",
-                  "petzval glass list --catalogue SCHOTT", true,
-                  [&shared, own, catalogue] { list(shared, own->read(shared), *catalogue); });
+  const auto catalogue = std::make_shared<std::string>(), letters = std::make_shared<std::string>();
+  CLI::App* list_command = add_command(
+      *glass, shared, "list", "List glasses with nd, Vd and valid range",
+      "petzval glass list --catalogue SCHOTT", true,
+      [&shared, own, catalogue, letters] { list(shared, own->read(shared), *catalogue, *letters); });
+  list_command->add_option("name", *letters, "Only glasses with this in their name: SK16");
   list_command->add_option("--catalogue", *catalogue, "Only this catalogue, for example SCHOTT");
 
   const auto name = std::make_shared<std::string>();

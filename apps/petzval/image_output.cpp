@@ -3,6 +3,7 @@
 
 #include "field_option.h"
 #include "option_names.h"
+#include "raw_levels.h"
 
 #include <fmt/format.h>
 #include <petzval/base/file_extension.h>
@@ -89,6 +90,7 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const Outputs& mad
     json["exposure_s"] = made.raw->exposure_s;
     json["iso"] = made.raw->iso;
     json["as_shot_neutral"] = made.raw->as_shot_neutral;
+    json["levels"] = levels_json(*made.raw);
   }
   if (made.picture) {
     json["temperature_k"] = made.picture->report.temperature_k;
@@ -108,6 +110,7 @@ namespace {
 void print_shot(const Outputs& made) {
   fmt::print("  exposure    {:.4g} s, ISO {:.0f}, on {}\n", made.raw->exposure_s, made.raw->iso,
              made.raw->sensor_name);
+  print_levels(*made.raw);
   if (made.picture && made.raw->channels.size() > 1)
     fmt::print("  developed   white {:.4f}, {} defects corrected\n",
                fmt::join(made.picture->report.neutral, " "), made.picture->report.defects);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The analyses of petzval lens: their options, and one way to print and to write them.
 #include <fmt/format.h>
+#include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/simulate/analysis.h>
 
@@ -10,6 +11,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "loss_option.h"
+#include "option_names.h"
 #include "output_option.h"
 #include "table_output.h"
 
@@ -59,7 +61,23 @@ void print_as_text(const AnalysisResult& result) {
     print_table(each.table);
     first = false;
   }
-  for (const std::string& remark : result.remarks) fmt::print("{}\n", remark);
+  for (const std::string& remark : result.remarks) fmt::print("{}\n", with_option_names(remark));
+}
+
+/// Frame, and fields and frequencies that nobody gave: centre, half way and corner of the sensor; quarter,
+/// half and whole of its Nyquist frequency.
+void fit_to_sensor(const AnalysisCommand& command, const Lens& lens, AnalysisRequest& request,
+                   const Context& context) {
+  const SensorGeometry frame = read_sensor(command.camera.sensor, command.camera.sensor_settings).geometry;
+  note_short_field(lens, frame, context);
+  request.frame = FrameSize{frame.width_mm(), frame.height_mm()};
+  if (command.fields.fields.empty()) {
+    request.at.field_kind = Fields::Kind::real_image_height_mm;
+    request.at.fields = {0, frame.half_diagonal_mm() / 2, frame.half_diagonal_mm()};
+  }
+  const double nyquist_cpmm = 1 / (2 * frame.pitch_um * mm_per_um);
+  if (request.mtf.frequencies_cpmm.empty())
+    request.mtf.frequencies_cpmm = {nyquist_cpmm / 4, nyquist_cpmm / 2, nyquist_cpmm};
 }
 
 void run(const AnalysisCommand& command, const Shared& shared) {
@@ -74,6 +92,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   const Lens lens = command.camera.used(clipped, command.fields.request(clipped), shared);
   AnalysisRequest request = command.request;
   request.at = command.fields.request(lens);
+  if (!command.camera.sensor.empty()) fit_to_sensor(command, lens, request, context);
   request.at.losses = command.losses.losses(lens, shared);
   request.plots = !command.plot.empty();
   request.spot_weight = command.by_light ? RayWeight::light : RayWeight::stop_area;
@@ -191,6 +210,9 @@ void add_lens_analyses(CLI::App& lens, Shared& shared) {
     command->lens.add_to(*app);
     command->fields.add_to(*app);
     command->camera.add_to(*app);
+    command->camera.add_sensor(*app,
+                               "By name or file, or 768x576@6.25: fields to its corners and frequencies to "
+                               "Nyquist, unless others are given");
     app->add_option("--plot", command->plot, "Also draw the result into this SVG file")->check(output_file());
     app->add_option("--csv", command->csv, "Also write the table into this CSV file, with every digit")
         ->check(output_file());

@@ -15,6 +15,10 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_psf(*lens, shared);
   add_lens_seidel(*lens, shared);
   add_lens_report(*lens, shared);
+  add_lens_for_sensor(*lens, shared);
+  add_lens_match(*lens, shared);
+  add_lens_new(*lens, shared);
+  add_lens_reverse(*lens, shared);
   add_lens_convert(*lens, shared);
   add_lens_scale(*lens, shared);
 }

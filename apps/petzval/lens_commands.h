@@ -18,5 +18,9 @@ void add_lens_psf(CLI::App& lens, Shared& shared);
 void add_lens_seidel(CLI::App& lens, Shared& shared);
 void add_lens_steps(CLI::App& lens, Shared& shared);
 void add_lens_report(CLI::App& lens, Shared& shared);
+void add_lens_for_sensor(CLI::App& lens, Shared& shared);
+void add_lens_match(CLI::App& lens, Shared& shared);
+void add_lens_new(CLI::App& lens, Shared& shared);
+void add_lens_reverse(CLI::App& lens, Shared& shared);
 
 }  // namespace petzval::app

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "camera_option.h"
 #include "lens_commands.h"
 #include "output_option.h"
 
@@ -14,11 +15,12 @@ namespace {
 
 struct ConvertCommand {
   LensChoice lens;
+  CameraChoice camera;
   std::string output;
 };
 
 void convert(const ConvertCommand& options, const Shared& shared) {
-  const Lens lens = options.lens.read(shared);
+  const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   for (const std::string& line : write_lens(lens, options.output)) note(shared, line);
   if (!shared.quiet) fmt::print("{}: {} surfaces\n", options.output, lens.surfaces.size());
 }
@@ -34,6 +36,7 @@ void add_lens_convert(CLI::App& lens, Shared& shared) {
                   "petzval lens convert dgauss-50mm dgauss.zmx", false,
                   [options, &shared] { convert(*options, shared); });
   options->lens.add_to(*command);
+  options->camera.add_to(*command);
   command->add_option("output", options->output, "File to write; its extension tells the format")
       ->check(output_file())
       ->required();

@@ -9,6 +9,7 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/lens_drawing.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "camera_option.h"
@@ -47,8 +48,14 @@ std::vector<DrawnRay> film_rays(const DrawCommand& options, const Lens& lens, co
   return rays;
 }
 
+/// Beside where the user is: "dgauss-50mm.svg".
+std::string usual_output(const LensChoice& lens) {
+  return std::filesystem::path(lens.path_or_name).stem().string() + ".svg";
+}
+
 void draw(const DrawCommand& options, const Shared& shared) {
-  require_extension(options.output, {".svg"}, "a drawing");
+  const std::string output = options.output.empty() ? usual_output(options.lens) : options.output;
+  require_extension(output, {".svg"}, "a drawing");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   const FieldTableRequest request = options.fields.request(lens);
@@ -68,9 +75,9 @@ void draw(const DrawCommand& options, const Shared& shared) {
     drawing.legend.push_back(
         {fmt::format("{:g} {}", request.fields[i], field_unit(request.field_kind)), colour});
   }
-  write_whole_file(options.output, draw_lens(lens, rays, drawing));
+  write_whole_file(output, draw_lens(lens, rays, drawing));
   if (!shared.quiet)
-    fmt::print("{}: {} rays through {} surfaces\n", options.output, rays.size(), lens.surfaces.size());
+    fmt::print("{}: {} rays through {} surfaces\n", output, rays.size(), lens.surfaces.size());
 }
 
 }  // namespace
@@ -94,7 +101,8 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
           "Of the rays from film points: in the plane of point and axis, or across it, seen from above")
       ->check(CLI::IsMember({"meridional", "sagittal"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "SVG file to write")->check(output_file())->required();
+  command->add_option("-o,--output", options->output, "SVG file to write; default: NAME.svg, of the lens")
+      ->check(output_file());
 }
 
 }  // namespace petzval::app

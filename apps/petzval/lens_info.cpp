@@ -10,6 +10,8 @@
 #include <memory>
 #include <optional>
 
+#include <petzval/simulate/frame_view.h>
+
 #include "camera_option.h"
 #include "field_option.h"
 #include "lens_commands.h"
@@ -69,7 +71,8 @@ void print_first_order(const Lens& lens, const FirstOrder& data) {
   line("f-number", has_f_number(data) ? data.f_number : NAN, "paraxial, object at infinity");
   line("working f-number", data.working_f_number, "paraxial, at the object distance");
   line("image-space NA", data.image_space_na, "paraxial, at the object distance");
-  line("field of view [deg]", data.field_of_view_deg, "full angle at the entrance pupil");
+  line("field of view [deg]", data.field_of_view_deg,
+       "full angle at the entrance pupil, of the file's fields");
   line("magnification", data.magnification, "");
   line("entrance pupil position", data.entrance_pupil.position_mm, "from vertex 1");
   line("entrance pupil diameter", data.entrance_pupil.diameter_mm, "");
@@ -80,6 +83,22 @@ void print_first_order(const Lens& lens, const FirstOrder& data) {
   line("Petzval radius", data.petzval_radius_mm, "");
   line("total track", data.total_track_mm, "vertex 1 to image surface");
   line("paraxial image", data.paraxial_image_mm, "behind the last vertex");
+}
+
+nlohmann::ordered_json view_json(const FrameView& view) {
+  return {{"object_plane", view.at_infinity ? "infinity" : "object distance"},
+          {view.at_infinity ? "width_deg" : "width_mm", number_or_null(view.width)},
+          {view.at_infinity ? "height_deg" : "height_mm", number_or_null(view.height)},
+          {view.at_infinity ? "diagonal_deg" : "diagonal_mm", number_or_null(view.diagonal)}};
+}
+
+void print_view(const FrameView& view) {
+  const auto number = [&](double value) {
+    return std::isfinite(value) ? fmt::format("{:.4g} {}", value, view.at_infinity ? "deg" : "mm")
+                                : std::string("beyond the lens");
+  };
+  fmt::print("  the sensor sees {} x {}, diagonal {}\n", number(view.width), number(view.height),
+             number(view.diagonal));
 }
 
 void print_surfaces(const Lens& lens) {
@@ -106,8 +125,18 @@ void info(const InfoCommand& options, const Shared& shared) {
   if (wavelength_nm) require_wavelength(*wavelength_nm, fmt::format("--wavelength {:g}", *wavelength_nm));
   const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
   const FirstOrder data = first_order(lens, wavelength_nm);
-  if (shared.json) return print_json(info_json(lens, data));
+  std::optional<SensorGeometry> frame;
+  if (!options.camera.sensor.empty()) {
+    frame = read_sensor(options.camera.sensor, options.camera.sensor_settings).geometry;
+    note_short_field(lens, *frame, context_of(shared));
+  }
+  if (shared.json) {
+    nlohmann::ordered_json json = info_json(lens, data);
+    if (frame) json["sensor_view"] = view_json(frame_view(lens, *frame));
+    return print_json(json);
+  }
   print_first_order(lens, data);
+  if (frame) print_view(frame_view(lens, *frame));
   print_surfaces(lens);
 }
 
@@ -121,6 +150,7 @@ void add_lens_info(CLI::App& lens, Shared& shared) {
                   [options, &shared] { info(*options, shared); });
   options->lens.add_to(*command);
   options->camera.add_to(*command);
+  options->camera.add_sensor(*command, "By name or file, or 768x576@6.25: what it sees");
   command->add_option("--wavelength", options->wavelength_nm,
                       "In nm; the lens's reference wavelength if not given");
 }

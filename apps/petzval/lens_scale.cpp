@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens scale.
 #include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/scaled_lens.h>
 
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "lens_commands.h"
 #include "output_option.h"
@@ -16,12 +19,16 @@ namespace {
 
 struct ScaleCommand {
   LensChoice lens;
-  double factor = 1;
+  std::optional<double> factor, efl_mm;
   std::string output;
 };
 
 void scale(const ScaleCommand& options, const Shared& shared) {
-  const Lens lens = options.lens.read(shared), scaled = scaled_lens(lens, options.factor);
+  if (options.factor.has_value() == options.efl_mm.has_value())
+    throw InputError("lens scale needs either --factor or --efl");
+  const Lens lens = options.lens.read(shared);
+  const double efl_mm = std::abs(first_order(lens).efl_mm);
+  const Lens scaled = scaled_lens(lens, options.factor ? *options.factor : *options.efl_mm / efl_mm);
   for (const std::string& line : write_lens(scaled, options.output)) note(shared, line);
   if (shared.quiet) return;
   fmt::print("{}: focal length {:.6g} mm, was {:.6g} mm\n", options.output, first_order(scaled).efl_mm,
@@ -40,7 +47,8 @@ void add_lens_scale(CLI::App& lens, Shared& shared) {
                   [options, &shared] { scale(*options, shared); });
   options->lens.add_to(*command);
   command->add_option("--factor", options->factor, "What every length is multiplied by")
-      ->required()
+      ->check(positive_number());
+  command->add_option("--efl", options->efl_mm, "The focal length that it shall have [mm]")
       ->check(positive_number());
   command->add_option("-o,--output", options->output, "Lens file to write; its extension tells the format")
       ->check(output_file())

@@ -12,7 +12,7 @@ namespace petzval::app {
 namespace {
 
 /// Parameters whose options are not called after them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 13> other_names{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> other_names{
     {{"autofocus.from_mm", "--focus-from"},
      {"autofocus.to_mm", "--focus-to"},
      {"least_scene_angle_deg", "--scene-angle-least"},
@@ -22,7 +22,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> other_na
      {"scene.background_k", "--scene-background"},
      {"scene.file_bands_nm", "--scene-bands"},
      {"scene.horizontal_angle_deg", "--scene-angle"},
+     {"scene.band_width_nm", "--band-width"},
+     {"scene.illuminance_lx", "--illuminance"},
      {"scene.illuminant", "--illuminant"},
+     {"scene.irradiance_w_m2", "--illuminance"},
      {"scene.mean_luminance_cd_m2", "--scene-luminance"},
      {"scene.negative_is_zero", "--scene-negative-zero"},
      {"scene.radiance_unit", "--scene-unit"}}};

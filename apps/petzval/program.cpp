@@ -37,6 +37,7 @@ void add_all_commands(CLI::App& program, Shared& shared) {
   add_compare_command(program, shared);
   add_target_command(program, shared);
   add_sfr_command(program, shared);
+  add_sensor_commands(program, shared);
   add_sense_command(program, shared);
   add_develop_command(program, shared);
   add_measure_command(program, shared);
@@ -57,7 +58,8 @@ std::string usage_message(CLI::App& program, const CLI::ParseError& error) {
 }
 
 std::vector<std::string> with_help_option(std::vector<std::string> words) {
-  if (words.empty() || words.front() != "help") return words;
+  if (words.empty()) return {"--help"};
+  if (words.front() != "help") return words;
   words.erase(words.begin());
   words.push_back("--help");
   return words;

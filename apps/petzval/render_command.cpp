@@ -122,8 +122,10 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
   command.add_option(
       "--focus", options.choice.camera.focus,
       "Where the film stands: auto (sharp on the zones, by autofocus), design (as in the prescription), "
-      "infinity, the distance from the film of what is to be sharp (1.2m, 250mm), best-spot or "
-      "best-mtf@CYCLES_PER_MM; default: as the scene's file says");
+      "infinity, the distance from the film of what is to be sharp (1.2m, 250mm), paraxial, best-spot, "
+      "best-mtf@CYCLES_PER_MM, or these of an object there (250mm+best-spot); default: as the scene's file "
+      "says");
+  options.choice.camera.add_focus_corrections(command);
   command
       .add_option("--film-distance,--image-distance", options.choice.camera.image_distance_mm,
                   "From the last surface to the film [mm]")

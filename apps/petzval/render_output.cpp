@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "output_option.h"
+#include "raw_levels.h"
 
 namespace petzval::app {
 
@@ -124,6 +125,7 @@ nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering&
   json["exposure_s"] = made.raw->exposure_s;
   json["iso"] = made.raw->iso;
   json["as_shot_neutral"] = made.raw->as_shot_neutral;
+  json["levels"] = levels_json(*made.raw);
   return json;
 }
 
@@ -145,9 +147,10 @@ void print_summary(const PreparedScene& scene, const Rendering& picture, const O
   fmt::print("  time     {:.2f} s to prepare, {:.1f} s for light, {:.3g} million camera rays a second\n",
              seconds.prepare, seconds.light,
              static_cast<double>(picture.rays) * 1e-6 / std::max(seconds.light, 1e-9));
-  if (made.raw)
-    fmt::print("  exposure {:.4g} s, ISO {:.0f}, on {}\n", made.raw->exposure_s, made.raw->iso,
-               made.raw->sensor_name);
+  if (!made.raw) return;
+  fmt::print("  exposure {:.4g} s, ISO {:.0f}, on {}\n", made.raw->exposure_s, made.raw->iso,
+             made.raw->sensor_name);
+  print_levels(*made.raw);
 }
 
 }  // namespace petzval::app

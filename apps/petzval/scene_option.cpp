@@ -42,12 +42,16 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
   command.add_option("--scene-distance", distance, "Distance from the sensor plane: 1.2m, 250mm or infinity");
   command.add_option("--scene-luminance", luminance,
                      "Mean luminance [cd/m2], of the whole spectrum whatever --wavelengths takes from it");
+  command.add_option("--illuminance", illuminance,
+                     "Light on the scene, in place of a mean luminance: 500 or 500lx, or of any light 5W/m2");
+  command.add_option("--band-width", band_width,
+                     "Of every band [nm], as behind filters; without it bands share out the light");
   command.add_option("--scene-size", size, "Samples of a chart: 768x576");
   command.add_option("--wavelengths", wavelengths, "Bands [nm]: 400:10:700, or a list 450,550,650");
   command.add_option(
       "--illuminant", illuminant,
-      "Light on a chart, a photograph or reflectances, or in place of a scene's own: D65, A, E, "
-      "3200K or a file");
+      "Light on a chart, a photograph or reflectances, or in place of a scene's own: D65, A, E, LED-B3, "
+      "3200K, 532nm (a line), 850nm/30 (an LED and its width) or a file");
   command
       .add_option("--scene-encoding", encoding,
                   "Numbers of a photograph: auto (its colour profile, else sRGB), srgb or linear")
@@ -97,6 +101,8 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   if (!distance.empty()) options.distance_m = parse_distance_m(distance, "scene.distance_m");
   if (!luminance.empty())
     options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");
+  take_illuminance(options);
+  if (!band_width.empty()) options.band_width_nm = positive("--band-width", band_width, "a number of nm");
   if (!size.empty()) {
     const GridSize samples = parse_grid_size(size, "scene.size");
     options.columns = samples.columns, options.rows = samples.rows;
@@ -124,6 +130,21 @@ Scene SceneChoice::read(const Shared& shared) const {
 
 void SceneChoice::print_notes(const Scene& scene, const Shared& shared) const {
   for (const std::string& text : scene.notes) note(shared, fmt::format("{}: {}", path_or_name, text));
+}
+
+void SceneChoice::take_illuminance(SceneOptions& options) const {
+  if (illuminance.empty()) return;
+  constexpr const char* right = "500, 500lx or 5W/m2";
+  std::string_view number = illuminance;
+  const auto without = [&](std::string_view unit) {
+    const bool ends = number.ends_with(unit);
+    if (ends) number.remove_suffix(unit.size());
+    return ends;
+  };
+  const bool watts = without("W/m2") || without("W/m²");
+  if (!watts && !without("lux")) without("lx");
+  (watts ? options.irradiance_w_m2 : options.illuminance_lx) =
+      positive("--illuminance", std::string(number), right);
 }
 
 void SceneChoice::take_panorama(SceneOptions& options) const {

@@ -16,7 +16,7 @@ namespace petzval::app {
 struct SceneChoice {
   std::string path_or_name;
   /// As typed; empty: not given.
-  std::string angle, distance, luminance, size, wavelengths, illuminant, encoding;
+  std::string angle, distance, luminance, size, wavelengths, illuminant, illuminance, band_width, encoding;
   std::string projection, yaw, pitch;
   std::string depth, depth_scale, depth_from;
   std::string quantity, unit, scale, file_bands, temperature, emissivity, background;
@@ -44,6 +44,7 @@ struct SceneChoice {
 
  private:
   void add_cube_options(CLI::App& command);
+  void take_illuminance(SceneOptions& options) const;
   void take_panorama(SceneOptions& options) const;
   void take_cube(SceneOptions& options) const;
 };

@@ -6,12 +6,12 @@
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/sensor/raw_file.h>
 
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "output_option.h"
+#include "raw_levels.h"
 #include "sense_option.h"
 #include "sensor_option.h"
 
@@ -26,38 +26,7 @@ struct SenseCommand {
   std::vector<std::string> outputs;
 };
 
-/// Of one channel, in linear values less the black level.
-struct ChannelLevel {
-  std::string name;
-  double mean = 0, clipped = 0;  ///< clipped: share of its pixels at the white level
-};
-
-std::vector<ChannelLevel> channel_levels(const RawImage& raw) {
-  std::vector<ChannelLevel> levels(raw.channels.size());
-  std::vector<double> counts(raw.channels.size());
-  for (int row = 0; row < raw.rows; ++row)
-    for (int column = 0; column < raw.columns; ++column) {
-      const auto channel = static_cast<std::size_t>(raw.mosaic.channel(row, column));
-      const double value = raw.pixel(row, column);
-      levels[channel].mean += value - raw.black_level;
-      levels[channel].clipped += value >= raw.white_level;
-      ++counts[channel];
-    }
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    levels[i].name = raw.channels[i];
-    levels[i].mean /= std::max(1.0, counts[i]);
-    levels[i].clipped /= std::max(1.0, counts[i]);
-  }
-  return levels;
-}
-
 nlohmann::ordered_json summary_json(const RawImage& raw, const std::vector<std::string>& outputs) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const ChannelLevel& level : channel_levels(raw))
-    rows.push_back({{"channel", level.name},
-                    {"mean_dn", level.mean},
-                    {"mean_e", level.mean / raw.dn_per_e},
-                    {"clipped_percent", 100 * level.clipped}});
   return {{"columns", raw.columns},
           {"rows_of_pixels", raw.rows},
           {"sensor", raw.sensor_name},
@@ -69,7 +38,7 @@ nlohmann::ordered_json summary_json(const RawImage& raw, const std::vector<std::
           {"dn_per_e", raw.dn_per_e},
           {"read_noise_e", raw.read_noise_e},
           {"as_shot_neutral", raw.as_shot_neutral},
-          {"rows", rows},
+          {"rows", levels_json(raw)},
           {"outputs", outputs}};
 }
 
@@ -79,9 +48,7 @@ void print_summary(const RawImage& raw) {
   fmt::print("  exposure  {:.4g} s, ISO {:.0f}\n", raw.exposure_s, raw.iso);
   fmt::print("  levels    black {:g} DN, white {:g} DN, {:.4g} DN per electron, read noise {:.3g} e\n",
              raw.black_level, raw.white_level, raw.dn_per_e, raw.read_noise_e);
-  for (const ChannelLevel& level : channel_levels(raw))
-    fmt::print("  {:<9} mean {:.1f} DN above black, {:.0f} e, {:.2f} % clipped\n", level.name, level.mean,
-               level.mean / raw.dn_per_e, 100 * level.clipped);
+  print_levels(raw);
 }
 
 void sense(const SenseCommand& command, const Shared& shared) {

@@ -28,6 +28,15 @@ void add_group(CLI::App& command, const char* group, const Add& add) {
   command.option_defaults()->group(before);
 }
 
+std::string why_not_exposed(const std::optional<Sensor>& sensor) {
+  if (sensor && sensor->electronics) return "no raw file (-o shot.dng) and no developed picture is asked for";
+  return fmt::format(
+      "{} photons; --sensor third-inch-1280x960 does, as all but the frames of petzval sensor "
+      "list",
+      sensor ? "--sensor " + sensor->name + " is a frame of pixels and does not count"
+             : "without --sensor nothing counts");
+}
+
 }  // namespace
 
 void ShotChoice::add_to(CLI::App& command) {
@@ -63,8 +72,7 @@ OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
   const bool raw = std::ranges::any_of(outputs, is_raw_name);
   const bool developed = develops(options, sensor) && std::ranges::any_of(outputs, is_picture_name);
   if (const std::string option = given_option(command, exposing); !raw && !developed && !option.empty())
-    throw InputError(fmt::format(
-        "{} has no effect: no raw file (-o shot.dng) and no developed picture is asked for", option));
+    throw InputError(fmt::format("{} has no effect: {}", option, why_not_exposed(sensor)));
   if (const std::string option = given_option(command, developing); !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));
   return options;

@@ -36,7 +36,9 @@ SceneRequest request(const std::string& name, Maybe<int> columns, Maybe<int> row
                      Maybe<double> depth_scale, const Maybe<std::string>& depth_from_word,
                      const Maybe<std::string>& quantity, const std::string& radiance_unit,
                      Maybe<double> scale, const Numbers& file_bands_nm, bool negative_is_zero,
-                     Maybe<double> temperature_k, Maybe<double> emissivity, Maybe<double> background_k) {
+                     Maybe<double> temperature_k, Maybe<double> emissivity, Maybe<double> background_k,
+                     Maybe<double> illuminance_lx, Maybe<double> irradiance_w_m2,
+                     Maybe<double> band_width_nm) {
   SceneRequest scene{name, {}};
   SceneOptions& o = scene.options;
   o.columns = columns, o.rows = rows;
@@ -44,6 +46,7 @@ SceneRequest request(const std::string& name, Maybe<int> columns, Maybe<int> row
   o.horizontal_angle_deg = horizontal_angle_deg, o.distance_m = distance_m;
   o.illuminant = illuminant;
   o.mean_luminance_cd_m2 = mean_luminance_cd_m2;
+  o.illuminance_lx = illuminance_lx, o.irradiance_w_m2 = irradiance_w_m2, o.band_width_nm = band_width_nm;
   if (encoding) o.encoding = encoding_of(*encoding);
   if (panorama_yaw_pitch_deg) o.panorama = {panorama_yaw_pitch_deg->first, panorama_yaw_pitch_deg->second};
   o.depth = depth, o.depth_scale = depth_scale;
@@ -159,7 +162,8 @@ void bind_request(nb::module_& module) {
            nb::arg("radiance_unit") = "", nb::arg("scale").none() = nb::none(),
            nb::arg("file_bands_nm") = Numbers(), nb::arg("negative_is_zero") = false,
            nb::arg("temperature_k").none() = nb::none(), nb::arg("emissivity").none() = nb::none(),
-           nb::arg("background_k").none() = nb::none(),
+           nb::arg("background_k").none() = nb::none(), nb::arg("illuminance_lx").none() = nb::none(),
+           nb::arg("irradiance_w_m2").none() = nb::none(), nb::arg("band_width_nm").none() = nb::none(),
            "docs/SCENES.md says what each keyword does; the program's options of the same names do the same.")
       .def_ro("name", &SceneRequest::name)
       .def(

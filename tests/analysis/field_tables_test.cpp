@@ -5,6 +5,7 @@
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
+#include <petzval/analysis/tv_distortion.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
@@ -21,15 +22,16 @@ TEST(Distortion, OfThePapersLensAtParaxialAndRealThreeMillimetres) {
   FieldTableRequest request = FieldTableRequest::of(lens);
   request.wavelengths_nm = {587.5618};
   request.fields = {0, 3};
-  EXPECT_NEAR(distortion_table(lens, request)[1].distortion_percent, -8.40, 0.005);
+  EXPECT_NEAR(distortion_table(lens, request)[1].paraxial_distortion_percent, -8.40, 0.005);
   // The sensor stands where the paper's 6 mm f/1.8 lens is sharpest, not in the paraxial image.
   request.fields = {0, 1e-3};
   const auto near_axis = distortion_table(lens, request);
-  EXPECT_NEAR(near_axis[0].distortion_percent, near_axis[1].distortion_percent, 1e-5) << "cubic in the field";
+  EXPECT_NEAR(near_axis[0].paraxial_distortion_percent, near_axis[1].paraxial_distortion_percent, 1e-5)
+      << "cubic in the field";
   request.fields = {0, 3};
   request.field_kind = Fields::Kind::real_image_height_mm;
   const DistortionRow row = distortion_table(lens, request)[1];
-  EXPECT_NEAR(row.distortion_percent, -10.67, 0.005);
+  EXPECT_NEAR(row.paraxial_distortion_percent, -10.67, 0.005);
   EXPECT_NEAR(row.image_height_mm, 3, 1e-12);
   EXPECT_FALSE(row.distortion_ftheta_percent) << "f θ means nothing for a finite object";
 }
@@ -41,10 +43,10 @@ TEST(Distortion, OfTheCookeTripletEqualsTheReference) {
   request.fields = {7, 14, 17};
   request.wavelengths_nm = {550};
   const auto rows = distortion_table(lens, request);
-  EXPECT_NEAR(rows[0].distortion_percent, -0.39823555326526927, 1e-7);
+  EXPECT_NEAR(rows[0].paraxial_distortion_percent, -0.39823555326526927, 1e-7);
   EXPECT_NEAR(*rows[0].distortion_ftheta_percent, 0.1003015724278189, 1e-7);
-  EXPECT_NEAR(rows[1].distortion_percent, -0.3758278773583923, 1e-7);
-  EXPECT_NEAR(rows[2].distortion_percent, -0.35779415856248553, 1e-7);
+  EXPECT_NEAR(rows[1].paraxial_distortion_percent, -0.3758278773583923, 1e-7);
+  EXPECT_NEAR(rows[2].paraxial_distortion_percent, -0.35779415856248553, 1e-7);
   EXPECT_NEAR(*rows[2].distortion_ftheta_percent, 2.6729566730813614, 1e-7);
 }
 
@@ -57,10 +59,51 @@ TEST(Distortion, TendsToThatOfTheParaxialChiefRayOnADefocusedSensor) {
     request.fields = {0, 0.01};
     request.wavelengths_nm = {lens.reference_wavelength_nm};
     const auto rows = distortion_table(lens, request);
-    EXPECT_GT(std::abs(rows[0].distortion_percent), 0.1) << name;
-    EXPECT_NEAR(rows[0].distortion_percent, rows[1].distortion_percent, 1e-5) << name;
+    EXPECT_GT(std::abs(rows[0].paraxial_distortion_percent), 0.1) << name;
+    EXPECT_NEAR(rows[0].paraxial_distortion_percent, rows[1].paraxial_distortion_percent, 1e-5) << name;
     EXPECT_NEAR(*rows[0].distortion_ftheta_percent, *rows[1].distortion_ftheta_percent, 1e-5) << name;
   }
+}
+
+TEST(Distortion, IsCountedFromTheMagnificationAtTheCentre) {
+  // A sensor off the paraxial focus has another magnification; what counts is that of traced rays close to
+  // the axis, on that sensor.
+  for (const char* name : {"edmund-54852", "cooke-triplet", "double-gauss"}) {
+    Lens lens = read_lens(name).lens;
+    lens.surfaces.back().thickness_mm += 0.2;
+    for (const double nm : {lens.wavelengths_nm.front(), lens.wavelengths_nm.back()}) {
+      const double largest = lens.fields.values.back();
+      FieldTableRequest request = FieldTableRequest::of(lens);
+      request.wavelengths_nm = {nm};
+      request.fields = {0, largest / 1000, largest};
+      const auto rows = distortion_table(lens, request);
+      const auto height = [&](const DistortionRow& row) {
+        return lens.object_distance_mm ? row.object_field : std::tan(radians(row.object_field));
+      };
+      const double magnification = rows[1].image_height_mm / height(rows[1]);
+      EXPECT_EQ(rows[0].distortion_percent, 0);
+      EXPECT_NEAR(rows[2].distortion_percent,
+                  100 * (rows[2].image_height_mm / (magnification * height(rows[2])) - 1), 1e-4)
+          << name << ' ' << nm;
+    }
+  }
+}
+
+TEST(Distortion, OfTelevisionIsThatOfACubicLens) {
+  // h' = f t (1 + k t²): the corner at tangent t has a height at the edge of h'(t) H/D, the middle h'(t H/D),
+  // so that (A − B)/B = (1 + k t²)/(1 + k t² (H/D)²) − 1. A lens is cubic close to the axis.
+  const Lens lens = read_lens("double-gauss").lens;
+  FieldTableRequest request;
+  request.wavelengths_nm = {lens.reference_wavelength_nm};
+  request.fields = {0, 3};
+  const DistortionRow corner = distortion_table(lens, request)[1];
+  const double d = 2 * corner.image_height_mm;
+  const auto rows = tv_distortion(lens, {0.8 * d, 0.6 * d}, request.wavelengths_nm);
+  const double bend = corner.distortion_percent / 100;
+  EXPECT_NEAR(rows[0].smia_percent, 100 * ((1 + bend) / (1 + bend * 0.36) - 1), 1e-2 * std::abs(bend) * 100);
+  EXPECT_NEAR(rows[0].picture_height_percent, rows[0].smia_percent / 2, 1e-12);
+  EXPECT_LT(rows[0].smia_percent, 0) << "a barrel";
+  EXPECT_THROW(tv_distortion(lens, {0, 600}, request.wavelengths_nm), InputError);
 }
 
 TEST(FieldValues, OfAllKindsNameTheSameObjectPoint) {

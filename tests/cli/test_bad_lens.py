@@ -53,6 +53,23 @@ class BadLensFile(ProgramTest):
             del lens[key]
             self.refuse(lens, "bad.json", key)
 
+    def test_all_missing_keys_at_once(self):
+        self.refuse({"surfaces": singlet()["surfaces"]}, '"format"', '"aperture"', '"wavelengths_nm"', "f_number")
+
+    def test_the_last_distance_may_be_left_out(self):
+        lens = singlet()
+        del lens["surfaces"][-1]["thickness_mm"]
+        self.write("open.json", lens)
+        info = self.json_of("lens", "info", "open.json")
+        self.write("whole.json", SINGLET)
+        self.assertAlmostEqual(info["paraxial_image_mm"],
+                               self.json_of("lens", "info", "whole.json")["paraxial_image_mm"], delta=1e-9)
+        last = len(lens["surfaces"]) - 1
+        self.assertAlmostEqual(self.json_of("lens", "info", "whole.json", "--set", f"surfaces[{last}].thickness_mm=paraxial")
+                               ["total_track_mm"], info["total_track_mm"], delta=1e-9)
+        del lens["surfaces"][0]["thickness_mm"]
+        self.refuse(lens, "thickness_mm")
+
     def test_another_format_version(self):
         self.refuse(singlet(format="petzval-lens/9"), "petzval-lens/1")
 

@@ -19,7 +19,7 @@ class Program(ProgramTest):
             self.assertIn(command, self.assert_succeeds("--help"))
 
     def test_wrong_usage(self):
-        self.assert_refused(words=["subcommand"])
+        self.assert_refused("lens", words=["subcommand"])
         self.assert_refused("lenz", words=["lenz"])
         self.assert_refused("--frobnicate")
         self.assert_refused("lens")

@@ -19,6 +19,7 @@ if(TARGET petzval_program)
   set(scratch ${PROJECT_BINARY_DIR}/examples)
   file(MAKE_DIRECTORY ${scratch})
   add_test(NAME examples.open_a_gap COMMAND ${examples}/open_a_gap.sh)
+  add_test(NAME examples.choose_lens COMMAND ${examples}/choose_lens.sh)
   add_test(NAME examples.stop_down COMMAND ${examples}/stop_down.sh ${scratch})
   add_test(NAME examples.build_table COMMAND petzval_program optics build edmund-54852 --wavelengths 587.56
     --sensor third-inch-768x576 -o edmund.h5)
@@ -26,7 +27,7 @@ if(TARGET petzval_program)
   add_test(NAME examples.closed_loop COMMAND Python3::Interpreter ${examples}/closed_loop.py)
   set_tests_properties(examples.build_table PROPERTIES FIXTURES_SETUP table)
   set_tests_properties(examples.read_table PROPERTIES FIXTURES_REQUIRED table)
-  set_tests_properties(examples.open_a_gap examples.stop_down examples.build_table examples.read_table
+  set_tests_properties(examples.open_a_gap examples.choose_lens examples.stop_down examples.build_table examples.read_table
     examples.closed_loop PROPERTIES
     WORKING_DIRECTORY ${scratch}
     ENVIRONMENT "PATH=$<TARGET_FILE_DIR:petzval_program>:$ENV{PATH};PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")

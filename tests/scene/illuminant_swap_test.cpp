@@ -5,6 +5,7 @@
 #include <petzval/colour/observer.h>
 #include <petzval/scene/charts.h>
 #include <petzval/scene/illuminant_swap.h>
+#include <petzval/scene/scene_light.h>
 
 #include <algorithm>
 
@@ -18,6 +19,13 @@ ChartOptions small_chart(const char* light) {
   return options;
 }
 
+/// A chart as read_scene() gives it.
+Scene settled_chart(const char* light) {
+  Scene scene = colorchecker_chart(small_chart(light));
+  settle_illuminant(scene, {});
+  return scene;
+}
+
 double white_luminance(const Scene& scene) {
   std::vector<double> light;
   for (const double nm : scene.wavelengths_nm()) light.push_back(scene.illuminant->at(nm));
@@ -26,18 +34,18 @@ double white_luminance(const Scene& scene) {
 
 /// The chart made under one light and swapped to another is the chart made under the other.
 TEST(IlluminantSwap, IsTheChartUnderTheOtherLight) {
-  Scene swapped = colorchecker_chart(small_chart("A"));
+  Scene swapped = settled_chart("A");
   const double before = white_luminance(swapped);
   swap_illuminant(swapped, illuminant("D65").scaled(17));
   EXPECT_NEAR(white_luminance(swapped) / before, 1, 1e-12);
-  const Scene made = colorchecker_chart(small_chart("D65"));
+  const Scene made = settled_chart("D65");
   const double level = white_luminance(swapped) / white_luminance(made);
   for (std::size_t i = 0; i < made.values().size(); ++i)
     EXPECT_NEAR(swapped.values()[i], level * made.values()[i], 1e-6 * level * made.values()[i] + 1e-12) << i;
 }
 
 TEST(IlluminantSwap, ThereAndBackIsWhereItWas) {
-  const Scene original = colorchecker_chart(small_chart("D50"));
+  const Scene original = settled_chart("D50");
   Scene scene = original;
   swap_illuminant(scene, illuminant("A"));
   swap_illuminant(scene, illuminant("D50"));

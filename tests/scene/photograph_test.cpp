@@ -2,6 +2,7 @@
 // Photographs lifted to spectra: they look as they did, and no surface gives back more light than it gets.
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/image/formats/tiff.h>
 #include <petzval/image/picture.h>
@@ -32,8 +33,7 @@ Photograph all_mixtures(int step) {
 /// The 8-bit picture that the scene's light makes, its illuminant as white.
 PngImage shown(const Scene& scene) {
   SpectralImage image(scene.columns(), scene.rows(), scene.wavelengths_nm(), 1);
-  std::vector<double> light;
-  for (const double nm : scene.wavelengths_nm()) light.push_back(scene.illuminant->at(nm));
+  const std::vector<double> light = band_light(*scene.illuminant, scene.wavelengths_nm());
   for (int band = 0; band < scene.bands(); ++band)
     std::copy(scene.band(band).begin(), scene.band(band).end(), image.band(band).begin());
   PictureOptions options;
@@ -92,8 +92,9 @@ TEST(Photograph, HasItsColoursByThePrintedMatrix) {
   std::vector<double> nm;
   for (int at = 380; at <= 730; ++at) nm.push_back(at);
   const std::vector<Xyz> weights = Observer::cie_1931().weights(nm);
+  const std::vector<double> light = band_light(*scene.illuminant, nm);
   double white = 0;
-  for (std::size_t i = 0; i < nm.size(); ++i) white += scene.illuminant->at(nm[i]) * weights[i].y;
+  for (std::size_t i = 0; i < nm.size(); ++i) white += light[i] * weights[i].y;
   double worst = 0;
   for (std::size_t pixel = 0; pixel < photograph.pixels(); ++pixel) {
     std::vector<double> spectrum;
@@ -116,7 +117,8 @@ TEST(Photograph, GivesBackNoMoreThanItGets) {
   options.wavelengths_nm = parse_wavelengths_nm("380:20:780");
   const Scene scene = photograph_scene(all_mixtures(51), options);
   for (int band = 0; band < scene.bands(); ++band) {
-    const double light = scene.illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(band)]);
+    const double light =
+        band_light(*scene.illuminant, scene.wavelengths_nm())[static_cast<std::size_t>(band)];
     for (const float radiance : scene.band(band)) {
       EXPECT_GE(radiance, 0);
       EXPECT_LE(radiance, light * (1 + 1e-6));  // rounding to float
@@ -133,7 +135,8 @@ TEST(Photograph, HasTheLuminanceAskedForAndGreysAreFlat) {
   const Scene scene = photograph_scene(greys, options);
   EXPECT_NEAR(scene.mean_luminance_cd_m2(), 45, 45 * 1e-6);
   for (int band = 0; band < scene.bands(); ++band) {
-    const double light = scene.illuminant->at(scene.wavelengths_nm()[static_cast<std::size_t>(band)]);
+    const double light =
+        band_light(*scene.illuminant, scene.wavelengths_nm())[static_cast<std::size_t>(band)];
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(scene.band(band)[i] / light, greys.rgb[3 * i], 1e-6);
   }
 }
@@ -206,6 +209,32 @@ TEST(Photograph, CoffeeComesBack) {
   const CodeErrors errors = code_errors(photograph, shown(photograph_scene(photograph, options)));
   EXPECT_LE(errors.worst, 2);
   EXPECT_GT(errors.share_within_1, 0.999);
+}
+
+/// A line and infrared light show no colours: surfaces are those that have the picture's colours under D65.
+TEST(Photograph, UnderLightWithoutColoursHasTheSurfacesThatItShows) {
+  const Photograph photograph = all_mixtures(5);
+  const auto made = [&](const char* light, double nm) {
+    PhotographOptions options;
+    options.illuminant = light;
+    options.wavelengths_nm = {nm};
+    return photograph_scene(photograph, options);
+  };
+  PhotographOptions fine;
+  fine.wavelengths_nm = parse_wavelengths_nm("380:5:730");
+  const Scene d65 = photograph_scene(photograph, fine);
+  for (const auto& [light, nm, band] : {std::tuple{"530nm", 530.0, 30}, {"850nm/30", 850.0, 70}}) {
+    const Scene scene = made(light, nm);
+    const double white = band_light(*scene.illuminant, scene.wavelengths_nm())[0];
+    const double d65_white =
+        band_light(*d65.illuminant, d65.wavelengths_nm())[static_cast<std::size_t>(band)];
+    for (std::size_t i = 0; i < photograph.pixels(); ++i)
+      EXPECT_NEAR(scene.band(0)[i] / white, d65.band(band)[i] / d65_white, 0.02) << light << ' ' << i;
+  }
+  // Of a line the mean luminance is 683 ȳ(530) times its mean radiance; infrared light is 1 W/m² on a white.
+  EXPECT_NEAR(made("530nm", 530).mean_luminance_cd_m2(), 100, 0.5);
+  const Scene infrared = made("850nm/30", 850);
+  EXPECT_NEAR(band_light(*infrared.illuminant, infrared.wavelengths_nm())[0] * M_PI, 1, 1e-6);
 }
 
 }  // namespace

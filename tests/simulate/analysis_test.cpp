@@ -89,7 +89,7 @@ TEST(Analysis, KeepsTheLawsOfLight) {
   // Near the axis a lens draws f·tan θ where its paraxial image is, and elsewhere as the chief ray's slope
   // has it.
   const auto on_axis = [&] {
-    return column(analyse("distortion", lens, asked).rows(), "distortion_percent")[0];
+    return column(analyse("distortion", lens, asked).rows(), "paraxial_distortion_percent")[0];
   };
   double& gap_mm = lens.surfaces.back().thickness_mm;
   gap_mm = first_order(lens, wavelength_nm).paraxial_image_mm;

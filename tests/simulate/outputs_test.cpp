@@ -85,7 +85,9 @@ TEST(Exposure, HasOneGrammar) {
   EXPECT_EQ(Exposure::parse("auto").kind, Exposure::Kind::automatic);
   EXPECT_EQ(Exposure::parse("0.01").value, 0.01);
   EXPECT_EQ(Exposure::parse("ev:12").kind, Exposure::Kind::exposure_value);
-  for (const char* wrong : {"", "fast", "-1", "ev:", "1/100"})
+  for (const char* same : {"10ms", "1/100", "0.01s", "10000us", "1/100s"})
+    EXPECT_NEAR(Exposure::parse(same).value, 0.01, 1e-15) << same;
+  for (const char* wrong : {"", "fast", "-1", "ev:", "1/", "/100", "1/0", "ms", "1min"})
     EXPECT_THROW(Exposure::parse(wrong), InputError) << wrong;
 }
 

@@ -93,7 +93,10 @@ std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRe
       return object_field == 0 ? distortion_on_axis_percent(lens, wavelength)
                                : 100 * (row.image_height_mm - ideal) / ideal;
     };
-    row.distortion_percent = percent(row.paraxial_image_height_mm);
+    row.paraxial_distortion_percent = percent(row.paraxial_image_height_mm);
+    const double on_axis = 1 + distortion_on_axis_percent(lens, wavelength) / 100;
+    row.distortion_percent =
+        object_field == 0 ? 0 : 100 * (row.image_height_mm / (row.paraxial_image_height_mm * on_axis) - 1);
     if (!lens.object_distance_mm)
       row.distortion_ftheta_percent = percent(first_order(lens, wavelength).efl_mm * radians(object_field));
     return row;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/camera/mounted_lens.h>
 #include <petzval/lens/first_order.h>
 
@@ -22,10 +23,10 @@ constexpr double same_object = 1e-12;
 struct LensMatrix {
   double a, b, c, d;
 
-  explicit LensMatrix(const Lens& lens) {
+  LensMatrix(const Lens& lens, double wavelength_nm) {
     const std::size_t last = lens.surfaces.size() - 1;
-    const ParaxialRay parallel = trace_paraxial(lens, 1, 0, lens.reference_wavelength_nm);
-    const ParaxialRay central = trace_paraxial(lens, 0, 1, lens.reference_wavelength_nm);
+    const ParaxialRay parallel = trace_paraxial(lens, 1, 0, wavelength_nm);
+    const ParaxialRay central = trace_paraxial(lens, 0, 1, wavelength_nm);
     a = parallel.height_mm[last], c = parallel.slope[last];
     b = central.height_mm[last], d = central.slope[last];
   }
@@ -131,9 +132,11 @@ void MountedLens::use(std::optional<double> object_distance_mm, double last_thic
 
 void MountedLens::focus_at_m(std::optional<double> distance_from_sensor_m) {
   const std::optional<double> distance_m = checked_distance(distance_from_sensor_m);
-  const LensMatrix matrix(prescription_);
+  const double reference_nm = prescription_.reference_wavelength_nm;
+  const LensMatrix reference(prescription_, reference_nm);
+  const LensMatrix matrix(prescription_, focus_wavelength_nm_.value_or(reference_nm));
   const double design_mm = prescription_.surfaces.back().thickness_mm;
-  const double offset_mm = design_mm - matrix.image_mm(prescription_.object_distance_mm);
+  const double offset_mm = design_mm - reference.image_mm(prescription_.object_distance_mm);
   if (matrix.c == 0 || !std::isfinite(offset_mm))
     throw InputError(
         fmt::format("lens {} is afocal or has its object in its focus, and cannot be focused by moving "
@@ -155,11 +158,17 @@ void MountedLens::focus_at_m(std::optional<double> distance_from_sensor_m) {
   if (!(image_mm > 0 && image_mm + offset_mm > 0))
     throw InputError(fmt::format("lens {} forms no real image behind its last surface of an object at {}",
                                  prescription_.name, named_distance(distance_m)));
+  colour_shift_mm_ = image_mm - reference.image_mm(object_mm);
   const std::optional<double> design_object_mm = prescription_.object_distance_mm;
-  if (object_mm.has_value() == design_object_mm.has_value() &&
+  if (colour_shift_mm_ == 0 && object_mm.has_value() == design_object_mm.has_value() &&
       (!object_mm || std::abs(*object_mm - *design_object_mm) <= same_object * *object_mm))
     return focus_as_designed();
   use(object_mm, image_mm + offset_mm);
+}
+
+void MountedLens::set_focus_wavelength_nm(std::optional<double> wavelength_nm) {
+  if (wavelength_nm) require_wavelength(*wavelength_nm, "`focus_wavelength_nm`");
+  focus_wavelength_nm_ = wavelength_nm;
 }
 
 void MountedLens::place_object_at_m(std::optional<double> distance_from_sensor_m) {

@@ -36,6 +36,12 @@ class MountedLens {
   /// prescription's side of unit magnification.
   /// \throws InputError if the object would stand inside the lens or has no real image behind it.
   void focus_at_m(std::optional<double> distance_from_sensor_m);
+  /// Light of this wavelength [nm] is what focus_at_m() brings into focus from now on; absent: that of the
+  /// reference wavelength. The designer's offset stays that of the reference wavelength.
+  void set_focus_wavelength_nm(std::optional<double> wavelength_nm);
+  std::optional<double> focus_wavelength_nm() const { return focus_wavelength_nm_; }
+  /// How far the last focus_at_m() put the sensor behind the place for the reference wavelength [mm].
+  double colour_shift_mm() const { return colour_shift_mm_; }
   /// Keeps the sensor where the prescription has it, and puts the object at this distance from the sensor.
   void place_object_at_m(std::optional<double> distance_from_sensor_m);
   /// Keeps the prescription's object and sensor.
@@ -62,6 +68,8 @@ class MountedLens {
 
   Lens prescription_, lens_;
   std::optional<double> f_number_;  ///< absent: as the prescription has it
+  std::optional<double> focus_wavelength_nm_;
+  double colour_shift_mm_ = 0;
 };
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
+#include <petzval/base/wavelength.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/colour/spectra_files.h>
@@ -18,6 +19,11 @@ namespace {
 
 constexpr double reference_nm = 560;
 constexpr double shortest_visible_nm = 360, longest_visible_nm = 830;
+/// At the usual temperatures less than 1e-4 of a black body's light lies beyond.
+constexpr double shortest_thermal_nm = 200, longest_thermal_nm = 30000;
+/// Half the width of a line [nm]: narrower than a laser drifts in a degree.
+constexpr double line_half_width_nm = 0.01;
+constexpr const char* led_set = "cie_leds";
 
 /// The whole of `text` as a positive number.
 std::optional<double> positive_number(std::string_view text) {
@@ -41,10 +47,51 @@ Spectrum normalised(const Spectrum& spectrum) {
   return spectrum.scaled(100.0 / spectrum.at(reference_nm));
 }
 
-Spectrum visible_blackbody(double temperature_k) {
+/// Every 5 nm as far as glass and silicon go, then in steps of 2 %.
+Spectrum sampled_blackbody(double temperature_k) {
+  constexpr double fine_to_nm = 2500, step_nm = 5, ratio = 1.02;
   std::vector<double> wavelengths;
-  for (double nm = shortest_visible_nm; nm <= longest_visible_nm; nm += 5) wavelengths.push_back(nm);
-  return normalised(blackbody(temperature_k, wavelengths));
+  for (double nm = shortest_thermal_nm; nm <= fine_to_nm; nm += step_nm) wavelengths.push_back(nm);
+  for (double nm = fine_to_nm * ratio; nm < longest_thermal_nm; nm *= ratio) wavelengths.push_back(nm);
+  wavelengths.push_back(longest_thermal_nm);
+  const Spectrum result = blackbody(temperature_k, wavelengths);
+  return result.at(reference_nm) > 0 ? normalised(result) : result;
+}
+
+Spectrum line(double nm) {
+  return Spectrum({nm - line_half_width_nm, nm, nm + line_half_width_nm}, {0, 1 / line_half_width_nm, 0});
+}
+
+/// Gaussian over three widths at half maximum on both sides, as far as no wavelength falls below 1 nm.
+Spectrum led(double nm, double width_nm) {
+  constexpr int samples = 60;
+  constexpr double reach = 3;
+  std::vector<double> wavelengths, values;
+  for (int i = -samples; i <= samples; ++i) {
+    const double widths = reach * i / samples, at = nm + widths * width_nm;
+    if (at < 1) continue;
+    wavelengths.push_back(at);
+    values.push_back(std::exp(-4 * std::log(2.0) * widths * widths));
+  }
+  return Spectrum(std::move(wavelengths), std::move(values));
+}
+
+/// "850nm" and "850nm/30".
+std::optional<Spectrum> single_colour(std::string_view text) {
+  const std::size_t unit = text.find("nm");
+  if (unit == text.npos) return {};
+  const std::optional<double> nm = positive_number(text.substr(0, unit));
+  const std::string_view rest = text.substr(unit + 2);
+  if (!nm || (!rest.empty() && !rest.starts_with('/'))) return {};
+  require_wavelength(*nm, fmt::format("illuminant {}", text));
+  if (rest.empty()) return line(*nm);
+  const std::optional<double> width_nm = positive_number(rest.substr(1));
+  if (!width_nm || *width_nm > *nm)
+    throw InputError(
+        fmt::format("illuminant {}: the wavelength of a line (850nm), or of an LED with its width at half "
+                    "maximum (850nm/30) would be right",
+                    text));
+  return led(*nm, *width_nm);
 }
 
 /// CIE 15 rounds the shares of the components so; only then are its tables met digit by digit.
@@ -61,7 +108,9 @@ Spectrum nominal_daylight(double number) {
 }  // namespace
 
 std::vector<std::string> illuminant_names() {
-  return {"A", "D50", "D65", "E", "F11"};
+  std::vector<std::string> names{"A", "D50", "D65", "E", "F11", "LED-850", "LED-940"};
+  for (const NamedSpectrum& each : read_spectrum_set(led_set).spectra) names.push_back(each.name);
+  return names;
 }
 
 Spectrum daylight(double temperature_k) {
@@ -99,17 +148,23 @@ Spectrum illuminant(const std::string& name) {
   if (name == "A") return read_spectrum_set("illuminant_a").spectra[0].spectrum;
   if (name == "F11") return read_spectrum_set("illuminant_f11").spectra[0].spectrum;
   if (name == "E") return Spectrum({shortest_visible_nm, longest_visible_nm}, {1, 1});
+  if (name == "LED-850") return led(850, 30);
+  if (name == "LED-940") return led(940, 40);
+  if (name.starts_with("LED-"))
+    for (const NamedSpectrum& each : read_spectrum_set(led_set).spectra)
+      if (each.name == name) return each.spectrum;
+  if (const std::optional<Spectrum> found = single_colour(name)) return *found;
   const std::string_view text = name;
   if (text.starts_with('D'))
     if (const auto number = positive_number(text.substr(1))) return nominal_daylight(*number);
   if (text.ends_with('K'))
     if (const auto kelvins = positive_number(text.substr(0, text.size() - 1)))
-      return visible_blackbody(*kelvins);
+      return sampled_blackbody(*kelvins);
   std::error_code ignored;
   if (std::filesystem::is_regular_file(name, ignored)) return read_spectrum_set(name).spectra[0].spectrum;
   throw InputError(
       fmt::format("no illuminant '{}'; known are {}, daylight such as D55, black bodies such as 3200K, "
-                  "and files of spectra",
+                  "lines such as 532nm, LEDs such as 850nm/30, and files of spectra",
                   name, fmt::join(illuminant_names(), ", ")));
 }
 

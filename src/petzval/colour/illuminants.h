@@ -14,9 +14,14 @@ namespace petzval {
 ///   "A", "F11"                 the CIE tables (data/spectra/illuminant_*.csv)
 ///   "D50", "D65", "D5500" …    CIE daylight of that nominal temperature (below 1000: hundreds of kelvins)
 ///   "E"                        equal energy, 360 to 830 nm
-///   "3200K"                    a black body
+///   "LED-B1" … "LED-V2"        the typical LEDs of CIE 015:2018 (data/spectra/cie_leds.csv)
+///   "3200K"                    a black body, 200 nm to 30 um
+///   "850nm", "532.1nm"         a line: a laser
+///   "850nm/30"                 an LED of one colour, Gaussian, 30 nm wide at half its maximum
+///   "LED-850", "LED-940"       "850nm/30" and "940nm/40": infrared LEDs as they are usual
 /// or the first spectrum of a file given by its path. Case matters. The scale is that of the table; D series
-/// and black bodies have 100 at 560 nm. \throws InputError for anything else.
+/// and black bodies have 100 at 560 nm; a line has an integral of 1 value·nm, an LED a maximum of 1. \throws
+/// InputError for anything else.
 Spectrum illuminant(const std::string& name_or_path);
 
 /// The names without a number in them that illuminant() knows.

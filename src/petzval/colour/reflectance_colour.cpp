@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/colour/reflectance_colour.h>
@@ -21,13 +22,14 @@ std::vector<double> fine_bands_nm() {
 
 ReflectanceColour::ReflectanceColour(const Spectrum& light, std::vector<double> bands_nm) {
   const std::vector<double> nm = bands_nm.empty() ? fine_bands_nm() : std::move(bands_nm);
+  const std::vector<double> power = band_light(light, nm);
   const std::vector<Xyz> weights = Observer::cie_1931().weights(nm);
   Xyz white;
-  for (std::size_t i = 0; i < nm.size(); ++i) white = white + light.at(nm[i]) * weights[i];
+  for (std::size_t i = 0; i < nm.size(); ++i) white = white + power[i] * weights[i];
   if (!(white.y > 0)) throw InputError("a light without visible power shows no colours");
   const ColourMatrix adaptation = bradford_adaptation((1 / white.y) * white, display_white());
   for (std::size_t i = 0; i < nm.size(); ++i) {
-    const Xyz seen = (light.at(nm[i]) / white.y) * weights[i];
+    const Xyz seen = (power[i] / white.y) * weights[i];
     samples_.push_back(
         {(nm[i] - SigmoidReflectance::first_nm) / SigmoidReflectance::range_nm, adaptation * seen, seen.y});
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/glass/catalogue.h>
 #include <petzval/glass/material.h>
 
 #include <algorithm>
@@ -80,12 +81,33 @@ std::string describe(const Material::Table&) {
   return "table";
 }
 
+/// The bundled glass of the nearest nd and Vd that is known at a wavelength; nothing if none is near.
+std::string advice_on_substitute(const Glass& glass, double wavelength_nm) {
+  constexpr double nd_per_vd = 0.01, near = 0.01;  // as in `petzval glass find`
+  const std::optional<AbbeNumbers> wanted = glass.abbe();
+  if (!wanted) return "";
+  const GlassCatalogue& bundled = GlassCatalogue::bundled();
+  std::string best;
+  double least = near;
+  for (const std::string& name : bundled.full_names()) {
+    const std::shared_ptr<const Glass> other = bundled.find(name);
+    if (wavelength_nm < other->shortest_nm || wavelength_nm > other->longest_nm) continue;
+    const std::optional<AbbeNumbers> abbe = other->abbe();
+    if (!abbe) continue;
+    const double far = std::hypot(abbe->nd - wanted->nd, nd_per_vd * (abbe->vd - wanted->vd));
+    if (far < least) least = far, best = name;
+  }
+  return best.empty() ? ""
+                      : fmt::format("; `substitute` {}={} has nearly its nd and Vd", glass.full_name(), best);
+}
+
 }  // namespace
 
 double Glass::index(double wavelength_nm) const {
   if (!(wavelength_nm >= shortest_nm && wavelength_nm <= longest_nm))
-    throw InputError(fmt::format("the index of {} is not known at {} nm; it is valid from {} to {} nm",
-                                 full_name(), wavelength_nm, shortest_nm, longest_nm));
+    throw InputError(fmt::format("the index of {} is not known at {} nm; it is valid from {} to {} nm{}",
+                                 full_name(), wavelength_nm, shortest_nm, longest_nm,
+                                 advice_on_substitute(*this, wavelength_nm)));
   const double air = absolute || vacuum_wavelengths ? air_index(wavelength_nm) : 1;
   const double at_nm = vacuum_wavelengths ? wavelength_nm * air : wavelength_nm;
   const double relative_to = absolute ? air : 1;

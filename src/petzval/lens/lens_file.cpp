@@ -7,6 +7,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/iset.h>
+#include <petzval/lens/formats/lens_table.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
@@ -45,10 +46,11 @@ LensFile read_text(const std::string& bytes, const std::string& path, const Lens
   if (extension == ".dat") return without_glasses(read_pbrt(decoded_text(bytes), path), path, options);
   if (extension == ".zmx") return read_zmx(decoded_text(bytes), path, options);
   if (extension == ".seq") return read_seq(decoded_text(bytes), path, options);
+  if (extension == ".csv" || extension == ".tsv") return read_lens_table(decoded_text(bytes), path, options);
   throw InputError(
       path,
       fmt::format("\"{}\" is not the extension of a lens file that is read here; .json (native or ISET), "
-                  ".dat (pbrt), .zmx and .seq (CODE V) are",
+                  ".dat (pbrt), .zmx, .seq (CODE V) and tables (.csv, .tsv) are",
                   extension));
 }
 

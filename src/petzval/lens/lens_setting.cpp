@@ -2,10 +2,12 @@
 // Settings of a lens: assignments to its native JSON form.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/json_setting.h>
 #include <petzval/lens/formats/native.h>
 
 #include <set>
+#include <string_view>
 
 namespace petzval {
 
@@ -64,7 +66,24 @@ json altered(json root, const std::vector<JsonStep>& steps, const json& value) {
 
 }  // namespace
 
-Lens with_setting(const Lens& lens, const std::string& assignment, const LensReadOptions& options) {
+namespace {
+
+/// "surfaces[3].thickness_mm=paraxial" of the last surface, with the number that it stands for.
+std::string with_numbers(const Lens& lens, const std::string& assignment) {
+  constexpr std::string_view word = "=paraxial";
+  if (!assignment.ends_with(word)) return assignment;
+  const std::string place = assignment.substr(0, assignment.size() - word.size());
+  const std::string last = fmt::format("surfaces[{}].thickness_mm", lens.surfaces.size() - 1);
+  if (place != last)
+    throw InputError("`set` " + assignment,
+                     fmt::format("only {}, the distance to the sensor, can be paraxial", last));
+  return fmt::format("{}={}", last, first_order(lens).paraxial_image_mm);
+}
+
+}  // namespace
+
+Lens with_setting(const Lens& lens, const std::string& assigned, const LensReadOptions& options) {
+  const std::string assignment = with_numbers(lens, assigned);
   const std::string origin = "`set` " + assignment;
   JsonDocument document(lens_to_json(lens), lens.name);
   try {

@@ -173,7 +173,9 @@ Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow
     petzval.push_back(rows[i].petzval_mm);
     fields.push_back(rows[i].field);
   }
-  PlotSeries& parabola = plot.line("Petzval", petzval, fields);
+  // Its wavelength is that of the first curve.
+  PlotSeries& parabola =
+      plot.line(fmt::format("Petzval, {:g} nm", rows.front().wavelength_nm), petzval, fields);
   parabola.colour = "#777777";
   parabola.stroke = PlotStroke::dotted;
   return plot;

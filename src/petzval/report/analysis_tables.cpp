@@ -143,11 +143,23 @@ Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
                   [](const Row& row) { return row.paraxial_image_height_mm; }},
                  {{"distortion", "%", 3, "distortion_percent", {"", ".4f", 16}},
                   [](const Row& row) { return row.distortion_percent; }},
-                 {{"against f·θ", "%", 3, "distortion_ftheta_percent", {.hidden = true}},
+                 {{"paraxial", "%", 3, "paraxial_distortion_percent", {"", ".4f", 14}},
+                  [](const Row& row) { return row.paraxial_distortion_percent; }},
+                 {{"against f·θ", "%", 3, "distortion_ftheta_percent", {"f-theta [%]", ".4f", 13}},
                   [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }},
                  {{"", "", 0, "lit"}, [](const Row& row) { return row.lit; }}},
                 Layout::set),
       rows);
+}
+
+Table tabulate(const std::vector<TvDistortion>& rows) {
+  Table table{{{"wavelength", "nm", 2, "wavelength_nm"},
+               {"TV distortion (SMIA)", "%", 4, "smia_percent"},
+               {"of picture height", "%", 4, "picture_height_percent"}},
+              {}};
+  for (const TvDistortion& row : rows)
+    table.rows.push_back({row.wavelength_nm, row.smia_percent, row.picture_height_percent});
+  return table;
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows) {

@@ -11,6 +11,7 @@
 #include <petzval/analysis/seidel.h>
 #include <petzval/analysis/spot_diagram.h>
 #include <petzval/analysis/spots.h>
+#include <petzval/analysis/tv_distortion.h>
 #include <petzval/analysis/vignetting.h>
 #include <petzval/analysis/wavefront.h>
 #include <petzval/analysis/wavefront_zernike.h>
@@ -25,6 +26,7 @@ Table tabulate(Fields::Kind kind, const std::vector<SpotRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<WavefrontRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows);
+Table tabulate(const std::vector<TvDistortion>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows);

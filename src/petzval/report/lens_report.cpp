@@ -224,15 +224,20 @@ class LensSections {
                                      distortion_plot(kind_, distortion)},
                                     3, "")),
         "Left: where rays of the axial point cross the axis. Middle: tangential (solid) and "
-        "sagittal (dashed) foci beside the real chief ray. Right: (real − paraxial)/paraxial "
-        "image height."));
+        "sagittal (dashed) foci beside the real chief ray. Right: distortion about the centre of the "
+        "picture."));
     page_.add(html::download("longitudinal.csv", "text/csv", to_csv(tabulate(axial)), "longitudinal (CSV)"));
     page_.add(html::download("field_curvature.csv", "text/csv", to_csv(tabulate(kind_, curves)),
                              "field curves (CSV)"));
     page_.add(html::download("distortion.csv", "text/csv", to_csv(tabulate(kind_, distortion)),
                              "distortion (CSV)"));
     page_.add(html::table(tabulate(kind_, field_curvature_table(lens_, at_reference(request_, lens_)))));
-    page_.add(html::table(tabulate(kind_, distortion_table(lens_, at_reference(request_, lens_)))));
+    page_.add(html::table(tabulate(kind_, distortion_table(lens_, request_))));
+    if (const auto frame = frame_of_fields(lens_)) {
+      page_.add(html::paragraph(
+          fmt::format("TV distortion of a frame of {:.4g} x {:.4g} mm:", frame->width_mm, frame->height_mm)));
+      page_.add(html::table(tabulate(tv_distortion(lens_, *frame, request_.wavelengths_nm))));
+    }
   }
   void colour() {
     section("Colour", "colour");

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/chart_canvas.h>
+#include <petzval/scene/scene_light.h>
 #include <petzval/scene/wavelength_list.h>
 
 #include <algorithm>
@@ -16,15 +18,15 @@ namespace petzval {
 namespace {
 
 constexpr int shortest_seen_nm = 370, longest_seen_nm = 780;
+constexpr double visible_middle_nm = 555;
 
 /// What each nanometre of an illuminant adds to luminance.
 Spectrum seen_light(const Spectrum& illuminant) {
   std::vector<double> wavelengths;
   for (int nm = shortest_seen_nm; nm <= longest_seen_nm; ++nm) wavelengths.push_back(nm);
   const std::vector<Xyz> weights = Observer::cie_1931().weights(wavelengths);
-  std::vector<double> values;
-  for (std::size_t i = 0; i < wavelengths.size(); ++i)
-    values.push_back(illuminant.at(wavelengths[i]) * weights[i].y);
+  std::vector<double> values = band_light(illuminant, wavelengths);
+  for (std::size_t i = 0; i < wavelengths.size(); ++i) values[i] *= weights[i].y;
   return Spectrum(std::move(wavelengths), std::move(values));
 }
 
@@ -46,14 +48,7 @@ ChartCanvas::ChartCanvas(const ChartOptions& options)
   if (!(options.mean_luminance_cd_m2 > 0 && std::isfinite(options.mean_luminance_cd_m2)))
     throw InputError(fmt::format("a mean luminance of {} cd/m²; a positive one would be right",
                                  options.mean_luminance_cd_m2));
-  const std::vector<double>& bands = scene_.wavelengths_nm();
-  if (std::none_of(bands.begin(), bands.end(), [&](double nm) { return illuminant_.at(nm) > 0; }))
-    throw InputError(
-        fmt::format("illuminant {} has no light at the scene's wavelengths; it reaches from {} to {} nm",
-                    options.illuminant, illuminant_.front_nm(), illuminant_.back_nm()));
-  if (!(sum(seen_.values()) > 0))
-    throw InputError(
-        fmt::format("illuminant {} has no visible light to set a luminance by", options.illuminant));
+  light_ = light_in_bands(illuminant_, options.illuminant, scene_.wavelengths_nm(), options.band_width_nm);
   luminous_reflectance_.resize(scene_.band_size());
 }
 
@@ -64,7 +59,10 @@ Paint ChartCanvas::paint(const Spectrum& reflectance) const {
   double luminance = 0;
   for (std::size_t i = 0; i < seen_.values().size(); ++i)
     luminance += seen_.values()[i] * std::max(0.0, reflectance.at_extended(seen_.wavelengths_nm()[i]));
-  result.luminous_reflectance = static_cast<float>(luminance / sum(seen_.values()));
+  const double white = sum(seen_.values());
+  // Of light that no eye sees: not 0, or the chart would be black.
+  result.luminous_reflectance =
+      static_cast<float>(white > 0 ? luminance / white : reflectance.at_extended(visible_middle_nm));
   if (reflectance.values().size() > 1) result.known_nm = {reflectance.front_nm(), reflectance.back_nm()};
   return result;
 }
@@ -138,10 +136,12 @@ Scene ChartCanvas::lit() && {
   for (float value : luminous_reflectance_) mean += value;
   mean /= static_cast<double>(luminous_reflectance_.size());
   if (!(mean > 0)) throw InputError("the chart is black at this size; more samples would show it");
-  const double level = options_.mean_luminance_cd_m2 / (lumens_per_watt * sum(seen_.values()) * mean);
+  const double luminance = lumens_per_watt * sum(seen_.values()) * mean;
+  const double level = is_visible(illuminant_) ? options_.mean_luminance_cd_m2 / luminance
+                                               : invisible_level(illuminant_, scene_);
 
   parallel_for(static_cast<std::size_t>(scene_.bands()), [&](std::size_t band) {
-    const double light = level * illuminant_.at(scene_.wavelengths_nm()[band]);
+    const double light = level * light_[band];
     for (float& value : scene_.band(static_cast<int>(band))) value = static_cast<float>(value * light);
   });
   scene_.illuminant = illuminant_.scaled(level);

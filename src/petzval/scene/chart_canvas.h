@@ -18,9 +18,10 @@ struct ChartOptions {
   int columns = 768, rows = 576;
   std::vector<double> wavelengths_nm;  ///< empty: 400 to 700 nm every 10 nm
   double horizontal_angle_deg = 40;
-  std::optional<double> distance_m;   ///< absent: at infinity
-  std::string illuminant = "D65";     ///< a name or file, as petzval::illuminant() takes it
-  double mean_luminance_cd_m2 = 100;  ///< of the whole chart, over its whole spectrum
+  std::optional<double> distance_m;          ///< absent: at infinity
+  std::string illuminant = "D65";            ///< a name or file, as petzval::illuminant() takes it
+  double mean_luminance_cd_m2 = 100;         ///< of the whole chart, over its whole spectrum
+  std::optional<double> band_width_nm = {};  ///< as band_light() takes it
 };
 
 /// Wavelengths from one to another [nm]; all unless told.
@@ -55,9 +56,10 @@ class ChartCanvas {
   /// Sets every pixel to `paint` times a factor: factor(row, factors of the row's pixels).
   void modulate(const Paint& paint, const std::function<void(int row, std::span<double> factors)>& factor);
 
-  /// The scene: reflectance × illuminant, the illuminant so strong that the mean luminance is what the
-  /// options say. The level is found from the whole visible spectrum: which wavelengths are asked for does
-  /// not change the radiance at any of them. A note names the bands for which a reflectance was not measured.
+  /// The scene: reflectance × band_light(), the illuminant so strong that the mean luminance is what the
+  /// options say. The level is found from the whole visible spectrum, whichever wavelengths are asked for; of
+  /// light that no eye sees it is invisible_level(). A note names the bands for which a reflectance was not
+  /// measured.
   /// \throws InputError if all is black.
   Scene lit() &&;
 
@@ -67,7 +69,8 @@ class ChartCanvas {
 
   ChartOptions options_;
   Spectrum illuminant_;
-  Spectrum seen_;  ///< the illuminant times ȳ, every nanometre
+  std::vector<double> light_;  ///< in the bands
+  Spectrum seen_;              ///< the illuminant times ȳ, every nanometre
   Scene scene_;
   std::vector<float> luminous_reflectance_;
   WavelengthRange known_nm_;  ///< of all paints used

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/colour/observer.h>
 #include <petzval/scene/illuminant_swap.h>
 
@@ -20,12 +21,6 @@ double brightness(const std::vector<double>& light, const std::vector<double>& b
   return luminous > 0 ? luminous : all;
 }
 
-std::vector<double> sampled(const Spectrum& light, const std::vector<double>& bands_nm) {
-  std::vector<double> values;
-  for (const double nm : bands_nm) values.push_back(light.at(nm));
-  return values;
-}
-
 }  // namespace
 
 void swap_illuminant(Scene& scene, const Spectrum& illuminant) {
@@ -36,7 +31,9 @@ void swap_illuminant(Scene& scene, const Spectrum& illuminant) {
         "is "
         "for charts, photographs, reflectances and scenes whose light is known");
   const std::vector<double>& bands = scene.wavelengths_nm();
-  const std::vector<double> old = sampled(*scene.illuminant, bands), fresh = sampled(illuminant, bands);
+  const std::vector<double> fresh = band_light(illuminant, bands);
+  std::vector<double> old;
+  for (const double nm : bands) old.push_back(scene.illuminant->at(nm));
   const double bright = brightness(fresh, bands);
   if (!(bright > 0)) throw InputError("the new illuminant has no light in the bands of the scene");
   const double level = brightness(old, bands) / bright;
@@ -51,7 +48,7 @@ void swap_illuminant(Scene& scene, const Spectrum& illuminant) {
     for (float& value : band) value = static_cast<float>(value * factor);
     scene.release_memory();
   }
-  scene.illuminant = illuminant.scaled(level);
+  scene.illuminant = Spectrum(bands, fresh).scaled(level);
 }
 
 }  // namespace petzval

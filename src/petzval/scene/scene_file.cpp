@@ -14,13 +14,12 @@
 #include <petzval/scene/named_chart.h>
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
-#include <petzval/scene/wavelength_list.h>
+#include <petzval/scene/scene_light.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <span>
 #include <string_view>
 
 namespace petzval {
@@ -42,6 +41,7 @@ ChartOptions chart_options(const SceneOptions& options) {
   if (options.distance_m) chart.distance_m = finite_distance(*options.distance_m);
   if (!options.illuminant.empty()) chart.illuminant = options.illuminant;
   chart.mean_luminance_cd_m2 = options.mean_luminance_cd_m2.value_or(chart.mean_luminance_cd_m2);
+  chart.band_width_nm = options.band_width_nm;
   return chart;
 }
 
@@ -63,6 +63,41 @@ void refuse_thermal_options(const std::string& what, const SceneOptions& options
         "are for emissivities and maps of temperature");
 }
 
+Scene with_settled_light(Scene scene, std::optional<double> band_width_nm) {
+  const std::optional<Spectrum> light = scene.illuminant;
+  settle_illuminant(scene, band_width_nm);
+  if (!band_width_nm) note_unknown_width(scene, light);
+  return scene;
+}
+
+/// A file's scene at the bands that were asked for.
+Scene at_wanted_bands(Scene scene, const SceneOptions& options) {
+  const std::optional<Spectrum> light = scene.illuminant;
+  if (!options.illuminant.empty()) settle_illuminant(scene, {});
+  const bool others = !options.wavelengths_nm.empty() && options.wavelengths_nm != scene.wavelengths_nm();
+  if (others) scene = scene.resampled(options.wavelengths_nm);
+  if (others || options.band_width_nm) widen_bands(scene, light, options.band_width_nm);
+  if (!options.band_width_nm) note_unknown_width(scene, light);
+  return scene;
+}
+
+/// As bright as was asked for.
+void set_level(Scene& scene, const SceneOptions& options) {
+  if (int(options.mean_luminance_cd_m2.has_value()) + int(options.illuminance_lx.has_value()) +
+          int(options.irradiance_w_m2.has_value()) >
+      1)
+    throw InputError(
+        "`scene.mean_luminance_cd_m2` and `scene.illuminance_lx` both say how bright the scene is; one of "
+        "them would be right");
+  if (options.mean_luminance_cd_m2 && scene.illuminant && !is_visible(*scene.illuminant))
+    throw InputError(
+        scene.name,
+        "is lit by light that no eye sees, which has no luminance; `scene.irradiance_w_m2` 5W/m2 "
+        "would be right");
+  if (options.illuminance_lx) set_illuminance_lx(scene, *options.illuminance_lx);
+  if (options.irradiance_w_m2) set_irradiance_w_m2(scene, *options.irradiance_w_m2);
+}
+
 Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOptions& options) {
   if (options.encoding)
     throw InputError(
@@ -72,7 +107,9 @@ Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOp
   if (chart.deep && options.distance_m && std::isinf(*options.distance_m))
     throw InputError(fmt::format(
         "scene {}: its depths are multiples of a finite `scene.distance_m` (1 m unless given)", text));
-  return make_chart(text, chart, chart_options(options));
+  Scene scene = make_chart(text, chart, chart_options(options));
+  set_level(scene, options);
+  return with_settled_light(std::move(scene), options.band_width_nm);
 }
 
 bool is_file(const std::string& path) {
@@ -94,6 +131,7 @@ Scene read_photograph_file(const std::string& path, const SceneOptions& options)
   photograph.horizontal_angle_deg = options.horizontal_angle_deg.value_or(photograph.horizontal_angle_deg);
   if (!options.illuminant.empty()) photograph.illuminant = options.illuminant;
   photograph.mean_luminance_cd_m2 = options.mean_luminance_cd_m2.value_or(photograph.mean_luminance_cd_m2);
+  photograph.band_width_nm = options.band_width_nm;
   return read_photograph_scene(path, photograph);
 }
 
@@ -108,7 +146,7 @@ CubeOptions cube_options(const SceneOptions& options) {
   if (!options.illuminant.empty()) cube.illuminant = illuminant(options.illuminant);
   cube.thermal = options.thermal;
   cube.negative_is_zero = options.negative_is_zero;
-  cube.level_follows = options.mean_luminance_cd_m2.has_value();
+  cube.level_follows = options.mean_luminance_cd_m2 || options.illuminance_lx || options.irradiance_w_m2;
   return cube;
 }
 
@@ -154,13 +192,12 @@ Scene read_scene_file(const std::string& path, const SceneOptions& options) {
   Scene scene = is_photograph ? read_photograph_file(path, options) : read_spectral_file(path, options);
   if (scene.name.empty()) scene.name = fs::path(path).stem().string();
   if (options.distance_m) scene.set_distance_m(finite_distance(*options.distance_m));
-  if (is_photograph) return scene;
+  set_level(scene, options);
+  if (is_photograph) return with_settled_light(std::move(scene), options.band_width_nm);
   if (options.horizontal_angle_deg && !options.panorama)
     scene.set_horizontal_angle_deg(*options.horizontal_angle_deg);
   if (options.mean_luminance_cd_m2) scene.set_mean_luminance_cd_m2(*options.mean_luminance_cd_m2);
-  if (!options.wavelengths_nm.empty() && options.wavelengths_nm != scene.wavelengths_nm())
-    scene = scene.resampled(options.wavelengths_nm);
-  return scene;
+  return at_wanted_bands(std::move(scene), options);
 }
 
 /// \throws InputError for what is there and cannot be read as a file.
@@ -181,6 +218,9 @@ std::string find_scene_file(const std::string& name) {
       known.push_back(bundled);
     }
   for (const NamedChart& chart : named_charts()) known.push_back(chart.name);
+  if (name == "siemens" || name == "star" || name == "grid")
+    throw InputError(name,
+                     "no such file, and no scene of that name; studio has Siemens stars and a line grid");
   throw InputError(name, fmt::format("no such file, and no scene of that name; the nearest are {}",
                                      fmt::join(nearest_names(name, known), ", ")));
 }
@@ -212,26 +252,11 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
   return scene;
 }
 
-/// Says which bands have no light because the illuminant does not reach them.
-void note_dark_bands(Scene& scene) {
-  if (!scene.illuminant) return;
-  const std::string dark =
-      runs_of_bands(scene.wavelengths_nm(), [&](double nm) { return scene.illuminant->at(nm) == 0; });
-  if (!dark.empty())
-    scene.notes.push_back(fmt::format(
-        "no light reaches {} nm, beyond the illuminant of the scene: these bands are dark", dark));
-}
-
-Scene finished(Scene scene, const SceneOptions& options) {
-  note_dark_bands(scene);
-  return with_depth(std::move(scene), options);
-}
-
 }  // namespace
 
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
-  if (!options.panorama) return finished(read_plane(path_or_name, options), options);
+  if (!options.panorama) return with_depth(read_plane(path_or_name, options), options);
   if (options.horizontal_angle_deg)
     throw InputError(path_or_name,
                      "is a panorama, 360 degrees wide; `scene.horizontal_angle_deg` is for plane scenes");
@@ -241,7 +266,7 @@ Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (!plane.distance_m) plane.distance_m = std::numeric_limits<double>::infinity();
   Scene scene = read_plane(path_or_name, plane);
   naming_file(path_or_name, [&] { scene.make_panorama(*options.panorama); });
-  return finished(std::move(scene), options);
+  return with_depth(std::move(scene), options);
 }
 
 std::string scene_companion(const std::string& path) {

@@ -23,6 +23,10 @@ struct SceneOptions {
   std::optional<double> mean_luminance_cd_m2 =
       {};  ///< of the whole spectrum, whatever wavelengths are then taken
            ///< from it; replaces the file's; 100 for charts, photographs
+  /// On the scene, in place of a mean luminance: what a perfect white gives back, over the light's whole
+  /// spectrum. One of the two; the second is for light that no eye sees.
+  std::optional<double> illuminance_lx = {}, irradiance_w_m2 = {};
+  std::optional<double> band_width_nm = {};         ///< of every band, as behind filters (band_light)
   std::optional<PhotographEncoding> encoding = {};  ///< photographs only; absent: as the file says
 
   std::optional<PanoramaView> panorama = {};  ///< the samples are an equirectangular panorama

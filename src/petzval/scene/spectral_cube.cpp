@@ -3,8 +3,10 @@
 #include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/wavelength.h>
+#include <petzval/colour/band_light.h>
 #include <petzval/scene/illuminant_swap.h>
 #include <petzval/scene/radiance_unit.h>
+#include <petzval/scene/scene_light.h>
 #include <petzval/scene/spectral_cube.h>
 
 #include <algorithm>
@@ -69,7 +71,7 @@ void check_light(const CubeOptions& options, SceneQuantity quantity, const std::
     if (!light)
       throw InputError(
           "holds reflectances; they need light to be a scene: `scene.illuminant` D65, for example");
-    if (std::none_of(bands.begin(), bands.end(), [&](double nm) { return light->at(nm) > 0; }))
+    if (std::ranges::none_of(band_light(*light, bands), [](double value) { return value > 0; }))
       throw InputError("the illuminant has no light in the bands of the scene");
   } else if (quantity != SceneQuantity::radiance) {
     if (light) throw InputError("shines of its own warmth; `scene.illuminant` is for surfaces that are lit");
@@ -105,9 +107,10 @@ void check_reflectances(Scene& scene, float greatest, double scale) {
 /// Reflectance × illuminant.
 void put_under(Scene& scene, const CubeOptions& options) {
   const Spectrum& illuminant = *options.illuminant;
+  const std::vector<double> light = band_light(illuminant, scene.wavelengths_nm());
   float greatest = 0;
   scene.for_each_band([&](std::size_t index, std::span<float> band) {
-    const double factor = illuminant.at(scene.wavelengths_nm()[index]);
+    const double factor = light[index];
     for (float& value : band) {
       greatest = std::max(greatest, value);
       value = static_cast<float>(value * factor);
@@ -116,6 +119,7 @@ void put_under(Scene& scene, const CubeOptions& options) {
   check_reflectances(scene, greatest, options.scale);
   scene.illuminant = illuminant;
   if (options.level_follows) return;
+  if (!is_visible(illuminant)) return scene.scale(invisible_level(illuminant, scene));
   if (scene.mean_luminance_cd_m2() > 0) {
     scene.set_mean_luminance_cd_m2(reflectance_luminance_cd_m2);
     scene.notes.push_back(

@@ -71,14 +71,30 @@ Plot curves(const std::string& title, const PlotAxis& y_axis, const std::vector<
   return plot;
 }
 
+void add_tv_distortion(const Lens& lens, const AnalysisRequest& request, AnalysisResult& result) {
+  const std::optional<FrameSize> frame = request.frame ? request.frame : frame_of_fields(lens);
+  if (!frame) return;
+  try {
+    result.tables.push_back({"tv_rows",
+                             fmt::format("how much the long edges of a frame of {:.4g} x {:.4g} mm bend",
+                                         frame->width_mm, frame->height_mm),
+                             tabulate(tv_distortion(lens, *frame, request.at.wavelengths_nm))});
+  } catch (const InputError& error) {
+    result.remarks.push_back(fmt::format("no TV distortion: {}", error.what()));
+  }
+}
+
 AnalysisResult distortion(const Lens& lens, const AnalysisRequest& request, const Context&) {
   const std::vector<DistortionRow> rows = distortion_table(lens, request.at);
-  AnalysisResult result = result_of(lens, request.at, "distortion against the paraxial image height",
+  AnalysisResult result = result_of(lens, request.at,
+                                    "distortion about the centre, against the paraxial "
+                                    "image height and against f-theta",
                                     with_object_fields(tabulate(request.at.field_kind, rows), lens, rows));
   if (request.plots)
-    result.plots = {curves("Distortion", {"distortion", "%", PlotScale::linear, {}, {}}, rows,
-                           request.at.wavelengths_nm.size(), &DistortionRow::image_height_mm,
-                           &DistortionRow::distortion_percent)};
+    result.plots = {curves("Distortion", {"distortion", "%", PlotScale::linear, {}, {}},
+                           distortion_table(lens, dense(request.at)), request.at.wavelengths_nm.size(),
+                           &DistortionRow::image_height_mm, &DistortionRow::distortion_percent)};
+  add_tv_distortion(lens, request, result);
   return result;
 }
 
@@ -286,6 +302,9 @@ AnalysisResult best_focus(const Lens& lens, const AnalysisRequest& request, cons
                         fmt::format("mean MTF at {:g} cycles/mm", frequency), mtf.before, mtf.after});
   AnalysisResult result =
       result_of(lens, request.at, "places of the sensor, counted from where it is", std::move(table));
+  result.remarks.push_back(fmt::format(
+      "`focus` paraxial, best-spot or best-mtf@{:g} puts the sensor there, or `image_distance_mm` {:.5f}",
+      frequency, design_mm + mtf.shift_mm));
   if (request.plots) {
     MtfOptions through;
     through.frequencies_cpmm = {frequency};

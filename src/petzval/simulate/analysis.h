@@ -6,6 +6,7 @@
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/analysis/spots.h>
+#include <petzval/analysis/tv_distortion.h>
 #include <petzval/analysis/wavefront_zernike.h>
 #include <petzval/base/context.h>
 #include <petzval/report/svg_plot.h>
@@ -28,8 +29,9 @@ struct AnalysisRequest {
   bool plots = false;  ///< the plots too, which may cost more rays than the tables
   RayWeight spot_weight = RayWeight::stop_area;
   int fan_rays = 21;
-  bool opd_fans = false;  ///< plots have the wavefront, not the transverse aberration
-  int map_samples = 64;   ///< a side
+  std::optional<FrameSize> frame = {};  ///< of TV distortion; absent: 4:3, to the largest field
+  bool opd_fans = false;                ///< plots have the wavefront, not the transverse aberration
+  int map_samples = 64;                 ///< a side
   ZernikeOrder zernike_order = ZernikeOrder::fringe;
   int zernike_terms = 0;  ///< 0: 37 of Fringe, 36 of Noll
   MtfOptions mtf = {};  ///< no frequencies: 0 to 100 cycles/mm by 10, or three for curves over field or focus

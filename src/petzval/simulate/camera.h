@@ -32,6 +32,8 @@ struct Camera {
   std::optional<double> f_number = {};    ///< paraxial, at infinity; absent: as the prescription has it
   std::optional<StopBlades> blades = {};  ///< absent: as the prescription has them
   std::optional<double> image_distance_mm = {};  ///< from the last vertex to the sensor, in place of a focus
+  std::optional<double> focus_wavelength_nm = {};  ///< absent: of the light in use (focusing_wavelength_nm)
+  double defocus_mm = 0;                           ///< of the sensor from its focus, away from the lens
   double move_lens_mm = 0;  ///< the whole lens towards the object; object and sensor stay
   Apertures apertures = Apertures::as_given;
   Losses losses = {};

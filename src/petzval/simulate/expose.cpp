@@ -17,6 +17,22 @@ namespace {
 
 constexpr std::string_view by_value = "ev:";
 
+/// "0.01", "0.01s", "10ms", "10000us", and the fractions of photographers, "1/100".
+std::optional<double> time_s(std::string_view text) {
+  double unit_s = 1;
+  for (const auto& [name, size] : {std::pair<std::string_view, double>{"ms", 1e-3}, {"us", 1e-6}, {"s", 1}})
+    if (text.ends_with(name)) {
+      text.remove_suffix(name.size());
+      unit_s = size;
+      break;
+    }
+  const std::size_t slash = text.find('/');
+  const std::optional<double> number = parse_number(text.substr(0, slash));
+  if (!number || slash == text.npos) return number ? std::optional(*number * unit_s) : std::nullopt;
+  const std::optional<double> below = parse_number(text.substr(slash + 1));
+  return below && *below > 0 ? std::optional(*number / *below * unit_s) : std::nullopt;
+}
+
 double exposure_s(const ExposeOptions& options, const SpectralImage& light, const PhotoCurrent& current,
                   double saturation_e) {
   if (options.exposure.kind == Exposure::Kind::automatic)
@@ -89,10 +105,12 @@ RawImage exposed(const SpectralImage& light, Sensor sensor, const ExposeOptions&
 Exposure Exposure::parse(std::string_view text) {
   if (text == "auto") return automatic();
   const bool value_given = text.starts_with(by_value);
-  const std::optional<double> value = parse_number(text.substr(value_given ? by_value.size() : 0));
+  const std::optional<double> value = value_given ? parse_number(text.substr(by_value.size())) : time_s(text);
   if (!value || (!value_given && *value < 0))
-    throw InputError(fmt::format(
-        "`exposure` {}: auto, seconds (0.01) or an exposure value (ev:12) would be right", quotable(text)));
+    throw InputError(
+        fmt::format("`exposure` {}: auto, a time (0.01, 10ms, 1/100) or an exposure value (ev:12) would be "
+                    "right",
+                    quotable(text)));
   return value_given ? of_value(*value) : seconds(*value);
 }
 

@@ -28,7 +28,8 @@ struct Exposure {
   static Exposure automatic() { return {}; }
   static Exposure seconds(double time_s) { return {Kind::seconds, time_s}; }
   static Exposure of_value(double ev) { return {Kind::exposure_value, ev}; }
-  /// "auto", seconds ("0.01") or an exposure value ("ev:12"). \throws InputError saying what would be right.
+  /// "auto", a time ("0.01", "10ms", "1/100") or an exposure value ("ev:12"). \throws InputError saying what
+  /// would be right.
   static Exposure parse(std::string_view text);
 };
 

@@ -24,8 +24,20 @@ Focus Focus::at_m(double distance_m) {
 }
 
 Focus Focus::parse(std::string_view text) {
+  if (const std::size_t plus = text.find('+'); plus != text.npos) {
+    const Focus object = parse(text.substr(0, plus));
+    Focus found = parse(text.substr(plus + 1));
+    const std::optional<double> distance_m = asked_distance_m(object);
+    if (!distance_m || object.sought() || !found.sought())
+      throw InputError(fmt::format(
+          "`focus` {}: a distance, and how focus is sought there, as 1.2m+best-spot, would be right",
+          quotable(text)));
+    found.distance_m = *distance_m;
+    return found;
+  }
   if (text == "auto") return automatic();
   if (text == "design") return design();
+  if (text == "paraxial") return {Kind::paraxial};
   if (text == "best-spot") return {Kind::best_spot};
   if (text.starts_with(by_mtf)) {
     const std::optional<double> frequency = parse_number(text.substr(by_mtf.size()));
@@ -37,11 +49,17 @@ Focus Focus::parse(std::string_view text) {
   if (parse_length_m(text) || parse_number(text)) return at_m(parse_distance_m(text, "focus"));
   throw InputError(
       fmt::format("`focus` {}: auto (the scene), design, infinity, a distance from the sensor (1.2m, "
-                  "250mm), best-spot or best-mtf@CYCLES_PER_MM would be right",
+                  "250mm), paraxial, best-spot or best-mtf@CYCLES_PER_MM would be right",
                   quotable(text)));
 }
 
 std::string Focus::text() const {
+  if (sought() && distance_m > 0) {
+    Focus alone = *this;
+    alone.distance_m = 0;
+    return fmt::format("{}+{}", std::isinf(distance_m) ? "infinity" : distance_text(distance_m),
+                       alone.text());
+  }
   switch (kind) {
     case Kind::automatic:
       return "auto";
@@ -51,6 +69,8 @@ std::string Focus::text() const {
       return "infinity";
     case Kind::distance:
       return distance_text(distance_m);
+    case Kind::paraxial:
+      return "paraxial";
     case Kind::best_spot:
       return "best-spot";
     case Kind::best_mtf:
@@ -61,7 +81,7 @@ std::string Focus::text() const {
 
 std::optional<double> asked_distance_m(const Focus& focus) {
   if (focus.kind == Focus::Kind::infinity) return INFINITY;
-  return focus.kind == Focus::Kind::distance ? std::optional(focus.distance_m) : std::nullopt;
+  return focus.distance_m > 0 ? std::optional(focus.distance_m) : std::nullopt;
 }
 
 }  // namespace petzval

@@ -48,6 +48,17 @@ Scene read(const SceneRequest& request, std::optional<double> expected_m, bool e
   return scene;
 }
 
+/// Without a sensor whose frame it would fill, a chart or a photograph of 4:3 is as wide as the fields of the
+/// lens.
+SceneRequest as_wide_as_fields(SceneRequest request, const Camera& camera) {
+  constexpr double across = 0.8;  // of the diagonal
+  const double view_deg = first_order(camera.lens).field_of_view_deg;
+  if (camera.sensor || !is_open(request) || request.options.horizontal_angle_deg) return request;
+  if (view_deg > 0 && view_deg < 170)
+    request.options.horizontal_angle_deg = 2 * degrees(std::atan(across * std::tan(radians(view_deg) / 2)));
+  return request;
+}
+
 std::optional<double> middle_from_sensor_m(const Scene& scene, MountedLens& lens) {
   const double depth_m = middle_depth_m(scene);
   if (std::isinf(depth_m)) return std::nullopt;
@@ -85,15 +96,27 @@ std::optional<double> object_in_focus_m(const Focus& focus, const Scene& scene, 
   return std::isinf(*asked_m) ? std::nullopt : asked_m;
 }
 
+/// Fields and wavelengths that best focus is sought over: the lens's own, unless the light is another.
+FieldTableRequest fields_in(const MountedLens& lens, const std::vector<double>& light_nm) {
+  FieldTableRequest at = FieldTableRequest::of(lens.lens());
+  if (focusing_wavelength_nm(lens, light_nm)) at.wavelengths_nm = light_nm;
+  return at;
+}
+
 /// The lens as it is used: focused as asked, the object where the scene is.
-Lens focused_on(const MountedLens& lens, const Camera& camera, std::optional<double> scene_distance_m,
-                const Context& context) {
+Lens focused_on(MountedLens lens, const Camera& camera, std::optional<double> scene_distance_m,
+                const std::vector<double>& light_nm, const Context& context) {
+  lens.set_focus_wavelength_nm(focusing_wavelength_nm(lens, light_nm));
   if (camera.focus.kind == Focus::Kind::automatic && !camera.image_distance_mm) {
     MountedLens focused = lens;
     focused.focus_at_m(scene_distance_m);
+    note_colour_shift(focused, context);
+    if (camera.defocus_mm != 0) focused.move_sensor_mm(camera.defocus_mm);
     return focused.lens();
   }
-  MountedLens here(focus(lens, camera.focus, {}, context));
+  MountedLens start = lens;
+  if (camera.focus.sought() && !asked_distance_m(camera.focus)) start.focus_at_m(scene_distance_m);
+  MountedLens here(focus(start, camera.focus, fields_in(lens, light_nm), context, camera.defocus_mm));
   // The sensor stays; only the object moves.
   if (here.object_distance_from_sensor_m() != scene_distance_m) here.place_object_at_m(scene_distance_m);
   return here.lens();
@@ -145,18 +168,22 @@ LensDataTable facts_alone(const Lens& lens) {
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context) {
   const MountedLens lens = mounted_lens(camera, context);
-  Scene scene = std::holds_alternative<Scene>(input)
-                    ? std::get<Scene>(std::move(input))
-                    : read(*std::get<const SceneRequest*>(input), lens.object_distance_from_sensor_m(),
-                           camera.focus.kind == Focus::Kind::design, context);
+  Scene scene =
+      std::holds_alternative<Scene>(input)
+          ? std::get<Scene>(std::move(input))
+          : read(as_wide_as_fields(*std::get<const SceneRequest*>(input), camera),
+                 lens.object_distance_from_sensor_m(), camera.focus.kind == Focus::Kind::design, context);
   const bool deep = !scene.depth_m.empty();
   if (scene.distance_m() && !deep) {
     MountedLens placed = lens;
     placed.place_object_at_m(scene.distance_m());
     if (!placed.lens().object_distance_mm) scene.set_distance_m({});  // so far away that this is infinity
   }
-  const Lens focused = focused_on(
-      lens, camera, deep ? object_in_focus_m(camera.focus, scene, lens) : scene.distance_m(), context);
+  const Lens focused =
+      focused_on(lens, camera, deep ? object_in_focus_m(camera.focus, scene, lens) : scene.distance_m(),
+                 scene.wavelengths_nm(), context);
+  if (camera.sensor && detail == TableDetail::full)
+    note_short_field(focused, camera.sensor->geometry, context);
   TableOptions table = table_options(camera, scene, detail);
   table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
   if (deep)

@@ -55,6 +55,8 @@ void require_no_lens_settings(const RenderRequest& request) {
                           : focused                          ? "focus"
                           : request.aperture_diameter_mm     ? "aperture_diameter_mm"
                           : camera.f_number                  ? "f_number"
+                          : camera.focus_wavelength_nm       ? "focus_wavelength_nm"
+                          : camera.defocus_mm != 0           ? "defocus_mm"
                           : camera.move_lens_mm != 0         ? "move_lens_mm"
                           : camera.blades                    ? "blades"
                           : camera.losses.any()              ? "losses"
@@ -99,7 +101,12 @@ Lens lens_as_used(const render::SceneCamera& scene, const RenderRequest& request
     camera.focus = Focus::design();
   else if (request.focus_as_in_scene || is_automatic(request))
     focus_as_scene(scene.focus, request, camera, context);
-  Lens lens = focus(mounted_lens(camera, context), camera.focus, {}, context);
+  const MountedLens mounted = mounted_lens(camera, context);
+  FieldTableRequest at = FieldTableRequest::of(mounted.lens());
+  const std::vector<double> light =
+      request.wavelengths_nm.empty() ? usual_wavelengths_nm() : request.wavelengths_nm;
+  if (focusing_wavelength_nm(mounted, light)) at.wavelengths_nm = light;
+  Lens lens = focus(mounted, camera.focus, at, context, camera.defocus_mm);
   if (camera.apertures == Camera::Apertures::ignored)
     for (Surface& surface : lens.surfaces)
       if (!surface.stop) surface.semi_diameter_mm.reset();

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/wavelength.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/lens_fault.h>
@@ -117,12 +118,14 @@ StopBlades read_blades(const JsonEntry& entry) {
   return blades;
 }
 
-Surface read_surface(const JsonEntry& entry, GlassLookup& glasses) {
+/// \param last  the distance to the sensor may be left out.
+Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "shape",
                     "stop", "blades"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
-  surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
+  if (!last || entry.find("thickness_mm"))
+    surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
   if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, glasses);
   if (const auto semi = entry.find("semi_diameter_mm"); semi && !semi->is_null())
     surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
@@ -166,10 +169,39 @@ void read_wavelengths(const JsonEntry& top, Lens& lens) {
     top.at("reference_wavelength_nm");  // says that it is missing
 }
 
+/// The sensor in the paraxial image, where the file leaves the last distance open.
+void focus_paraxially(Lens& lens, const JsonDocument& document) {
+  const std::string place = fmt::format("surfaces[{}]", lens.surfaces.size() - 1);
+  double& gap_mm = lens.surfaces.back().thickness_mm;
+  gap_mm = 1;  // any
+  if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
+  gap_mm = first_order(lens).paraxial_image_mm;
+  if (!(gap_mm > 0 && std::isfinite(gap_mm)))
+    document.fail(place, "forms no real image; \"thickness_mm\", the distance to the sensor, would be right");
+}
+
+/// Names all keys that are missing, with lines that would do.
+void require_all(const JsonEntry& top, const JsonDocument& document) {
+  constexpr std::pair<const char*, const char*> wanted[] = {
+      {"format", "\"format\": \"petzval-lens/1\""},
+      {"aperture", "\"aperture\": {\"f_number\": 4}"},
+      {"wavelengths_nm", "\"wavelengths_nm\": [486.13, 587.56, 656.27], \"reference_wavelength_nm\": 587.56"},
+      {"surfaces",
+       "\"surfaces\": [{\"radius_mm\": 50, \"thickness_mm\": 5, \"glass\": \"SCHOTT:N-BK7\", "
+       "\"stop\": true}, …]"}};
+  std::vector<std::string> names, lines;
+  for (const auto& [key, line] : wanted)
+    if (!top.find(key)) names.push_back(fmt::format("\"{}\"", key)), lines.emplace_back(line);
+  if (names.size() > 1)
+    document.fail("", fmt::format("lacks {}; lines such as these would be right: {}", fmt::join(names, ", "),
+                                  fmt::join(lines, ", ")));
+}
+
 }  // namespace
 
 Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const JsonEntry top(document);
+  require_all(top, document);
   const JsonEntry format = top.at("format");
   if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
   top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
@@ -183,8 +215,10 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   if (const auto fields = top.find("fields")) lens.fields = read_fields(*fields);
   read_wavelengths(top, lens);
   GlassLookup glasses(options);
-  for (const JsonEntry& surface : top.at("surfaces").items("a list of surfaces, front to back"))
-    lens.surfaces.push_back(read_surface(surface, glasses));
+  const std::vector<JsonEntry> surfaces = top.at("surfaces").items("a list of surfaces, front to back");
+  for (const JsonEntry& surface : surfaces)
+    lens.surfaces.push_back(read_surface(surface, glasses, &surface == &surfaces.back()));
+  if (!surfaces.empty() && !surfaces.back().find("thickness_mm")) focus_paraxially(lens, document);
   if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
   try {
     glasses.require_all_used();
