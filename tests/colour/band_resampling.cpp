@@ -11,7 +11,7 @@ namespace petzval {
 namespace {
 
 /// Radiance by the trapezoid rule, written here once more.
-double total(const std::vector<double>& nm, const std::vector<double>& values) {
+double sum_over(const std::vector<double>& nm, const std::vector<double>& values) {
   double sum = 0;
   for (std::size_t i = 1; i < nm.size(); ++i) sum += (nm[i] - nm[i - 1]) * (values[i] + values[i - 1]) / 2;
   return sum;
@@ -41,7 +41,7 @@ TEST(BandResampling, KeepsTheIntegralAndMakesNothingNegative) {
     const std::vector<double> to = random_grid(random, 405 + run % 50, 690 - run % 70, 2 + run % 37);
     const std::vector<double> values = resampled(from, to).values();
     const double wanted = from.integral(to.front(), to.back());
-    EXPECT_NEAR(total(to, values), wanted, 1e-12 * (1 + wanted)) << run;  // rounding
+    EXPECT_NEAR(sum_over(to, values), wanted, 1e-12 * (1 + wanted)) << run;  // rounding
     for (const double value : values) EXPECT_GE(value, 0) << run;
   }
 }

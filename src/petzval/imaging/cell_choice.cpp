@@ -153,9 +153,7 @@ double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, co
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options) {
   const int asked = options.supersample;
-  constexpr int of_a_photosite = 3;
-  if (options.method == BlurMethod::none)
-    return {asked != 0 ? asked : options.photosite.is_plain() ? 1 : of_a_photosite, 0};
+  if (options.method == BlurMethod::none) return {options.cells_per_pixel(), 0};
   const int middle = scene.bands() / 2;
   const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
   const FrameMtf mtf(table, wavelength_nm, sensor);

@@ -41,8 +41,13 @@ struct ImagingOptions {
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
 
-  /// S; as long as it is not chosen 1, with which a frame needs the widest margin.
-  int cells_per_pixel() const { return supersample == 0 ? 1 : supersample; }
+  /// S; as long as it is not chosen 1, with which a frame needs the widest margin; without blur what the
+  /// photosite needs.
+  int cells_per_pixel() const {
+    constexpr int of_a_photosite = 3;
+    if (supersample != 0) return supersample;
+    return method == BlurMethod::none && !photosite.is_plain() ? of_a_photosite : 1;
+  }
   /// The cells whose light makes the pixels of a sensor: S × S to a pixel, and those about the frame that its
   /// pixels share in.
   SensorGeometry cells_of(const SensorGeometry& sensor) const;
