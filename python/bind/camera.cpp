@@ -80,13 +80,14 @@ nb::object coating_of(const CameraInPython& camera) {
 CameraInPython camera(const nb::object& lens, const nb::object& focus, Maybe<double> f_number,
                       const nb::object& sensor, const nb::object& blades, Maybe<double> image_distance_mm,
                       double move_lens_mm, const std::string& apertures, bool fresnel, bool absorption,
-                      const nb::object& coating) {
+                      const nb::object& coating, Maybe<double> focus_wavelength_nm, double defocus_mm) {
   CameraInPython result;
   result.lens = lens_from(lens), result.sensor = sensor_from(sensor);
   result.focus = focus_from(focus);
   result.f_number = f_number;
   result.blades = blades_from(blades);
   result.image_distance_mm = image_distance_mm, result.move_lens_mm = move_lens_mm;
+  result.focus_wavelength_nm = focus_wavelength_nm, result.defocus_mm = defocus_mm;
   result.apertures = choice("apertures", apertures, aperture_words);
   result.losses.fresnel = fresnel, result.losses.absorption = absorption;
   set_coating(result, coating);
@@ -270,6 +271,7 @@ Camera CameraInPython::value() const {
   if (sensor) camera.sensor = *sensor;
   camera.focus = focus, camera.f_number = f_number, camera.blades = blades;
   camera.image_distance_mm = image_distance_mm, camera.move_lens_mm = move_lens_mm;
+  camera.focus_wavelength_nm = focus_wavelength_nm, camera.defocus_mm = defocus_mm;
   camera.apertures = apertures, camera.losses = losses;
   return camera;
 }
@@ -309,7 +311,8 @@ void bind_camera(nb::module_& module) {
         nb::arg("sensor").none() = nb::none(), nb::arg("blades").none() = nb::none(),
         nb::arg("image_distance_mm").none() = nb::none(), nb::arg("move_lens_mm") = 0.0,
         nb::arg("apertures") = "file", nb::arg("fresnel") = false, nb::arg("absorption") = false,
-        nb::arg("coating").none() = nb::none(),
+        nb::arg("coating").none() = nb::none(), nb::arg("focus_wavelength_nm").none() = nb::none(),
+        nb::arg("defocus_mm") = 0.0,
         "`lens` and `sensor`: objects or names; None: those of a three-dimensional scene, what fits a flat "
         "one. `focus`: auto, design, "
         "infinity, a distance with its unit (1.2m, 250mm), best-spot or best-mtf@40. `f_number`: paraxial, "
@@ -340,6 +343,10 @@ void bind_camera(nb::module_& module) {
       .def_rw("image_distance_mm", &C::image_distance_mm, nb::for_setter(nb::arg("value").none()),
               "From the last vertex to the sensor, in place of a focus; None: as the focus says.")
       .def_rw("move_lens_mm", &C::move_lens_mm, "The whole lens towards the object [mm].")
+      .def_rw(
+          "focus_wavelength_nm", &C::focus_wavelength_nm, nb::for_setter(nb::arg("value").none()),
+          "That is brought to focus [nm]; None: the lens's own, or the light in use where that is another.")
+      .def_rw("defocus_mm", &C::defocus_mm, "Of the sensor from its focus, away from the lens [mm].")
       .def_prop_rw(
           "apertures", [](const C& c) { return std::string(word_of(c.apertures, aperture_words)); },
           [](C& c, const std::string& word) { c.apertures = choice("apertures", word, aperture_words); })
@@ -364,18 +371,20 @@ void bind_camera(nb::module_& module) {
                            c.image_distance_mm, c.move_lens_mm,
                            std::string(word_of(c.apertures, aperture_words)), c.losses.fresnel,
                            c.losses.absorption,
-                           c.losses.surfaces.empty() ? coating_of(c) : nb::object(dict_of(coating_of(c)))));
+                           c.losses.surfaces.empty() ? coating_of(c) : nb::object(dict_of(coating_of(c))),
+                           c.focus_wavelength_nm, c.defocus_mm));
       });
   module.def(
       "_camera_from_state",
       [](const nb::object& lens, const nb::object& sensor, const nb::object& focus, Maybe<double> f_number,
          const nb::object& blades, Maybe<double> image_distance_mm, double move_lens_mm,
-         const std::string& apertures, bool fresnel, bool absorption, const nb::object& coating) {
+         const std::string& apertures, bool fresnel, bool absorption, const nb::object& coating,
+         Maybe<double> focus_wavelength_nm, double defocus_mm) {
         return camera(lens, focus, f_number, sensor, blades, image_distance_mm, move_lens_mm, apertures,
-                      fresnel, absorption, coating);
+                      fresnel, absorption, coating, focus_wavelength_nm, defocus_mm);
       },
       nb::arg().none(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none(),
-      nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+      nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
   bind_render(c, module);
 }
 

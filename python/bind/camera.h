@@ -18,6 +18,8 @@ struct CameraInPython {
   std::optional<StopBlades> blades = {};
   std::optional<double> image_distance_mm = {};
   double move_lens_mm = 0;
+  std::optional<double> focus_wavelength_nm = {};
+  double defocus_mm = 0;
   Camera::Apertures apertures = Camera::Apertures::as_given;
   Losses losses = {};
 
