@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "output_option.h"
+#include "picture_list.h"
 #include "sfr_output.h"
 
 namespace petzval::app {
@@ -18,7 +19,9 @@ namespace petzval::app {
 namespace {
 
 struct SfrCommand {
-  std::string image, chart, channel = "luminance", bayer, transfer = "stated", method = "exact";
+  std::vector<std::string> pictures;
+  bool demosaic = false;
+  std::string chart, channel = "luminance", bayer, transfer = "stated", method = "exact";
   std::string csv, plot, profile, annotate;
   std::vector<std::string> rois, against;
   std::optional<double> pitch_um;
@@ -38,7 +41,7 @@ PixelBox box_of(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
-void run(const SfrCommand& command, const Shared& shared) {
+void check_outputs(const SfrCommand& command, bool single) {
   if (!command.chart.empty() && !command.rois.empty())
     throw InputError("give either --roi, for edges at known places, or --chart auto, to find them");
   for (const auto& [path, extensions, what] :
@@ -49,24 +52,81 @@ void run(const SfrCommand& command, const Shared& shared) {
     if (!path.empty()) require_extension(path, extensions, what);
   if (!command.against.empty() && command.plot.empty())
     throw InputError("--against draws into --plot FILE.svg; give both");
+  if (!command.annotate.empty() && !single)
+    throw InputError("--annotate draws one picture; name one file, not several or a folder");
+}
+
+PictureTransfer transfer_of(const SfrCommand& command) {
+  return command.transfer == "srgb"     ? PictureTransfer::srgb
+         : command.transfer == "linear" ? PictureTransfer::linear
+                                        : PictureTransfer::stated;
+}
+
+/// How code values became light, for files that have them.
+std::string light_of(const PicturePlanes& picture, bool asked) {
+  if (picture.bits == 0 || !picture.bayer.empty()) return "";
+  return fmt::format("{}, {}", picture.srgb ? "sRGB" : "linear",
+                     picture.assumed ? "assumed"
+                     : asked         ? "as asked"
+                                     : "as the file says");
+}
+
+struct MeasuredPicture {
+  SfrReport report;
+  Plane luminance;
+};
+
+MeasuredPicture measured(const SfrCommand& command, const SfrRequest& request, const std::string& path,
+                         const Shared& shared) {
+  const PictureTransfer transfer = transfer_of(command);
+  const PicturePlanes picture = read_picture_planes(path, transfer, command.demosaic);
+  SfrReport report{path,
+                   light_of(picture, transfer != PictureTransfer::stated),
+                   picture.columns,
+                   picture.rows,
+                   command.pitch_um,
+                   measure_sfr(picture, request, path, context_of(shared))};
+  if (picture.assumed && picture.bits == 16)
+    note(shared, fmt::format("{}: numbers of 16 bits that say nothing of themselves are taken for sRGB; "
+                             "--transfer linear is right if they are linear in light, --transfer srgb says "
+                             "that they are not",
+                             path));
+  return {std::move(report), command.annotate.empty() ? Plane{} : picture.luminance()};
+}
+
+void run(const SfrCommand& command, const Shared& shared) {
+  const std::vector<std::string> paths = pictures_in(command.pictures, measurable_extensions());
+  SfrReports reports;
+  reports.single = command.pictures.size() == 1 && paths == command.pictures;
+  check_outputs(command, reports.single);
   std::vector<NamedCurve> others;
   for (const std::string& path : command.against) others.push_back(read_sfr_table(path));
-  const PictureTransfer transfer = command.transfer == "srgb"     ? PictureTransfer::srgb
-                                   : command.transfer == "linear" ? PictureTransfer::linear
-                                                                  : PictureTransfer::stated;
-  const PicturePlanes picture = read_picture_planes(command.image, transfer);
   SfrRequest request{{}, command.channel, command.bayer, command.edge_order, command.method == "iso"};
   for (const std::string& text : command.rois) request.rois.push_back(box_of(text));
-  SfrReport report{command.image, picture.columns, picture.rows, command.pitch_um,
-                   measure_sfr(picture, request, command.image, context_of(shared))};
+  Plane seen;
+  for (const std::string& path : paths) {
+    try {
+      MeasuredPicture picture = measured(command, request, path, shared);
+      reports.pictures.push_back(std::move(picture.report));
+      seen = std::move(picture.luminance);
+    } catch (const InputError& error) {
+      if (reports.single) throw;
+      reports.failed.emplace_back(path, error.what());
+    }
+  }
+  for (const auto& [path, reason] : reports.failed) note(shared, "left out: " + reason);
+  if (reports.pictures.empty())
+    throw InputError(fmt::format("none of the {} pictures could be measured; the first: {}", paths.size(),
+                                 reports.failed.front().second));
   StagedFiles files;
-  if (!command.csv.empty()) write_sfr_csv(files.stage(command.csv), report);
-  if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), report, others);
-  if (command.profile.ends_with(".svg")) write_profile_plot(files.stage(command.profile), report);
-  if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), report);
-  if (!command.annotate.empty()) write_annotated(files.stage(command.annotate), report, picture.luminance());
+  if (!command.csv.empty()) write_sfr_csv(files.stage(command.csv), reports);
+  if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), reports, others);
+  if (command.profile.ends_with(".svg")) write_profile_plot(files.stage(command.profile), reports);
+  if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), reports);
+  if (!command.annotate.empty())
+    write_annotated(files.stage(command.annotate), reports.pictures.front(), seen);
   files.commit();
-  print_sfr(report, shared);
+  print_sfr(reports, shared);
 }
 
 }  // namespace
@@ -77,7 +137,11 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       add_command(app, shared, "sfr", "Spatial frequency response from slanted edges in a picture",
                   "petzval sfr edges.png --chart auto --csv sfr.csv --plot sfr.svg", true,
                   [=, &shared] { run(*options, shared); });
-  command->add_option("image", options->image, "Picture: .png, .tif, .npy or .exr")->required();
+  command
+      ->add_option(
+          "image", options->pictures,
+          "Pictures, or folders of them: .png, .jpg, .tif, .npy, .exr or .dng; several make one table")
+      ->required();
   command->add_option("--roi", options->rois, "X,Y,WIDTH,HEIGHT around one edge [pixels] (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
@@ -90,6 +154,8 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->capture_default_str();
   command->add_option("--bayer", options->bayer,
                       "The picture is a mosaic, rggb and so on: each colour for itself");
+  command->add_flag("--demosaic", options->demosaic,
+                    "Of a .dng, measure the demosaiced picture, not each colour for itself");
   command
       ->add_option("--transfer", options->transfer,
                    "Code values are: stated (as the file says; else sRGB), srgb or linear")

@@ -60,10 +60,26 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
   return json;
 }
 
-}  // namespace
+nlohmann::ordered_json picture_json(const SfrReport& report) {
+  nlohmann::ordered_json json = {{"image", report.image}, {"columns", report.columns}, {"rows", report.rows}};
+  if (!report.light.empty()) json["code_values"] = report.light;
+  json["edges"] = nlohmann::ordered_json::array();
+  for (const MeasuredEdge& edge : report.edges) json["edges"].push_back(edge_json(edge, report));
+  return json;
+}
 
-void print_sfr(const SfrReport& report, const Shared& shared) {
-  // What several edges share is said once.
+nlohmann::ordered_json json_of(const SfrReports& reports) {
+  if (reports.single) return picture_json(reports.pictures.front());
+  nlohmann::ordered_json json = {{"pictures", nlohmann::ordered_json::array()},
+                                 {"failed", nlohmann::ordered_json::array()}};
+  for (const SfrReport& report : reports.pictures) json["pictures"].push_back(picture_json(report));
+  for (const auto& [file, reason] : reports.failed)
+    json["failed"].push_back({{"image", file}, {"reason", reason}});
+  return json;
+}
+
+/// What several edges share is said once.
+void print_notes(const SfrReport& report, const Shared& shared) {
   std::map<std::string, std::string> edges_by_note;
   for (std::size_t i = 0; i < report.edges.size(); ++i)
     for (const std::string& text : report.edges[i].exact.notes) {
@@ -72,54 +88,95 @@ void print_sfr(const SfrReport& report, const Shared& shared) {
     }
   for (const auto& [text, names] : edges_by_note)
     note(shared, fmt::format("{}: {}: {}", report.image, names, text));
-  if (shared.json) {
-    nlohmann::ordered_json json = {
-        {"image", report.image}, {"columns", report.columns}, {"rows", report.rows}};
-    json["edges"] = nlohmann::ordered_json::array();
-    for (const MeasuredEdge& edge : report.edges) json["edges"].push_back(edge_json(edge, report));
-    return print_json(json);
-  }
-  fmt::print("{}: {} x {} pixels, {} edge{}\n", report.image, report.columns, report.rows,
-             report.edges.size(), report.edges.size() == 1 ? "" : "s");
-  fmt::print("{:>4} {:>9} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10}{}\n", "edge", "channel", "angle [deg]",
-             "MTF50 [c/p]", "+- [c/p]", "MTF50[lw/ph]", "MTF20[c/p]", "rise [px]",
-             report.pitch_um ? "  MTF50 [lp/mm]" : "");
-  for (std::size_t i = 0; i < report.edges.size(); ++i) {
-    const MeasuredEdge& e = report.edges[i];
-    fmt::print("{:>4} {:>9} {:>12.4f} {:>11.5f} {:>10.5f} {:>12.1f} {:>10.5f} {:>10.3f}", i + 1,
-               e.channel.empty() ? "-" : e.channel, e.angle_deg(), e.mtf50(),
-               e.iso ? NAN : e.exact.mtf50().deviation_cpp, 2 * e.mtf50() * report.rows,
-               e.iso ? NAN : e.exact.mtf[7].frequency_cpp, e.iso ? NAN : e.exact.rise_px);
-    if (report.pitch_um) fmt::print("{:>15.3f}", e.mtf50() * 1e3 / *report.pitch_um);
-    if (e.lateral_offset_px) fmt::print("  {:+.4f} px from green", *e.lateral_offset_px);
-    fmt::print("\n");
-  }
 }
 
-void write_sfr_csv(const std::string& path, const SfrReport& report) {
-  std::string text = fmt::format("edge,channel,frequency_cpp,{}frequency_lwph,sfr,deviation\n",
-                                 report.pitch_um ? "frequency_lpmm," : "");
-  for (std::size_t i = 0; i < report.edges.size(); ++i) {
-    const MeasuredEdge& edge = report.edges[i];
-    for (std::size_t k = 0; k < edge.sfr().size(); ++k) {
-      const double f = edge.frequencies()[k];
-      text += fmt::format("{},{},{:.6f},{}{:.3f},{:.8f},{}\n", i + 1, edge.channel, f,
-                          report.pitch_um ? fmt::format("{:.4f},", f * 1e3 / *report.pitch_um) : "",
-                          2 * f * report.rows, edge.sfr()[k],
-                          edge.iso ? "" : fmt::format("{:.8f}", edge.exact.sfr_deviation[k]));
-    }
+void print_edge(const SfrReport& report, std::size_t index) {
+  const MeasuredEdge& e = report.edges[index];
+  fmt::print("{:>4} {:>9} {:>12.4f} {:>11.5f} {:>10.5f} {:>12.1f} {:>10.5f} {:>10.3f}", index + 1,
+             e.channel.empty() ? "-" : e.channel, e.angle_deg(), e.mtf50(),
+             e.iso ? NAN : e.exact.mtf50().deviation_cpp, 2 * e.mtf50() * report.rows,
+             e.iso ? NAN : e.exact.mtf[7].frequency_cpp, e.iso ? NAN : e.exact.rise_px);
+  if (report.pitch_um) fmt::print("{:>15.3f}", e.mtf50() * 1e3 / *report.pitch_um);
+  if (e.lateral_offset_px) fmt::print("  {:+.4f} px from green", *e.lateral_offset_px);
+  fmt::print("\n");
+}
+
+/// A field of a .csv, in quotes where it must be.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+/// What rows of a table begin with.
+std::string csv_file(const SfrReports& reports, const SfrReport& report) {
+  return reports.single ? "" : csv_field(report.image) + ",";
+}
+
+std::string curve_file(const SfrReports& reports, const SfrReport& report) {
+  return reports.single ? "" : std::filesystem::path(report.image).stem().string() + ", ";
+}
+
+/// Calls `draw` with the first edges of all pictures, as many as a plot can bear.
+template <typename Draw>
+void for_first_edges(const SfrReports& reports, const Draw& draw) {
+  std::size_t curves = 0;
+  for (const SfrReport& report : reports.pictures)
+    for (std::size_t i = 0; i < report.edges.size() && curves < most_curves; ++i, ++curves) draw(report, i);
+}
+
+}  // namespace
+
+void print_sfr(const SfrReports& reports, const Shared& shared) {
+  for (const SfrReport& report : reports.pictures) print_notes(report, shared);
+  if (shared.json) return print_json(json_of(reports));
+  std::size_t width = 0;  // of the column of files
+  for (const SfrReport& report : reports.pictures) {
+    fmt::print("{}: {} x {} pixels, {} edge{}{}\n", report.image, report.columns, report.rows,
+               report.edges.size(), report.edges.size() == 1 ? "" : "s",
+               report.light.empty() ? "" : ", code values " + report.light);
+    width = std::max({width, report.image.size(), std::size_t{4}});
   }
+  if (!reports.single) fmt::print("{:<{}} ", "file", width);
+  fmt::print("{:>4} {:>9} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10}{}\n", "edge", "channel", "angle [deg]",
+             "MTF50 [c/p]", "+- [c/p]", "MTF50[lw/ph]", "MTF20[c/p]", "rise [px]",
+             reports.pictures.front().pitch_um ? "  MTF50 [lp/mm]" : "");
+  for (const SfrReport& report : reports.pictures)
+    for (std::size_t i = 0; i < report.edges.size(); ++i) {
+      if (!reports.single) fmt::print("{:<{}} ", report.image, width);
+      print_edge(report, i);
+    }
+}
+
+void write_sfr_csv(const std::string& path, const SfrReports& reports) {
+  std::string text =
+      fmt::format("{}edge,channel,frequency_cpp,{}frequency_lwph,sfr,deviation\n",
+                  reports.single ? "" : "file,", reports.pictures.front().pitch_um ? "frequency_lpmm," : "");
+  for (const SfrReport& report : reports.pictures)
+    for (std::size_t i = 0; i < report.edges.size(); ++i) {
+      const MeasuredEdge& edge = report.edges[i];
+      for (std::size_t k = 0; k < edge.sfr().size(); ++k) {
+        const double f = edge.frequencies()[k];
+        text += fmt::format(
+            "{}{},{},{:.6f},{}{:.3f},{:.8f},{}\n", csv_file(reports, report), i + 1, edge.channel, f,
+            report.pitch_um ? fmt::format("{:.4f},", f * 1e3 / *report.pitch_um) : "", 2 * f * report.rows,
+            edge.sfr()[k], edge.iso ? "" : fmt::format("{:.8f}", edge.exact.sfr_deviation[k]));
+      }
+    }
   write_whole_file(path, text);
 }
 
-void write_profile_csv(const std::string& path, const SfrReport& report) {
-  std::string text = "edge,channel,distance_px,esf,lsf_per_px\n";
-  for (std::size_t i = 0; i < report.edges.size(); ++i) {
-    const MeasuredEdge& edge = report.edges[i];
-    for (std::size_t k = 0; k < edge.exact.esf.size(); ++k)
-      text += fmt::format("{},{},{:.4f},{:.8f},{:.8f}\n", i + 1, edge.channel, edge.exact.distance_px[k],
-                          edge.exact.esf[k], edge.exact.lsf[k]);
-  }
+void write_profile_csv(const std::string& path, const SfrReports& reports) {
+  std::string text =
+      fmt::format("{}edge,channel,distance_px,esf,lsf_per_px\n", reports.single ? "" : "file,");
+  for (const SfrReport& report : reports.pictures)
+    for (std::size_t i = 0; i < report.edges.size(); ++i) {
+      const MeasuredEdge& edge = report.edges[i];
+      for (std::size_t k = 0; k < edge.exact.esf.size(); ++k)
+        text += fmt::format("{}{},{},{:.4f},{:.8f},{:.8f}\n", csv_file(reports, report), i + 1, edge.channel,
+                            edge.exact.distance_px[k], edge.exact.esf[k], edge.exact.lsf[k]);
+    }
   write_whole_file(path, text);
 }
 
@@ -163,17 +220,20 @@ NamedCurve read_sfr_table(const std::string& path) {
   return curve;
 }
 
-void write_sfr_plot(const std::string& path, const SfrReport& report, const std::vector<NamedCurve>& others) {
+void write_sfr_plot(const std::string& path, const SfrReports& reports,
+                    const std::vector<NamedCurve>& others) {
   Plot plot;
   plot.title = "Spatial frequency response";
   plot.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
   plot.y = {"SFR", "", PlotScale::linear, 0.0, std::nullopt};
-  const std::string picture =
-      others.empty() ? "" : std::filesystem::path(report.image).stem().string() + ", ";
-  for (std::size_t i = 0; i < std::min(most_curves, report.edges.size()); ++i)
+  for_first_edges(reports, [&](const SfrReport& report, std::size_t i) {
+    const std::string picture = reports.single && !others.empty()
+                                    ? std::filesystem::path(report.image).stem().string() + ", "
+                                    : curve_file(reports, report);
     plot.line(
         picture + fmt::format("{}: {:.2f} deg", name_of(report.edges[i], i), report.edges[i].angle_deg()),
         report.edges[i].frequencies(), report.edges[i].sfr());
+  });
   for (std::size_t i = 0; i < others.size(); ++i)
     plot.line(others[i].name, others[i].frequencies_cpp, others[i].sfr).stroke =
         i % 2 == 0 ? PlotStroke::dashed : PlotStroke::dotted;
@@ -181,18 +241,18 @@ void write_sfr_plot(const std::string& path, const SfrReport& report, const std:
   write_whole_file(path, plot.svg());
 }
 
-void write_profile_plot(const std::string& path, const SfrReport& report) {
+void write_profile_plot(const std::string& path, const SfrReports& reports) {
   Plot plot;
   plot.title = "Edge spread";
   plot.x = {"distance from the edge", "pixels", PlotScale::linear, -10.0, 10.0};
   plot.y = {"level over the step", ""};
-  for (std::size_t i = 0; i < std::min(most_curves, report.edges.size()); ++i) {
+  for_first_edges(reports, [&](const SfrReport& report, std::size_t i) {
     std::vector<double> x, y;
     const EdgeMeasurement& edge = report.edges[i].exact;
     for (std::size_t k = 0; k < edge.esf.size(); ++k)
       if (std::abs(edge.distance_px[k]) <= 10) x.push_back(edge.distance_px[k]), y.push_back(edge.esf[k]);
-    plot.line(name_of(report.edges[i], i), x, y);
-  }
+    plot.line(curve_file(reports, report) + name_of(report.edges[i], i), x, y);
+  });
   write_whole_file(path, plot.svg());
 }
 

@@ -6,24 +6,33 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
 
 namespace petzval::app {
 
+/// One picture.
 struct SfrReport {
-  std::string image;
+  std::string image, light;  ///< the file; how its numbers became light, empty where they are light
   int columns = 0, rows = 0;
   std::optional<double> pitch_um;
   std::vector<MeasuredEdge> edges;
 };
 
-void print_sfr(const SfrReport& report, const Shared& shared);
-/// edge, channel, frequency_cpp, frequency_lpmm (with a pitch), frequency_lwph, sfr, deviation.
-void write_sfr_csv(const std::string& path, const SfrReport& report);
-/// edge, channel, distance_px, esf, lsf.
-void write_profile_csv(const std::string& path, const SfrReport& report);
+/// What a command line has named.
+struct SfrReports {
+  bool single = true;  ///< one file by its own name: tables have no column for it
+  std::vector<SfrReport> pictures;
+  std::vector<std::pair<std::string, std::string>> failed;  ///< files, and why they could not be measured
+};
+
+void print_sfr(const SfrReports& reports, const Shared& shared);
+/// (file), edge, channel, frequency_cpp, frequency_lpmm (with a pitch), frequency_lwph, sfr, deviation.
+void write_sfr_csv(const std::string& path, const SfrReports& reports);
+/// (file), edge, channel, distance_px, esf, lsf.
+void write_profile_csv(const std::string& path, const SfrReports& reports);
 /// A curve from elsewhere.
 struct NamedCurve {
   std::string name;
@@ -35,8 +44,9 @@ struct NamedCurve {
 NamedCurve read_sfr_table(const std::string& path);
 
 /// The measured edges, and beside them, broken, what others say.
-void write_sfr_plot(const std::string& path, const SfrReport& report, const std::vector<NamedCurve>& others);
-void write_profile_plot(const std::string& path, const SfrReport& report);
+void write_sfr_plot(const std::string& path, const SfrReports& reports,
+                    const std::vector<NamedCurve>& others);
+void write_profile_plot(const std::string& path, const SfrReports& reports);
 /// The picture with its edges and their MTF50.
 void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane);
 

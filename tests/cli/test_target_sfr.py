@@ -2,6 +2,7 @@
 """petzval target and petzval sfr: the contract of their options, files and refusals, and the two against each other."""
 
 import csv
+import json
 import struct
 import unittest
 
@@ -251,9 +252,28 @@ class Sfr(ProgramTest):
                 (["clipped.png"], ["clipped", "bright side"]),
                 (["no.png"], ["no.png"]),
                 (["missing.tif"], ["missing.tif"]),
-                (["t.jpg"], [".png"])):
+                (["t.gif"], [".png"])):
             with self.subTest(arguments=arguments):
                 self.assert_refused("sfr", *arguments, words=words)
+
+    def test_several_files_make_one_table(self):
+        """Each picture as it is alone; one that cannot be read is named, and the rest goes on."""
+        for name, f_number in (("a.npy", 8), ("b.npy", 11)):
+            self.assert_succeeds("target", "--rectangle", "100x100@5", "--f-number", f_number, "--wavelength", 550,
+                                 "--pixel-pitch", 4.73, "-o", name)
+        alone = {name: self.json_of("sfr", name) for name in ("a.npy", "b.npy")}
+        self.write("c.jpg", b"no picture")
+        done = self.petzval("sfr", ".", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("c.jpg", done.stderr)
+        together = json.loads(done.stdout)
+        self.assertIn("c.jpg", json.dumps(together["failed"]))
+        for name in alone:
+            said = next(picture for picture in together["pictures"] if picture["image"].endswith(name))
+            self.assertEqual(said["edges"], alone[name]["edges"])
+        self.assert_succeeds("sfr", "a.npy", "b.npy", "--csv", "t.csv")
+        self.assertTrue((self.folder / "t.csv").read_text().splitlines()[0].startswith("file"))
+        self.assert_refused("sfr", "c.jpg", "c.jpg", words=["c.jpg"])
 
 
 if __name__ == "__main__":

@@ -23,9 +23,14 @@ struct Channel {
   std::vector<PixelLattice> lattices{{}};
 };
 
+/// Of the mosaic: as asked for, else as the picture says; empty for full planes.
+const std::string& pattern_of(const SfrRequest& request, const PicturePlanes& picture) {
+  return request.bayer.empty() ? picture.bayer : request.bayer;
+}
+
 std::vector<Channel> bayer_channels(const SfrRequest& request, const PicturePlanes& picture,
                                     const std::string& name) {
-  std::string pattern = request.bayer;
+  std::string pattern = pattern_of(request, picture);
   std::transform(pattern.begin(), pattern.end(), pattern.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   if (pattern != "rggb" && pattern != "bggr" && pattern != "grbg" && pattern != "gbrg")
@@ -44,7 +49,7 @@ std::vector<Channel> bayer_channels(const SfrRequest& request, const PicturePlan
 
 std::vector<Channel> channels_of(const SfrRequest& request, const PicturePlanes& picture,
                                  const std::string& name) {
-  if (!request.bayer.empty()) return bayer_channels(request, picture, name);
+  if (!pattern_of(request, picture).empty()) return bayer_channels(request, picture, name);
   if (request.channel == "luminance") return {{"", picture.luminance()}};
   if (!picture.rgb && request.channel != "all")
     throw InputError(name,
@@ -76,7 +81,7 @@ class Measurement {
     options_.edge_order = request.edge_order;
     options_.clip_low = picture.clip_low, options_.clip_high = picture.clip_high;
     options_.code_levels = picture.code_levels;
-    if (!request.bayer.empty()) guide_ = smoothed(guide_);
+    if (!pattern_of(request, picture).empty()) guide_ = smoothed(guide_);
     try {
       found_ = find_edges(guide_);
     } catch (const InputError&) {

@@ -17,10 +17,10 @@ namespace petzval {
 struct SfrRequest {
   std::vector<PixelBox> rois = {};    ///< one edge each; empty: every straight edge that stands out
   std::string channel = "luminance";  ///< "luminance", "red", "green", "blue" or "all"
-  std::string bayer =
-      {};              ///< "rggb", "bggr", "grbg" or "gbrg": the picture is a mosaic, each colour for itself
-  int edge_order = 0;  ///< as in SfrOptions
-  bool iso = false;    ///< iso_esfr() too
+  std::string bayer = {};  ///< "rggb", "bggr", "grbg" or "gbrg": the picture is a mosaic, each colour for
+                           ///< itself; empty: as it says
+  int edge_order = 0;      ///< as in SfrOptions
+  bool iso = false;        ///< iso_esfr() too
 };
 
 struct MeasuredEdge {

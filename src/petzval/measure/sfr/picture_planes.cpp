@@ -3,12 +3,16 @@
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
 #include <petzval/colour/display.h>
+#include <petzval/image/formats/jpeg.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/image/formats/tiff.h>
+#include <petzval/isp/demosaic.h>
 #include <petzval/measure/sfr/picture_planes.h>
+#include <petzval/sensor/formats/dng.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <functional>
@@ -38,21 +42,44 @@ double to_light(double code, bool linear) {
   return linear ? code : srgb_decoded(code);
 }
 
-/// What only files of whole numbers, 0 to `full`, have.
-void add_codes(PicturePlanes& picture, double full, bool linear) {
+/// How code values become light.
+struct CodeCurve {
+  bool linear = false, assumed = false;
+};
+
+CodeCurve code_curve(PictureTransfer asked, bool says_linear, bool says_srgb) {
+  if (asked != PictureTransfer::stated) return {asked == PictureTransfer::linear, false};
+  return {says_linear, !says_linear && !says_srgb};
+}
+
+/// What only files of whole numbers have.
+void add_codes(PicturePlanes& picture, int bits, const CodeCurve& curve) {
   picture.clip_low = 0, picture.clip_high = 1;
-  for (double code = 0; code <= full; ++code) picture.code_levels.push_back(to_light(code / full, linear));
+  picture.bits = bits, picture.srgb = !curve.linear, picture.assumed = curve.assumed;
+  const double full = bits == 8 ? 255 : 65535;
+  for (double code = 0; code <= full; ++code)
+    picture.code_levels.push_back(to_light(code / full, curve.linear));
 }
 
 PicturePlanes from_png(const std::string& path, PictureTransfer transfer) {
   const PngImage png = read_png(path);
-  const bool linear = transfer == PictureTransfer::linear ||
-                      (transfer == PictureTransfer::stated && png.transfer == PngTransfer::linear);
+  const CodeCurve curve =
+      code_curve(transfer, png.transfer == PngTransfer::linear, png.transfer == PngTransfer::srgb);
   const double full = png.bits == 8 ? 255 : 65535;
   PicturePlanes picture =
       deinterleaved(png.columns, png.rows, png.channels, png.channels < 3 ? 1 : 3,
-                    [&](std::size_t i) { return to_light(png.samples[i] / full, linear); });
-  add_codes(picture, full, linear);
+                    [&](std::size_t i) { return to_light(png.samples[i] / full, curve.linear); });
+  add_codes(picture, png.bits, curve);
+  return picture;
+}
+
+PicturePlanes from_jpeg(const std::string& path, PictureTransfer transfer) {
+  const JpegImage jpeg = read_jpeg(path);
+  const CodeCurve curve = code_curve(transfer, false, false);
+  PicturePlanes picture =
+      deinterleaved(jpeg.columns, jpeg.rows, jpeg.channels, jpeg.channels,
+                    [&](std::size_t i) { return to_light(jpeg.samples[i] / 255.0, curve.linear); });
+  add_codes(picture, 8, curve);
   return picture;
 }
 
@@ -73,8 +100,8 @@ bool says_linear(std::string_view description) {
 PicturePlanes from_tiff(const std::string& path, PictureTransfer transfer) {
   const TiffImage tiff = read_tiff(path);
   const bool floats = std::holds_alternative<std::vector<float>>(tiff.samples);
-  const bool linear = transfer == PictureTransfer::linear ||
-                      (transfer == PictureTransfer::stated && (floats || says_linear(tiff.description)));
+  const CodeCurve curve = code_curve(transfer, floats || says_linear(tiff.description),
+                                     tiff.description.find("sRGB") != std::string::npos);
   PicturePlanes picture = std::visit(
       [&](const auto& samples) {
         using Sample = typename std::decay_t<decltype(samples)>::value_type;
@@ -82,11 +109,11 @@ PicturePlanes from_tiff(const std::string& path, PictureTransfer transfer) {
             std::is_same_v<Sample, float> ? 1 : static_cast<double>(std::numeric_limits<Sample>::max());
         return deinterleaved(
             tiff.columns, tiff.rows, tiff.channels, tiff.channels < 3 ? 1 : 3,
-            [&](std::size_t i) { return to_light(static_cast<double>(samples[i]) / full, linear); });
+            [&](std::size_t i) { return to_light(static_cast<double>(samples[i]) / full, curve.linear); });
       },
       tiff.samples);
   if (!floats)
-    add_codes(picture, std::holds_alternative<std::vector<std::uint8_t>>(tiff.samples) ? 255 : 65535, linear);
+    add_codes(picture, std::holds_alternative<std::vector<std::uint8_t>>(tiff.samples) ? 8 : 16, curve);
   return picture;
 }
 
@@ -119,7 +146,62 @@ PicturePlanes from_exr(const std::string& path) {
   return picture;
 }
 
+/// The light of each stored number, as linearised() has it.
+void add_raw_levels(PicturePlanes& picture, const RawImage& raw) {
+  const double range = raw.white_level - raw.black_level;
+  const auto add = [&](double linear) { picture.code_levels.push_back((linear - raw.black_level) / range); };
+  if (raw.linearization.empty())
+    for (double code = 0; code <= raw.white_level; ++code) add(code);
+  else
+    for (const std::uint16_t linear : raw.linearization) add(linear);
+  std::ranges::sort(picture.code_levels);
+  picture.code_levels.erase(std::unique(picture.code_levels.begin(), picture.code_levels.end()),
+                            picture.code_levels.end());
+  picture.clip_low = picture.code_levels.front(), picture.clip_high = 1;
+  picture.bits = 16;
+}
+
+PicturePlanes from_raw(const RawImage& raw, const std::string& path, bool demosaic) {
+  const LinearMosaic mosaic = linearised(raw);
+  PicturePlanes picture;
+  picture.columns = mosaic.columns, picture.rows = mosaic.rows;
+  const auto add_plane = [&](const std::vector<float>& values) {
+    picture.planes.push_back({mosaic.columns, mosaic.rows, {values.begin(), values.end()}});
+  };
+  if (mosaic.mosaic.is_uniform() || !demosaic) {
+    add_plane(mosaic.values);
+    add_raw_levels(picture, raw);
+    if (mosaic.mosaic.is_uniform()) return picture;
+    if (!is_bayer(mosaic))
+      throw InputError(path, fmt::format("the mosaic {} is not Bayer's, whose colours are measured by "
+                                         "themselves; demosaic it",
+                                         mosaic_text(mosaic.mosaic, mosaic.channels)));
+    for (const char c : mosaic_text(mosaic.mosaic, mosaic.channels))
+      picture.bayer += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return picture;
+  }
+  const Planes planes = demosaiced(mosaic, usual_demosaic_method(mosaic).name);
+  for (const char* const colour : {"red", "green", "blue"}) {
+    const auto at = std::ranges::find(mosaic.channels, colour);
+    if (at == mosaic.channels.end() || mosaic.channels.size() != 3) break;
+    add_plane(planes.values[static_cast<std::size_t>(at - mosaic.channels.begin())]);
+  }
+  picture.rgb = picture.planes.size() == 3;
+  if (!picture.rgb) {
+    picture.planes.clear();
+    for (const std::vector<float>& values : planes.values) add_plane(values);
+  }
+  picture.clip_high = 1;
+  return picture;
+}
+
 }  // namespace
+
+const std::vector<std::string>& measurable_extensions() {
+  static const std::vector<std::string> extensions{".png",  ".jpg", ".jpeg", ".tif",
+                                                   ".tiff", ".npy", ".exr",  ".dng"};
+  return extensions;
+}
 
 Plane PicturePlanes::luminance() const {
   if (planes.size() == 1) return planes[0];
@@ -133,19 +215,23 @@ Plane PicturePlanes::luminance() const {
   return result;
 }
 
-PicturePlanes read_picture_planes(const std::string& path, PictureTransfer transfer) {
+PicturePlanes read_picture_planes(const std::string& path, PictureTransfer transfer, bool demosaic) {
   const std::string extension = extension_of(path);
   PicturePlanes picture;
   if (extension == ".png")
     picture = from_png(path, transfer);
+  else if (extension == ".jpg" || extension == ".jpeg")
+    picture = from_jpeg(path, transfer);
   else if (extension == ".tif" || extension == ".tiff")
     picture = from_tiff(path, transfer);
   else if (extension == ".npy")
     picture = from_npy(path);
   else if (extension == ".exr")
     picture = from_exr(path);
+  else if (extension == ".dng")
+    picture = from_raw(read_dng(path), path, demosaic);
   else
-    throw InputError(path, "a picture to measure is a .png, .tif, .npy or .exr");
+    throw InputError(path, "a picture to measure is a .png, .jpg, .tif, .npy, .exr or .dng");
   for (const Plane& plane : picture.planes)
     for (std::size_t i = 0; i < plane.values.size(); ++i)
       if (!std::isfinite(plane.values[i]))
