@@ -13,7 +13,7 @@ import shlex
 import subprocess
 import sys
 
-HOURS = 4
+HOURS = 2
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unknown-warning-option"]
 
 
