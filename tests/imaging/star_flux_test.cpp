@@ -38,7 +38,8 @@ class StarFlux : public ::testing::TestWithParam<Stars> {};
 
 // 49 stars at irrational distances: flux and place of each, by the law of similar triangles.
 TEST_P(StarFlux, IsThatOfItsSampleWhereverItFalls) {
-  const auto [samples_per_pixel, sigma_um, cells] = GetParam();
+  const double samples_per_pixel = GetParam().samples_per_pixel, sigma_um = GetParam().sigma_um;
+  const int cells = GetParam().cells;
   const LensDataTable table = rectilinear_table(sigma_um);
   constexpr int pixels = 160;
   constexpr double pitch_um = 10;
