@@ -29,6 +29,9 @@ function(petzval_install_headers)
     install(FILES ${PROJECT_SOURCE_DIR}/src/petzval/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/petzval/${folder})
   endwhile()
   list(SORT installed)
+  list(TRANSFORM installed PREPEND ${PROJECT_SOURCE_DIR}/src/petzval/ OUTPUT_VARIABLE documented)
+  list(JOIN documented " " PETZVAL_API_INPUT)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
   string(REPLACE ";" "\n" installed "${installed}")
   file(WRITE ${PROJECT_BINARY_DIR}/public_headers.txt "${installed}\n")
 endfunction()
@@ -51,3 +54,13 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/petzvalConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/petzvalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/petzvalConfig.cmake ${PROJECT_BINARY_DIR}/petzvalConfigVersion.cmake
   ${CMAKE_CURRENT_LIST_DIR}/PetzvalDependencies.cmake ${CMAKE_CURRENT_LIST_DIR}/default_data.cpp.in DESTINATION ${PETZVAL_INSTALL_CMAKEDIR})
+
+# `--target site`: the documents as a site, with the pages of the C++ interface, in site/html.
+find_program(DOXYGEN doxygen)
+if(DOXYGEN AND PETZVAL_BUILD_APPS)
+  add_custom_target(site
+    COMMAND ${DOXYGEN} ${PROJECT_BINARY_DIR}/Doxyfile
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/make_site.py $<TARGET_FILE:petzval_program> ${PROJECT_BINARY_DIR}/site
+      --api ${PROJECT_BINARY_DIR}/api/html
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMENT "Writing the site" VERBATIM)
+endif()

@@ -140,7 +140,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
       ++failed;
       held.push_back(fmt::format("{}: {}", label_of(point), result.error));
     }
-    // While every point is refused, it may be that nothing of this is to be.
+    // As long as every point was refused, their messages wait: if all are, one error says it.
     if (result.done || result.exit_code != refused || failed < results.size()) {
       for (const std::string& text : held) note(shared, text);
       held.clear();

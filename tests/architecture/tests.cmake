@@ -9,6 +9,7 @@ add_test(NAME architecture.source_rules COMMAND Python3::Interpreter ${here}/sou
 add_test(NAME architecture.symmetry_list
   COMMAND Python3::Interpreter ${here}/symmetry_list.py
     ${PROJECT_SOURCE_DIR}/docs/TRACING.md ${PROJECT_SOURCE_DIR}/src/petzval)
+add_test(NAME architecture.checked_by COMMAND Python3::Interpreter ${here}/checked_by.py ${PROJECT_SOURCE_DIR})
 add_test(NAME architecture.photon_path
   COMMAND Python3::Interpreter ${here}/photon_path.py
     ${PROJECT_SOURCE_DIR}/docs/ARCHITECTURE.md ${PROJECT_SOURCE_DIR}/src/petzval)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# cmake -D BUILD=… -D SOURCE=… -D SCRATCH=… -D COMPILER=… -D FLAGS=… -D CONFIGURATION=… -P build_and_run.cmake
+# cmake -D BUILD=… -D SOURCE=… -D SCRATCH=… -D PYTHON=… -D COMPILER=… -D FLAGS=… -D CONFIGURATION=… -P build_and_run.cmake
 # Installs the build into SCRATCH, moves the installed tree, and then uses it as a stranger would: a project that
 # calls find_package, and the program, which must find its data beside itself.
 function(run)
@@ -17,7 +17,8 @@ if(paths)
 endif()
 
 unset(ENV{PETZVAL_DATA})
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -D EXAMPLES=${TREE}/examples -D CMAKE_PREFIX_PATH=${SCRATCH}/moved
+run(${PYTHON} ${SOURCE}/snippets.py ${SCRATCH}/moved/include ${TREE}/docs/CPP.md ${SCRATCH}/snippets)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -D EXAMPLES=${TREE}/examples -D SNIPPETS=${SCRATCH}/snippets -D CMAKE_PREFIX_PATH=${SCRATCH}/moved
     -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" -D CMAKE_BUILD_TYPE=${CONFIGURATION})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/consumer)

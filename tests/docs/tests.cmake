@@ -14,6 +14,17 @@ if(TARGET petzval_program)
       ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
   endforeach()
 
+  # All of them as a site: no page that no list has, no link that leads nowhere.
+  add_test(NAME docs.site COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/make_site.py
+    $<TARGET_FILE:petzval_program> ${PROJECT_BINARY_DIR}/site)
+  set_tests_properties(docs.site PROPERTIES SKIP_RETURN_CODE 77
+    ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;PETZVAL_DATA=${PROJECT_SOURCE_DIR}/data")
+  find_program(DOXYGEN doxygen)
+  if(DOXYGEN)  # headers whose comments name parameters that are not there
+    add_test(NAME docs.api_pages COMMAND ${DOXYGEN} ${PROJECT_BINARY_DIR}/Doxyfile)
+    set_tests_properties(docs.api_pages PROPERTIES FAIL_REGULAR_EXPRESSION "warning:")
+  endif()
+
   # examples/, as their README says to run them.
   set(examples ${PROJECT_SOURCE_DIR}/examples)
   set(scratch ${PROJECT_BINARY_DIR}/examples)

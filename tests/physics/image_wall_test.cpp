@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop of METHODS closed with real lenses: g_source and the PSFs, which trace forwards from object
+// Two ways to the same light, with real lenses: g_source and the PSFs, which trace forwards from object
 // points, must give every pixel of a uniform wall the illumination that g_sensor, traced backwards from image
 // points, says.
 

@@ -83,7 +83,7 @@ TEST(SensorG, OnAxisIsPiSineSquared) {
 }
 
 TEST(Radiometry, BlurringSourceGGivesSensorG) {
-  // METHODS: g_sensor = g_source − div(centroid offset × g_source), here in its radial form, with
+  // docs/CONVENTIONS.md: g_sensor = g_source − div(centroid offset × g_source), here in its radial form, with
   // second-order blur terms left out: (blur radius / field scale)² ≈ (10 µm / 1 mm)² = 1e-4.
   const Lens lens = read_lens("edmund-54852").lens;
   FieldTracer tracer(lens, 587.5618);

@@ -192,6 +192,46 @@ std::vector<PupilRay> on_moved_sensor(std::vector<PupilRay> rays, const ChiefRay
   return rays;
 }
 
+/// How far two OTFs of the same frequencies differ, at most.
+double difference(const std::vector<SensorOtf>& a, const std::vector<SensorOtf>& b) {
+  double most = 0;
+  for (std::size_t s = 0; s < a.size(); ++s)
+    for (std::size_t k = 0; k < a[s].tangential.size(); ++k)
+      most = std::max({most, std::abs(a[s].tangential[k] - b[s].tangential[k]),
+                       std::abs(a[s].sagittal[k] - b[s].sagittal[k])});
+  return most;
+}
+
+/// By rays alone, twice as many each way until that makes no difference: the more periods of the pattern fit
+/// into the spot, the more rays it takes. \returns empty where no ray passes.
+template <class Height>
+std::vector<SensorOtf> geometric_otfs(const FieldTracer& tracer, const ChiefRay& chief,
+                                      const std::vector<double>& frequencies,
+                                      const std::vector<double>& shifts, Height&& height_mm) {
+  constexpr double close = 1e-5;
+  constexpr PupilSampling first{32, 192};
+  constexpr int most_radial_nodes = 512;  // enough for a hundred periods in the spot, where little is left
+  std::vector<SensorOtf> coarse;
+  for (PupilSampling at = first; at.radial_nodes <= most_radial_nodes;
+       at.radial_nodes *= 2, at.azimuths *= 2) {
+    check_stop();
+    const std::vector<PupilRay> rays = light_rays(tracer, chief, at);
+    if (rays.empty()) return {};
+    std::vector<SensorOtf> fine;
+    for (const double shift : shifts) {
+      check_stop();
+      const std::vector<PupilRay> moved = on_moved_sensor(rays, chief, shift);
+      fine.push_back(fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
+        return geometric_otf(moved, direction, frequency);
+      }));
+    }
+    const bool done = !coarse.empty() && difference(coarse, fine) < close;
+    coarse = std::move(fine);
+    if (done) break;
+  }
+  return coarse;
+}
+
 std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, const MtfOptions& options) {
   const std::vector<double>& frequencies = options.frequencies_cpmm;
   const std::vector<double> shifts =
@@ -200,16 +240,8 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   const auto height_mm = [&](double shift) { return chief.image_height_mm + shift * chief_slope; };
   OtfRow row;
   if (options.geometric) {
-    const std::vector<PupilRay> rays = pupil_rays(tracer, chief, {32, 192});
-    if (rays.empty()) return {};
-    for (const double shift : shifts) {
-      check_stop();
-      const std::vector<PupilRay> moved = on_moved_sensor(rays, chief, shift);
-      row.sensors.push_back(
-          fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
-            return geometric_otf(moved, direction, frequency);
-          }));
-    }
+    row.sensors = geometric_otfs(tracer, chief, frequencies, shifts, height_mm);
+    if (row.sensors.empty()) return {};
     return row;
   }
   const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);

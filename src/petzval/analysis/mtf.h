@@ -37,7 +37,7 @@ std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirecti
 
 struct MtfOptions {
   std::vector<double> frequencies_cpmm = {};
-  bool geometric = false;
+  bool geometric = false;  ///< by as many rays as change no OTF by 1e-5
   PupilModel model = {};
   /// One a wavelength of the request: over all wavelengths together, each PSF of unit light times its weight,
   /// at its own place (lateral colour included). Empty: every wavelength for itself.

@@ -38,8 +38,8 @@ struct PsfOptions {
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief,
                                 const PsfOptions& options = {});
 
-/// The pupil of a field as plane waves at the sensor (METHODS: angle characteristic): real rays through the
-/// vignetted pupil, β towards positive t, away from the axis.
+/// The pupil of a field as plane waves at the sensor (docs/PSF.md, angle characteristic): real rays through
+/// the vignetted pupil, β towards positive t, away from the axis.
 std::optional<PupilWaves> pupil_waves(const FieldTracer& tracer, const ChiefRay& chief, int radial_nodes,
                                       int azimuths);
 

@@ -91,6 +91,22 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
   return rays;
 }
 
+std::vector<PupilRay> light_rays(const FieldTracer& tracer, const ChiefRay& chief,
+                                 const PupilSampling& sampling) {
+  std::vector<PupilRay> rays;
+  const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, sampling.azimuths);
+  if (!pupil) return rays;
+  const Launcher launcher(tracer, chief);
+  for (const PupilNode& node : pupil_nodes(*pupil, sampling.radial_nodes)) {
+    const Tracer::Clearance traced = launcher.trace(node.u, node.v);
+    if (!Launcher::arrived(traced)) continue;
+    rays.push_back(launcher.at_image(traced));
+    rays.back().mirrored = pupil->mirrored();
+    rays.back().entrance_measure = node.weight;
+  }
+  return rays;
+}
+
 namespace {
 
 /// The rim of a pupil by how much of its area lies before an azimuth.

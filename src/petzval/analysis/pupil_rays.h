@@ -34,6 +34,11 @@ struct PupilSampling {
 std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chief,
                                  const PupilSampling& sampling = {});
 
+/// The nodes alone, with `entrance_measure` as their only weight: for the light of a spot, at a fifth of the
+/// cost.
+std::vector<PupilRay> light_rays(const FieldTracer& tracer, const ChiefRay& chief,
+                                 const PupilSampling& sampling = {});
+
 /// `rings` rings of rays, the k-th of 6k, evenly over the entrance beam: points of a spot diagram. Rings are
 /// the rim made smaller, and from ray to ray equal areas lie between them, however the beam is stretched.
 /// Mirror symmetric, both halves, weights of zero, the chief ray not among them.

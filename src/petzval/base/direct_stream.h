@@ -42,6 +42,8 @@ class DirectStream {
   };
 
   void hand_over();
+  /// What the writing thread does until the stream ends. The mutex guards the counts, `ended_` and `fault_`;
+  /// it is not held while a block is written, for a block that waits belongs to this thread alone.
   void write_blocks();
   int write_out(const Block& block, std::size_t at) const;
   void rethrow() const;

@@ -27,6 +27,12 @@ struct ErrorParts {
 
 /// The input is wrong: a bad file, parameter, lens or number. The program exits with 2.
 ///
+///     try {
+///       camera.sensor = read_sensor("third-inch-1280x96");
+///     } catch (const InputError& error) {
+///       std::cerr << error.parts().problem << "; " << error.parts().remedy << '\n';
+///     }
+///
 /// A message says what is wrong, and behind its first "; " what would be right. It names a parameter of the
 /// library in backquotes: "`surround` beyond: error, zero or extend would be right". The first one so named
 /// is the parameter at fault. Each user interface puts its own name there: an option, a keyword.
@@ -35,7 +41,7 @@ class InputError : public Error {
   explicit InputError(ErrorParts parts);
   explicit InputError(const std::string& message);
   InputError(const std::string& file, const std::string& message);
-  /// \param line, column  counted from 1.
+  /// Lines and columns count from 1.
   InputError(const std::string& file, int line, const std::string& message);
   InputError(const std::string& file, int line, int column, const std::string& message);
 

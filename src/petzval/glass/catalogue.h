@@ -49,6 +49,9 @@ class GlassCatalogue {
 };
 
 /// The material of a lens made of this glass, "SCHOTT:N-BK7" or "N-BK7". \throws InputError as find().
+///
+///     const Material crown = glass_material("SCHOTT:N-BK7");
+///     std::cout << crown.description() << ": " << crown.index(587.5618) << '\n';
 Material glass_material(const std::string& name, const GlassCatalogue& glasses = GlassCatalogue::bundled());
 
 }  // namespace petzval

@@ -58,7 +58,7 @@ class SpectralImage {
   /// \throws InputError if it has another size.
   void store_band(int index, std::span<const float> plane);
   /// Gives up a band of a large image, whose values are kept in a file, and the room that it takes; it is not
-  /// to be looked at again. \throws InputError for a band that the image has not.
+  /// to be looked at again. \throws InputError if there is no such band.
   void give_up_band(int index);
   float& at(int band_index, int row, int column);
   float at(int band_index, int row, int column) const;

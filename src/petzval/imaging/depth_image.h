@@ -13,7 +13,8 @@
 
 namespace petzval {
 
-/// A lens as it is used, and how its tables are to be made. Where its object stands is of no account.
+/// A lens as it is used, and how its tables are to be made. Each layer of the scene has its
+/// own distance, so that of the lens's object does not matter.
 struct DepthCamera {
   Lens lens;
   TableOptions table;  ///< wavelengths, and the image height that it must reach

@@ -35,6 +35,11 @@ struct FirstOrder {
   double lagrange_invariant_mm = 0;  ///< for the largest field, positive
 };
 
+/// What paraxial optics says of a lens.
+///
+///     const FirstOrder optics = first_order(read_lens("dgauss-50mm").lens);
+///     std::cout << optics.efl_mm << " mm f/" << optics.f_number << '\n';
+///
 /// The size of the stop follows from `lens.aperture` at the reference wavelength; another wavelength sees the
 /// same stop. A real image height is taken for a paraxial one. \param wavelength_nm  absent: the lens's
 /// reference wavelength. \throws InputError when an index is not known, or the lens cannot have the aperture

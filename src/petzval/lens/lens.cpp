@@ -7,6 +7,16 @@
 
 namespace petzval {
 
+Surface Surface::sphere(double radius_mm, double thickness_mm, const Material& behind,
+                        std::optional<double> semi_diameter_mm) {
+  Surface surface;
+  surface.curvature_per_mm = 1 / radius_mm;
+  surface.thickness_mm = thickness_mm;
+  surface.material = behind;
+  surface.semi_diameter_mm = semi_diameter_mm;
+  return surface;
+}
+
 std::size_t Lens::stop_index() const {
   const auto stop = std::find_if(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.stop; });
   if (stop == surfaces.end()) throw InputError("the lens has no stop; mark one surface with \"stop\": true");

@@ -32,6 +32,11 @@ struct Surface {
   double conic = 0;                             ///< k
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
+
+  /// A sphere by its radius (infinite: a plane), the gap behind it, what fills that, and how wide it is
+  /// clear.
+  static Surface sphere(double radius_mm, double thickness_mm, const Material& behind = {},
+                        std::optional<double> semi_diameter_mm = {});
 };
 
 /// How wide the lens is open.
@@ -55,6 +60,14 @@ struct Fields {
   std::vector<double> values{0.0};
 };
 
+/// A prescription. A value: alter it as you like, validate() says what is wrong with it.
+///
+///     Lens lens;
+///     lens.surfaces = {Surface::sphere(51.5, 4, glass_material("SCHOTT:N-BK7"), 12.5),
+///                      Surface::sphere(INFINITY, 97.3, Material(), 12.5)};
+///     lens.surfaces[0].stop = true;
+///     lens.aperture = {Aperture::Kind::f_number, 8};
+///     lens.fields.values = {0, 3, 5};
 struct Lens {
   std::string name = {};
   std::string source = {};

@@ -25,7 +25,13 @@ struct LensFile {
   std::vector<std::string> notes = {};
 };
 
-/// Reads a lens by path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx,
+/// Reads a lens.
+///
+///     Lens lens = read_lens("dgauss-50mm").lens;
+///     lens = with_setting(lens, "surfaces[4].thickness_mm=2.1");
+///     write_lens(lens, "altered.zmx");
+///
+/// By path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx,
 /// .seq, .csv and .tsv for tables) and content. The lens is valid. \throws InputError with file and line, for
 /// anything that is wrong or not modelled, and for a substitution of a glass that the file does not have.
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options = {});

@@ -29,7 +29,7 @@ struct LensDataTable {
   std::vector<double> fields;
   std::vector<double> wavelengths_nm;        ///< increasing
   std::vector<double> real_image_height_mm;  ///< |height| of the real chief ray on the image surface
-  std::vector<double> g_source_sr;           ///< METHODS: flux per area of chief-ray image, per radiance
+  std::vector<double> g_source_sr;           ///< flux per area of chief-ray image, per radiance
   std::vector<double> g_sensor_sr;           ///< irradiance of a uniform wall, per radiance
   std::vector<Psf> psf;
 

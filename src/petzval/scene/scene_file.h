@@ -44,7 +44,11 @@ struct SceneOptions {
   ThermalOptions thermal = {};                 ///< of emissivities and temperatures
 };
 
-/// Reads a scene:
+/// Reads a scene.
+///
+///     const Scene chart = read_scene("slanted-edge:5", {.wavelengths_nm = {450, 550, 650}, .distance_m =
+///     2});
+///
 ///   a file     .mat (ISET), .exr (spectral OpenEXR), .hdr (ENVI) or .npy (NumPy), or the name of a bundled
 ///   one
 ///              (data/scenes)

@@ -96,7 +96,12 @@ struct Sensor {
   const SensorElectronics& require_electronics() const;
 };
 
-/// Reads "768x576@6.25" (columns x rows @ pitch in µm), a path, or the name of a bundled sensor
+/// Reads a sensor.
+///
+///     const Sensor sensor = read_sensor("third-inch-1280x960");
+///     const Sensor frame = read_sensor("640x480@7.5");  // no electronics: light only
+///
+/// \param text  "768x576@6.25" (columns x rows @ pitch in µm), a path, or the name of a bundled sensor
 /// (JSON, "format": "petzval-sensor/1", strict; docs/SENSOR.md).
 /// \throws InputError with file and line, saying what would be right; also for a sensor that contradicts
 /// itself.

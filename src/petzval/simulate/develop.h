@@ -48,7 +48,13 @@ struct Picture {
   std::string provenance = {};
 };
 
-/// Develops a raw image. \param step  told of each step with what it made (develop_step_names()); may be
+/// Develops a raw image.
+///
+///     Development development;
+///     development.white_balance = WhiteBalance::parse("D65");
+///     write_picture("shot.tif", develop(raw, development), 16);
+///
+/// \param step  told of each step with what it made (develop_step_names()); may be
 /// empty. \throws InputError for options that do not fit the image; Cancelled.
 Picture develop(const RawImage& raw, const Development& development = {}, const Context& context = {},
                 const DevelopStep& step = {});

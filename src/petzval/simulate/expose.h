@@ -49,7 +49,13 @@ struct ExposeOptions {
   std::optional<Spectrum> illuminant = {};   ///< for white balance; absent: as the image says
 };
 
-/// Exposes a sensor to light. The raw image is complete: its colour matrices, its white balance (of the light
+/// Exposes a sensor to light.
+///
+///     ExposeOptions options;
+///     options.exposure = Exposure::seconds(0.01);
+///     const RawImage raw = expose(light, sensor, options);
+///
+/// The raw image is complete: its colour matrices, its white balance (of the light
 /// of the scene; where that is not known, as if the scene were grey on average, and a note says so), its ISO
 /// speed and the facts of its lens. Noise grows from the context's seed; frames of a bracket have seeds of
 /// their own. \throws InputError for a sensor that turns no light into numbers, an image that was not made

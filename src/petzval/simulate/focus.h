@@ -11,6 +11,9 @@
 namespace petzval {
 
 /// What a camera is focused on.
+///
+///     camera.focus = Focus::at_m(1.2);
+///     camera.focus = Focus::parse("1.2m+best-mtf@40");
 struct Focus {
   enum class Kind {
     automatic,  ///< what is in front of the camera: the scene's distance, or the middle of its depths

@@ -71,6 +71,10 @@ ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options = {
 /// those of form_image(). \param report  may be null. \throws InputError; Cancelled.
 SpectralImage image(const ImagePlan& plan, const Context& context = {}, ImageReport* report = nullptr);
 /// plan_image() and image() in one.
+///
+///     ImageOptions options;
+///     options.imaging.product.tolerance = 1e-2;
+///     const SpectralImage light = image(SceneRequest{.name = "studio"}, camera, options);
 SpectralImage image(const SceneRequest& scene, Optics optics, const ImageOptions& options = {},
                     const Context& context = {}, ImageReport* report = nullptr);
 SpectralImage image(Scene scene, Optics optics, const ImageOptions& options = {}, const Context& context = {},

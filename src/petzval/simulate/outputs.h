@@ -46,7 +46,11 @@ bool develops(const OutputOptions& options, const std::optional<Sensor>& sensor)
 void check_outputs(const std::vector<std::string>& paths, const std::optional<Sensor>& sensor,
                    const OutputOptions& options = {});
 
-/// Writes all files, or none: irradiance as .exr or .npy, the raw image as .dng, pictures as .png or .tif.
+/// Writes all files, or none.
+///
+///     write_outputs(light, {"light.exr", "shot.dng", "shot.png"}, camera.sensor);
+///
+/// By their names: irradiance as .exr or .npy, the raw image as .dng, pictures as .png or .tif.
 /// \throws InputError as check_outputs(); Failure; Cancelled.
 Outputs write_outputs(SpectralImage light, const std::vector<std::string>& paths,
                       const std::optional<Sensor>& sensor, const OutputOptions& options = {},

@@ -25,6 +25,11 @@ struct PsfStack {
   std::size_t psf_cells() const { return static_cast<std::size_t>(size) * static_cast<std::size_t>(size); }
 };
 
+/// The PSFs of a lens.
+///
+///     const PsfStack stack = psf_stack(lens, {.fields = {0, 10}, .wavelengths_nm = {450, 550, 650}});
+///     const float* first = stack.values.data();  // stack.size × stack.size cells
+///
 /// \param at  empty lists: the lens's own. \param options  a size or a spacing that is left open holds all:
 /// the finest spacing that any PSF wants and the widest window, in at most `largest_size` cells a side.
 /// \throws InputError naming a field and a wavelength at which no ray passes; Cancelled.

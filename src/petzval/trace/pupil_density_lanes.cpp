@@ -91,7 +91,7 @@ HWY_ATTR void densities(const PupilDensityTable& table, const PupilDirections& r
   std::size_t at = 0;
   for (; at + lanes <= rays.count; at += lanes) density_at(table, rays, at, per_sr);
   if (at == rays.count) return;
-  // Those that fill no vector, in one of their own.
+  // The last few do not fill a vector: they are copied into one.
   HWY_ALIGN float room[5][HWY_MAX_BYTES / sizeof(float)] = {};
   const float* const from[4] = {rays.x_mm, rays.y_mm, rays.alpha, rays.beta};
   for (std::size_t c = 0; c < 4; ++c) std::copy_n(from[c] + at, rays.count - at, room[c]);

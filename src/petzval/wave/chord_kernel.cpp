@@ -371,6 +371,9 @@ HWY_ATTR HWY_INLINE void sum_two_columns(const RowWaves& waves, const ChordField
   put(3, hn::Add(c_re1, s_im1), hn::Sub(c_im1, s_re1));
 }
 
+/// The light of every cell, row by row. Rows that mirror each other about the middle share their waves
+/// (sum_two_columns), so they are made in pairs, as many at a time as a vector has lanes. Their samples are
+/// first gathered into the columns of cells, then these rows are shared out to the rows of cells.
 HWY_ATTR void sum_cells(const ChordSum& sum, double* cells) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
@@ -381,7 +384,7 @@ HWY_ATTR void sum_cells(const ChordSum& sum, double* cells) {
                                row_shares = shares_of_samples(rows, cell);
   const double first_mm = rows % 2 == 0 ? 0.5 * sum.step_mm : 0;
   RowWaves waves = start_rows(sum, first_mm);
-  // The light of a vector of upper and one of lower rows in the columns of cells.
+  // Of the rows at hand: [column of cells][upper, lower][lane].
   std::vector<float> in_cells(cell_columns * 2 * lanes), intensity(4 * lanes);
   const std::size_t half = (rows + 1) / 2;  // pairs, the middle row with itself when their number is odd
   for (std::size_t pair = 0; pair < half; pair += lanes) {
