@@ -185,6 +185,17 @@ const OwnOptions own_options[] = {
     {"colour", "petzval lens colour cooke-triplet --plot colour.svg"},
     {"vignetting", "petzval lens vignetting dgauss-50mm --plot vignetting.svg"},
     {"chief-ray-angle", "petzval lens chief-ray-angle edmund-54852 --plot angle.svg"},
+    {"ghosts",
+     "petzval lens ghosts cooke-triplet --coating 0.005 --sensor-reflectance 0.05 --plot ghosts.svg",
+     [](CLI::App& app, AnalysisCommand& command) {
+       command.losses.add_to(app);
+       app.add_option("--sensor-reflectance", command.request.sensor_reflectance,
+                      "Share of the light that the sensor's surface reflects; 0: no ghosts of it")
+           ->check(CLI::Range(0.0, 1.0));
+       app.add_option("--source-diameter", command.request.source_diameter_deg,
+                      "Angle under which the lens sees the source [degrees]; default: the Sun's")
+           ->check(positive_number());
+     }},
     {"mtf", "petzval lens mtf cooke-triplet --frequencies 10,20,40 --polychromatic --plot mtf.svg", add_mtf},
     {"focus", "petzval lens focus cooke-triplet --frequency 40 --plot focus.svg",
      [](CLI::App& app, AnalysisCommand& command) {

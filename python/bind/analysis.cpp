@@ -93,7 +93,8 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                         bool polychromatic, const Numbers& weights, bool over_field,
                         Maybe<double> through_focus_mm, const Numbers& radii_um, const std::string& about,
                         int rays, bool opd, int samples, const std::string& zernike_order, int terms,
-                        const std::string& spot_weight, double focus_frequency_cpmm, int threads,
+                        const std::string& spot_weight, double focus_frequency_cpmm,
+                        double sensor_reflectance, double source_diameter_deg, int threads,
                         const nb::object& progress) {
   const Lens lens = lens_to_look_at(self);
   AnalysisRequest request;
@@ -114,6 +115,7 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
   request.spot_weight = choice<RayWeight>("spot_weight", spot_weight,
                                           {{"area", RayWeight::stop_area}, {"light", RayWeight::light}});
   request.focus_frequency_cpmm = focus_frequency_cpmm;
+  request.sensor_reflectance = sensor_reflectance, request.source_diameter_deg = source_diameter_deg;
   Call call({threads, 1, progress});
   return python_of(name, call([&](const Context& context) { return analyse(name, lens, request, context); }));
 }
@@ -280,8 +282,8 @@ constexpr const char* draw_text =
       nb::arg("through_focus_mm").none() = nb::none(), nb::arg("radii_um") = Numbers(),                     \
       nb::arg("about") = "centroid", nb::arg("rays") = 21, nb::arg("opd") = false, nb::arg("samples") = 64, \
       nb::arg("zernike_order") = "fringe", nb::arg("terms") = 0, nb::arg("spot_weight") = "area",           \
-      nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("threads") = 0,                                       \
-      nb::arg("progress").none() = nb::none()
+      nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("sensor_reflectance") = 0.0,                          \
+      nb::arg("source_diameter_deg") = 0.53, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()
 
 /// What a lens and a camera have alike.
 void bind_methods(const nb::handle& type) {

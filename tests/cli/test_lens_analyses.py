@@ -36,6 +36,26 @@ class LensAnalyses(ProgramTest):
                 root = ElementTree.parse(self.folder / "plot.svg").getroot()
                 self.assertTrue(root.tag.endswith("svg"))
 
+    def test_ghosts_of_coated_surfaces(self):
+        usual = ["lens", "ghosts", "cooke-triplet"]
+        bare, coated = (self.json_of(*usual, *more)["rows"] for more in ([], ["--coating", "0.01"]))
+        self.assertEqual(len(bare), 15)  # pairs of six surfaces
+        self.assertEqual({row["wavelength_nm"] for row in bare}, {550})
+        key = lambda row: (row["first_surface"], row["second_surface"])
+        for one, other in zip(sorted(bare, key=key), sorted(coated, key=key)):
+            self.assertEqual(key(one), key(other))
+            self.assertAlmostEqual(one["focus_mm"], other["focus_mm"])
+            self.assertLess(other["transmittance"], one["transmittance"])
+            # R² of two surfaces, (1 − R) of the others: once, or three times between the two.
+            between = int(one["first_surface"]) - int(one["second_surface"]) - 1
+            expected = 0.01 ** 2 * 0.99 ** (2 + 3 * between + 4 - between)
+            self.assertAlmostEqual(other["transmittance"] / expected, 1, places=12)
+        sensor = self.json_of(*usual, "--sensor-reflectance", "0.05", "--wavelengths", "450,650")["rows"]
+        self.assertEqual(len(sensor), 2 * 21)
+        self.assertEqual(sum(row["first_surface"] == "sensor" for row in sensor), 12)
+        self.assert_error(self.petzval(*usual, "--sensor-reflectance", "2"), 2, "0", "1")
+        self.assert_error(self.petzval(*usual, "--source-diameter", "200"), 2, "--source-diameter", "180")
+
     def test_blades_are_part_of_the_lens(self):
         usual = ["--fields", "0,7", "--wavelengths", "550"]
         bladed = self.json_of("lens", "spots", "double-gauss", *usual, "--blades", "5", "--blade-rotation", "10")["rows"]

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace petzval {
 
@@ -251,6 +252,45 @@ Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows) 
   add_curves(
       plot, rows, [](const VignettingRow& row) { return row.field; },
       [](const VignettingRow& row) { return row.open_share; });
+  return plot;
+}
+
+namespace {
+
+/// Whether the name of a ghost would stand clear of the others.
+bool has_room(const std::vector<PlotNote>& names, const Ghost& ghost) {
+  constexpr double across = 2, up = 1.5;  // on logarithmic axes
+  return std::none_of(names.begin(), names.end(), [&](const PlotNote& name) {
+    return std::abs(std::log(name.x / ghost.diameter_mm)) < std::log(across) &&
+           std::abs(std::log(name.y / ghost.relative_irradiance)) < std::log(up);
+  });
+}
+
+}  // namespace
+
+Plot ghost_plot(const std::vector<Ghost>& rows, std::size_t sensor) {
+  constexpr std::size_t most_named = 6;
+  Plot plot;
+  plot.title = "Ghosts";
+  plot.x = {"diameter on the sensor", "mm", PlotScale::logarithmic};
+  plot.y = {"irradiance over the image's", "", PlotScale::logarithmic};
+  std::map<double, std::pair<std::vector<double>, std::vector<double>>> by_wavelength;
+  for (const Ghost& ghost : rows) {
+    auto& [x, y] = by_wavelength[ghost.wavelength_nm];
+    if (plot.notes.size() < most_named && has_room(plot.notes, ghost))
+      plot.notes.push_back(
+          {ghost.diameter_mm, ghost.relative_irradiance,
+           fmt::format(" {}, {}", ghost.first == sensor ? "sensor" : fmt::format("{}", ghost.first),
+                       ghost.second)});
+    x.push_back(ghost.diameter_mm);
+    y.push_back(ghost.relative_irradiance);
+  }
+  for (const auto& [wavelength_nm, points] : by_wavelength) {
+    PlotSeries& dots = plot.line(fmt::format("{:g} nm", wavelength_nm), points.first, points.second);
+    dots.colour = wavelength_colour(wavelength_nm).hex();
+    dots.stroke = PlotStroke::none;
+    dots.marker = PlotMarker::dot;
+  }
   return plot;
 }
 

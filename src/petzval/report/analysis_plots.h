@@ -34,6 +34,8 @@ Plot encircled_energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyR
 Plot lateral_colour_plot(Fields::Kind kind, const std::vector<LateralColourRow>& rows);
 Plot illumination_plot(const std::vector<IlluminationRow>& rows);
 Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows);
+/// A dot a ghost, a colour a wavelength; the brightest are named by their surfaces.
+Plot ghost_plot(const std::vector<Ghost>& rows, std::size_t sensor);
 Plot chief_ray_angle_plot(const std::vector<ChiefRayAngleRow>& rows);
 
 }  // namespace petzval

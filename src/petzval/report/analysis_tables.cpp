@@ -298,6 +298,27 @@ Table tabulate(const std::vector<AxialFocusRow>& rows) {
   return table;
 }
 
+Table tabulate(const std::vector<Ghost>& rows, std::size_t sensor) {
+  Table table{{wavelength_column,
+               {"reflected at", "", 0, "first_surface"},
+               {"then at", "", 0, "second_surface"},
+               {"focus", "mm", 3, "focus_mm", {"", ".4g", 0, "inf"}},
+               {"diameter", "mm", 4, "diameter_mm", {"", ".4g"}},
+               {"magnification", "", 3, "magnification", {"", ".4g"}},
+               {"transmittance", "", 6, "transmittance", {"", ".3g"}},
+               {"irradiance over the front's", "", 8, "irradiance", {"", ".3g"}},
+               {"over the image's", "", 10, "relative_irradiance", {"", ".3g"}}},
+              {}};
+  table.columns[0].text = {"", "g"};
+  const auto name = [&](std::size_t surface) {
+    return surface == sensor ? std::string("sensor") : fmt::format("{}", surface);
+  };
+  for (const Ghost& row : rows)
+    table.rows.push_back({row.wavelength_nm, name(row.first), name(row.second), row.focus_mm, row.diameter_mm,
+                          row.magnification, row.transmittance, row.irradiance, row.relative_irradiance});
+  return table;
+}
+
 Table tabulate(const SeidelSums& sums) {
   Table table{{{"surface", "", 0, "surface"},
                {"S1 spherical", "mm", 5, "s1"},

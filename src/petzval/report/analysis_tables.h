@@ -7,6 +7,7 @@
 #include <petzval/analysis/encircled_energy.h>
 #include <petzval/analysis/field_curvature.h>
 #include <petzval/analysis/field_tables.h>
+#include <petzval/analysis/ghosts.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/analysis/seidel.h>
 #include <petzval/analysis/spot_diagram.h>
@@ -41,6 +42,8 @@ Table tabulate(Fields::Kind kind, const std::vector<WavefrontMap>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<WavefrontZernikeRow>& rows, ZernikeOrder order);
 
 Table tabulate(const std::vector<AxialFocusRow>& rows);
+/// \param sensor  the index of its surface, which is called so.
+Table tabulate(const std::vector<Ghost>& rows, std::size_t sensor);
 /// A row a surface, then the sum.
 Table tabulate(const SeidelSums& sums);
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/best_focus.h>
 #include <petzval/analysis/field_values.h>
+#include <petzval/analysis/ghosts.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/report/analysis_plots.h>
 #include <petzval/report/colours.h>
@@ -316,6 +317,25 @@ AnalysisResult best_focus(const Lens& lens, const AnalysisRequest& request, cons
   return result;
 }
 
+AnalysisResult ghost_reflections(const Lens& lens, const AnalysisRequest& request, const Context&) {
+  GhostOptions options;
+  // All of a lens's own wavelengths would say the same several times over.
+  if (request.at.wavelengths_nm != lens.wavelengths_nm) options.wavelengths_nm = request.at.wavelengths_nm;
+  options.losses = request.at.losses;
+  options.sensor_reflectance = request.sensor_reflectance;
+  options.source_diameter_deg = request.source_diameter_deg;
+  const std::size_t sensor = lens.surfaces.size();
+  const std::vector<Ghost> rows = ghosts(lens, options);
+  AnalysisResult result = result_of(
+      lens, request.at,
+      fmt::format("double reflections, paraxial, of a source {:g} deg wide; focus from the image surface",
+                  options.source_diameter_deg),
+      tabulate(rows, sensor));
+  result.facts = {{"source_diameter_deg", std::vector<double>{options.source_diameter_deg}}};
+  if (request.plots) result.plots = {ghost_plot(rows, sensor)};
+  return result;
+}
+
 const Analysis table_of_analyses[] = {
     {"distortion", "Real and paraxial image heights by field and wavelength", distortion},
     {"illumination", "Absolute and relative illumination by field and wavelength", illumination},
@@ -330,6 +350,8 @@ const Analysis table_of_analyses[] = {
     {"colour", "Axial and lateral colour of real rays", colour},
     {"vignetting", "How much of the stop each field fills, and which surfaces take the rest", vignetting},
     {"chief-ray-angle", "At what angle the light meets the sensor", chief_ray_angle},
+    {"ghosts", "Light that two surfaces reflect: where it is focused, how wide and how bright",
+     ghost_reflections},
     {"mtf", "Modulation transfer, tangential and sagittal, by frequency, field and wavelength", mtf},
     {"focus", "Best focus by spot size and by MTF, all fields and wavelengths together", best_focus}};
 

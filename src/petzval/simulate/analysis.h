@@ -39,7 +39,9 @@ struct AnalysisRequest {
   bool mtf_over_field = false;                      ///< at 21 even fields
   std::optional<double> mtf_through_focus_mm = {};  ///< at 33 sensors up to this far on both sides
   EncircledEnergyOptions encircled_energy = {};
-  double focus_frequency_cpmm = 40;  ///< of the MTF by which best focus is sought
+  double sensor_reflectance = 0;      ///< for ghosts: 0: of the sensor there are none
+  double source_diameter_deg = 0.53;  ///< of what makes ghosts, as the lens sees it; the Sun's
+  double focus_frequency_cpmm = 40;   ///< of the MTF by which best focus is sought
 };
 
 struct AnalysisTable {

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/ghosts.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/surface_shape.h>
+#include <petzval/trace/tracer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace petzval {
+
+namespace {
+
+/// A surface, and the gap behind it, at one wavelength.
+struct GhostSurface {
+  double curvature_per_mm = 0, index_before = 1, index_after = 1, gap_mm = 0;
+  double clear_mm = std::numeric_limits<double>::infinity();  ///< largest height that passes
+  double reflectance = 0;                                     ///< at normal incidence
+  double gap_transmittance = 1;
+
+  double power() const { return (index_after - index_before) * curvature_per_mm; }
+};
+
+double bare_reflectance(double before, double after) {
+  const double r = (before - after) / (before + after);
+  return r * r;
+}
+
+/// A paraxial ray: height and index × slope, the latter along the unfolded way.
+struct UnfoldedRay {
+  double height = 0, reduced_slope = 0;
+
+  void refract(double power) { reduced_slope -= power * height; }
+  void move(double gap_mm, double index) { height += gap_mm / index * reduced_slope; }
+};
+
+/// The unfolded way of a ghost, or of the image if nothing is reflected.
+class UnfoldedLens {
+ public:
+  UnfoldedLens(const Lens& lens, double wavelength_nm, const GhostOptions& options) {
+    double before = 1;
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+      const Surface& given = lens.surfaces[i];
+      GhostSurface surface;
+      surface.curvature_per_mm = vertex_curvature_per_mm(given);
+      surface.index_before = before;
+      surface.index_after = before = given.material.index(wavelength_nm);
+      surface.gap_mm = given.thickness_mm;
+      if (given.semi_diameter_mm) surface.clear_mm = *given.semi_diameter_mm;
+      if (given.stop) surface.clear_mm = std::min(surface.clear_mm, stop_radius_mm(lens));
+      surface.reflectance = reflectance(i, surface, wavelength_nm, options.losses);
+      if (options.losses.absorption)
+        if (const std::optional<double> k = given.material.extinction(wavelength_nm))
+          surface.gap_transmittance =
+              std::exp(-4 * pi * *k / (wavelength_nm * mm_per_nm) * std::max(surface.gap_mm, 0.0));
+      surfaces_.push_back(surface);
+    }
+    GhostSurface sensor;
+    sensor.index_before = sensor.index_after = before;
+    sensor.reflectance = options.sensor_reflectance;
+    surfaces_.push_back(sensor);
+  }
+
+  std::size_t sensor() const { return surfaces_.size() - 1; }
+  const GhostSurface& operator[](std::size_t i) const { return surfaces_[i]; }
+  double image_index() const { return surfaces_.back().index_before; }
+
+  /// What happens to a ray from in front of vertex 1 to the sensor. \param visit  the height at each surface
+  /// that it meets. \param first  where it is first reflected; the sensor without `second`: nowhere.
+  template <class Visit>
+  UnfoldedRay follow(UnfoldedRay ray, std::size_t first, std::size_t second, Visit&& visit) const {
+    forwards(ray, 0, first, visit);
+    if (second == none) return ray;
+    // Met from the front; then backwards, where the powers are the same; then from behind.
+    ray.refract(-2 * surfaces_[first].index_before * surfaces_[first].curvature_per_mm);
+    for (std::size_t i = first; i-- > second;) {
+      ray.move(surfaces_[i].gap_mm, surfaces_[i].index_after);
+      visit(i, ray.height);
+      if (i > second) ray.refract(surfaces_[i].power());
+    }
+    ray.refract(2 * surfaces_[second].index_after * surfaces_[second].curvature_per_mm);
+    ray.move(surfaces_[second].gap_mm, surfaces_[second].index_after);
+    forwards(ray, second + 1, sensor(), visit);
+    return ray;
+  }
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  double transmittance(std::size_t first, std::size_t second) const {
+    double share = 1;
+    for (std::size_t i = 0; i < sensor(); ++i) {
+      const GhostSurface& surface = surfaces_[i];
+      const bool between = second != none && i > second && i < first;
+      const bool gap_thrice = second != none && i >= second && i < first;
+      if (second != none && (i == first || i == second))
+        share *= surface.reflectance * (1 - surface.reflectance);
+      else
+        share *= std::pow(1 - surface.reflectance, between ? 3 : 1);
+      share *= std::pow(surface.gap_transmittance, gap_thrice ? 3 : 1);
+    }
+    if (second != none && first == sensor()) share *= surfaces_[first].reflectance;
+    return share;
+  }
+
+ private:
+  static double reflectance(std::size_t index, const GhostSurface& surface, double wavelength_nm,
+                            const Losses& losses) {
+    if (const auto own = losses.surfaces.find(index); own != losses.surfaces.end())
+      return own->second.at(wavelength_nm);
+    const bool meets_air = (surface.index_before == 1) != (surface.index_after == 1);
+    if (losses.air_glass && meets_air) return losses.air_glass->at(wavelength_nm);
+    return bare_reflectance(surface.index_before, surface.index_after);
+  }
+
+  /// From the front of surface `from` to the front of surface `to`.
+  template <class Visit>
+  void forwards(UnfoldedRay& ray, std::size_t from, std::size_t to, Visit&& visit) const {
+    for (std::size_t i = from; i < to; ++i) {
+      visit(i, ray.height);
+      ray.refract(surfaces_[i].power());
+      ray.move(surfaces_[i].gap_mm, surfaces_[i].index_after);
+    }
+    if (to < sensor()) visit(to, ray.height);
+  }
+
+  std::vector<GhostSurface> surfaces_;
+};
+
+/// What paraxial rays make of the light of a source on one way.
+struct Way {
+  double entrance_mm = 0;  ///< height at vertex 1 of the ray from the axial point that just passes
+  double diameter_mm = 0;  ///< of a point's light on the sensor
+  double source_mm = 0;    ///< diameter of what each point of the entrance makes of the source there
+  double focus_mm = 0;
+  double chief_mm = 0;  ///< on the sensor, of one ray through the middle of the stop
+  double transmittance = 0;
+
+  /// Over the irradiance of the front: flux over the larger of the two discs.
+  double irradiance() const {
+    const double widest = std::max(std::abs(diameter_mm), source_mm);
+    const double beam = 2 * entrance_mm / widest;
+    return transmittance * beam * beam;
+  }
+};
+
+Way way(const UnfoldedLens& unfolded, const Lens& lens, std::size_t first, std::size_t second,
+        double source_diameter_deg) {
+  const auto ignore = [](std::size_t, double) {};
+  const double slope = lens.object_distance_mm ? 1 / *lens.object_distance_mm : 0;
+  Way result;
+  result.entrance_mm = std::numeric_limits<double>::infinity();
+  const UnfoldedRay axial =
+      unfolded.follow({1, slope}, first, second, [&](std::size_t surface, double height) {
+        result.entrance_mm = std::min(result.entrance_mm, unfolded[surface].clear_mm / std::abs(height));
+      });
+  result.diameter_mm = 2 * axial.height * result.entrance_mm;
+  result.focus_mm = axial.reduced_slope == 0
+                        ? std::copysign(std::numeric_limits<double>::infinity(), axial.height)
+                        : -axial.height / axial.reduced_slope * unfolded.image_index();
+  // A source that is turned by a small angle moves what one point of the entrance sends.
+  const UnfoldedRay turned = unfolded.follow({0, 1}, first, second, ignore);
+  result.source_mm = std::abs(turned.height) * 2 * std::tan(radians(source_diameter_deg) / 2);
+  // Through the middle of the stop, where light first comes to it.
+  const auto height_at_stop = [&](const UnfoldedRay& start) {
+    double at_stop = 0;
+    unfolded.follow(start, unfolded.sensor(), UnfoldedLens::none, [&](std::size_t surface, double height) {
+      if (surface == lens.stop_index()) at_stop = height;
+    });
+    return at_stop;
+  };
+  const UnfoldedRay chief{-height_at_stop({0, 1}), height_at_stop({1, 0})};
+  result.chief_mm = unfolded.follow(chief, first, second, ignore).height;
+  result.transmittance = unfolded.transmittance(first, second);
+  return result;
+}
+
+void check(const Lens& lens, const GhostOptions& options) {
+  options.losses.validate(lens);
+  if (!(options.sensor_reflectance >= 0 && options.sensor_reflectance <= 1))
+    throw InputError(
+        fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", options.sensor_reflectance));
+  if (!(options.source_diameter_deg > 0 && options.source_diameter_deg < 180))
+    throw InputError(
+        fmt::format("`source_diameter_deg` is {:g}; more than 0 and less than 180 would be right",
+                    options.source_diameter_deg));
+}
+
+}  // namespace
+
+std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options) {
+  lens.validate();
+  check(lens, options);
+  std::vector<Ghost> all;
+  const std::vector<double> wavelengths = options.wavelengths_nm.empty()
+                                              ? std::vector<double>{lens.reference_wavelength_nm}
+                                              : options.wavelengths_nm;
+  for (const double wavelength_nm : wavelengths) {
+    const UnfoldedLens unfolded(lens, wavelength_nm, options);
+    const Way image = way(unfolded, lens, unfolded.sensor(), UnfoldedLens::none, options.source_diameter_deg);
+    std::vector<Ghost> here;
+    const std::size_t last = options.sensor_reflectance > 0 ? unfolded.sensor() : unfolded.sensor() - 1;
+    for (std::size_t first = 1; first <= last; ++first)
+      for (std::size_t second = 0; second < first; ++second) {
+        if (!(unfolded[first].reflectance > 0) || !(unfolded[second].reflectance > 0)) continue;
+        const Way ghost = way(unfolded, lens, first, second, options.source_diameter_deg);
+        here.push_back({first, second, wavelength_nm, ghost.focus_mm, std::abs(ghost.diameter_mm),
+                        ghost.chief_mm / image.chief_mm, ghost.transmittance, ghost.irradiance(),
+                        ghost.irradiance() / image.irradiance()});
+      }
+    std::stable_sort(here.begin(), here.end(),
+                     [](const Ghost& a, const Ghost& b) { return a.irradiance > b.irradiance; });
+    all.insert(all.end(), here.begin(), here.end());
+  }
+  return all;
+}
+
+}  // namespace petzval
