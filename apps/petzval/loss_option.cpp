@@ -9,6 +9,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
@@ -30,7 +31,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 }
 
 /// The coating that a column of the table fills.
-CoatingReflectance& column(Losses& losses, const std::string& name, const std::string& file, int line) {
+Coating& column(Losses& losses, const std::string& name, const std::string& file, int line) {
   if (name == "air_glass") return losses.air_glass ? *losses.air_glass : losses.air_glass.emplace();
   std::size_t surface = 0;
   const char* const digits = name.data() + std::string_view("surfaces[").size();
@@ -41,7 +42,7 @@ CoatingReflectance& column(Losses& losses, const std::string& name, const std::s
   throw InputError(file, line, fmt::format("a column '{}'; the header must be {}", name, table_form));
 }
 
-void read_coating(const std::string& file, Losses& losses) {
+void read_reflectances(const std::string& file, Losses& losses) {
   std::istringstream in(read_whole_file(file));
   std::vector<std::string> header;
   std::string text;
@@ -82,10 +83,11 @@ void read_coating(const std::string& file, Losses& losses) {
 
 void LossChoice::add_to(CLI::App& command) {
   command.add_flag("--fresnel", fresnel, "Count reflection at bare glass surfaces (Fresnel)");
-  command.add_option(
-      "--coating", coating,
-      "Reflectance of coated surfaces: a number for all between air and glass, or a CSV file with "
-      "columns wavelength_nm and air_glass or surfaces[0], surfaces[3]…");
+  command.add_option("--coating", coating,
+                     "Coating of the surfaces between air and glass: a name or file of thin films (mgf2, "
+                     "quarter-half-quarter), their "
+                     "reflectance as a number, or a CSV file with columns wavelength_nm and air_glass or "
+                     "surfaces[0], surfaces[3]…");
   command.add_flag("--absorption", absorption, "Count absorption in the glass, by the catalogue's k");
 }
 
@@ -94,9 +96,11 @@ Losses LossChoice::read() const {
   losses.fresnel = fresnel;
   losses.absorption = absorption;
   if (const std::optional<double> reflectance = parse_number(coating))
-    losses.air_glass = CoatingReflectance::constant(*reflectance);
+    losses.air_glass = Coating::constant(*reflectance);
+  else if (coating.ends_with(".csv") || (std::filesystem::exists(coating) && !coating.ends_with(".json")))
+    read_reflectances(coating, losses);
   else if (!coating.empty())
-    read_coating(coating, losses);
+    losses.air_glass = petzval::read_coating(coating);
   return losses;
 }
 

@@ -38,18 +38,25 @@ nb::object blades_to(const Maybe<StopBlades>& blades) {
   return blades ? nb::cast(std::pair(blades->count, blades->rotation_deg)) : nb::none();
 }
 
-/// One reflectance, or a curve (wavelengths, reflectances).
-CoatingReflectance coating_from(const nb::handle& coating) {
+/// One reflectance, a curve (wavelengths, reflectances), or thin films by name or file.
+Coating coating_from(const nb::handle& coating) {
   if (PyFloat_Check(coating.ptr()) || PyLong_Check(coating.ptr()))
-    return CoatingReflectance::constant(nb::cast<double>(coating));
+    return Coating::constant(nb::cast<double>(coating));
+  if (nb::isinstance<nb::str>(coating)) {
+    const auto text = nb::cast<std::string>(coating);
+    Coating films = read_coating(text);
+    films.name = text;  // what coating_to() gives back
+    return films;
+  }
   const auto [nm, values] = nb::cast<std::pair<Numbers, Numbers>>(coating);
-  CoatingReflectance result;
+  Coating result;
   for (std::size_t i = 0; i < std::min(nm.size(), values.size()); ++i)
     result.table.emplace_back(nm[i], values[i]);
   return result;
 }
 
-nb::object coating_to(const CoatingReflectance& coating) {
+nb::object coating_to(const Coating& coating) {
+  if (coating.has_films()) return nb::cast(coating.name);
   if (coating.table.size() == 1 && coating.table[0].first == 0) return nb::float_(coating.table[0].second);
   Numbers nm, values;
   for (const auto& [wavelength, value] : coating.table) nm.push_back(wavelength), values.push_back(value);

@@ -175,7 +175,7 @@ TEST(Ghosts, OfAPlateIsItsReflectanceSquared) {
   EXPECT_NEAR(all[0].magnification, (20 + 3 * 10 / 1.5) / (20 + 10 / 1.5), 1e-12);
 
   GhostOptions coated;
-  coated.losses.air_glass = CoatingReflectance::constant(0.01);
+  coated.losses.air_glass = Coating::constant(0.01);
   EXPECT_NEAR(ghosts(lens, coated)[0].relative_irradiance, 1e-4, 1e-17);
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Losses of light on the command line, and fields that no light reaches."""
 
+import cmath
 import json
 import math
 import unittest
@@ -44,6 +45,33 @@ class Losses(ProgramTest):
         table.write_text("wavelength_nm,surfaces[0],surfaces[1]\n300,0.1,0\n500,0.2,0\n")
         self.assertAlmostEqual(self.column("--coating", table)[1], 0.85, 14)
         self.assertTrue(math.isnan(self.column("--coating", table)[2]))
+
+    def test_thin_films_on_the_axis(self):
+        c = [1.72448482, 0.0134871947, 0.390104889, 0.0569318095, 1.04572858, 118.557185]  # Schott's SF6
+        n = math.sqrt(1 + sum(c[i] * 0.16 / (0.16 - c[i + 1]) for i in (0, 2, 4)))
+        front, back = (1 - 1.38) / (1 + 1.38), (1.38 - n) / (1.38 + n)
+        turn = cmath.exp(-2j * math.pi / 2 * 550 / 400)  # there and back, a quarter wave at 550 nm each way
+        transmitted = 1 - abs((front + back * turn) / (1 + front * back * turn)) ** 2
+        self.assertAlmostEqual(self.column("--coating", "mgf2")[0], transmitted ** 2, 12)
+        own = self.folder / "own.json"
+        own.write_text(json.dumps({"format": "petzval-coating/1", "name": "mgf2 again",
+                                   "layers": [{"index": 1.38, "thickness_nm": 550 / 4 / 1.38}]}))
+        self.assertAlmostEqual(self.column("--coating", own)[0], transmitted ** 2, 12)
+
+    def test_bad_films_say_what_would_be_right(self):
+        layer = {"index": 1.38, "quarter_waves": 1}
+        for changed, words in [({"format": "petzval-coating/2"}, ["petzval-coating/1"]), ({"layers": []}, ["layers"]),
+                               ({"layers": [{**layer, "quarter_waves": -1}]}, ["layers[0]", "thick"]),
+                               ({"layers": [{"index": 1.38}]}, ["quarter_waves"]),
+                               ({"layers": [{"material": "N-BK77", "thickness_nm": 10}]}, ["N-BK7"]),
+                               ({"colour": "blue"}, ["colour"]), ({"design_wavelength_nm": 0.5}, ["500"])]:
+            bad = self.folder / "bad.json"
+            bad.write_text(json.dumps({"format": "petzval-coating/1", "name": "bad", "layers": [layer], **changed}))
+            result = self.petzval("lens", "trace", self.folder / "plate.json", "--rays", self.folder / "rays.csv",
+                                  "--coating", bad)
+            self.assert_error(result, 2, "bad.json", *words)
+        self.assert_error(self.petzval("lens", "trace", self.folder / "plate.json", "--rays", self.folder / "rays.csv",
+                                       "--coating", "mgf3"), 2, "mgf2")
 
     def test_bad_coatings_say_where(self):
         for text, line in [("a,b\n", 1), ("wavelength_nm,surfaces[7]\n400,0.1\n", None),

@@ -54,7 +54,7 @@ TEST(BuildTable, CountsLosses) {
   const Lens lens = read_lens("cooke-triplet").lens;
   TableOptions options = small({550}, 8);
   const LensDataTable clear = build_lens_data_table(lens, options);
-  options.losses.air_glass = CoatingReflectance::constant(0.01);
+  options.losses.air_glass = Coating::constant(0.01);
   const LensDataTable coated = build_lens_data_table(lens, options);
   options.losses = {};
   options.losses.fresnel = true;

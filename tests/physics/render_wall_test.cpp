@@ -146,8 +146,8 @@ TEST(WallThroughLens, IsGSensorWithDispersion) {
 TEST(WallThroughLens, IsGSensorWithLosses) {
   Losses bare, coated;
   bare.fresnel = bare.absorption = true;
-  coated.air_glass = CoatingReflectance{{{400, 0.02}, {700, 0.005}}};
-  coated.surfaces[0] = CoatingReflectance::constant(0.1);
+  coated.air_glass = Coating{{{400, 0.02}, {700, 0.005}}};
+  coated.surfaces[0] = Coating::constant(0.1);
   const Lens course = read_lens("dgauss-50mm").lens, dispersing = read_lens("edmund-54852").lens;
   for (const Losses& losses : {bare, coated}) {
     for (const double height : {0.0, 15.0}) expect_lossy_wall_is_g_sensor(course, height, losses, 32);

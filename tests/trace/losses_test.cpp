@@ -103,8 +103,8 @@ TEST(Losses, GlassOfTheCatalogueAbsorbsByItsTable) {
 TEST(Losses, CoatingsBySurfaceTakeTheirShare) {
   Losses losses;
   losses.fresnel = true;
-  losses.air_glass = CoatingReflectance{{{400, 0.03}, {600, 0.01}}};  // 0.011244 at 587.5618 nm
-  losses.surfaces[1] = CoatingReflectance::constant(0.25);
+  losses.air_glass = Coating{{{400, 0.03}, {600, 0.01}}};  // 0.011244 at 587.5618 nm
+  losses.surfaces[1] = Coating::constant(0.25);
   const double first = 0.03 - 0.02 * (lambda_nm - 400) / 200;
   EXPECT_NEAR(transmittance(plate(Material(Material::Constant{1.6}), 5), losses, tilted(0.3)),
               (1 - first) * 0.75, 1e-14);
@@ -118,7 +118,7 @@ TEST(Losses, AirGlassCoatingLeavesCementedSurfacesBare) {
   lens.surfaces[0].stop = true;
   lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 10};
   Losses losses = fresnel_only();
-  losses.air_glass = CoatingReflectance::constant(0);
+  losses.air_glass = Coating::constant(0);
   EXPECT_NEAR(transmittance(lens, losses, tilted(0)), 1 - std::pow(0.2 / 3.2, 2), 1e-15);
 }
 
@@ -142,17 +142,79 @@ TEST(Losses, TheSameForwardsAndBackwards) {
   EXPECT_GT(forward, 0.4);
 }
 
+TEST(Losses, FilmsOfAPlateAreThoseOfBothPolarisations) {
+  constexpr double index = 1.6;
+  Losses losses;
+  losses.air_glass = read_coating("mgf2");
+  for (const double angle : {0.0, 0.4, 0.9}) {
+    double expected = 0;
+    for (const auto polarisation : {Polarisation::s, Polarisation::p}) {
+      const ThinFilm film{1.38, 550 / (4 * 1.38)};
+      const double share =
+          film_power(1, {{film}}, index, std::cos(angle), lambda_nm, polarisation).transmittance;
+      expected += 0.5 * share * share;
+    }
+    EXPECT_NEAR(transmittance(plate(Material(Material::Constant{index}), 5), losses, tilted(angle)), expected,
+                1e-13);
+  }
+}
+
+TEST(Losses, FilmsAreTheSameForwardsAndBackwards) {
+  const Lens lens = read_lens("dgauss-50mm").lens;
+  const Tracer tracer(lens, lambda_nm);
+  Losses losses;
+  losses.fresnel = true;
+  losses.air_glass = read_coating("quarter-half-quarter");
+  losses.air_glass->layers[1].material = Material(Material::Constant{2.2});  // whose order counts
+  const LensTransmittance transmittance(lens, lambda_nm, losses);
+  const Ray there{{6, -4, -5}, {0.1, 0.15, std::sqrt(1 - 0.0325)}};
+  std::vector<Intersection> path, path_back;
+  const Ray end = tracer.trace(there, Tracer::Clip::none, &path);
+  ASSERT_EQ(end.status, RayStatus::ok);
+  Ray back = end;
+  for (double& cosine : back.direction) cosine = -cosine;
+  ASSERT_EQ(tracer.trace_backward(back, Tracer::Clip::none, &path_back).status, RayStatus::ok);
+  EXPECT_NEAR(transmittance.along(back, path_back, true), transmittance.along(there, path), 1e-13);
+}
+
+// What such a coating is for: a fiftieth of bare glass's reflection in the middle, and little over the
+// visible.
+TEST(Losses, BundledFilmsReflectLittle) {
+  const Coating single = read_coating("mgf2"), triple = read_coating("quarter-half-quarter");
+  const double bare = std::pow(0.52 / 2.52, 2);
+  for (double nm = 450; nm <= 650; nm += 10) {
+    EXPECT_LT(single.reflectance(nm, 1, 1.52), 0.6 * bare) << nm;
+    EXPECT_LT(triple.reflectance(nm, 1, 1.52), 0.2 * bare) << nm;
+    EXPECT_NEAR(triple.reflectance(nm, 1, 1.52), triple.reflectance(nm, 1.52, 1), 1e-14) << nm;
+  }
+}
+
+TEST(Losses, RefusesFilmsBetweenGlasses) {
+  Lens lens;
+  lens.surfaces = {sample::surface(0, 2, 1.5), sample::surface(0, 2, 1.7), sample::surface(0, 10, 1)};
+  lens.surfaces[0].stop = true;
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 10};
+  Losses losses;
+  losses.surfaces[1] = read_coating("mgf2");
+  EXPECT_THROW(losses.validate(lens), InputError);
+  losses.surfaces.clear();
+  losses.surfaces[2] = read_coating("mgf2");
+  EXPECT_NO_THROW(losses.validate(lens));
+  losses.surfaces[2].table = {{500, 0.1}};
+  EXPECT_THROW(losses.validate(lens), InputError);
+}
+
 TEST(Losses, RefusesNonsense) {
   const Lens lens = plate(Material(Material::Constant{1.5}), 5);
   Losses losses;
-  losses.surfaces[2] = CoatingReflectance::constant(0.1);
+  losses.surfaces[2] = Coating::constant(0.1);
   EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
   losses.surfaces.clear();
-  losses.air_glass = CoatingReflectance::constant(1.1);
+  losses.air_glass = Coating::constant(1.1);
   EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
-  losses.air_glass = CoatingReflectance{{{500, 0.1}, {400, 0.1}}};
+  losses.air_glass = Coating{{{500, 0.1}, {400, 0.1}}};
   EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
-  losses.air_glass = CoatingReflectance{};
+  losses.air_glass = Coating{};
   EXPECT_THROW(LensTransmittance(lens, lambda_nm, losses), InputError);
 }
 

@@ -30,7 +30,7 @@ TEST_P(PupilLosses, AreThoseOfEveryRay) {
   Losses bare, coated;
   bare.fresnel = bare.absorption = true;
   coated = bare;
-  coated.air_glass = CoatingReflectance{{{400, 0.02}, {700, 0.005}}};
+  coated.air_glass = Coating{{{400, 0.02}, {700, 0.005}}};
   for (const Losses& losses : {bare, coated}) {
     const PupilTransmittance fit(lens, tracers, wavelengths, losses, regions);
     const LensTransmittance exact[] = {LensTransmittance(lens, 450, losses),

@@ -107,10 +107,8 @@ class UnfoldedLens {
  private:
   static double reflectance(std::size_t index, const GhostSurface& surface, double wavelength_nm,
                             const Losses& losses) {
-    if (const auto own = losses.surfaces.find(index); own != losses.surfaces.end())
-      return own->second.at(wavelength_nm);
-    const bool meets_air = (surface.index_before == 1) != (surface.index_after == 1);
-    if (losses.air_glass && meets_air) return losses.air_glass->at(wavelength_nm);
+    if (const Coating* coating = losses.coating(index, surface.index_before, surface.index_after))
+      return coating->reflectance(wavelength_nm, surface.index_before, surface.index_after);
     return bare_reflectance(surface.index_before, surface.index_after);
   }
 

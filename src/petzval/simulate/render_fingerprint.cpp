@@ -20,9 +20,11 @@ std::string lens_line(const render::SceneCamera& camera, const std::vector<doubl
                      render::hash_text(indices));
 }
 
-std::string table_text(const CoatingReflectance& coating) {
+std::string table_text(const Coating& coating) {
   std::string text;
   for (const auto& [nm, reflectance] : coating.table) text += fmt::format(" {}:{}", nm, reflectance);
+  for (const CoatingLayer& layer : coating.layers)
+    text += fmt::format(" {}/{}", layer.material.description(), layer.thickness_nm);
   return text;
 }
 

@@ -57,6 +57,14 @@ Amplitudes fresnel(double n1, double n2, const Incidence& at) {
   return {std::sqrt(1 - r_s * r_s), std::sqrt(1 - r_p * r_p)};
 }
 
+Amplitudes through_films(double before, const std::vector<ThinFilm>& films, double after,
+                         double cosine_before, double wavelength_nm) {
+  const auto share = [&](Polarisation polarisation) {
+    return film_power(before, films, after, cosine_before, wavelength_nm, polarisation).transmittance;
+  };
+  return {std::sqrt(share(Polarisation::s)), std::sqrt(share(Polarisation::p))};
+}
+
 /// An electric field, in units of the square root of its power, through a surface.
 Vec transmit(const Vec& field, const Incidence& at, const Amplitudes& through) {
   const double s = through.s * dot(field, at.s), p = through.p * dot(field, at.p_before);
@@ -69,53 +77,44 @@ bool is_air_to_glass(double index_before, double index_after) {
   return (index_before == 1) != (index_after == 1);
 }
 
-void check_table(const CoatingReflectance& coating) {
-  if (coating.table.empty()) throw InputError("a coating has no reflectance; give at least one value");
-  for (std::size_t i = 0; i < coating.table.size(); ++i) {
-    const auto [wavelength, reflectance] = coating.table[i];
-    if (!(reflectance >= 0) || !(reflectance <= 1))
-      throw InputError(
-          fmt::format("a coating reflects {:g} of the light; 0 to 1 would be right", reflectance));
-    if (!std::isfinite(wavelength) || (i > 0 && !(wavelength > coating.table[i - 1].first)))
-      throw InputError("the wavelengths of a coating must increase");
-  }
-}
-
 }  // namespace
 
-double CoatingReflectance::at(double wavelength_nm) const {
-  const auto above = std::find_if(table.begin(), table.end(),
-                                  [&](const auto& entry) { return entry.first >= wavelength_nm; });
-  if (above == table.begin()) return table.front().second;
-  if (above == table.end()) return table.back().second;
-  const auto below = above - 1;
-  const double share = (wavelength_nm - below->first) / (above->first - below->first);
-  return below->second + share * (above->second - below->second);
+const Coating* Losses::coating(std::size_t surface, double index_before, double index_after) const {
+  if (const auto own = surfaces.find(surface); own != surfaces.end()) return &own->second;
+  return air_glass && is_air_to_glass(index_before, index_after) ? &*air_glass : nullptr;
 }
 
 void Losses::validate(const Lens& lens) const {
-  if (air_glass) check_table(*air_glass);
+  if (air_glass) air_glass->validate();
   for (const auto& [surface, coating] : surfaces) {
     if (surface >= lens.surfaces.size())
       throw InputError(fmt::format("a coating for surfaces[{}], but {} has surfaces[0] to surfaces[{}]",
                                    surface, lens.name, lens.surfaces.size() - 1));
-    check_table(coating);
+    coating.validate();
+    const bool front_is_air = surface == 0 || lens.surfaces[surface - 1].material.is_air();
+    if (coating.has_films() && front_is_air == lens.surfaces[surface].material.is_air())
+      throw InputError(fmt::format(
+          "films on surfaces[{}], which does not lie between air and glass; a reflectance would be right",
+          surface));
   }
 }
 
 LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, const Losses& losses)
-    : fresnel_(losses.fresnel) {
+    : fresnel_(losses.fresnel), wavelength_nm_(wavelength_nm) {
   losses.validate(lens);
   double before = 1;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Material& material = lens.surfaces[i].material;
-    Interface interface { before, material.index(wavelength_nm), {}, 0 };
+    Interface interface;
+    interface.index_before = before;
+    interface.index_after = material.index(wavelength_nm);
     before = interface.index_after;
-    const auto own = losses.surfaces.find(i);
-    if (own != losses.surfaces.end())
-      interface.reflectance = own->second.at(wavelength_nm);
-    else if (losses.air_glass && is_air_to_glass(interface.index_before, interface.index_after))
-      interface.reflectance = losses.air_glass->at(wavelength_nm);
+    if (const Coating* coating = losses.coating(i, interface.index_before, interface.index_after)) {
+      if (coating->has_films())
+        interface.films = coating->films(wavelength_nm, interface.index_before);
+      else
+        interface.reflectance = coating->at(wavelength_nm);
+    }
     if (losses.absorption && !material.is_air()) {
       if (const std::optional<double> k = material.extinction(wavelength_nm))
         interface.absorption_per_mm = 4 * pi * *k / (wavelength_nm * mm_per_nm);
@@ -146,6 +145,9 @@ double LensTransmittance::along(const Ray& start, const std::vector<Intersection
     Amplitudes through;
     if (interface.reflectance)
       through.s = through.p = std::sqrt(1 - *interface.reflectance);
+    else if (!interface.films.empty())  // the same from both sides
+      through = through_films(interface.index_before, interface.films, interface.index_after,
+                              backward ? at.cosine_after : at.cosine_before, wavelength_nm_);
     else if (fresnel_)
       through = backward ? fresnel(interface.index_after, interface.index_before, at)
                          : fresnel(interface.index_before, interface.index_after, at);

@@ -2,6 +2,7 @@
 // What a lens takes from the light that passes: reflection at its surfaces, absorption in its glass.
 #pragma once
 
+#include <petzval/lens/coating.h>
 #include <petzval/lens/lens.h>
 #include <petzval/trace/pupil.h>
 #include <petzval/trace/tracer.h>
@@ -15,27 +16,19 @@
 
 namespace petzval {
 
-/// Share of the light that a coated surface reflects, whatever the angle and the polarisation.
-struct CoatingReflectance {
-  /// (wavelength [nm], reflectance 0…1), increasing wavelengths; linear in between, held at the ends.
-  std::vector<std::pair<double, double>> table = {};
-
-  static CoatingReflectance constant(double reflectance) { return {{{0.0, reflectance}}}; }
-  double at(double wavelength_nm) const;
-};
-
 /// Which losses a trace counts. Light reflected twice or more, which comes back as ghosts and flare, is lost
 /// here.
 struct Losses {
-  bool fresnel = false;                              ///< surfaces without a coating reflect as bare glass
-  bool absorption = false;                           ///< by the extinction coefficients of the catalogue
-  std::optional<CoatingReflectance> air_glass = {};  ///< coating of all surfaces between air and glass
-  std::map<std::size_t, CoatingReflectance> surfaces =
-      {};  ///< coatings of single surfaces, before `air_glass`
+  bool fresnel = false;                          ///< surfaces without a coating reflect as bare glass
+  bool absorption = false;                       ///< by the extinction coefficients of the catalogue
+  std::optional<Coating> air_glass = {};         ///< coating of all surfaces between air and glass
+  std::map<std::size_t, Coating> surfaces = {};  ///< coatings of single surfaces, before `air_glass`
 
   bool any() const { return fresnel || absorption || air_glass || !surfaces.empty(); }
-  /// \throws InputError for a surface that the lens does not have, an empty or unsorted table, or a
-  /// reflectance outside 0…1.
+  /// Of a surface between media of these indices; null: none.
+  const Coating* coating(std::size_t surface, double index_before, double index_after) const;
+  /// \throws InputError for a surface that the lens does not have, films between two glasses,
+  /// and as Coating::validate().
   void validate(const Lens& lens) const;
 };
 
@@ -43,8 +36,9 @@ struct Losses {
 ///
 /// Reflection: Fresnel's equations for s and p (Born & Wolf, Principles of Optics, 7th ed. 1999, 1.5.2). Two
 /// perpendicular polarisations are carried through the lens, and their powers averaged at its end: what one
-/// surface polarises, the next one feels. Absorption: Lambert's law, exp(−4πk·distance/λ), no gain where
-/// facing surfaces cross and a gap is walked backwards.
+/// surface polarises, the next one feels. Films let through what film_power() says of each polarisation; by
+/// how much they delay one against the other is not followed. Absorption: Lambert's law,
+/// exp(−4πk·distance/λ), no gain where facing surfaces cross and a gap is walked backwards.
 class LensTransmittance {
  public:
   /// \throws InputError as Losses::validate, and where an index is not known.
@@ -59,11 +53,13 @@ class LensTransmittance {
 
  private:
   struct Interface {
-    double index_before, index_after;
-    std::optional<double> reflectance = {};  ///< nothing: Fresnel, if that counts
-    double absorption_per_mm;                ///< of the gap behind the surface, 4πk/λ
+    double index_before = 1, index_after = 1;
+    std::optional<double> reflectance = {};  ///< nothing: films, or Fresnel, if that counts
+    std::vector<ThinFilm> films = {};        ///< from the front
+    double absorption_per_mm = 0;            ///< of the gap behind the surface, 4πk/λ
   };
   bool fresnel_;
+  double wavelength_nm_;
   std::vector<Interface> interfaces_;
   std::vector<std::string> clear_;
 };

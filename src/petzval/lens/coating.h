@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coatings of lens surfaces: measured reflectances, or stacks of thin films.
+#pragma once
+
+#include <petzval/glass/material.h>
+#include <petzval/wave/thin_film.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace petzval {
+
+/// A film of a coating, of one material.
+struct CoatingLayer {
+  Material material = {};
+  double thickness_nm = 0;
+};
+
+/// Either reflectances that do not depend on angle and polarisation, or films, which do.
+struct Coating {
+  /// (wavelength [nm], reflectance 0…1), increasing wavelengths; linear in between, held at the ends.
+  std::vector<std::pair<double, double>> table = {};
+  /// From the air to the glass; with layers there is no table.
+  std::vector<CoatingLayer> layers = {};
+  std::string name = {}, source = {};
+
+  static Coating constant(double reflectance) { return {{{0.0, reflectance}}, {}, {}, {}}; }
+
+  bool has_films() const { return !layers.empty(); }
+  /// By the table. \throws InputError for a coating of films.
+  double at(double wavelength_nm) const;
+  /// The films at a wavelength in the order in which light from `index_before` meets them: air has the
+  /// index 1. \throws InputError where an index is not known.
+  std::vector<ThinFilm> films(double wavelength_nm, double index_before) const;
+  /// At normal incidence, on a surface between these. \throws InputError where an index is not known.
+  double reflectance(double wavelength_nm, double index_before, double index_after) const;
+  /// \throws InputError for a coating without anything, or with both; an unsorted table; a reflectance
+  /// outside 0…1; a thickness that is not positive.
+  void validate() const;
+};
+
+/// Reads a coating of thin films by path or bundled name ("mgf2"): JSON, "format": "petzval-coating/1",
+/// strict (docs/LENS_FORMAT.md).
+///
+///     camera.losses.air_glass = read_coating("mgf2");
+///
+/// \throws InputError with file and line, saying what would be right.
+Coating read_coating(const std::string& path_or_name);
+
+}  // namespace petzval

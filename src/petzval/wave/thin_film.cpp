@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
+#include <petzval/wave/thin_film.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/// n cos θ behind Snell's law, of the wave that goes onwards: it decays where it cannot travel.
+Complex normal_index(Complex index, double tangential_index) {
+  const Complex root = std::sqrt(index * index - tangential_index * tangential_index);
+  return root.imag() > 0 || (root.imag() == 0 && root.real() < 0) ? -root : root;
+}
+
+/// Optical admittance, tangential H over tangential E, in units of free space's.
+Complex admittance(Complex index, Complex normal, Polarisation polarisation) {
+  return polarisation == Polarisation::s ? normal : index * index / normal;
+}
+
+}  // namespace
+
+FilmPower film_power(double index_before, std::span<const ThinFilm> films, double index_after, double cosine,
+                     double wavelength_nm, Polarisation polarisation) {
+  constexpr Complex i{0, 1};
+  const double tangential = index_before * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const Complex first = admittance(index_before, index_before * cosine, polarisation);
+  const Complex last = admittance(index_after, normal_index(index_after, tangential), polarisation);
+  // Tangential E and H, from the last medium through the films to the first; E = 1 in the last.
+  Complex e = 1, h = last;
+  for (std::size_t k = films.size(); k-- > 0;) {
+    const Complex normal = normal_index(films[k].index, tangential);
+    const Complex eta = admittance(films[k].index, normal, polarisation);
+    const Complex phase = 2 * pi * normal * films[k].thickness_nm / wavelength_nm;
+    const Complex c = std::cos(phase), s = std::sin(phase);
+    const Complex before = c * e + i * s * h / eta;
+    h = i * eta * s * e + c * h;
+    e = before;
+  }
+  const Complex sum = first * e + h;
+  return {std::norm((first * e - h) / sum), 4 * first.real() * last.real() / std::norm(sum)};
+}
+
+}  // namespace petzval
