@@ -60,7 +60,7 @@ def main():
         except (subprocess.CalledProcessError, FileNotFoundError, IndexError):
             print("no history to tell what changed")
             return 77
-        tasks = {str(path.relative_to(project)): [str(path), f"-I{path.parent}"] for path in sources}
+        tasks = {str(path.relative_to(project)): [str(path), "-iquote", str(path.parent)] for path in sources}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         complaints = list(filter(None, pool.map(lambda words: complaint(clang, flags, words), tasks.values())))
     print("\n".join(complaints))
