@@ -363,7 +363,10 @@ void bind_camera(nb::module_& module) {
       .def_prop_rw(
           "absorption", [](const C& c) { return c.losses.absorption; },
           [](C& c, bool on) { c.losses.absorption = on; })
-      .def_prop_rw("coating", coating_of, set_coating, nb::for_setter(nb::arg("value").none()))
+      .def_prop_rw("coating", coating_of, set_coating, nb::for_setter(nb::arg("value").none()),
+                   "Of the surfaces between air and glass: a reflectance, a curve (wavelengths_nm, "
+                   "reflectances), or thin "
+                   "films by name or file (\"mgf2\"); or {surface: one of these}. None: bare glass.")
       .def("image", with_image_options<image_of, C>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS, image_text)
       .def("plan", with_image_options<plan_of, C>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS, plan_text)
       .def(

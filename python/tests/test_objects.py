@@ -130,6 +130,18 @@ def test_cameras_survive(camera):
     assert (again.blades, dict(again.coating), again.fresnel, again.focus) == ((6, 10), dict(camera.coating), True, "1.2m")
 
 
+def test_coatings_of_thin_films(camera):
+    camera.coating = "mgf2"
+    assert pickle.loads(pickle.dumps(camera)).coating == "mgf2"
+    coated = camera.ghosts(sensor_reflectance=0.05)
+    camera.coating = None
+    bare = camera.ghosts(sensor_reflectance=0.05)
+    assert len(coated["irradiance"]) == len(bare["irradiance"]) > 0
+    assert coated["relative_irradiance"].max() < bare["relative_irradiance"].max()
+    with pytest.raises(pz.InputError, match="mgf2"):
+        camera.coating = "mgf3"
+
+
 def test_pictures_survive(camera, light):
     raw = camera.expose(light)
     picture = pz.develop(raw)
