@@ -167,6 +167,8 @@ TEST(MountedLens, StopsDownButNotUp) {
   camera.set_f_number(5.6);
   EXPECT_NEAR(first_order(camera.lens()).f_number, 5.6, 1e-12);
   EXPECT_NEAR(first_order(camera.lens()).entrance_pupil.diameter_mm, 50 / 5.6, 1e-11);
+  camera.set_f_number(1.996);  // 2.00 to two decimals
+  EXPECT_NEAR(first_order(camera.lens()).f_number, 2, 1e-12);
   camera.set_f_number(2);  // and open again: what counts is the prescription's own f-number
   try {
     camera.set_f_number(1.9);

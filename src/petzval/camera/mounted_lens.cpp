@@ -13,8 +13,8 @@ namespace petzval {
 
 namespace {
 
-/// Rounding allowed when an f-number is compared with the one that the lens opens to.
-constexpr double f_number_rounding = 1e-9;
+/// f-numbers are printed with two decimals: one that is below what the lens opens to by no more is that.
+constexpr double f_number_rounding = 0.005;
 /// An object this near (relative) to the prescription's own is the prescription's own: nothing moves.
 constexpr double same_object = 1e-12;
 
@@ -224,10 +224,10 @@ void MountedLens::set_f_number(double f_number) {
   const double open = first_order(prescription_).f_number;
   if (!std::isfinite(open))
     throw InputError(fmt::format("lens {} is afocal and has no f-number", prescription_.name));
-  if (f_number < open * (1 - f_number_rounding))
+  if (f_number < open - f_number_rounding)
     throw InputError(fmt::format("lens {} opens to f/{:.4g} only; f/{} asks for more", prescription_.name,
                                  open, f_number));
-  f_number_ = f_number;
+  f_number_ = std::max(f_number, open);
   use(lens_.object_distance_mm, lens_.surfaces.back().thickness_mm);
 }
 

@@ -58,7 +58,8 @@ class MountedLens {
   /// From the object to the sensor plane [m]; absent: infinity.
   std::optional<double> object_distance_from_sensor_m() const;
 
-  /// Stops down to a paraxial f-number at infinity. \throws InputError if it is below what the lens opens to.
+  /// Stops down to a paraxial f-number at infinity; below what the lens opens to by up to 0.005, as rounded
+  /// numbers are: opens it. \throws InputError if it is lower still.
   void set_f_number(double f_number);
   /// Blades of the stop, or none. \throws InputError as StopBlades::validate().
   void set_blades(const StopBlades& blades);
