@@ -8,6 +8,7 @@
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/sensor/formats/dng.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -129,6 +130,44 @@ TEST_F(Dng, TablesOfAllSamplesComeBack) {
     for (int column = 0; column < raw.columns; ++column)
       ASSERT_EQ(back.pixel(row, column), raw.pixel(row, column));
   EXPECT_EQ(back.pixel(0, 0), 65535);
+}
+
+TEST_F(Dng, BadPixelsAndWhatUndoesTheLensComeBack) {
+  for (const std::string order : {"RGGB", "BGGR", "GRBG", "GBRG"}) {
+    RawImage raw = example(order);
+    raw.bad_pixels = {{0, 59}, {7, 3}, {43, 0}};
+    raw.pitch_um = 3.75;
+    raw.lens.warp = {1, -0.05, 0.004, -1e-5};
+    raw.lens.vignetting = {0.1, 0.02, 0.003, 4e-4, 5e-5};
+    const std::string bytes = dng_bytes(raw, "a.dng");
+    const RawImage back = parse_dng(bytes, "a.dng");
+    EXPECT_EQ(back.bad_pixels, raw.bad_pixels);
+    EXPECT_EQ(back.lens.warp, raw.lens.warp);
+    EXPECT_EQ(back.lens.vignetting, raw.lens.vignetting);
+    EXPECT_NEAR(back.pitch_um, 3.75, 1e-6);
+    // FixBadPixelsList as DNG 1.4 prints it: its number, version 1.3, length 12 + 3 · 8, the phase of the
+    // mosaic.
+    const std::string phases[] = {"RGGB", "GRBG", "GBRG", "BGGR"};
+    const auto phase = std::find(std::begin(phases), std::end(phases), order) - std::begin(phases);
+    std::string opcode("\0\0\0\1\0\0\0\5\1\3\0\0\0\0\0\1\0\0\0\x24\0\0\0", 23);
+    opcode += static_cast<char>(phase);
+    EXPECT_NE(bytes.find(opcode), std::string::npos) << order;
+  }
+}
+
+TEST_F(Dng, BadListsOfOpcodesAreRefused) {
+  RawImage raw = example();
+  raw.bad_pixels = {{7, 3}};
+  const std::string good = dng_bytes(raw, "a.dng");
+  // The last: the directory is written anew behind that of EXIF.
+  const std::size_t at = good.rfind(std::string("\0\0\0\1\0\0\0\5\1\3\0\0", 12));
+  ASSERT_NE(at, std::string::npos);
+  // Two opcodes, a longer one, more points than there are, a row beyond the picture.
+  for (const std::size_t byte : {3u, 19u, 27u, 35u}) {
+    std::string bad = good;
+    bad[at + byte] = 77;
+    EXPECT_THROW(parse_dng(bad, "a.dng"), InputError) << byte;
+  }
 }
 
 TEST_F(Dng, ComesBack) {
