@@ -76,7 +76,8 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs,
-                   "PICTURE.png, .tif, .exr (linear) or .npy (linear); may be given several times")
+                   "PICTURE.png, .tif, .exr (linear), .npy (linear) or .dng (linear raw, for other "
+                   "programs); may be given several times")
       ->check(output_file())
       ->required()
       ->allow_extra_args(false);

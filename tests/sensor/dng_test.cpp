@@ -4,9 +4,11 @@
 #include <libraw/libraw.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/colour/display.h>
 #include <petzval/numeric/random.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/linear_dng.h>
 
 #include <algorithm>
 #include <cmath>
@@ -168,6 +170,36 @@ TEST_F(Dng, BadListsOfOpcodesAreRefused) {
     bad[at + byte] = 77;
     EXPECT_THROW(parse_dng(bad, "a.dng"), InputError) << byte;
   }
+}
+
+// A picture without a mosaic: what LibRaw makes of it in linear sRGB is the picture.
+TEST_F(Dng, LibRawDevelopsALinearPictureToItself) {
+  LinearPicture picture{40, 30, {}, {}, "linear", ""};
+  const ColourMatrix matrix = srgb_from_xyz();
+  for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
+  for (std::uint64_t i = 0; i < 3 * 40 * 30; ++i)
+    picture.samples.push_back(static_cast<std::uint16_t>(RandomStream(4, 0, i).bits() % 65536));
+  picture.samples[0] = picture.samples[1] = picture.samples[2] = 65535;  // LibRaw stretches to the greatest
+  write_linear_dng(path("l.dng"), picture);
+  LibRaw libraw;
+  auto& parameters = libraw.imgdata.params;
+  parameters.use_camera_wb = 1, parameters.output_color = 1, parameters.output_bps = 16;
+  parameters.no_auto_bright = 1, parameters.gamm[0] = parameters.gamm[1] = 1;
+  ASSERT_EQ(libraw.open_file(path("l.dng").c_str()), LIBRAW_SUCCESS);
+  ASSERT_EQ(libraw.unpack(), LIBRAW_SUCCESS);
+  ASSERT_EQ(libraw.dcraw_process(), LIBRAW_SUCCESS);
+  int error = 0;
+  libraw_processed_image_t* made = libraw.dcraw_make_mem_image(&error);
+  ASSERT_NE(made, nullptr);
+  ASSERT_EQ(made->width, 40);
+  ASSERT_EQ(made->height, 30);
+  const auto* samples = reinterpret_cast<const std::uint16_t*>(made->data);
+  // Its primaries have four digits: 2e-3 of white.
+  for (std::size_t i = 0; i < picture.samples.size(); ++i)
+    ASSERT_NEAR(samples[i], picture.samples[i], 0.002 * 65535) << i;
+  LibRaw::dcraw_clear_mem(made);
+  picture.samples.pop_back();
+  EXPECT_THROW(write_linear_dng(path("l.dng"), picture), InputError);
 }
 
 TEST_F(Dng, ComesBack) {

@@ -212,6 +212,16 @@ bool fits_dng(const RawImage& raw) {
          });
 }
 
+std::string mosaic_note(const RawImage& raw) {
+  constexpr int bayer = 2, x_trans = 6;
+  const bool rgb = raw.channels == std::vector<std::string>{"red", "green", "blue"};
+  const bool square = raw.mosaic.rows == raw.mosaic.columns;
+  if (raw.mosaic.is_uniform() || (rgb && square && (raw.mosaic.rows == bayer || raw.mosaic.rows == x_trans)))
+    return {};
+  return "few other programs develop raw files of this mosaic; developed as .dng it is a picture in linear "
+         "light that all of them read";
+}
+
 std::string dng_bytes(const RawImage& raw, const std::string& path) {
   raw.validate();
   dng::register_tags();
