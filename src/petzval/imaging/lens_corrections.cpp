@@ -61,7 +61,7 @@ Eigen::VectorXd even_polynomial(const std::vector<Eigen::Vector3d>& points, int 
   return powers.colPivHouseholderQr().solve(values);
 }
 
-double at(const std::vector<double>& terms, double r) {
+double even_value(const std::vector<double>& terms, double r) {
   double sum = 0;
   for (auto term = terms.rbegin(); term != terms.rend(); ++term) sum = sum * r * r + *term;
   return sum;
@@ -88,7 +88,8 @@ std::vector<double> warp_of(std::vector<FieldPoint> points, double tolerance) {
   const Eigen::VectorXd fit = even_polynomial(samples, 0, terms - 1);
   std::vector<double> warp(fit.begin(), fit.end());
   for (const Eigen::Vector3d& sample : samples)
-    if (sample(0) <= 1 && std::abs(at(warp, sample(0)) - sample(1)) * sample(0) > tolerance) return {};
+    if (sample(0) <= 1 && std::abs(even_value(warp, sample(0)) - sample(1)) * sample(0) > tolerance)
+      return {};
   return warp;
 }
 
@@ -104,7 +105,8 @@ std::vector<double> vignetting_of(const std::vector<FieldPoint>& points) {
   one_and_terms.insert(one_and_terms.end(), fit.begin(), fit.end());
   constexpr double tolerance = 0.01;
   for (const Eigen::Vector3d& sample : samples)
-    if (sample(0) <= 1 && std::abs(at(one_and_terms, sample(0)) * sample(2) - 1) > tolerance) return {};
+    if (sample(0) <= 1 && std::abs(even_value(one_and_terms, sample(0)) * sample(2) - 1) > tolerance)
+      return {};
   return {fit.begin(), fit.end()};
 }
 

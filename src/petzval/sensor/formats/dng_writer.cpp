@@ -184,8 +184,8 @@ class DngWriter {
     if (raw_.pitch_um > 0) {
       constexpr std::uint16_t centimetres = 3;
       constexpr double um_per_cm = 1e4;
-      for (const std::uint32_t tag : {EXIFTAG_FOCALPLANEXRESOLUTION, EXIFTAG_FOCALPLANEYRESOLUTION})
-        set(tag, um_per_cm / raw_.pitch_um);
+      set(EXIFTAG_FOCALPLANEXRESOLUTION, um_per_cm / raw_.pitch_um);
+      set(EXIFTAG_FOCALPLANEYRESOLUTION, um_per_cm / raw_.pitch_um);
       set(EXIFTAG_FOCALPLANERESOLUTIONUNIT, centimetres);
     }
     if (!raw_.lens.name.empty()) set(EXIFTAG_LENSMODEL, raw_.lens.name.c_str());

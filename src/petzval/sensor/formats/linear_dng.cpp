@@ -14,7 +14,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t planes = 3;
+constexpr std::size_t primaries = 3;
 
 /// A file being written.
 class LinearDngWriter {
@@ -37,7 +37,7 @@ class LinearDngWriter {
     stream_.require(TIFFSetField(tiff_, tag, values...) != 0);
   }
 
-  std::size_t row_samples() const { return planes * static_cast<std::size_t>(picture_.columns); }
+  std::size_t row_samples() const { return primaries * static_cast<std::size_t>(picture_.columns); }
   std::size_t rows_per_strip() const {
     constexpr std::size_t strip_bytes = 1 << 18;
     return std::max<std::size_t>(1, strip_bytes / (2 * row_samples()));
@@ -48,7 +48,7 @@ class LinearDngWriter {
     set(TIFFTAG_IMAGEWIDTH, picture_.columns);
     set(TIFFTAG_IMAGELENGTH, picture_.rows);
     set(TIFFTAG_BITSPERSAMPLE, 16);
-    set(TIFFTAG_SAMPLESPERPIXEL, static_cast<int>(planes));
+    set(TIFFTAG_SAMPLESPERPIXEL, static_cast<int>(primaries));
     set(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
     set(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
     set(TIFFTAG_COMPRESSION, COMPRESSION_NONE);
@@ -70,14 +70,14 @@ class LinearDngWriter {
   static std::string version_text() { return petzval::version(); }
 
   void set_levels_and_colour() {
-    const std::vector<float> neutral(planes, 1);
-    const std::vector<std::uint32_t> white(planes, 65535);
-    set(TIFFTAG_WHITELEVEL, static_cast<int>(planes), white.data());
+    const std::vector<float> neutral(primaries, 1);
+    const std::vector<std::uint32_t> white(primaries, 65535);
+    set(TIFFTAG_WHITELEVEL, static_cast<int>(primaries), white.data());
     constexpr int exif_d65 = 21;
     set(TIFFTAG_CALIBRATIONILLUMINANT1, exif_d65);
     const std::vector<float> matrix(picture_.rgb_from_xyz.begin(), picture_.rgb_from_xyz.end());
     set(TIFFTAG_COLORMATRIX1, static_cast<int>(matrix.size()), matrix.data());
-    set(TIFFTAG_ASSHOTNEUTRAL, static_cast<int>(planes), neutral.data());
+    set(TIFFTAG_ASSHOTNEUTRAL, static_cast<int>(primaries), neutral.data());
   }
 
   void write_strips() {
@@ -101,9 +101,9 @@ class LinearDngWriter {
 void write_linear_dng(const std::string& path, const LinearPicture& picture) {
   if (picture.columns < 1 || picture.rows < 1 ||
       picture.samples.size() !=
-          planes * static_cast<std::size_t>(picture.columns) * static_cast<std::size_t>(picture.rows))
+          primaries * static_cast<std::size_t>(picture.columns) * static_cast<std::size_t>(picture.rows))
     throw InputError(path, fmt::format("{} samples for a picture of {} x {} x {}", picture.samples.size(),
-                                       picture.columns, picture.rows, planes));
+                                       picture.columns, picture.rows, primaries));
   dng::register_tags();
   write_whole_file(path, LinearDngWriter(path, picture).bytes());
 }
