@@ -51,6 +51,7 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
                                          {"demosaic", report.demosaic},
                                          {"neutral", report.neutral},
                                          {"temperature_k", report.temperature_k},
+                                         {"brightness_ev", report.exposure_ev},
                                          {"defects_corrected", report.defects},
                                          {"outputs", command.outputs}};
     return fmt::print("{}\n", json.dump(2));
@@ -61,6 +62,7 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
   fmt::print("  white {:.4f}{}, {} defects corrected\n", fmt::join(report.neutral, " "),
              report.temperature_k > 0 ? fmt::format(", light of {:.0f} K", report.temperature_k) : "",
              report.defects);
+  if (report.exposure_ev != 0) fmt::print("  brighter by {:.2f} stops\n", report.exposure_ev);
 }
 
 }  // namespace
@@ -74,7 +76,8 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs,
-                   "PICTURE.png, .tif, .exr (linear) or .npy (linear); may be given several times")
+                   "PICTURE.png, .tif, .exr (linear), .npy (linear) or .dng (linear raw, for other "
+                   "programs); may be given several times")
       ->check(output_file())
       ->required()
       ->allow_extra_args(false);

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/isp/display_picture.h>
 #include <petzval/sensor/formats/dng.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "command.h"
 #include "output_option.h"
@@ -44,8 +47,16 @@ void DevelopChoice::add_to(CLI::App& command, bool after_light) {
       ->capture_default_str();
   command.add_option("--sharpen-radius", given.sharpen_sigma_px, "Of the mask [pixels]")
       ->capture_default_str();
-  command.add_option("--brightness", given.exposure_ev, "Brighter by this many stops [EV]")
-      ->check(CLI::Range(-30.0, 30.0))
+  command
+      .add_option(
+          "--brightness", brightness,
+          "Brighter by this many stops [EV], or auto: what 99 % of the picture do not exceed is white")
+      ->check([](const std::string& text) {
+        const std::optional<double> stops = parse_number(text);
+        constexpr double most_ev = 30;
+        if (text == "auto" || (stops && std::abs(*stops) <= most_ev)) return std::string();
+        return fmt::format("{}: auto, or a number from -30 to 30 would be right", text);
+      })
       ->capture_default_str();
   command.add_option("--tone", tone, "none (white is cut) or soft (highlights roll off)")
       ->check(CLI::IsMember({"none", "soft"}))
@@ -66,6 +77,8 @@ Development DevelopChoice::development() const {
   if (!sensor.empty()) development.white_balance.sensor = read_sensor(sensor);
   DevelopOptions& options = development.options = given;
   options.defects = !keep_defects;
+  options.automatic_exposure = brightness == "auto";
+  if (!options.automatic_exposure) options.exposure_ev = *parse_number(brightness);
   if (demosaic != "auto") options.demosaic = demosaic;
   options.colours = matrix == "auto";
   options.tone = tone == "soft" ? ToneCurve::soft : ToneCurve::none;

@@ -14,7 +14,7 @@ namespace petzval::app {
 
 struct DevelopChoice {
   std::string white_balance = "as-shot", demosaic = "auto", sensor, matrix = "auto", flat, space = "srgb",
-              tone = "none";
+              tone = "none", brightness = "0";
   bool keep_defects = false;
   DevelopOptions given;            ///< what the options fill in directly
   std::vector<std::string> steps;  ///< NAME=FILE

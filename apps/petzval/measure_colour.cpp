@@ -195,6 +195,7 @@ void measure_matrix(const MatrixCommand& command, const Shared& shared) {
     rows.push_back({{"light", light},
                     {"mean_delta_e_2000", fit.mean_delta_e_2000},
                     {"max_delta_e_2000", fit.max_delta_e_2000},
+                    {"noise_delta_e_ab", fit.noise_delta_e_ab},
                     {"neutral", fit.neutral},
                     {"xyz_from_camera", fit.xyz_from_camera}});
   }

@@ -95,15 +95,26 @@ ordered_json rows_of(const PhotonTransfer& transfer) {
 ordered_json figures(const PhotonTransfer& transfer) {
   return {{"dn_per_e", transfer.dn_per_e},
           {"dark_noise_e", transfer.dark_noise_e},
+          {"quantisation_limited", transfer.quantisation_limited},
           {"saturation_e", transfer.saturation_e},
+          {"full_signal_e",
+           transfer.full_signal_e ? ordered_json(*transfer.full_signal_e) : ordered_json(nullptr)},
           {"dynamic_range_db", transfer.dynamic_range_db},
           {"snr_max_db", transfer.snr_max_db}};
 }
 
+/// A noise, or below what it stays where the steps of the converter hide it.
+std::string noise_text(double noise_e, bool quantisation_limited) {
+  return quantisation_limited ? fmt::format("below {:.2f} e, hidden by the steps of the converter", noise_e)
+                              : fmt::format("{:.3f} e", noise_e);
+}
+
 void print_figures(const PhotonTransfer& transfer) {
   fmt::print("  system gain     {:.5g} DN per electron\n", transfer.dn_per_e);
-  fmt::print("  dark noise      {:.3f} e\n", transfer.dark_noise_e);
-  fmt::print("  saturation      {:.0f} e\n", transfer.saturation_e);
+  fmt::print("  dark noise      {}\n", noise_text(transfer.dark_noise_e, transfer.quantisation_limited));
+  fmt::print(
+      "  saturation      {:.0f} e{}\n", transfer.saturation_e,
+      transfer.full_signal_e ? fmt::format(", all pixels full at {:.0f} e", *transfer.full_signal_e) : "");
   fmt::print("  dynamic range   {:.1f} dB, {:.1f} stops\n", transfer.dynamic_range_db,
              transfer.dynamic_range_db / (20 * std::log10(2)));
   fmt::print("  greatest SNR    {:.1f} dB\n", transfer.snr_max_db);
@@ -131,6 +142,7 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
   if (shared.json) {
     ordered_json json = figures(test.transfer);
     json["dsnu_e"] = test.uniformity.dsnu_e;
+    json["dsnu_quantisation_limited"] = test.uniformity.dsnu_quantisation_limited;
     json["prnu_percent"] = test.uniformity.prnu_percent;
     json["iso_saturation_daylight"] = daylight_speed;
     json["iso_saturation_tungsten"] = tungsten_speed;
@@ -142,7 +154,8 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
   fmt::print("{}, channel {}, conversion gain {}, analog gain {:g}\n", sensor.name,
              electronics.channels[static_cast<std::size_t>(channel)].name, mode.name, command.gain);
   print_figures(test.transfer);
-  fmt::print("  DSNU            {:.3f} e\n", test.uniformity.dsnu_e);
+  fmt::print("  DSNU            {}\n",
+             noise_text(test.uniformity.dsnu_e, test.uniformity.dsnu_quantisation_limited));
   fmt::print("  PRNU            {:.3f} %\n", test.uniformity.prnu_percent);
   fmt::print("  ISO speed       {:.0f} in daylight (D55), {:.0f} in tungsten light (3200 K), by saturation\n",
              daylight_speed, tungsten_speed);

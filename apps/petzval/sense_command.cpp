@@ -4,8 +4,11 @@
 #include <petzval/base/error.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/image/formats/irradiance.h>
+#include <petzval/sensor/formats/dng.h>
 #include <petzval/sensor/raw_file.h>
+#include <petzval/simulate/outputs.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -61,6 +64,9 @@ void sense(const SenseCommand& command, const Shared& shared) {
   const RawImage raw =
       expose(read_irradiance(command.irradiance), sensor, command.choice.options(), context_of(shared));
   for (const std::string& path : staged) write_raw(path, raw);
+  if (const std::string note = mosaic_note(raw);
+      !note.empty() && std::ranges::any_of(command.outputs, is_raw_name))
+    send_note(context_of(shared), note);
   files.commit();
   if (shared.json) return fmt::print("{}\n", summary_json(raw, command.outputs).dump(2));
   if (!shared.quiet) print_summary(raw);

@@ -228,6 +228,12 @@ void bind_sensor_test(nb::module_& module) {
       .def_prop_ro("dn_per_e", [](const SensorTest& t) { return t.transfer.dn_per_e; })
       .def_prop_ro("dark_noise_e", [](const SensorTest& t) { return t.transfer.dark_noise_e; })
       .def_prop_ro("saturation_e", [](const SensorTest& t) { return t.transfer.saturation_e; })
+      .def_prop_ro(
+          "full_signal_e", [](const SensorTest& t) { return t.transfer.full_signal_e; },
+          "Where all pixels are full.")
+      .def_prop_ro(
+          "quantisation_limited", [](const SensorTest& t) { return t.transfer.quantisation_limited; },
+          "The steps of the converter hide the dark noise, of which dark_noise_e is then an upper bound.")
       .def_prop_ro("dynamic_range_db", [](const SensorTest& t) { return t.transfer.dynamic_range_db; })
       .def_prop_ro("snr_max_db", [](const SensorTest& t) { return t.transfer.snr_max_db; })
       .def_prop_ro("dsnu_e", [](const SensorTest& t) { return t.uniformity.dsnu_e; })

@@ -38,6 +38,27 @@ class SensorChain(ProgramTest):
                             "-o", "raw.dng", "--quiet")
         self.assertAlmostEqual(more["exposure_s"] / summary["exposure_s"], 2, 9)
 
+    def test_mosaics_that_others_do_not_know_are_noted_and_have_a_way_out(self):
+        self.make_light(sensor="96x64@2.4")
+        for sensor, noted in (("rgbw-1280x960", True), ("third-inch-1280x960", False)):
+            said = self.petzval("sense", "light.exr", "--sensor", sensor, "--sensor-set", "pitch_um=2.4",
+                                "--illuminant", "D65", "-o", "raw.dng")
+            self.assertEqual(said.returncode, 0, said.stderr)
+            self.assertEqual("note: few other programs develop" in said.stderr, noted, sensor)
+        self.assert_succeeds("develop", "raw.dng", "-o", "linear.dng", "-o", "linear.npy")
+        tiff = self.contents()["linear.dng"]
+        self.assertEqual(tiff[:4], b"II*\0")
+        self.assertGreater(len(tiff), 96 * 64 * 3 * 2)
+
+    def test_brightness_by_itself_undoes_the_exposure(self):
+        self.make_raw("--exposure-compensation", "-5", name="dark.dng")
+        said = self.json_of("develop", "dark.dng", "--brightness", "auto", "-o", "a.png", "--quiet")
+        self.make_raw(name="light.dng")
+        level = self.json_of("develop", "light.dng", "--brightness", "auto", "-o", "b.png", "--quiet")
+        # Noise, a twentieth of white in blocks of 16 pixels, raises the brightest hundredth a little.
+        self.assertAlmostEqual(said["brightness_ev"] - level["brightness_ev"], 5, delta=0.15)
+        self.assert_refused("develop", "dark.dng", "--brightness", "bright", "-o", "c.png", words=("--brightness", "auto"))
+
     IMAGE = ("image", "colorchecker", "--lens", "edmund-54852", "--method", "none", "--wavelengths", "400:20:700")
 
     def test_image_runs_the_lot_as_by_halves(self):

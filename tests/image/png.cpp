@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/png.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <random>
 #include <stdexcept>
@@ -50,6 +52,24 @@ TEST(Png, SameBytesTwice) {
   write_png(scratch.path("a.png"), noise(64, 64, 3, 16));
   write_png(scratch.path("b.png"), noise(64, 64, 3, 16));
   EXPECT_EQ(read_whole_file(scratch.path("a.png")), read_whole_file(scratch.path("b.png")));
+}
+
+TEST(Png, BlocksOfNoiseAndOfDrawingsAreOneStreamOnAnyNumberOfThreads) {
+  const test::Scratch scratch;
+  PngImage image = noise(1200, 1500, 3, 8);  // six blocks of 1 MiB; the lower half is flat
+  std::fill(image.samples.begin() + static_cast<std::ptrdiff_t>(image.samples.size() / 2),
+            image.samples.end(), std::uint16_t{77});
+  std::vector<std::string> files;
+  for (const int threads : {1, 2, 5}) {
+    const ThreadLimit limit(threads);
+    write_png(scratch.path("a.png"), image);
+    files.push_back(read_whole_file(scratch.path("a.png")));
+    EXPECT_EQ(read_png(scratch.path("a.png")).samples, image.samples);
+  }
+  EXPECT_EQ(files[0], files[1]);
+  EXPECT_EQ(files[0], files[2]);
+  // Noise does not shrink; what is flat all but vanishes.
+  EXPECT_LT(files[0].size(), image.samples.size() * 51 / 100);
 }
 
 // A decoder of its own, of the PNG specification (ISO/IEC 15948, clauses 5, 9), on zlib alone.

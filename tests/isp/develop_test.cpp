@@ -6,6 +6,7 @@
 #include <petzval/image/formats/tiff.h>
 #include <petzval/isp/develop.h>
 #include <petzval/isp/display_picture.h>
+#include <petzval/numeric/random.h>
 #include <petzval/sensor/colour_calibration.h>
 
 #include <cmath>
@@ -61,6 +62,72 @@ TEST(LinearMosaic, DefectsAreFoundAndNothingElse) {
   EXPECT_EQ(correct_defects(mosaic, 1e-5, 1e-7), 0);
 }
 
+/// A slope of light from `dim` to twice that, as exposed by a sensor with an eighth more noise of its own
+/// than photons make; some pixels are dead.
+struct DeadPixels {
+  LinearMosaic mosaic;
+  std::vector<PixelPlace> dead;
+};
+
+constexpr double dead_test_scale = 1e-4, dead_test_offset = 1e-7;  // 10,000 e, 3 e in the dark
+
+DeadPixels with_dead_pixels(double dim) {
+  constexpr int columns = 400, rows = 300, between = 37;
+  RandomStream random(5, 0, 0);
+  DeadPixels made{test::bayer(columns, rows, "RGGB",
+                              [&](int channel, int, int c) {
+                                const double light = dim * (1 + c / 400.0) * (channel == 1 ? 1 : 0.8);
+                                return light + std::sqrt(dead_test_scale * light + dead_test_offset) *
+                                                   random.normal();
+                              }),
+                  {}};
+  for (int place = 11; place < columns * rows; place += between * columns + between)
+    made.dead.push_back({place / columns, place % columns});
+  for (const PixelPlace& place : made.dead)
+    made.mosaic.row(place.row)[static_cast<std::size_t>(place.column)] =
+        static_cast<float>(std::sqrt(dead_test_offset) * random.normal());
+  return made;
+}
+
+// A dead pixel is (level)/(noise) deviations below its neighbours: 63 and more at full exposure, 12 where
+// there are 160 electrons, of which the darkest of eight neighbours takes 1.4 and the threshold 5.
+TEST(LinearMosaic, DeadPixelsAreFoundInTheDarkToo) {
+  for (const double dim : {0.5, 0.02}) {
+    DeadPixels picture = with_dead_pixels(dim);
+    const std::vector<float> before = picture.mosaic.values;
+    const int found = correct_defects(picture.mosaic, dead_test_scale, dead_test_offset);
+    for (const PixelPlace& place : picture.dead) {
+      const auto at = static_cast<std::size_t>(place.row * picture.mosaic.columns + place.column);
+      EXPECT_NE(picture.mosaic.values[at], before[at]) << dim << ": " << place.row << ", " << place.column;
+    }
+    // Beyond eight others by five deviations: one normal deviate in 10⁷ or so is.
+    EXPECT_EQ(found, static_cast<int>(picture.dead.size())) << dim;
+  }
+}
+
+TEST(LinearMosaic, KnownDefectsAreCorrectedWhereTheyCannotBeSeen) {
+  constexpr double dim = 0.5 / 4096;  // half an electron
+  DeadPixels picture = with_dead_pixels(dim);
+  const std::vector<float> before = picture.mosaic.values;
+  EXPECT_EQ(correct_defects(picture.mosaic, dead_test_scale, dead_test_offset, picture.dead),
+            static_cast<int>(picture.dead.size()));
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) changed += picture.mosaic.values[i] != before[i];
+  EXPECT_EQ(changed, picture.dead.size());
+}
+
+// The light of a star through a lens falls on several pixels, whatever their colours.
+TEST(LinearMosaic, StarsAreNoDefects) {
+  for (const double place : {20.0, 20.25, 20.5, 21.0}) {
+    constexpr double sigma_px = 0.7;  // an Airy disc of two pixels' diameter
+    LinearMosaic star = test::bayer(41, 41, "RGGB", [&](int, int r, int c) {
+      const double square = (r - place) * (r - place) + (c - place) * (c - place);
+      return 0.01 + 0.6 * std::exp(-square / (2 * sigma_px * sigma_px));
+    });
+    EXPECT_EQ(correct_defects(star, dead_test_scale, dead_test_offset), 0) << place;
+  }
+}
+
 // Mirroring at a border keeps the phase of mosaics of period two alone: others then compare pixels of two
 // channels.
 TEST(LinearMosaic, BordersOfLongMosaicsHaveNoDefectsOfTheirOwn) {
@@ -90,12 +157,14 @@ TEST(LinearMosaic, ShadingIsDividedOut) {
   const LinearMosaic flat = test::bayer(
       50, 40, "RGGB", [&](int channel, int r, int c) { return (0.5 + 0.1 * channel) * fall_off(r, c); });
   correct_shading(picture, flat, 2);
-  // Smoothing rounds the top of the parabola: 0.0004/2 · 2 · 2 (the mean square of −2 … 2, twice), 8e-4.
-  for (int r = 6; r < 34; ++r)
-    for (int c = 6; c < 44; ++c)
+  // Smoothing rounds the top of the parabola: 0.0004/2 · 2 · 2 (the mean square of −2 … 2, twice), 8e-4. At
+  // the border the parabola leaves its tangent by 0.0004/2 · (2² + 2²) within the square, where it is 0.8.
+  for (int r = 0; r < 40; ++r)
+    for (int c = 0; c < 50; ++c)
       EXPECT_NEAR(static_cast<double>(picture.row(r)[static_cast<std::size_t>(c)]) /
                       (0.2 + 0.1 * picture.mosaic.channel(r, c)),
-                  1, 2e-3);
+                  1, r >= 6 && r < 34 && c >= 6 && c < 44 ? 2e-3 : 4e-3)
+          << r << ", " << c;
   LinearMosaic black = flat;
   for (float& value : black.values) value = 0;
   EXPECT_THROW(correct_shading(picture, black, 2), InputError);
@@ -192,6 +261,35 @@ TEST(Filters, DoWhatTheySay) {
   EXPECT_FLOAT_EQ(bright.values[0][1], 0.4f);
   EXPECT_LE(bright.values[0][2], 1);
   EXPECT_FLOAT_EQ(bright.values[0][2] / bright.values[2][2], 4) << "hue stays";
+  // White stays white, what brightening lifts beyond it comes back below, and nothing is turned over.
+  for (const double ev : {0.0, 1.0, 3.0}) {
+    Planes ramp{101, 1, std::vector<std::vector<float>>(3)};
+    for (int i = 0; i <= 100; ++i)
+      for (auto& plane : ramp.values) plane.push_back(static_cast<float>(i) / 100);
+    apply_tone(ramp, ev, ToneCurve::soft);
+    EXPECT_FLOAT_EQ(ramp.values[0][100], 1) << ev;
+    for (std::size_t i = 1; i <= 100; ++i) EXPECT_GT(ramp.values[1][i], ramp.values[1][i - 1]) << ev;
+  }
+}
+
+TEST(Filters, AutomaticBrightnessUndoesTheExposure) {
+  RandomStream random(9, 0, 0);
+  Planes ramp{400, 40, std::vector<std::vector<float>>(3, std::vector<float>(16000))};
+  for (auto& plane : ramp.values)
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = static_cast<float>(i % 400) / 400;
+  // The 99th of 100 blocks across holds the columns 392 to 395.
+  EXPECT_NEAR(automatic_exposure_ev(ramp), -std::log2(393.5 / 400), 1e-5);
+  Planes dim = ramp;
+  for (auto& plane : dim.values)
+    for (float& value : plane) value /= 128;
+  EXPECT_NEAR(automatic_exposure_ev(dim), 7 + automatic_exposure_ev(ramp), 1e-5);
+  for (auto& plane : dim.values)
+    for (float& value : plane) value += static_cast<float>(0.1 / 128 * random.normal());
+  // Blocks scatter by 0.025, the greatest of three planes of the brightest hundredth lie some 2.5 of it
+  // higher.
+  EXPECT_NEAR(automatic_exposure_ev(dim), 7, 0.12);
+  Planes black{8, 8, {std::vector<float>(64)}};
+  EXPECT_EQ(automatic_exposure_ev(black), 0);
 }
 
 /// Four bytes of an ICC file as s15Fixed16Number.

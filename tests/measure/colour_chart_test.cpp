@@ -70,6 +70,16 @@ TEST(FindChart, DoesNotFindWhatIsNotThere) {
   EXPECT_THROW(find_chart(picture, illuminant("D65")), InputError);
 }
 
+TEST(CompareChart, RefusesCornersThatSpanNoChart) {
+  const ViewedPicture picture = drawn_chart(640, 480, 195, 165, 50, 0, 1);
+  const ChartCorners wrong[] = {{{{{0, 0}, {0, 0}, {0, 0}, {0, 0}}}},                   // a point
+                                {{{{195, 165}, {445, 165}, {345, 165}, {245, 165}}}},   // a line
+                                {{{{195, 165}, {445, 315}, {445, 165}, {195, 315}}}},   // crossed
+                                {{{{195, 165}, {200, 165}, {200, 168}, {195, 168}}}}};  // a pixel a patch
+  for (const ChartCorners& corners : wrong)
+    EXPECT_THROW(compare_chart(picture, corners, illuminant("D65")), InputError);
+}
+
 TEST(CompareChart, GivesTheDifferenceOfAKnownShift) {
   ViewedPicture picture = drawn_chart(640, 480, 195, 165, 50, 0, 1);
   const ChartCorners corners{{{{195, 165}, {445, 165}, {445, 315}, {195, 315}}}};

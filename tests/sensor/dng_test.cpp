@@ -4,10 +4,13 @@
 #include <libraw/libraw.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/colour/display.h>
 #include <petzval/numeric/random.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/linear_dng.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -129,6 +132,74 @@ TEST_F(Dng, TablesOfAllSamplesComeBack) {
     for (int column = 0; column < raw.columns; ++column)
       ASSERT_EQ(back.pixel(row, column), raw.pixel(row, column));
   EXPECT_EQ(back.pixel(0, 0), 65535);
+}
+
+TEST_F(Dng, BadPixelsAndWhatUndoesTheLensComeBack) {
+  for (const std::string order : {"RGGB", "BGGR", "GRBG", "GBRG"}) {
+    RawImage raw = example(order);
+    raw.bad_pixels = {{0, 59}, {7, 3}, {43, 0}};
+    raw.pitch_um = 3.75;
+    raw.lens.warp = {1, -0.05, 0.004, -1e-5};
+    raw.lens.vignetting = {0.1, 0.02, 0.003, 4e-4, 5e-5};
+    const std::string bytes = dng_bytes(raw, "a.dng");
+    const RawImage back = parse_dng(bytes, "a.dng");
+    EXPECT_EQ(back.bad_pixels, raw.bad_pixels);
+    EXPECT_EQ(back.lens.warp, raw.lens.warp);
+    EXPECT_EQ(back.lens.vignetting, raw.lens.vignetting);
+    EXPECT_NEAR(back.pitch_um, 3.75, 1e-6);
+    // FixBadPixelsList as DNG 1.4 prints it: its number, version 1.3, length 12 + 3 · 8, the phase of the
+    // mosaic.
+    const std::string phases[] = {"RGGB", "GRBG", "GBRG", "BGGR"};
+    const auto phase = std::find(std::begin(phases), std::end(phases), order) - std::begin(phases);
+    std::string opcode("\0\0\0\1\0\0\0\5\1\3\0\0\0\0\0\1\0\0\0\x24\0\0\0", 23);
+    opcode += static_cast<char>(phase);
+    EXPECT_NE(bytes.find(opcode), std::string::npos) << order;
+  }
+}
+
+TEST_F(Dng, BadListsOfOpcodesAreRefused) {
+  RawImage raw = example();
+  raw.bad_pixels = {{7, 3}};
+  const std::string good = dng_bytes(raw, "a.dng");
+  // The last: the directory is written anew behind that of EXIF.
+  const std::size_t at = good.rfind(std::string("\0\0\0\1\0\0\0\5\1\3\0\0", 12));
+  ASSERT_NE(at, std::string::npos);
+  // Two opcodes, a longer one, more points than there are, a row beyond the picture.
+  for (const std::size_t byte : {3u, 19u, 27u, 35u}) {
+    std::string bad = good;
+    bad[at + byte] = 77;
+    EXPECT_THROW(parse_dng(bad, "a.dng"), InputError) << byte;
+  }
+}
+
+// A picture without a mosaic: what LibRaw makes of it in linear sRGB is the picture.
+TEST_F(Dng, LibRawDevelopsALinearPictureToItself) {
+  LinearPicture picture{40, 30, {}, {}, "linear", ""};
+  const ColourMatrix matrix = srgb_from_xyz();
+  for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
+  for (std::uint64_t i = 0; i < 3 * 40 * 30; ++i)
+    picture.samples.push_back(static_cast<std::uint16_t>(RandomStream(4, 0, i).bits() % 65536));
+  picture.samples[0] = picture.samples[1] = picture.samples[2] = 65535;  // LibRaw stretches to the greatest
+  write_linear_dng(path("l.dng"), picture);
+  LibRaw libraw;
+  auto& parameters = libraw.imgdata.params;
+  parameters.use_camera_wb = 1, parameters.output_color = 1, parameters.output_bps = 16;
+  parameters.no_auto_bright = 1, parameters.gamm[0] = parameters.gamm[1] = 1;
+  ASSERT_EQ(libraw.open_file(path("l.dng").c_str()), LIBRAW_SUCCESS);
+  ASSERT_EQ(libraw.unpack(), LIBRAW_SUCCESS);
+  ASSERT_EQ(libraw.dcraw_process(), LIBRAW_SUCCESS);
+  int error = 0;
+  libraw_processed_image_t* made = libraw.dcraw_make_mem_image(&error);
+  ASSERT_NE(made, nullptr);
+  ASSERT_EQ(made->width, 40);
+  ASSERT_EQ(made->height, 30);
+  const auto* samples = reinterpret_cast<const std::uint16_t*>(made->data);
+  // Its primaries have four digits: 2e-3 of white.
+  for (std::size_t i = 0; i < picture.samples.size(); ++i)
+    ASSERT_NEAR(samples[i], picture.samples[i], 0.002 * 65535) << i;
+  LibRaw::dcraw_clear_mem(made);
+  picture.samples.pop_back();
+  EXPECT_THROW(write_linear_dng(path("l.dng"), picture), InputError);
 }
 
 TEST_F(Dng, ComesBack) {

@@ -22,6 +22,10 @@ struct LensFacts {
   std::string name = {};
   double focal_length_mm = 0, f_number = 0;  ///< the working f-number; 0: not known
   double exit_pupil_mm = 0;  ///< from the sensor, negative in front of it; 0: not known, or at infinity
+  /// What undoes distortion and fall-off over this frame, r = 1 in its corners: a point at r of a straight
+  /// picture is found at r·(w₀ + w₁r² + w₂r⁴ + w₃r⁶), and its light × (1 + v₀r² + … + v₄r¹⁰) is even (DNG's
+  /// WarpRectilinear and FixVignetteRadial). Empty: not known.
+  std::vector<double> warp = {}, vignetting = {};
 };
 
 /// Spectral irradiance on the sensor [W·m⁻²·nm⁻¹]: `bands` planes of `rows` × `columns`, upright (the optical

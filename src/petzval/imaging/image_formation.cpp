@@ -7,6 +7,7 @@
 #include <petzval/imaging/cell_choice.h>
 #include <petzval/imaging/coverage.h>
 #include <petzval/imaging/image_frame.h>
+#include <petzval/imaging/lens_corrections.h>
 #include <petzval/imaging/positive_light.h>
 #include <petzval/sensor/lens_facts.h>
 
@@ -247,6 +248,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
   };
   form_bands(scene, table, sensor, options, put, progress, report);
   image->lens = lens_facts(table.lens_name, table.first_order);
+  add_corrections(*image->lens, table, sensor);
   return std::move(*image);
 }
 

@@ -55,7 +55,7 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   LinearMosaic mosaic = linearised(raw);
   tell_mosaic("linear", mosaic);
   if (options.defects && raw.dn_per_e > 0)
-    done.defects = correct_defects(mosaic, noise_scale(raw), noise_offset(raw));
+    done.defects = correct_defects(mosaic, noise_scale(raw), noise_offset(raw), raw.bad_pixels);
   tell_mosaic("defects", mosaic);
   if (options.flat) correct_shading(mosaic, linearised(*options.flat));
   tell_mosaic("shading", mosaic);
@@ -82,7 +82,8 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   if (step) step("colour", planes);
   if (options.sharpen_amount != 0) sharpen(planes, options.sharpen_amount, options.sharpen_sigma_px);
   if (step) step("sharpen", planes);
-  apply_tone(planes, options.exposure_ev, options.tone);
+  done.exposure_ev = options.automatic_exposure ? automatic_exposure_ev(planes) : options.exposure_ev;
+  apply_tone(planes, done.exposure_ev, options.tone);
   if (step) step("tone", planes);
   if (report) *report = done;
   return planes;

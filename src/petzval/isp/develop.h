@@ -25,6 +25,8 @@ struct DevelopOptions {
   bool colours = true;                       ///< false: channels 0, 1, 2 are shown as red, green, blue
   double denoise_strength = 0, sharpen_amount = 0, sharpen_sigma_px = 1;
   double exposure_ev = 0;
+  /// In place of exposure_ev: so much that the brightest hundredth of the picture comes to be white.
+  bool automatic_exposure = false;
   ToneCurve tone = ToneCurve::none;
   DisplaySpace space = DisplaySpace::srgb;
 };
@@ -34,6 +36,7 @@ struct DevelopReport {
   std::vector<double> neutral = {};
   double temperature_k = 0;  ///< of the light; 0: not known
   int defects = 0;
+  double exposure_ev = 0;
   std::string demosaic = {};
 };
 

@@ -96,10 +96,39 @@ void sharpen(Planes& planes, double amount, double sigma_px) {
   }
 }
 
+double automatic_exposure_ev(const Planes& rgb) {
+  constexpr int side = 4;
+  constexpr double share = 0.99, most_ev = 16;
+  const int across = std::max(1, rgb.columns / side), down = std::max(1, rgb.rows / side);
+  std::vector<float> levels(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+  parallel_for(static_cast<std::size_t>(down), [&](std::size_t block_row) {
+    for (int block = 0; block < across; ++block) {
+      const int top = static_cast<int>(block_row) * side, left = block * side;
+      const int bottom = std::min(top + side, rgb.rows), right = std::min(left + side, rgb.columns);
+      float most = 0;
+      for (const std::vector<float>& plane : rgb.values) {
+        float sum = 0;
+        for (int r = top; r < bottom; ++r)
+          for (int c = left; c < right; ++c)
+            sum += plane[static_cast<std::size_t>(r) * static_cast<std::size_t>(rgb.columns) +
+                         static_cast<std::size_t>(c)];
+        most = std::max(most, sum / static_cast<float>((bottom - top) * (right - left)));
+      }
+      levels[block_row * static_cast<std::size_t>(across) + static_cast<std::size_t>(block)] = most;
+    }
+  });
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(levels.size()))) - 1;
+  const auto nth = levels.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(levels.begin(), nth, levels.end());
+  if (!(*nth > 0)) return 0;
+  return std::clamp(-std::log2(static_cast<double>(*nth)), -most_ev, most_ev);
+}
+
 void apply_tone(Planes& rgb, double exposure_ev, ToneCurve curve) {
   const auto gain = static_cast<float>(std::exp2(exposure_ev));
   const auto columns = static_cast<std::size_t>(rgb.columns);
   constexpr float knee = 0.5f;
+  const float white = std::max(1.0f, gain), steepness = (white - knee) / (1 - knee);
   parallel_for(static_cast<std::size_t>(rgb.rows), [&](std::size_t row) {
     float* p[3] = {rgb.values[0].data() + row * columns, rgb.values[1].data() + row * columns,
                    rgb.values[2].data() + row * columns};
@@ -107,8 +136,9 @@ void apply_tone(Planes& rgb, double exposure_ev, ToneCurve curve) {
       for (float* plane : p) plane[c] = std::max(0.0f, gain * plane[c]);
       const float most = std::max({p[0][c], p[1][c], p[2][c]});
       if (curve == ToneCurve::none || most <= knee) continue;
-      // Slope 1 at the knee, 1 in the limit.
-      const float out = 1 - (1 - knee) * std::exp(-(most - knee) / (1 - knee));
+      // Slope 1 at the knee, 1 where white has come to.
+      const float t = std::min(1.0f, (most - knee) / (white - knee));
+      const float out = knee + (1 - knee) * steepness * t / (1 + (steepness - 1) * t);
       for (float* plane : p) plane[c] *= out / most;
     }
   });

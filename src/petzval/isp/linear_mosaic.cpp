@@ -4,10 +4,12 @@
 #include <petzval/base/parallel.h>
 #include <petzval/isp/linear_mosaic.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <set>
 
 namespace petzval {
 
@@ -15,6 +17,8 @@ namespace {
 
 /// How many pixels of the same channel a pixel is compared with.
 constexpr std::size_t neighbour_count = 8;
+/// Of gains among pixels, where PRNU is not known: sensors have 0.3 to 1 %.
+constexpr double gain_spread = 0.01;
 
 /// Rows and columns from a pixel to the others of its channel, the nearest first.
 using Places = std::vector<std::pair<int, int>>;
@@ -44,20 +48,84 @@ std::vector<Places> same_channel_neighbours(const Mosaic& mosaic) {
 struct Neighbours {
   std::array<float, neighbour_count> values{};
   std::size_t count = 0;
+
+  std::pair<float, float> range() const {
+    const auto [low, high] = std::minmax_element(values.begin(), values.begin() + static_cast<long>(count));
+    return {*low, *high};
+  }
+  float median() {
+    const auto begin = values.begin(), end = begin + static_cast<long>(count);
+    const auto middle = begin + static_cast<long>(count / 2);
+    std::nth_element(begin, middle, end);
+    return count % 2 == 1 ? *middle : (*middle + *std::max_element(begin, middle)) / 2;
+  }
 };
 
-Neighbours neighbours_of(const std::vector<float>& values, const LinearMosaic& mosaic, int row, int column,
-                         const Places& places) {
-  Neighbours found;
-  for (const auto& [down, right] : places) {
-    const int r = row + down, c = column + right;
-    if (r < 0 || c < 0 || r >= mosaic.rows || c >= mosaic.columns) continue;
-    found.values[found.count++] =
-        values[static_cast<std::size_t>(r) * static_cast<std::size_t>(mosaic.columns) +
-               static_cast<std::size_t>(c)];
-    if (found.count == neighbour_count) break;
+/// Finds those of the pixels of a mosaic.
+class SameChannel {
+ public:
+  explicit SameChannel(const LinearMosaic& mosaic)
+      : mosaic_(mosaic), places_(same_channel_neighbours(mosaic.mosaic)) {}
+
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(mosaic_.columns) +
+           static_cast<std::size_t>(column);
   }
-  return found;
+  bool is_inside(int row, int column) const {
+    return row >= 0 && column >= 0 && row < mosaic_.rows && column < mosaic_.columns;
+  }
+  int channel(int row, int column) const { return mosaic_.mosaic.channel(row, column); }
+
+  Neighbours of(const std::vector<float>& values, int row, int column,
+                const std::set<std::size_t>* passed_over = nullptr) const {
+    const int rows = mosaic_.mosaic.rows, columns = mosaic_.mosaic.columns;
+    Neighbours found;
+    for (const auto& [down, right] :
+         places_[static_cast<std::size_t>((row % rows) * columns + column % columns)]) {
+      const int r = row + down, c = column + right;
+      if (!is_inside(r, c) || (passed_over && passed_over->contains(index(r, c)))) continue;
+      found.values[found.count++] = values[index(r, c)];
+      if (found.count == neighbour_count) break;
+    }
+    return found;
+  }
+
+  /// How far a pixel stands above the darkest of its neighbours (or below the brightest), as a share of that.
+  double excess(const std::vector<float>& values, int row, int column, bool bright, double noise) const {
+    const auto [low, high] = of(values, row, column).range();
+    const double value = static_cast<double>(values[index(row, column)]);
+    const double from = static_cast<double>(bright ? low : high);
+    return (bright ? value - from : from - value) / (std::max(from, 0.0) + noise);
+  }
+
+ private:
+  const LinearMosaic& mosaic_;
+  std::vector<Places> places_;
+};
+
+/// Light that is smaller than the distance to the next pixel of the channel falls on the pixels of other
+/// channels between them too.
+bool is_detail(const SameChannel& same, const std::vector<float>& values, int row, int column, bool bright,
+               double noise) {
+  constexpr std::pair<int, int> beside[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+  constexpr double share = 0.25;
+  double sum = 0;
+  int count = 0;
+  for (const auto& [down, right] : beside) {
+    const int r = row + down, c = column + right;
+    if (!same.is_inside(r, c) || same.channel(r, c) == same.channel(row, column)) continue;
+    sum += same.excess(values, r, c, bright, noise);
+    ++count;
+  }
+  return count > 0 && sum > share * count * same.excess(values, row, column, bright, noise);
+}
+
+std::set<std::size_t> indices_of(std::span<const PixelPlace> places, const LinearMosaic& mosaic) {
+  std::set<std::size_t> indices;
+  for (const PixelPlace& place : places)
+    indices.insert(static_cast<std::size_t>(place.row) * static_cast<std::size_t>(mosaic.columns) +
+                   static_cast<std::size_t>(place.column));
+  return indices;
 }
 
 /// Mean over a square of the pixels of the same channel; one plane a channel would need more memory.
@@ -84,6 +152,22 @@ std::vector<float> smoothed_row(const LinearMosaic& flat, int row, int radius) {
   return result;
 }
 
+/// The same near a border, which cuts the square: its mean belongs to another place, so the value here is
+/// that of the plane of least squares.
+float plane_at(const LinearMosaic& flat, int row, int column, int radius) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  const int channel = flat.mosaic.channel(row, column);
+  for (int r = std::max(0, row - radius); r <= std::min(flat.rows - 1, row + radius); ++r)
+    for (int c = std::max(0, column - radius); c <= std::min(flat.columns - 1, column + radius); ++c) {
+      if (flat.mosaic.channel(r, c) != channel) continue;
+      const Eigen::Vector3d x(1, r - row, c - column);
+      normal += x * x.transpose();
+      right += static_cast<double>(flat.row(r)[static_cast<std::size_t>(c)]) * x;
+    }
+  return static_cast<float>(normal.completeOrthogonalDecomposition().solve(right)(0));
+}
+
 }  // namespace
 
 LinearMosaic linearised(const RawImage& raw) {
@@ -107,31 +191,34 @@ LinearMosaic linearised(const RawImage& raw) {
   return mosaic;
 }
 
-int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset, double threshold) {
+int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset,
+                    std::span<const PixelPlace> known, double threshold) {
+  const SameChannel same(mosaic);
+  const std::vector<float> with_known = mosaic.values;
+  const std::set<std::size_t> bad = indices_of(known, mosaic);
+  for (const PixelPlace& place : known) {
+    Neighbours around = same.of(with_known, place.row, place.column, &bad);
+    if (around.count > 0) mosaic.values[same.index(place.row, place.column)] = around.median();
+  }
   const std::vector<float> before = mosaic.values;
-  const auto neighbours = same_channel_neighbours(mosaic.mosaic);
-  const auto columns = static_cast<std::size_t>(mosaic.columns);
-  constexpr double least_outlier = 0.02;
-  std::atomic<int> replaced = 0;
+  std::atomic<int> replaced = static_cast<int>(bad.size());
   parallel_for(static_cast<std::size_t>(mosaic.rows), [&](std::size_t row) {
     int here = 0;
     for (int c = 0; c < mosaic.columns; ++c) {
-      const auto& places = neighbours[(row % static_cast<std::size_t>(mosaic.mosaic.rows)) *
-                                          static_cast<std::size_t>(mosaic.mosaic.columns) +
-                                      static_cast<std::size_t>(c % mosaic.mosaic.columns)];
-      auto [around, count] = neighbours_of(before, mosaic, static_cast<int>(row), c, places);
-      if (count < neighbour_count) continue;
-      const auto [low, high] = std::minmax_element(around.begin(), around.end());
-      const float value = before[row * columns + static_cast<std::size_t>(c)];
-      const double beyond = std::max(static_cast<double>(*low - value), static_cast<double>(value - *high));
+      const int r = static_cast<int>(row);
+      Neighbours around = same.of(before, r, c);
+      if (around.count < neighbour_count) continue;
+      const auto [low, high] = around.range();
+      const float value = before[same.index(r, c)];
+      const double beyond = std::max(static_cast<double>(low - value), static_cast<double>(value - high));
+      if (beyond <= 0) continue;
+      const double level = std::max(0.0, static_cast<double>(value < low ? low : high));
+      const double noise = std::sqrt(noise_scale * level + noise_offset + std::pow(gain_spread * level, 2));
       // Where the neighbours differ much among themselves there is detail, and one more difference is no
       // defect.
-      if (beyond <= least_outlier || beyond <= static_cast<double>(*high - *low)) continue;
-      const double level = std::max(0.0, static_cast<double>(value < *low ? *low : *high));
-      if (beyond <= threshold * std::sqrt(noise_scale * level + noise_offset)) continue;
-      std::nth_element(around.begin(), around.begin() + 4, around.end());
-      const float upper = around[4], lower = *std::max_element(around.begin(), around.begin() + 4);
-      mosaic.values[row * columns + static_cast<std::size_t>(c)] = (upper + lower) / 2;
+      if (beyond <= threshold * noise || beyond <= static_cast<double>(high - low)) continue;
+      if (is_detail(same, before, r, c, value > high, noise)) continue;
+      mosaic.values[same.index(r, c)] = around.median();
       ++here;
     }
     replaced += here;
@@ -149,7 +236,12 @@ void correct_shading(LinearMosaic& mosaic, const LinearMosaic& flat, int radius)
   std::vector<float> smooth(flat.values.size());
   const auto columns = static_cast<std::size_t>(flat.columns);
   parallel_for(static_cast<std::size_t>(flat.rows), [&](std::size_t row) {
-    const std::vector<float> line = smoothed_row(flat, static_cast<int>(row), radius);
+    const int r = static_cast<int>(row);
+    std::vector<float> line = smoothed_row(flat, r, radius);
+    const bool near_border = r < radius || r >= flat.rows - radius;
+    for (int c = 0; c < flat.columns; ++c)
+      if (near_border || c < radius || c >= flat.columns - radius)
+        line[static_cast<std::size_t>(c)] = plane_at(flat, r, c, radius);
     std::copy(line.begin(), line.end(), smooth.begin() + static_cast<std::ptrdiff_t>(row * columns));
   });
   std::vector<float> greatest(flat.channels.size());

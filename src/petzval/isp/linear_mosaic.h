@@ -40,15 +40,19 @@ inline int mirrored(int index, int count) {
 /// Linearization table, black level, white level. \throws InputError as RawImage::validate.
 LinearMosaic linearised(const RawImage& raw);
 
-/// Replaces each pixel that lies outside the range of its eight nearest neighbours of the same channel by
-/// more than that range, than 2 % of white, and than `threshold` times what noise explains there, by their
-/// median. \param noise_scale, noise_offset  variance of the noise at a value x: scale · x + offset. \returns
-/// how many were replaced.
-int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset, double threshold = 6);
+/// Replaces the pixels `known` to be bad, then each one that lies outside the range of its eight nearest
+/// neighbours of the same channel by more than that range and than `threshold` times the noise there, by the
+/// median of those neighbours. The noise is what is stated and 1 % of the level, for gains that differ. A
+/// pixel is detail, and stays, if those of other channels beside it stand out a quarter as much. \param
+/// noise_scale, noise_offset  variance of the noise at a value x: scale · x + offset. \returns how many were
+/// replaced.
+int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset,
+                    std::span<const PixelPlace> known = {}, double threshold = 5);
 
 /// Divides by a picture of a uniform surface with the same sensor and lens: each channel of it is smoothed
-/// over (2·radius + 1)² pixels and scaled to 1 at its greatest. \throws InputError if the sizes or the mosaic
-/// differ, or the flat field is black somewhere.
+/// over (2·radius + 1)² pixels, where those end at the border by the plane that fits them best, and scaled to
+/// 1 at its greatest. \throws InputError if the sizes or the mosaic differ, or the flat field is black
+/// somewhere.
 void correct_shading(LinearMosaic& mosaic, const LinearMosaic& flat, int radius = 8);
 
 /// Divides each channel by the response of that channel to white, scaled so that no channel is made weaker;

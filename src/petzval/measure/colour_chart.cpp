@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace petzval {
 
@@ -44,6 +45,24 @@ Xyz patch_mean(const ViewedPicture& picture, const ChartCorners& corners, int ro
   return (1.0 / count) * sum;
 }
 
+/// \throws InputError unless the corners span a convex figure whose patches have a few pixels.
+void check_corners(const ChartCorners& corners) {
+  constexpr int cells = (chart_columns - 1) * (chart_rows - 1);
+  constexpr double least_px2 = 4;  // of a patch with its border
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto &a = corners.xy[i], &b = corners.xy[(i + 1) % 4], &c = corners.xy[(i + 2) % 4];
+    const double turn = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+    least = std::min(least, turn), greatest = std::max(greatest, turn);
+  }
+  // Twice the area of a triangle, as the chart is twice the triangles: the least is no more than its area.
+  if (least < cells * least_px2 && -greatest < cells * least_px2)
+    throw InputError(
+        fmt::format("the corners of the chart span no patches of {:g} pixels; the centres of dark skin, "
+                    "bluish green, black and white, in this order, would be right",
+                    least_px2));
+}
+
 double grey_exposure(const std::vector<Xyz>& seen, const std::vector<Xyz>& wanted) {
   double sw = 0, ss = 0;
   for (std::size_t i = first_grey; i < seen.size(); ++i)
@@ -71,6 +90,7 @@ std::vector<Xyz> chart_colours(const Spectrum& light) {
 
 ChartDifference compare_chart(const ViewedPicture& picture, const ChartCorners& corners,
                               const Spectrum& light, bool match_exposure) {
+  check_corners(corners);
   const std::vector<Xyz> wanted = chart_colours(light);
   const SpectrumSet chart = read_spectrum_set("colorchecker_reflectance");
   std::vector<Xyz> seen;

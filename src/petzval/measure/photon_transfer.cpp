@@ -12,6 +12,23 @@ namespace {
 
 constexpr double quantisation_variance = 1.0 / 12;
 constexpr double linear_share = 0.7;  // of saturation, for the gain
+// EMVA 1288, section 6.6: less variance [DN²] than this tells of the steps and no more of the noise, which is
+// then said to be below √(0.24 − 1/12) DN.
+constexpr double least_told_variance = 0.24;
+
+double hidden_noise_dn() {
+  return std::sqrt(least_told_variance - quantisation_variance);
+}
+
+/// Linear values per stored step at black.
+double stored_step(const RawImage& raw) {
+  const auto& table = raw.linearization;
+  const auto black = std::lower_bound(table.begin(), table.end(), raw.black_level);
+  constexpr std::ptrdiff_t part = 64;  // of the codes above black: fine enough to be straight
+  const std::ptrdiff_t codes = std::max<std::ptrdiff_t>(1, (table.end() - black) / part);
+  if (table.end() - black <= codes || black[codes] <= black[0]) return 1;
+  return static_cast<double>(black[codes] - black[0]) / static_cast<double>(codes);
+}
 
 /// Calls visit(index) for all pixels of a channel.
 template <typename Visit>
@@ -43,20 +60,25 @@ MeanAndVariance of_values(const std::vector<double>& values) {
 }
 
 /// Mean over pixels and true spatial variance of a stack.
-MeanAndVariance spatial(std::span<const RawImage> stack, int channel) {
+struct StackStatistics {
+  double mean = 0, variance = 0, temporal = 0;
+};
+
+StackStatistics spatial(std::span<const RawImage> stack, int channel) {
   if (stack.size() < 2) throw InputError("a stack of exposures needs two at least");
   for (const RawImage& raw : stack) check_pair(stack[0], raw, channel);
+  const double step = stored_step(stack[0]);
   std::vector<double> means, temporal;
   for_channel(stack[0], channel, [&](int row, int column) {
     std::vector<double> values;
-    for (const RawImage& raw : stack) values.push_back(raw.pixel(row, column));
+    for (const RawImage& raw : stack) values.push_back(raw.pixel(row, column) / step);
     const MeanAndVariance pixel = of_values(values);
     means.push_back(pixel.mean);
     temporal.push_back(pixel.variance);
   });
-  MeanAndVariance result = of_values(means);
-  result.variance -= of_values(temporal).mean / static_cast<double>(stack.size());
-  return result;
+  const MeanAndVariance over_pixels = of_values(means);
+  const double noise = of_values(temporal).mean;
+  return {over_pixels.mean, over_pixels.variance - noise / static_cast<double>(stack.size()), noise};
 }
 
 /// Slope of y over x through the origin.
@@ -66,13 +88,29 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
   return xy / xx;
 }
 
+// Variances of single pairs scatter more than the curve bends where it turns.
+constexpr int pairs_at_turn = 4;
+
+template <typename Pair>
+TransferPoint mean_of_pairs(int count, const Pair& pair) {
+  TransferPoint sum;
+  for (int i = 0; i < count; ++i) {
+    const TransferPoint point = pair();
+    sum.exposure_s = point.exposure_s;
+    sum.mean_dn += point.mean_dn / count;
+    sum.temporal_variance_dn2 += point.temporal_variance_dn2 / count;
+  }
+  return sum;
+}
+
 }  // namespace
 
 TransferPoint transfer_point(const RawImage& first, const RawImage& second, int channel) {
   check_pair(first, second, channel);
+  const double step = stored_step(first);
   std::vector<double> sums, differences;
   for_channel(first, channel, [&](int row, int column) {
-    const double a = first.pixel(row, column), b = second.pixel(row, column);
+    const double a = first.pixel(row, column) / step, b = second.pixel(row, column) / step;
     sums.push_back((a + b) / 2);
     differences.push_back(a - b);
   });
@@ -101,10 +139,14 @@ PhotonTransfer photon_transfer(std::vector<TransferPoint> points) {
   if (!x.empty()) result.dn_per_e = slope(x, y);
   if (!(result.dn_per_e > 0))
     throw InputError("these exposures give no gain; more levels of light below saturation would be right");
-  result.dark_noise_e =
-      std::sqrt(std::max(0.0, dark.temporal_variance_dn2 - quantisation_variance)) / result.dn_per_e;
+  result.quantisation_limited = dark.temporal_variance_dn2 < least_told_variance;
+  const double dark_variance = std::max(dark.temporal_variance_dn2, least_told_variance);
+  result.dark_noise_e = std::sqrt(dark_variance - quantisation_variance) / result.dn_per_e;
   result.saturation_e = saturation_dn / result.dn_per_e;
-  const double dark_e2 = dark.temporal_variance_dn2 / (result.dn_per_e * result.dn_per_e);
+  constexpr double full_share = 0.5;  // of the greatest variance; less is left only by clipping
+  if (points.back().temporal_variance_dn2 < full_share * saturation->temporal_variance_dn2)
+    result.full_signal_e = (points.back().mean_dn - dark.mean_dn) / result.dn_per_e;
+  const double dark_e2 = dark_variance / (result.dn_per_e * result.dn_per_e);
   const double least_e = std::sqrt(dark_e2 + 0.25) + 0.5;  // its signal-to-noise ratio is 1
   result.dynamic_range_db = 20 * std::log10(result.saturation_e / least_e);
   result.snr_max_db = 10 * std::log10(result.saturation_e);
@@ -114,9 +156,13 @@ PhotonTransfer photon_transfer(std::vector<TransferPoint> points) {
 
 NonUniformity non_uniformity(std::span<const RawImage> dark, std::span<const RawImage> half, int channel,
                              double dn_per_e) {
-  const MeanAndVariance in_dark = spatial(dark, channel), in_light = spatial(half, channel);
+  const StackStatistics in_dark = spatial(dark, channel), in_light = spatial(half, channel);
   NonUniformity result;
-  result.dsnu_e = std::sqrt(std::max(0.0, in_dark.variance)) / dn_per_e;
+  // Noise and pattern together carry the values over the steps, or not.
+  result.dsnu_quantisation_limited = in_dark.variance + in_dark.temporal < least_told_variance;
+  result.dsnu_e =
+      (result.dsnu_quantisation_limited ? hidden_noise_dn() : std::sqrt(std::max(0.0, in_dark.variance))) /
+      dn_per_e;
   result.prnu_percent =
       100 * std::sqrt(std::max(0.0, in_light.variance - in_dark.variance)) / (in_light.mean - in_dark.mean);
   return result;
@@ -144,10 +190,19 @@ SensorTest test_sensor(const Sensor& sensor, const CaptureOptions& options, int 
   };
   std::vector<TransferPoint> points{transfer_point(expose(0), expose(0), channel)};
   constexpr double beyond = 1.2;
+  const double coarse_e = beyond * saturation_e / levels;
+  const auto point_at = [&](double electrons) {
+    return transfer_point(expose(electrons), expose(electrons), channel);
+  };
+  int turn = 1;
   for (int i = 1; i <= levels; ++i) {
-    const double electrons = beyond * saturation_e * i / levels;
-    points.push_back(transfer_point(expose(electrons), expose(electrons), channel));
+    points.push_back(point_at(coarse_e * i));
+    if (points.back().temporal_variance_dn2 > points[static_cast<std::size_t>(turn)].temporal_variance_dn2)
+      turn = i;
   }
+  for (int i = 1; i < levels; ++i)
+    points.push_back(
+        mean_of_pairs(pairs_at_turn, [&] { return point_at(coarse_e * (turn - 1 + 2.0 * i / levels)); }));
   SensorTest result{photon_transfer(points), {}};
   std::vector<RawImage> dark, half;
   for (int i = 0; i < stack; ++i) dark.push_back(expose(0)), half.push_back(expose(saturation_e / 2));

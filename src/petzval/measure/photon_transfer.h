@@ -5,12 +5,14 @@
 #include <petzval/sensor/capture.h>
 #include <petzval/sensor/raw_image.h>
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace petzval {
 
-/// Two exposures of the same uniform light: what one channel says.
+/// Two exposures of the same uniform light: what one channel says. A DN is a step of the stored numbers, at
+/// black where the camera's converter is not linear; numbers are proportional to light, by the linearization.
 struct TransferPoint {
   double exposure_s = 0;
   double mean_dn = 0;  ///< black level included
@@ -24,9 +26,13 @@ TransferPoint transfer_point(const RawImage& first, const RawImage& second, int 
 /// The photon-transfer curve and what follows from it (EMVA Standard 1288, release 3.1, sections 2 and 6).
 struct PhotonTransfer {
   std::vector<TransferPoint> points;  ///< the first is dark
-  double dn_per_e = 0;          ///< system gain K: slope of variance over mean, up to 70 % of saturation
-  double dark_noise_e = 0;      ///< temporal, without quantisation
-  double saturation_e = 0;      ///< where the variance is greatest
+  double dn_per_e = 0;      ///< system gain K: slope of variance over mean, up to 70 % of saturation
+  double dark_noise_e = 0;  ///< temporal, without quantisation; an upper bound if quantisation_limited
+  /// The dark variance is below 0.24 DN²: steps hide the noise, of which no more is known than that it stays
+  /// below 0.4 DN (EMVA 1288, section 6.6).
+  bool quantisation_limited = false;
+  double saturation_e = 0;  ///< where the variance is greatest: the first pixels of the brightest are full
+  std::optional<double> full_signal_e = {};  ///< where all pixels are; absent if no point is so bright
   double dynamic_range_db = 0;  ///< 20 log₁₀ of saturation over the signal whose signal-to-noise ratio is 1
   double snr_max_db = 0;        ///< 20 log₁₀ √saturation
 };
@@ -37,8 +43,9 @@ PhotonTransfer photon_transfer(std::vector<TransferPoint> points);
 
 /// Spatial non-uniformity from stacks of exposures.
 struct NonUniformity {
-  double dsnu_e = 0;        ///< rms of the dark signal over pixels
-  double prnu_percent = 0;  ///< rms of the response over pixels
+  double dsnu_e = 0;  ///< rms of the dark signal over pixels; an upper bound if dsnu_quantisation_limited
+  bool dsnu_quantisation_limited = false;  ///< as PhotonTransfer's; noise and pattern together are hidden
+  double prnu_percent = 0;                 ///< rms of the response over pixels
 };
 
 /// EMVA 1288: variances over the pixels of the means of the stacks, less what temporal noise leaves in them.
@@ -54,8 +61,8 @@ struct SensorTest {
 };
 
 /// Exposes the sensor as EMVA 1288 wants it and evaluates one channel; every pixel gets the current of that
-/// channel. \param levels  of light from near darkness to beyond saturation; \param stack  exposures for the
-/// non-uniformities.
+/// channel. \param levels  of light from near darkness to beyond saturation, and as many again about the
+/// level at which the variance turns; \param stack  exposures for the non-uniformities.
 SensorTest test_sensor(const Sensor& sensor, const CaptureOptions& options, int channel, int side = 256,
                        int levels = 24, int stack = 32);
 

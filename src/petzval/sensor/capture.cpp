@@ -126,6 +126,19 @@ class Exposure {
   }
 
   double dn_per_e() const { return dn_per_e_; }
+  /// Those of the sensor that lie in the frame.
+  std::vector<PixelPlace> bad_pixels() const {
+    std::vector<PixelPlace> places;
+    const auto columns = static_cast<std::uint64_t>(sensor_.geometry.columns);
+    for (const Defect& defect : defects_) {
+      const PixelPlace place{static_cast<int>(defect.place / columns) - current_.first_row,
+                             static_cast<int>(defect.place % columns) - current_.first_column};
+      const bool inside =
+          place.row >= 0 && place.column >= 0 && place.row < current_.rows && place.column < current_.columns;
+      if (inside && (places.empty() || !(places.back() == place))) places.push_back(place);
+    }
+    return places;
+  }
   double read_noise_e() const { return std::sqrt(read_e_ * read_e_ + 1 / (12 * dn_per_e_ * dn_per_e_)); }
   const Linearity& linearity() const { return linearity_; }
   /// As the converter sees it.
@@ -281,7 +294,9 @@ RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double expos
       std::floor(electronics.black_level_dn + exposure.dn_per_e() * exposure.saturation_e()) * steps;
   raw.dn_per_e = exposure.dn_per_e() * steps;
   raw.read_noise_e = exposure.read_noise_e() / std::sqrt(options.frames);
+  raw.bad_pixels = exposure.bad_pixels();
   raw.exposure_s = exposure_s;
+  raw.pitch_um = sensor.geometry.pitch_um;
   raw.sensor_name = sensor.name;
 
   const auto columns = static_cast<std::size_t>(current.columns);

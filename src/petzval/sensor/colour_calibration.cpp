@@ -10,6 +10,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
 namespace petzval {
 
@@ -116,9 +117,51 @@ VectorXd lab_residuals(const Patches& patches, const MatrixXd& xyz_from_camera) 
   return residuals;
 }
 
-VectorXd refine(const WhiteKeepingMap& map, const Patches& patches, VectorXd parameters) {
+/// CIELAB about a colour: the change with X, Y and Z.
+Eigen::Matrix3d lab_slopes(const Xyz& colour, const Xyz& white) {
+  Eigen::Matrix3d slopes;
+  const double step = 1e-6;
+  const auto lab = [&](const Xyz& at) {
+    const Lab value = cielab(at, white);
+    return Eigen::Vector3d(value.l, value.a, value.b);
+  };
+  slopes.col(0) = lab({colour.x + step, colour.y, colour.z}) - lab({colour.x - step, colour.y, colour.z});
+  slopes.col(1) = lab({colour.x, colour.y + step, colour.z}) - lab({colour.x, colour.y - step, colour.z});
+  slopes.col(2) = lab({colour.x, colour.y, colour.z + step}) - lab({colour.x, colour.y, colour.z - step});
+  return slopes / (2 * step);
+}
+
+/// What the noise of photons in each channel becomes in CIELAB: one deviation a patch, channel and
+/// coordinate, about the colours that are wanted.
+VectorXd noise_residuals(const Patches& patches, const MatrixXd& xyz_from_camera, double white_e) {
+  const Eigen::Index channels = patches.camera.rows();
+  VectorXd residuals(3 * channels * patches.camera.cols());
+  for (Eigen::Index i = 0; i < patches.camera.cols(); ++i) {
+    const Eigen::Matrix3d slopes = lab_slopes(as_xyz(patches.xyz.col(i)), patches.white);
+    for (Eigen::Index c = 0; c < channels; ++c)
+      residuals.segment<3>(3 * (i * channels + c)) =
+          std::sqrt(std::max(0.0, patches.camera(c, i)) / white_e) * (slopes * xyz_from_camera.col(c));
+  }
+  return residuals;
+}
+
+VectorXd all_residuals(const Patches& patches, const MatrixXd& xyz_from_camera,
+                       std::optional<double> white_e) {
+  const VectorXd colours = lab_residuals(patches, xyz_from_camera);
+  if (!white_e) return colours;
+  const VectorXd noise = noise_residuals(patches, xyz_from_camera, *white_e);
+  VectorXd both(colours.size() + noise.size());
+  both << colours, noise;
+  return both;
+}
+
+VectorXd refine(const WhiteKeepingMap& map, const Patches& patches, std::optional<double> white_e,
+                VectorXd parameters) {
+  const auto residuals_of = [&](const VectorXd& at) {
+    return all_residuals(patches, map.matrix(at), white_e);
+  };
   double damping = 1e-3;
-  VectorXd residuals = lab_residuals(patches, map.matrix(parameters));
+  VectorXd residuals = residuals_of(parameters);
   constexpr int most_steps = 60;
   constexpr double step = 1e-6;
   for (int iteration = 0; iteration < most_steps; ++iteration) {
@@ -126,13 +169,13 @@ VectorXd refine(const WhiteKeepingMap& map, const Patches& patches, VectorXd par
     for (Eigen::Index p = 0; p < map.count(); ++p) {
       VectorXd moved = parameters;
       moved(p) += step;
-      jacobian.col(p) = (lab_residuals(patches, map.matrix(moved)) - residuals) / step;
+      jacobian.col(p) = (residuals_of(moved) - residuals) / step;
     }
     const MatrixXd transposed = jacobian.transpose();
     MatrixXd normal = product(transposed, jacobian);
     normal.diagonal() *= 1 + damping;
     const VectorXd trial = parameters - least_squares(normal, product(transposed, residuals));
-    const VectorXd trial_residuals = lab_residuals(patches, map.matrix(trial));
+    const VectorXd trial_residuals = residuals_of(trial);
     const double gain = residuals.squaredNorm() - trial_residuals.squaredNorm();
     damping *= gain > 0 ? 0.2 : 10;
     if (gain <= 0) continue;
@@ -159,16 +202,18 @@ MatrixXd inverse_map(const Patches& patches, const MatrixXd& xyz_from_camera) {
 
 }  // namespace
 
-ColourFit fit_colour(const Sensor& sensor, const Spectrum& light) {
+ColourFit fit_colour(const Sensor& sensor, const Spectrum& light, std::optional<double> white_e) {
   constexpr std::size_t least_channels = 3;
   if (sensor.require_electronics().channels.size() < least_channels)
     throw InputError(fmt::format("sensor {} has {} channels; colours need three", sensor.name,
                                  sensor.electronics->channels.size()));
   const Patches patches = patches_under(sensor, light);
   const WhiteKeepingMap map(patches);
-  const MatrixXd fitted = map.matrix(refine(map, patches, map.start(patches)));
+  const MatrixXd fitted = map.matrix(refine(map, patches, white_e, map.start(patches)));
 
-  ColourFit fit{flat(patches.neutral), flat(fitted), flat(inverse_map(patches, fitted)), 0, 0};
+  ColourFit fit{flat(patches.neutral), flat(fitted), flat(inverse_map(patches, fitted)), 0, 0, 0};
+  fit.noise_delta_e_ab = std::sqrt(noise_residuals(patches, fitted, noisy_white_e).squaredNorm() /
+                                   static_cast<double>(patches.camera.cols()));
   const MatrixXd seen = product(fitted, patches.camera);
   for (Eigen::Index i = 0; i < seen.cols(); ++i) {
     const double difference = delta_e_2000(cielab(as_xyz(seen.col(i)), patches.white),
@@ -181,7 +226,10 @@ ColourFit fit_colour(const Sensor& sensor, const Spectrum& light) {
 
 ColourCalibration calibration(const Sensor& sensor, const Spectrum& light, int exif_light_source,
                               double temperature_k) {
-  const ColourFit fit = fit_colour(sensor, light);
+  constexpr double well_exposed = 0.8;
+  const SensorElectronics& electronics = sensor.require_electronics();
+  const double white_e = well_exposed * electronics.saturation_e(electronics.gain_mode(""), 1);
+  const ColourFit fit = fit_colour(sensor, light, white_e);
   const Observer& eye = Observer::cie_1931();
   const Xyz white = eye.xyz(light), d50 = xyz_of(Chromaticity{0.34567, 0.35850});
   const ColourMatrix adapt = bradford_adaptation((1 / white.y) * white, d50);

@@ -6,9 +6,12 @@
 #include <petzval/sensor/raw_image.h>
 #include <petzval/sensor/sensor.h>
 
+#include <optional>
 #include <vector>
 
 namespace petzval {
+
+inline constexpr double noisy_white_e = 1000;
 
 /// The matrix that makes CIE XYZ of the channels under one light, fitted to a ColorChecker.
 struct ColourFit {
@@ -17,14 +20,19 @@ struct ColourFit {
       xyz_from_camera;  ///< 3 × channels, for channels scaled as `neutral`; white has Y = 1, exactly
   std::vector<double> camera_from_xyz;                 ///< channels × 3; its inverse for three channels
   double mean_delta_e_2000 = 0, max_delta_e_2000 = 0;  ///< of the 24 patches, seen under that light
+  /// Root mean square ΔE*ab over the patches that the noise of photons makes, noisy_white_e being white.
+  double noise_delta_e_ab = 0;
 };
 
 /// Fits the linear map from channels to XYZ that keeps white white and makes the sum of ΔE*ab² over the 24
 /// patches of the bundled ColorChecker smallest (Gauss-Newton with Levenberg's damping, from the least
-/// squares in XYZ). \throws InputError for a sensor of fewer than three channels.
-ColourFit fit_colour(const Sensor& sensor, const Spectrum& light);
+/// squares in XYZ). \param white_e  electrons of white in the most sensitive channel: what their noise adds
+/// to ΔE*ab² counts too, so that channels which tell colours apart by small differences of large numbers
+/// count for less; absent: without noise. \throws InputError for a sensor of fewer than three channels.
+ColourFit fit_colour(const Sensor& sensor, const Spectrum& light, std::optional<double> white_e = {});
 
-/// The same for a DNG file: white balance is divided out, the other side is XYZ of D50, adapted by Bradford.
+/// The same for a DNG file, with the noise of a well exposed picture, white at 80 % of saturation: white
+/// balance is divided out, the other side is XYZ of D50, adapted by Bradford.
 ColourCalibration calibration(const Sensor& sensor, const Spectrum& light, int exif_light_source,
                               double temperature_k);
 

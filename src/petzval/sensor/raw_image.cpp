@@ -30,6 +30,10 @@ void RawImage::validate() const {
         (!calibration.pcs_from_balanced.empty() &&
          calibration.pcs_from_balanced.size() != 3 * channels.size()))
       throw InputError(fmt::format("colour matrices that do not fit {} channels", channels.size()));
+  for (const PixelPlace& bad : bad_pixels)
+    if (bad.row < 0 || bad.column < 0 || bad.row >= rows || bad.column >= columns)
+      throw InputError(
+          fmt::format("a bad pixel in row {}, column {} of {} x {}", bad.row, bad.column, columns, rows));
   if (!as_shot_neutral.empty() && as_shot_neutral.size() != channels.size())
     throw InputError(
         fmt::format("a neutral of {} numbers for {} channels", as_shot_neutral.size(), channels.size()));

@@ -20,6 +20,11 @@ struct ColourCalibration {
       pcs_from_balanced;  ///< 3 × channels: DNG's ForwardMatrix, from white-balanced channels to XYZ of D50
 };
 
+struct PixelPlace {
+  int row = 0, column = 0;
+  bool operator==(const PixelPlace&) const = default;
+};
+
 /// A mosaic of numbers with all that is needed to make a picture of it.
 struct RawImage {
   int columns = 0, rows = 0;
@@ -36,7 +41,10 @@ struct RawImage {
   std::vector<ColourCalibration> calibrations = {};  ///< none, one or two
   std::vector<double> as_shot_neutral = {};  ///< of each channel under the light of the scene, the greatest 1
 
+  std::vector<PixelPlace> bad_pixels = {};  ///< that the maker of the camera knows of, row by row
+
   double exposure_s = 0, iso = 0;
+  double pitch_um = 0;  ///< 0: not known
   LensFacts lens = {};
   std::string sensor_name = {}, provenance = {};
 

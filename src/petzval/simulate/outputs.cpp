@@ -86,6 +86,8 @@ Outputs shoot(const SpectralImage& light, const std::vector<std::string>& raws,
               StagedFiles& files, const Context& context) {
   Outputs made{expose(light, sensor, options.expose, context), {}};
   for (const std::string& path : raws) write_dng(files.stage(path), *made.raw);
+  if (const std::string note = mosaic_note(*made.raw); !raws.empty() && !note.empty())
+    send_note(context, note);
   if (pictures.empty()) return made;
 
   // A DNG rounds what is not an integer; what is developed is what one would read.

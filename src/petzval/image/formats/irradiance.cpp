@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npy.h>
@@ -24,6 +27,8 @@ constexpr std::pair<const char*, double LensFacts::*> lens_numbers[] = {
     {"focalLength_mm", &LensFacts::focal_length_mm},
     {"fNumber", &LensFacts::f_number},
     {"exitPupil_mm", &LensFacts::exit_pupil_mm}};
+constexpr std::pair<const char*, std::vector<double> LensFacts::*> lens_lists[] = {
+    {"lensWarp", &LensFacts::warp}, {"lensVignetting", &LensFacts::vignetting}};
 constexpr const char* provenance_attribute = "comments";  // OpenEXR's own name for it: viewers show it
 
 std::string extension_of(const std::string& path) {
@@ -51,6 +56,9 @@ SpectralExr description_of(const SpectralImage& image) {
     if (!image.lens->name.empty()) exr.strings[lens_attribute] = image.lens->name;
     for (const auto& [attribute, member] : lens_numbers)
       if ((*image.lens).*member != 0) exr.numbers[attribute] = (*image.lens).*member;
+    for (const auto& [attribute, member] : lens_lists)
+      if (!((*image.lens).*member).empty())
+        exr.strings[attribute] = fmt::format("{}", fmt::join((*image.lens).*member, " "));
   }
   return exr;
 }
@@ -65,6 +73,18 @@ std::string aperture_text(const SpectralExr& exr, const std::string& path) {
                                      aperture_attribute));
 }
 
+/// \throws InputError unless the text is numbers with spaces between them.
+std::vector<double> numbers_of(const std::string& text, const std::string& path, const char* attribute) {
+  std::vector<double> numbers;
+  for (const std::string& word : split_words(text)) {
+    const std::optional<double> number = parse_number(word);
+    if (!number)
+      throw InputError(path, fmt::format("the attribute {}: {} is no number", attribute, quotable(word)));
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::optional<LensFacts> lens_of(const SpectralExr& exr, const std::string& path) {
   LensFacts lens;
   bool known = false;
@@ -77,6 +97,9 @@ std::optional<LensFacts> lens_of(const SpectralExr& exr, const std::string& path
       throw InputError(path, fmt::format("{} is {}", attribute, found->second));
     lens.*member = found->second, known = true;
   }
+  for (const auto& [attribute, member] : lens_lists)
+    if (const auto found = exr.strings.find(attribute); found != exr.strings.end())
+      lens.*member = numbers_of(found->second, path, attribute), known = true;
   return known ? std::optional(lens) : std::nullopt;
 }
 

@@ -5,6 +5,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/output_file.h>
 #include <petzval/image/formats/png.h>
+#include <petzval/image/formats/png_stream.h>
 #include <png.h>
 
 #include <algorithm>
@@ -71,16 +72,15 @@ class Writer {
     write_text();
     png_write_info(png_, info_);
   }
-  void write_row(const png_byte* bytes) {
-    if (setjmp(png_jmpbuf(png_))) fail();
-    png_write_row(png_, bytes);
-  }
-  void finish() {
-    if (setjmp(png_jmpbuf(png_))) fail();
-    png_write_end(png_, nullptr);
-  }
+  void write_pixels(std::span<const unsigned char> compressed) { write_chunk("IDAT", compressed); }
+  void finish() { write_chunk("IEND", {}); }
 
  private:
+  void write_chunk(const char* name, std::span<const unsigned char> bytes) {
+    if (setjmp(png_jmpbuf(png_))) fail();
+    png_write_chunk(png_, reinterpret_cast<png_const_bytep>(name), bytes.data(), bytes.size());
+  }
+
   /// Called below a setjmp: has no objects to destroy when libpng jumps.
   void write_text() {
     for (const auto& entry : layout_.text) {
@@ -132,7 +132,7 @@ void check_layout(const std::string& path, const PngLayout& layout) {
 }
 
 /// PNG stores 16 bits high byte first.
-void pack(std::span<const std::uint16_t> samples, int bits, std::vector<png_byte>& bytes) {
+void pack(std::span<const std::uint16_t> samples, int bits, std::span<unsigned char> bytes) {
   std::size_t i = 0;
   for (const std::uint16_t sample : samples) {
     if (bits == 16) bytes[i++] = static_cast<png_byte>(sample >> 8);
@@ -286,12 +286,14 @@ void write_png(const std::string& path, const PngLayout& layout, const PngRowSou
   Writer writer(file, layout);
   writer.write_header();
   std::vector<std::uint16_t> samples(layout.row_samples());
-  std::vector<png_byte> bytes(samples.size() * static_cast<std::size_t>(layout.bits / 8));
-  for (int row = 0; row < layout.rows; ++row) {
-    row_source(row, samples);
-    pack(samples, layout.bits, bytes);
-    writer.write_row(bytes.data());
-  }
+  const auto sample_bytes = static_cast<std::size_t>(layout.bits / 8);
+  compress_png_rows(
+      layout.rows, samples.size() * sample_bytes, static_cast<std::size_t>(layout.channels) * sample_bytes,
+      [&](int row, std::span<unsigned char> bytes) {
+        row_source(row, samples);
+        pack(samples, layout.bits, bytes);
+      },
+      [&](std::span<const unsigned char> piece) { writer.write_pixels(piece); });
   writer.finish();
   file.commit();
 }

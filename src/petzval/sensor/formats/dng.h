@@ -16,6 +16,9 @@ namespace petzval {
 void write_dng(const std::string& path, const RawImage& raw);
 /// Whether DNG has numbers for all channels of the image.
 bool fits_dng(const RawImage& raw);
+/// What other programs make of that file's mosaic, if they do not know it: a line to tell; empty for Bayer
+/// mosaics, X-Trans and none.
+std::string mosaic_note(const RawImage& raw);
 /// The bytes of that file. \param path  for messages.
 std::string dng_bytes(const RawImage& raw, const std::string& path);
 

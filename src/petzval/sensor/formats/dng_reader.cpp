@@ -4,6 +4,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/tiff_stream.h>
 #include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/dng_opcodes.h>
 #include <petzval/sensor/formats/dng_tags.h>
 #include <tiffio.h>
 
@@ -34,6 +35,7 @@ class DngReader {
     read_frame();
     read_mosaic();
     read_levels();
+    read_opcodes();
     read_samples();
     if (exif) read_exif(exif);
     stream_.require_whole();
@@ -217,6 +219,23 @@ class DngReader {
     }
   }
 
+  void read_opcodes() {
+    const auto list = [&](std::uint32_t tag) {
+      std::uint32_t count = 0;
+      const std::uint8_t* bytes = nullptr;
+      const bool there = TIFFGetField(tiff_, tag, &count, &bytes) && bytes;
+      return there ? std::span(bytes, count) : std::span<const std::uint8_t>();
+    };
+    try {
+      if (const auto samples = list(dng::opcode_list_1_tag); !samples.empty())
+        dng::take_sample_opcodes(samples, raw_);
+      if (const auto picture = list(dng::opcode_list_3_tag); !picture.empty())
+        dng::take_picture_opcodes(picture, raw_);
+    } catch (const InputError& error) {
+      refuse(std::string("has ") + error.what());
+    }
+  }
+
   // ---- samples
 
   struct Blocks {
@@ -291,6 +310,12 @@ class DngReader {
     raw_.exposure_s = number(EXIFTAG_EXPOSURETIME);
     raw_.lens.f_number = number(EXIFTAG_FNUMBER);
     raw_.lens.focal_length_mm = number(EXIFTAG_FOCALLENGTH);
+    // 1: none, 2: inches, 3: centimetres, 4: mm, 5: µm.
+    constexpr double um_per_unit[] = {0, 0, 25400, 1e4, 1e3, 1};
+    std::uint16_t unit = 2;
+    TIFFGetField(tiff_, EXIFTAG_FOCALPLANERESOLUTIONUNIT, &unit);
+    if (const double density = number(EXIFTAG_FOCALPLANEXRESOLUTION); density > 0 && unit < 6)
+      raw_.pitch_um = um_per_unit[unit] / density;
     std::uint16_t count = 0;
     const std::uint16_t* iso = nullptr;
     if (TIFFGetField(tiff_, EXIFTAG_ISOSPEEDRATINGS, &count, &iso) && iso && count >= 1) raw_.iso = iso[0];

@@ -15,11 +15,14 @@ constexpr std::array<const char*, 7> names = {"red", "green", "blue", "cyan", "m
 TIFFExtendProc other_tags = nullptr;  // of whoever else extends libtiff in this process
 
 void add_tags(TIFF* handle) {
-  static char noise[] = "NoiseProfile", forward_1[] = "ForwardMatrix1", forward_2[] = "ForwardMatrix2";
+  static char noise[] = "NoiseProfile", forward_1[] = "ForwardMatrix1", forward_2[] = "ForwardMatrix2",
+              opcodes_1[] = "OpcodeList1", opcodes_3[] = "OpcodeList3";
   static const TIFFFieldInfo fields[] = {
       {noise_profile_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, noise},
       {forward_matrix_1_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_1},
-      {forward_matrix_2_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_2}};
+      {forward_matrix_2_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_SRATIONAL, FIELD_CUSTOM, 1, 1, forward_2},
+      {opcode_list_1_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_UNDEFINED, FIELD_CUSTOM, 1, 1, opcodes_1},
+      {opcode_list_3_tag, TIFF_VARIABLE2, TIFF_VARIABLE2, TIFF_UNDEFINED, FIELD_CUSTOM, 1, 1, opcodes_3}};
   TIFFMergeFieldInfo(handle, fields, static_cast<std::uint32_t>(std::size(fields)));
   if (other_tags) other_tags(handle);
 }

@@ -10,7 +10,8 @@
 namespace petzval::dng {
 
 inline constexpr std::uint32_t noise_profile_tag = 51041, forward_matrix_1_tag = 50964,
-                               forward_matrix_2_tag = 50965;
+                               forward_matrix_2_tag = 50965, opcode_list_1_tag = 51008,
+                               opcode_list_3_tag = 51022;
 inline constexpr std::uint16_t linear_raw = 34892, colour_filter_array = 32803;
 
 /// Tells libtiff of those tags, for all files that are opened from then on. They must be known before a

@@ -5,6 +5,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/tiff_stream.h>
 #include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/dng_opcodes.h>
 #include <petzval/sensor/formats/dng_tags.h>
 #include <tiffio.h>
 
@@ -30,6 +31,8 @@ class DngWriter {
     if (raw_.channels.size() > 1) set_mosaic();
     set_levels();
     set_colour();
+    set_opcodes(dng::opcode_list_1_tag, dng::opcodes_of_samples(raw_));
+    set_opcodes(dng::opcode_list_3_tag, dng::opcodes_of_picture(raw_.lens));
     write_strips();
     write_exif();
     return stream_.finish();
@@ -150,6 +153,10 @@ class DngWriter {
       set_rationals(TIFFTAG_ASSHOTNEUTRAL, raw_.as_shot_neutral);
   }
 
+  void set_opcodes(std::uint32_t tag, const std::string& list) {
+    if (!list.empty()) set(tag, static_cast<std::uint32_t>(list.size()), list.data());
+  }
+
   void write_strips() {
     const std::size_t rows = static_cast<std::size_t>(raw_.rows),
                       columns = static_cast<std::size_t>(raw_.columns);
@@ -174,6 +181,13 @@ class DngWriter {
       const auto iso = static_cast<std::uint16_t>(std::clamp(std::lround(raw_.iso), 1L, 65535L));
       set(EXIFTAG_ISOSPEEDRATINGS, 1, &iso);
     }
+    if (raw_.pitch_um > 0) {
+      constexpr std::uint16_t centimetres = 3;
+      constexpr double um_per_cm = 1e4;
+      set(EXIFTAG_FOCALPLANEXRESOLUTION, um_per_cm / raw_.pitch_um);
+      set(EXIFTAG_FOCALPLANEYRESOLUTION, um_per_cm / raw_.pitch_um);
+      set(EXIFTAG_FOCALPLANERESOLUTIONUNIT, centimetres);
+    }
     if (!raw_.lens.name.empty()) set(EXIFTAG_LENSMODEL, raw_.lens.name.c_str());
     std::uint64_t place = 0;
     stream_.require(TIFFWriteCustomDirectory(tiff_, &place) != 0);
@@ -196,6 +210,16 @@ bool fits_dng(const RawImage& raw) {
            const auto number = dng::colour_number(channel);
            return number && numbers.insert(*number).second;
          });
+}
+
+std::string mosaic_note(const RawImage& raw) {
+  constexpr int bayer = 2, x_trans = 6;
+  const bool rgb = raw.channels == std::vector<std::string>{"red", "green", "blue"};
+  const bool square = raw.mosaic.rows == raw.mosaic.columns;
+  if (raw.mosaic.is_uniform() || (rgb && square && (raw.mosaic.rows == bayer || raw.mosaic.rows == x_trans)))
+    return {};
+  return "few other programs develop raw files of this mosaic; developed as .dng it is a picture in linear "
+         "light that all of them read";
 }
 
 std::string dng_bytes(const RawImage& raw, const std::string& path) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Digital negatives without a mosaic, which every program reads whatever the sensor was.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// Linear light of three primaries, white under D65; 0 is black, for programs take no other from such files.
+struct LinearPicture {
+  int columns = 0, rows = 0;
+  std::vector<std::uint16_t> samples = {};  ///< row by row, red, green, blue
+  std::array<double, 9> rgb_from_xyz = {};  ///< row by row
+  std::string model = {}, provenance = {};
+};
+
+/// Writes it as DNG 1.4, LinearRaw of 16 bits without compression. The same bytes for the same picture.
+/// \throws InputError for samples that do not fill it; as WholeFile; Failure.
+void write_linear_dng(const std::string& path, const LinearPicture& picture);
+
+}  // namespace petzval
