@@ -141,9 +141,11 @@ double focus_measure(const ZonePicture& picture, const FocusMeasureOptions& opti
 }
 
 double focus_measure_noise(const ZonePicture& picture, const FocusMeasureOptions& options) {
-  constexpr int parts = 4, least_side = 16;
+  constexpr int most_parts = 4, pixels_a_part = 8;  // a side
   const GreyPicture& a = picture.first;
-  if (!picture.second || std::min(a.columns, a.rows) < least_side) return 0;
+  if (!picture.second) return 0;
+  const int parts =
+      std::clamp(std::min(a.columns, a.rows) / (pixels_a_part * std::max(1, options.step)), 1, most_parts);
   double sum = 0;
   for (int i = 0; i < parts; ++i)
     for (int j = 0; j < parts; ++j) {
