@@ -98,5 +98,6 @@ void add_develop_command(CLI::App& app, Shared& shared);
 void add_measure_command(CLI::App& app, Shared& shared);
 void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
+void add_handout_command(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -30,6 +30,8 @@ nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& com
           {"depth_mm", run.depth_mm},
           {"camera_rays", run.camera_rays},
           {"at_the_end", result.at_the_end},
+          {"noise", result.noise_share()},
+          {"samples_per_pixel", run.samples_per_pixel},
           {"rows", rows}};
 }
 

@@ -51,7 +51,7 @@ const std::vector<HelpGroup>& help_groups() {
       {"Sensor", {"--sensor", "--sensor-set", "--film-diagonal"}},
       {"Output",
        {"--output", "--picture", "--bits", "--plot", "--csv", "--depth", "--normals", "--albedo", "--white",
-        "--json"}}};
+        "--display", "--json"}}};
   return groups;
 }
 

@@ -146,6 +146,7 @@ void ImageChoice::add_to(CLI::App& command) {
       ->required()
       ->allow_extra_args(false);
   shot.add_to(command);
+  shot.add_display_to(command);
 }
 
 }  // namespace petzval::app

@@ -4,15 +4,18 @@
 #include <petzval/analysis/fft_point_spread.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
+#include <petzval/analysis/tv_distortion.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/report/heat_map.h>
+#include <petzval/report/psf_drawing.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "camera_option.h"
@@ -33,7 +36,7 @@ struct PsfCommand {
   LossChoice losses;
   std::string method = "rays";
   int pupil_samples = 256;
-  std::string output;
+  std::string output, map;
 };
 
 struct PsfRow {
@@ -112,16 +115,17 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
   const std::string extension = std::filesystem::path(path).extension().string();
   const Psf& first = rows.front().psf;
   if (extension == ".svg") {
-    std::vector<StripFrame> frames;
-    for (const PsfRow& row : rows) {
-      HeatMapOptions map;
-      map.gamma = 2;
-      map.first_row_on_top = false;  // t points up, away from the axis
-      frames.push_back({heat_map_png(row.psf.values, row.psf.size, row.psf.size, map),
-                        fmt::format("{:g} {}, {:g} nm\n{:.1f} µm wide", row.field, field_unit(kind),
-                                    row.wavelength_nm, 2 * row.psf.half_width_um())});
-    }
-    return write_whole_file(path, image_strip_svg(frames, {}, "Point-spread functions, square-root scale"));
+    std::vector<DrawnPsf> drawn;
+    for (const PsfRow& row : rows)
+      drawn.push_back(
+          {row.psf, fmt::format("{:g} {}, {:g} nm\n99 % in {:.1f} µm", row.field, field_unit(kind),
+                                row.wavelength_nm, 2 * half_width_holding_um(row.psf))});
+    // A row a field.
+    const auto same_field = [&](const PsfRow& row) { return row.field == rows.front().field; };
+    const auto wavelengths = std::ranges::count_if(rows, same_field);
+    constexpr int a_few = 4;
+    return write_whole_file(path,
+                            psf_strip_svg(drawn, wavelengths > 1 ? static_cast<int>(wavelengths) : a_few));
   }
   if (rows.size() > 1)
     throw InputError(fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, or an .svg",
@@ -136,7 +140,31 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
   write_whole_file(path, heat_map_png(first.values, first.size, first.size, map));
 }
 
+/// Stars over the frame of the lens's fields, each wavelength about the chief ray of the reference.
+void write_map(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request) {
+  const std::optional<FrameSize> frame = frame_of_fields(lens);
+  if (!frame)
+    throw InputError("--map: the lens has no field beside its axis; `--fields` would say how far it reaches");
+  constexpr int across = 7;
+  std::vector<PsfPlace> places = even_places(frame->width_mm, frame->height_mm, across);
+  std::map<long, std::vector<MappedPsf>> known;  // by radius [nm]: places come in fours
+  for (PsfPlace& place : places) {
+    const double radius_mm = std::hypot(place.x_mm, place.y_mm);
+    auto& light = known[std::lround(radius_mm / mm_per_um * 1000)];
+    if (light.empty()) {
+      FieldTableRequest here = request;
+      here.field_kind = Fields::Kind::real_image_height_mm, here.fields = {radius_mm};
+      for (PsfRow& row : psf_rows(options, lens, here))
+        light.push_back({std::move(row.psf), row.wavelength_nm,
+                         (std::abs(row.chief.image_height_mm) - radius_mm) / mm_per_um});
+    }
+    place.light = light;
+  }
+  write_whole_file(options.map, psf_map_svg(places, across, frame->width_mm, lens.name));
+}
+
 void psf(const PsfCommand& options, const Shared& shared) {
+  if (!options.map.empty()) require_extension(options.map, {".svg"}, "a map of PSFs");
   if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
@@ -144,6 +172,7 @@ void psf(const PsfCommand& options, const Shared& shared) {
   request.losses = options.losses.losses(lens, shared);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);
   if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);
+  if (!options.map.empty()) write_map(options, lens, request);
   if (shared.json) {
     nlohmann::ordered_json json = {{"lens", lens.name},
                                    {"field_definition", field_definition(request.field_kind)},
@@ -211,6 +240,11 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
       ->capture_default_str();
   options->losses.add_to(*command);
   command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy")
+      ->check(output_file());
+  command
+      ->add_option(
+          "--map", options->map,
+          "Also draw stars over the frame, enlarged at their places, wavelengths in their colours (.svg)")
       ->check(output_file());
 }
 

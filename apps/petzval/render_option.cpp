@@ -91,7 +91,10 @@ void AutofocusChoice::add_to(CLI::App& command) {
           "range (scan)")
       ->check(CLI::IsMember({"brent", "golden-2006", "scan"}))
       ->capture_default_str();
-  command.add_option("--focus-spp", options.samples_per_pixel, "Camera paths a pixel of the zones")
+  command
+      .add_option(
+          "--focus-spp", options.samples_per_pixel,
+          "Camera paths a pixel of the zones to begin with; up to 16 times as many where noise asks for them")
       ->check(CLI::Range(2, 1 << 20))
       ->capture_default_str();
   command.add_option("--focus-from", options.from_mm,

@@ -41,8 +41,6 @@ void RenderOutputs::add_to(CLI::App& command) {
   command.add_option("--normals", normals, "Also write its normals in world space (.npy)")
       ->check(output_file());
   command.add_option("--albedo", albedo, "Also write its reflectance by band (.npy)")->check(output_file());
-  command.add_option("--white", white,
-                     "Illuminance that a .png of the light shows as white [lx]; default: the brightest");
   command
       .add_option("-o,--output", pictures,
                   "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
@@ -50,6 +48,7 @@ void RenderOutputs::add_to(CLI::App& command) {
       ->check(output_file())
       ->allow_extra_args(false);
   shot.add_to(command);
+  shot.add_display_to(command);
   command
       .add_option("--illuminant", shot.sense.illuminant,
                   "Light of the scene, for white balance; default: grey on average")
@@ -63,16 +62,7 @@ OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const 
     require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
   for (const std::string* path : {&depth, &normals, &albedo})
     if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
-  OutputOptions options = shot.checked(sensor, pictures, command);
-  if (white && develops(options, sensor))
-    throw InputError(
-        "--white is for pictures of the light, and those of a --sensor that turns light into numbers are "
-        "developed; --brightness or --picture irradiance would be right");
-  if (white) {
-    options.shown.exposure = PictureOptions::Exposure::fixed;
-    options.shown.white_level = *white;
-  }
-  return options;
+  return shot.checked(sensor, pictures, command);
 }
 
 void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,

@@ -16,7 +16,6 @@ namespace petzval::app {
 struct RenderOutputs {
   std::vector<std::string> pictures;   ///< of the light, and of what the sensor makes of it
   std::string depth, normals, albedo;  ///< of the first surfaces
-  std::optional<double> white;         ///< illuminance that a picture of the light shows as white [lx]
   ShotChoice shot;
 
   void add_to(CLI::App& command);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shot_option.h"
 
+#include "command.h"
+
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 
@@ -53,12 +55,36 @@ void ShotChoice::add_to(CLI::App& command) {
   add_group(command, developing, [&] { develop.add_to(command, true); });
 }
 
+void ShotChoice::add_display_to(CLI::App& command) {
+  shows_light_ = true;
+  command
+      .add_option("--white", white,
+                  "Illuminance that a .png of the light shows as white [lx]: the same in several pictures; "
+                  "default: the "
+                  "brightest")
+      ->check(positive_number());
+  command
+      .add_option("--display", display,
+                  "How a .png of the light shows it: linear, gamma (the square root), or log (three decades "
+                  "evenly), for "
+                  "stars and lamps")
+      ->check(CLI::IsMember({"linear", "gamma", "log"}))
+      ->capture_default_str();
+}
+
 OutputOptions ShotChoice::options() const {
   OutputOptions options;
   options.picture = picture == "developed"    ? OutputOptions::Shows::developed
                     : picture == "irradiance" ? OutputOptions::Shows::irradiance
                                               : OutputOptions::Shows::automatic;
   options.bits = bits;
+  if (white) {
+    options.shown.exposure = PictureOptions::Exposure::fixed;
+    options.shown.white_level = *white;
+  }
+  options.shown.display = display == "gamma" ? PictureOptions::Display::gamma
+                          : display == "log" ? PictureOptions::Display::log
+                                             : PictureOptions::Display::linear;
   options.expose = sense.options();
   options.development = develop.development();
   options.step_files = develop.step_files();
@@ -75,6 +101,13 @@ OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
     throw InputError(fmt::format("{} has no effect: {}", option, why_not_exposed(sensor)));
   if (const std::string option = given_option(command, developing); !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));
+  for (const char* option : {"--white", "--display"})
+    if (const CLI::Option* given = command.get_option_no_throw(option);
+        shows_light_ && given->count() > 0 && develops(options, sensor))
+      throw InputError(fmt::format(
+          "{} is for pictures of the light, and those of a --sensor that turns light into numbers are "
+          "developed; --brightness or --picture irradiance would be right",
+          option));
   return options;
 }
 

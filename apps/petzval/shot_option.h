@@ -19,14 +19,22 @@ struct ShotChoice {
   DevelopChoice develop;
   std::string picture = "auto";
   int bits = 8;
+  std::optional<double> white;
+  std::string display = "linear";
 
-  /// Adds --picture, --bits, and the options of `sense` and `develop`, in groups of their own.
+  /// Adds --picture, --bits, and the options of `sense` and `develop`, in groups of their
+  /// own.
   void add_to(CLI::App& command);
+  /// Adds --white and --display, of pictures of the light itself.
+  void add_display_to(CLI::App& command);
   OutputOptions options() const;
   /// The options, tried on outputs and sensor. \param command  what add_to was given. \throws InputError for
   /// outputs and options that the sensor makes no sense of.
   OutputOptions checked(const std::optional<Sensor>& sensor, const std::vector<std::string>& outputs,
                         const CLI::App& command) const;
+
+ private:
+  bool shows_light_ = false;
 };
 
 }  // namespace petzval::app

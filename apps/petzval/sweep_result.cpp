@@ -10,11 +10,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <new>
 
 #include "field_option.h"
-#include "option_names.h"
-#include "program.h"
+#include "run_command.h"
 
 namespace petzval::app {
 
@@ -72,38 +70,9 @@ bool recall(const std::string& record_path, PointResult& result, const Shared& s
   return result.done = true;
 }
 
-/// Runs a command of this program. \returns its exit code, and its numbers or what is wrong.
-struct Outcome {
-  int exit_code = 0;
-  Json numbers;
-  std::string error;
-};
-
-Outcome run_command(std::vector<std::string> arguments) {
-  CLI::App program{"", "petzval"};
-  Shared shared;
-  add_all_commands(program, shared);
-  const JsonTaker taker;
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them
-  try {
-    program.parse(std::move(arguments));
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const CLI::ParseError& error) {
-    return {2, {}, usage_message(program, error)};
-  } catch (const InputError& error) {
-    return {2, {}, with_option_names(with_final_names(error.what()))};
-  } catch (const std::bad_alloc&) {
-    return {1, {}, "out of memory; a smaller picture or fewer bands would fit"};
-  } catch (const std::exception& error) {
-    return {1, {}, with_final_names(error.what())};
-  }
-  return {0, taker.taken(), ""};
-}
-
 /// Runs the command of the point, and records what it made.
 void make(PointResult& result, const std::string& folder, const std::string& name) {
-  const Outcome outcome = run_command(result.arguments);
+  const CommandOutcome outcome = run_command(result.arguments);
   result.exit_code = outcome.exit_code;
   result.numbers = outcome.numbers;
   result.done = outcome.exit_code == 0 && result.numbers.is_object();

@@ -102,6 +102,32 @@ TEST(Seidel, SumsOfAFiniteObjectHaveTheLagrangeInvariantOfTheLens) {
   EXPECT_NEAR(sums.sum.s4 / std::pow(sums.lagrange_invariant_mm, 2), -1 / first.petzval_radius_mm, 1e-12);
 }
 
+/// What the bundled lenses to teach with were solved for.
+TEST(Seidel, TeachingLensesHaveTheAberrationTheyAreFor) {
+  const auto sums = [](const char* name) { return seidel_sums(read_lens(name).lens).sum; };
+  // A thin lens in parallel light, shape factor X (Welford, 1986, section 12.2):
+  // S1 = h⁴K³/4 · (n²/(n−1)² + (n+2)/(n (n−1)²) · (X − 2 (n²−1)/(n+2))² − n/(n+2)).
+  const Lens singlet = read_lens("plano-convex").lens;
+  const double n = singlet.surfaces[0].material.index(singlet.reference_wavelength_nm);
+  const auto s1 = [n](double shape) {
+    const double h = 6.25, power = 1 / 50.0, off = shape - 2 * (n * n - 1) / (n + 2);
+    return std::pow(h, 4) * std::pow(power, 3) / 4 *
+           (n * n / std::pow(n - 1, 2) + (n + 2) / (n * std::pow(n - 1, 2)) * off * off - n / (n + 2));
+  };
+  // Parallel light passes a flat front as if it were not there: thickness does not matter.
+  EXPECT_NEAR(sums("plano-convex-reversed").s1 / s1(-1), 1, 1e-6);
+  // The other way round the marginal ray is 5 % lower at the second surface.
+  EXPECT_NEAR(sums("plano-convex").s1 / s1(1), 1, 0.05);
+
+  const SeidelTerms coma = sums("coma-singlet"), landscape = sums("landscape-lens");
+  EXPECT_LT(std::abs(coma.s1), 1e-6 * std::abs(coma.s2));
+  EXPECT_GT(std::abs(coma.s2), 3 * std::abs(coma.s3));
+  EXPECT_LT(std::abs(landscape.s2), 1e-6 * landscape.s1);
+  EXPECT_NEAR(3 * landscape.s3 / landscape.s4, -1, 1e-5);  // a flat tangential field
+  // One focus at both ends of the spectrum: nothing is left of what a singlet of the same focal length has.
+  EXPECT_LT(std::abs(sums("achromat-50mm").cl), 1e-3 * sums("plano-convex").cl);
+}
+
 TEST(Seidel, NeedAParaxialField) {
   Lens lens = read_lens("cooke-triplet").lens;
   lens.fields.values = {0, 95};

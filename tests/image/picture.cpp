@@ -52,6 +52,27 @@ TEST(Picture, WhiteIsThePercentileOfTheLevels) {
   EXPECT_NEAR(renderer.white_level(), lux, 1e-6 * lux);  // float pixels
 }
 
+// Values of a picture are even in the logarithm: a third of the way up for each decade. The square root of a
+// level is what a display shows of it under `gamma`, and white stays white.
+TEST(Picture, LightsMayBeShownByRootOrLogarithm) {
+  SpectralImage image(5, 1, {550}, 10);
+  const std::vector<float> values{1, 0.1F, 0.01F, 0.001F, 0};
+  std::copy(values.begin(), values.end(), image.band(0).begin());
+  PictureOptions options;
+  options.percentile = 100;
+  options.display = PictureOptions::Display::log;
+  const PngImage decades = srgb_picture(image, options);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_NEAR(pixel(decades, i)[1], i < 4 ? 255 - 85 * static_cast<int>(i) : 0, 1) << i;
+  options.display = PictureOptions::Display::gamma;
+  const PictureRenderer renderer(image, options);
+  std::vector<LinearRgb> row(5);
+  renderer.linear_row(0, row);
+  for (std::size_t i = 0; i < 5; ++i)
+    EXPECT_NEAR(row[i].g, std::sqrt(static_cast<double>(values[i])), 1e-6) << i;
+  EXPECT_NE(renderer.description().find("square roots"), std::string::npos);
+}
+
 // Stars fill a twentieth of the picture: white goes by them. With a dim ground, or more of it lit, by all.
 TEST(Picture, LightsInDarknessAreMeteredByThemselves) {
   const auto level = [](float ground, int stars) {

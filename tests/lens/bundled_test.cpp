@@ -59,6 +59,19 @@ TEST(BundledLenses, ProjectionLensReducesFourTimes) {
   EXPECT_NEAR(data.paraxial_image_mm, 13.0764789603, 0.01);
 }
 
+/// Lenses to teach with have laws, not books: each file's source says what was solved for.
+TEST(BundledLenses, TeachingLensesKeepTheirLaws) {
+  for (const char* name :
+       {"plano-convex", "plano-convex-reversed", "coma-singlet", "achromat-50mm", "landscape-lens"})
+    expect_relative(first_order(read_lens(name).lens).efl_mm, 50, 1e-6);
+  const Lens achromat = read_lens("achromat-50mm").lens;
+  EXPECT_NEAR(first_order(achromat, 486.1327).bfl_mm, first_order(achromat, 656.2725).bfl_mm, 1e-4);
+  // A hyperboloid of conic −n² has no spherical aberration for parallel rays inside the glass (Descartes).
+  const Lens coma = read_lens("coma-singlet").lens;
+  const double n = coma.surfaces[0].material.index(coma.reference_wavelength_nm);
+  expect_relative(coma.surfaces[1].conic, -n * n, 1e-8);
+}
+
 /// Lens files as they were published; see data/lenses/README.md. The folder stands beside the checkout or
 /// nowhere.
 class PublishedFile : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};

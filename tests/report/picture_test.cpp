@@ -4,6 +4,7 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/data_uri.h>
 #include <petzval/report/heat_map.h>
+#include <petzval/report/psf_drawing.h>
 #include <png.h>
 
 #include <cmath>
@@ -94,6 +95,41 @@ TEST(WavelengthColour, FollowsTheSpectrum) {
   EXPECT_EQ(wavelength_colour(1550), wavelength_colour(780));
   EXPECT_EQ(wavelength_colour(NAN).hex(), "#7f7f7f");
   EXPECT_EQ(wavelength_colour(486).hex(), "#1f78d1");
+}
+
+/// A square of 5 × 5 equal samples in a window of 33: 99 % of it is in the fifth ring from the middle.
+Psf square_of_light() {
+  Psf psf{33, 2, std::vector<float>(33 * 33), 1};
+  for (int i = 14; i <= 18; ++i)
+    for (int j = 14; j <= 18; ++j) psf.values[static_cast<std::size_t>(33 * i + j)] = 1.0F / 25;
+  return psf;
+}
+
+TEST(PsfDrawing, IsCutToWhatHoldsTheLight) {
+  const Psf psf = square_of_light();
+  EXPECT_DOUBLE_EQ(half_width_holding_um(psf), 5);            // 2.5 samples of 2 µm
+  EXPECT_DOUBLE_EQ(half_width_holding_um(psf, 9.0 / 25), 3);  // the inner 3 × 3
+  EXPECT_DOUBLE_EQ(half_width_holding_um(psf, 0.01), 1);
+  const std::string strip = psf_strip_svg({{psf, "0 mm"}, {psf, "1 mm"}}, 1);
+  EXPECT_EQ(test::markup_fault(strip), "");
+  EXPECT_EQ(test::occurrences(strip, "<image "), 2);
+  EXPECT_THROW(psf_strip_svg({}, 1), InputError);
+}
+
+TEST(PsfDrawing, MapsPlacesOfAFrame) {
+  std::vector<PsfPlace> places = even_places(8, 6, 4);
+  ASSERT_EQ(places.size(), 12u);
+  EXPECT_DOUBLE_EQ(places[0].x_mm, -3);
+  EXPECT_DOUBLE_EQ(places[0].y_mm, 2);
+  EXPECT_DOUBLE_EQ(places[11].x_mm, 3);
+  EXPECT_DOUBLE_EQ(places[11].y_mm, -2);
+  EXPECT_THROW(psf_map_svg(places, 4, 8, "dark"), InputError);
+  for (PsfPlace& place : places) place.light = {{square_of_light(), 550, 0}};
+  const std::string map = psf_map_svg(places, 4, 8, "stars & light");
+  EXPECT_EQ(test::markup_fault(map), "");
+  EXPECT_EQ(test::occurrences(map, "<image "), 12);
+  EXPECT_NE(map.find("5 µm"), std::string::npos);
+  EXPECT_NE(map.find("200 times"), std::string::npos);  // a cell of 2 mm shows 10 µm
 }
 
 TEST(ImageStrip, HoldsEveryFrame) {

@@ -212,6 +212,22 @@ TEST_P(EveryChart, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(values(1), values(2));
 }
 
+/// 16 squares on 320 samples: lines two samples wide every 20, the middle ones about the middle of the
+/// picture.
+TEST(Grid, HasLinesThroughTheMiddleAndAlongTheEdges) {
+  const Scene scene = grid_chart(sized(320, 240), 16);
+  for (int row = 0; row < 240; row += 3)
+    for (int column = 0; column < 320; column += 3) {
+      const auto on_line = [](int sample) { return sample % 20 == 0 || sample % 20 == 19; };
+      EXPECT_NEAR(reflectance(scene, 0, row, column), on_line(row) || on_line(column) ? 0 : 1,
+                  single_precision)
+          << row << " " << column;
+    }
+  // An odd number: the middle of the picture is the middle of a square.
+  EXPECT_NEAR(reflectance(grid_chart(sized(300, 300), 3), 0, 150, 150), 1, single_precision);
+  EXPECT_THROW(grid_chart(sized(8, 8), 9), InputError);
+}
+
 TEST_P(EveryChart, IsSoundAndHasItsLight) {
   const Scene scene = make(64, 48, {400, 587.5618, 700});
   EXPECT_NO_THROW(scene.validate());
@@ -224,8 +240,8 @@ TEST_P(EveryChart, IsSoundAndHasItsLight) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builtin, EveryChart,
-                         ::testing::Values("checkerboard", "checkerboard:7", "colorchecker", "points:4",
-                                           "slanted-edge:5", "studio", "wall"));
+                         ::testing::Values("checkerboard", "checkerboard:7", "colorchecker", "grid:5",
+                                           "points:4", "slanted-edge:5", "studio", "wall"));
 
 TEST(ChartOptions, NonsenseIsRefused) {
   ChartOptions options = sized(4, 4);

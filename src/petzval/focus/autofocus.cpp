@@ -114,6 +114,12 @@ void settle(FocusJudge& judge, const FocusSearchOptions& options, double depth) 
 
 }  // namespace
 
+double FocusResult::noise_share() const {
+  double sum = 0;
+  for (const FocusEvaluation& each : evaluations) sum += each.noise * each.noise;
+  return sum > 0 ? std::sqrt(sum / static_cast<double>(evaluations.size())) / measure : 0;
+}
+
 FocusResult find_focus(const PicturesAt& pictures_at, const std::vector<FocusZone>& zones,
                        const FocusSearchOptions& options) {
   check_film_range(options.nearest_mm, options.farthest_mm);

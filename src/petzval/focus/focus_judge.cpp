@@ -26,12 +26,21 @@ double FocusJudge::measure_of(const std::vector<ZonePicture>& pictures, int scal
   return value;
 }
 
+double FocusJudge::noise_of(const std::vector<ZonePicture>& pictures) const {
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < zones_.size(); ++i) {
+    const double noise = zones_[i].area() * focus_measure_noise(pictures[i], measure_);
+    sum += noise * noise, area += zones_[i].area();
+  }
+  return std::sqrt(sum) / area;
+}
+
 double FocusJudge::at(double film_distance_mm, const char* stage) {
   const std::vector<ZonePicture> pictures = pictures_at_(film_distance_mm);
   if (pictures.size() != zones_.size())
     throw InputError(fmt::format("{} pictures for {} zones", pictures.size(), zones_.size()));
   const double value = measure_of(pictures, 1);
-  result.evaluations.push_back({film_distance_mm, value, stage});
+  result.evaluations.push_back({film_distance_mm, value, noise_of(pictures), stage});
   if (value > result.measure) result.measure = value, result.film_distance_mm = film_distance_mm;
   binned_.emplace_back();
   for (const int scale : scales_) binned_.back().push_back(measure_of(pictures, scale));

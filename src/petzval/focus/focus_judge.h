@@ -27,6 +27,7 @@ class FocusJudge {
 
  private:
   double measure_of(const std::vector<ZonePicture>& pictures, int scale) const;
+  double noise_of(const std::vector<ZonePicture>& pictures) const;
 
   const PicturesAt& pictures_at_;
   const std::vector<FocusZone>& zones_;

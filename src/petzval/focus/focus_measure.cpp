@@ -68,6 +68,14 @@ GreyPicture mean_of(const ZonePicture& picture) {
   return mean;
 }
 
+/// Columns and rows from and to, the latter excluded.
+GreyPicture part_of(const GreyPicture& picture, int left, int right, int top, int bottom) {
+  GreyPicture part{right - left, bottom - top, {}};
+  for (int row = top; row < bottom; ++row)
+    for (int column = left; column < right; ++column) part.values.push_back(picture.at(column, row));
+  return part;
+}
+
 }  // namespace
 
 GreyPicture binned(const GreyPicture& picture, int k) {
@@ -130,6 +138,27 @@ double focus_measure(const ZonePicture& picture, const FocusMeasureOptions& opti
     return smooth_laplacian(a, c, r, step) * smooth_laplacian(b, c, r, step);
   });
   return std::max(mean, 0.0);
+}
+
+double focus_measure_noise(const ZonePicture& picture, const FocusMeasureOptions& options) {
+  constexpr int most_parts = 4, pixels_a_part = 8;  // a side
+  const GreyPicture& a = picture.first;
+  if (!picture.second) return 0;
+  const int parts =
+      std::clamp(std::min(a.columns, a.rows) / (pixels_a_part * std::max(1, options.step)), 1, most_parts);
+  double sum = 0;
+  for (int i = 0; i < parts; ++i)
+    for (int j = 0; j < parts; ++j) {
+      const auto alone = [&](const GreyPicture& whole) {
+        return focus_measure({part_of(whole, i * a.columns / parts, (i + 1) * a.columns / parts,
+                                      j * a.rows / parts, (j + 1) * a.rows / parts),
+                              {}},
+                             options);
+      };
+      const double difference = (alone(a) - alone(*picture.second)) / 2;
+      sum += difference * difference;
+    }
+  return std::sqrt(sum) / (parts * parts);
 }
 
 }  // namespace petzval

@@ -87,6 +87,20 @@ LinearRgb false_colour(double place) {
   return colours[static_cast<std::size_t>(std::lround(255 * std::clamp(place, 0.0, 1.0)))];
 }
 
+const char* display_text(PictureOptions::Display display) {
+  return display == PictureOptions::Display::gamma ? "; square roots of levels are shown"
+         : display == PictureOptions::Display::log ? "; three decades are shown evenly"
+                                                   : "";
+}
+
+/// What a level is shown as; 1 is white before and after.
+double displayed(double level, PictureOptions::Display display) {
+  constexpr double decades = 3;
+  if (display == PictureOptions::Display::linear || !(level > 0)) return level;
+  if (display == PictureOptions::Display::gamma) return std::sqrt(level);
+  return srgb_decoded(std::clamp(1 + std::log10(level) / decades, 0.0, 1.0));
+}
+
 double mean_of(const std::vector<float>& levels) {
   double sum = 0;
   for (const float level : levels) sum += level;
@@ -129,6 +143,7 @@ PictureRenderer::PictureRenderer(const SpectralImage& image, const PictureOption
   image.validate();
   weights_ = level_weights(image.wavelengths_nm(), visible_);
   false_colour_ = !visible_ && options.false_colour;
+  display_ = options.display;
   grey_ = !visible_ || (image.bands() == 1 && !options.monochrome_in_colour);
   display_from_xyz_ = srgb_from_xyz();
   if (options.scene_white && !grey_ && image.bands() > 1)
@@ -163,7 +178,7 @@ double PictureRenderer::level_for(const PictureOptions& options, std::vector<flo
     description_ = "no light";
     return 1;
   }
-  description_ = fmt::format("white is {:.4g} {}, {}", level, unit, rule);
+  description_ = fmt::format("white is {:.4g} {}, {}{}", level, unit, rule, display_text(display_));
   if (!false_colour_) return level;
   if (options.exposure == PictureOptions::Exposure::percentile) {
     const double low = level_not_reached(levels, 100 - options.percentile);
@@ -198,6 +213,7 @@ void PictureRenderer::linear_row(int row, std::span<LinearRgb> pixels) const {
       pixels[i] = false_colour((white_level_ * sums[i].y - black_level_) / (white_level_ - black_level_));
       continue;
     }
+    if (sums[i].y > 0) sums[i] = (displayed(sums[i].y, display_) / sums[i].y) * sums[i];
     const Xyz rgb = grey_ ? Xyz{sums[i].y, sums[i].y, sums[i].y} : display_from_xyz_ * sums[i];
     pixels[i] = {rgb.x, rgb.y, rgb.z};
   }

@@ -30,6 +30,12 @@ struct PictureOptions {
   double grey = 0.18;
   double white_level = 0;
 
+  /// How levels below white are shown. The light of a star falls by thousands within a few pixels: `gamma`
+  /// shows the square root of a level, `log` its logarithm, three decades from black to white, evenly in the
+  /// values of the picture.
+  enum class Display { linear, gamma, log };
+  Display display = Display::linear;
+
   /// Spectrum of the light of the scene, on any scale: a white surface under it is shown as display white, by
   /// Bradford adaptation. It is taken at the wavelengths of the image, so that the white is right for few
   /// bands too. Without it nothing is adapted: light of D65 is white.
@@ -68,6 +74,7 @@ class PictureRenderer {
   bool visible_ = true, grey_ = false, false_colour_ = false;
   std::vector<Xyz> weights_;  ///< of each band, in the unit of the level
   ColourMatrix display_from_xyz_{};
+  PictureOptions::Display display_ = PictureOptions::Display::linear;
   double white_level_ = 1;
   double black_level_ = 0;  ///< of false colours
   std::string description_;

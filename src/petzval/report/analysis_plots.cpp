@@ -160,7 +160,8 @@ Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows) {
   return plot;
 }
 
-Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows) {
+Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows,
+                          const std::vector<FieldCurvatureRow>& reference) {
   Plot plot = upright_plot("Field curves: T solid, S dashed", {"focus from the image surface", "mm"},
                            field_axis(kind));
   const auto field = [](const FieldCurvatureRow& row) { return row.field; };
@@ -170,13 +171,12 @@ Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow
       plot, rows, [](const FieldCurvatureRow& row) { return row.sagittal_mm; }, field, PlotStroke::dashed,
       false);
   std::vector<double> petzval, fields;
-  for (std::size_t i = 0; i < rows.size(); i += wavelengths_of(rows)) {
-    petzval.push_back(rows[i].petzval_mm);
-    fields.push_back(rows[i].field);
+  for (const FieldCurvatureRow& row : reference) {
+    petzval.push_back(row.petzval_mm);
+    fields.push_back(row.field);
   }
-  // Its wavelength is that of the first curve.
   PlotSeries& parabola =
-      plot.line(fmt::format("Petzval, {:g} nm", rows.front().wavelength_nm), petzval, fields);
+      plot.line(fmt::format("Petzval, {:g} nm", reference.front().wavelength_nm), petzval, fields);
   parabola.colour = "#777777";
   parabola.stroke = PlotStroke::dotted;
   return plot;

@@ -25,7 +25,9 @@ std::vector<double> even_shifts(double reach_mm);
 
 /// The three curves by which designers know a lens: field upwards, aberration to the right.
 Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows);
-Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
+/// \param reference  rows at the lens's reference wavelength, whose Petzval curve is drawn.
+Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows,
+                          const std::vector<FieldCurvatureRow>& reference);
 Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows);
 
 /// A curve a field and wavelength over the radius; dashed beside it what an Airy pattern holds.

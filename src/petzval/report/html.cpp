@@ -171,6 +171,10 @@ Block table(const Table& table) {
   return {markup + "</tbody>\n</table></div>\n"};
 }
 
+Block listing(std::string_view text) {
+  return {fmt::format("<pre>{}</pre>\n", xml_escape(text))};
+}
+
 Block facts(const std::vector<Fact>& list) {
   std::string markup = "<dl>\n";
   for (const Fact& fact : list)
@@ -211,15 +215,20 @@ Page& Page::footer(std::string text) {
   return *this;
 }
 
+Page& Page::one_sheet() {
+  one_sheet_ = true;
+  return *this;
+}
+
 std::string Page::html() const {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
-      "<style>{}</style>\n</head>\n<body>\n<header>\n<h1>{}</h1>\n",
-      xml_escape(title_), page_style, inline_markup(title_));
+      "<style>{}</style>\n</head>\n<body{}>\n<header>\n<h1>{}</h1>\n",
+      xml_escape(title_), page_style, one_sheet_ ? " class=\"sheet\"" : "", inline_markup(title_));
   if (!subtitle_.empty()) out += "<p>" + inline_markup(subtitle_) + "</p>\n";
   out += "</header>\n";
-  if (sections_.size() > 1) {
+  if (sections_.size() > 1 && !one_sheet_) {
     out += "<nav aria-label=\"Contents\">\n";
     for (std::size_t i = 0; i < sections_.size(); ++i)
       out += fmt::format("<a href=\"#s{}\">{}</a>\n", i + 1, inline_markup(sections_[i].contents));

@@ -53,6 +53,8 @@ Block table(const Table& table);
 struct Fact {
   std::string name, value, unit{};
 };
+/// Lines as they are, in letters of one width: commands.
+Block listing(std::string_view text);
 Block facts(const std::vector<Fact>& list);
 
 /// A quantity as somebody else reports it and as it is computed here.
@@ -76,6 +78,8 @@ class Page {
   Page& add(const Block& block);
   /// A line at the end of the page: program, version, options.
   Page& footer(std::string text);
+  /// To be printed on one sheet of A4: smaller letters, two columns, figures no higher than they must be.
+  Page& one_sheet();
   std::string html() const;
 
  private:
@@ -84,6 +88,7 @@ class Page {
   };
   std::string title_, subtitle_, lead_, footer_;
   std::vector<Section> sections_;
+  bool one_sheet_ = false;
 };
 
 }  // namespace petzval::html

@@ -57,12 +57,18 @@ font-size:.8rem;font-weight:500;pointer-events:none}
 .wipe>b:last-of-type{right:.5rem}
 .download{margin:.2rem 0 .8rem;font-size:.85rem}
 footer{margin-top:2rem;color:var(--soft);font-size:.88rem}
+pre{margin:.6rem 0;padding:.6rem .8rem;border-radius:.4rem;background:var(--tint);overflow-x:auto;
+font:.82rem/1.5 ui-monospace,Menlo,Consolas,"DejaVu Sans Mono",monospace}
 @media print{body{max-width:none;padding:0;background:#fff;font-size:11pt}nav,.download,.wipe>input,.wipe>i{display:none}
 @page{margin:14mm}svg{max-height:21cm}.scroll{overflow:visible}table{font-size:7.5pt;width:auto}
 th,td{padding:.15rem .45rem .15rem 0}td.number,th.number{white-space:normal}
 section{border:0;padding:0;margin:0 0 1.2rem}h2{break-after:avoid}figure,table,.row>*{break-inside:avoid}
 .wipe{grid-template-columns:1fr 1fr;gap:.5rem;max-width:none}.wipe>img{grid-area:auto}.wipe>img+img{clip-path:none}
-.wipe>b:last-of-type{right:.5rem}}
+.wipe>b:last-of-type{right:.5rem}
+.sheet{font-size:8.5pt;line-height:1.3}.sheet h1{font-size:16pt}.sheet h2{font-size:10.5pt;margin-bottom:.2rem}
+.sheet section{margin:0 0 .5rem}.sheet p,.sheet figure{margin:.15rem 0;max-width:none}.sheet figcaption{font-size:7.5pt;margin-top:.15rem}
+.sheet .row{grid-template-columns:1fr 1fr;gap:.3rem 1rem}.sheet .row svg{height:4.8cm;width:auto}.sheet .row img{height:5.5cm;width:auto}
+.sheet pre{font-size:6.3pt;white-space:pre-wrap;padding:.2rem .4rem}.sheet footer{margin-top:.4rem;font-size:7pt}}
 )css";
 
 }  // namespace petzval::html

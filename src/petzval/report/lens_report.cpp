@@ -218,9 +218,10 @@ class LensSections {
     const auto axial =
         axial_focus_table(lens_, lens_.wavelengths_nm, even_fields({1.0}, curve_zones), request_.clip);
     const auto curves = field_curvature_table(lens_, dense(request_));
+    const auto reference = field_curvature_table(lens_, dense(at_reference(request_, lens_)));
     const auto distortion = distortion_table(lens_, dense(request_));
     page_.add(html::figure(
-        html::drawing(plot_grid_svg({longitudinal_plot(axial), field_curvature_plot(kind_, curves),
+        html::drawing(plot_grid_svg({longitudinal_plot(axial), field_curvature_plot(kind_, curves, reference),
                                      distortion_plot(kind_, distortion)},
                                     3, "")),
         "Left: where rays of the axial point cross the axis. Middle: tangential (solid) and "

@@ -94,6 +94,27 @@ Scene point_chart(const ChartOptions& options, int points_across) {
   return std::move(canvas).lit();
 }
 
+Scene grid_chart(const ChartOptions& options, int squares_across) {
+  if (squares_across < 1 || squares_across > options.columns)
+    throw InputError(fmt::format("a grid of {} squares across; 1 to {} (a sample each) would be right",
+                                 squares_across, options.columns));
+  ChartCanvas canvas(options);
+  canvas.fill(canvas.flat_paint(1));
+  const double w = options.columns, h = options.rows, size = w / squares_across, half_line = size / 20;
+  Shape upright, level;
+  for (int i = 0; i <= squares_across; ++i)
+    upright.add_rectangle(i * size - half_line, 0, i * size + half_line, h);
+  // From the middle, as in a board of squares: the rows need not be a multiple of them.
+  const double first = h / 2 - size * squares_across / 2;
+  for (int i = 0; i <= squares_across; ++i) {
+    const double y = first + i * size;
+    if (y > -half_line && y < h + half_line) level.add_rectangle(0, y - half_line, w, y + half_line);
+  }
+  canvas.draw(upright, canvas.flat_paint(0));
+  canvas.draw(level, canvas.flat_paint(0));
+  return std::move(canvas).lit();
+}
+
 Scene wall_chart(const ChartOptions& options) {
   ChartCanvas canvas(options);
   canvas.fill(canvas.flat_paint(1));

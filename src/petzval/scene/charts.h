@@ -18,6 +18,11 @@ Scene colorchecker_chart(const ChartOptions& options);
 /// White single samples on black, `points_across` × `points_across` in the middles of equal cells.
 Scene point_chart(const ChartOptions& options, int points_across = 9);
 
+/// Dark lines on white, `squares_across` squares between those at the left and right edges: what is straight
+/// in the scene. Lines run through the middle of the picture if that number is even. They are a tenth of a
+/// square wide.
+Scene grid_chart(const ChartOptions& options, int squares_across = 16);
+
 /// White everywhere.
 Scene wall_chart(const ChartOptions& options);
 

@@ -29,6 +29,10 @@ constexpr std::array all_charts = {
     NamedChart{
         "colorchecker", "", "the 24 patches of a ColorChecker, measured reflectances",
         [](const ChartOptions& options, std::optional<double>) { return colorchecker_chart(options); }},
+    NamedChart{"grid", "N", "dark lines on white, N (16) squares across",
+               [](const ChartOptions& options, std::optional<double> n) {
+                 return grid_chart(options, whole(n.value_or(16), "grid"));
+               }},
     NamedChart{"points", "N", "N x N (9 x 9) white samples on black",
                [](const ChartOptions& options, std::optional<double> n) {
                  return point_chart(options, whole(n.value_or(9), "points"));

@@ -67,7 +67,8 @@ Plot curves(const std::string& title, const PlotAxis& y_axis, const std::vector<
     }
     PlotSeries& line = plot.line(fmt::format("{:g} nm", rows[w].wavelength_nm), xs, ys);
     line.colour = wavelength_colour(rows[w].wavelength_nm).hex();
-    line.marker = PlotMarker::dot;
+    constexpr std::size_t few = 12;
+    if (xs.size() <= few) line.marker = PlotMarker::dot;
   }
   return plot;
 }
@@ -208,9 +209,12 @@ AnalysisResult field_curvature(const Lens& lens, const AnalysisRequest& request,
   AnalysisResult result =
       result_of(lens, request.at, "foci beside the real chief ray, from the image surface along z",
                 tabulate(request.at.field_kind, field_curvature_table(lens, request.at)));
-  if (request.plots)
-    result.plots = {
-        field_curvature_plot(request.at.field_kind, field_curvature_table(lens, dense(request.at)))};
+  if (!request.plots) return result;
+  const FieldTableRequest fields = dense(request.at);
+  FieldTableRequest reference = fields;
+  reference.wavelengths_nm = {lens.reference_wavelength_nm};
+  result.plots = {field_curvature_plot(request.at.field_kind, field_curvature_table(lens, fields),
+                                       field_curvature_table(lens, reference))};
   return result;
 }
 

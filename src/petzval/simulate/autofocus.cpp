@@ -26,6 +26,11 @@ constexpr double extension = 0.15;
 constexpr double share_of_depth = 0.05;
 /// How far the film may go beyond the focus of infinity, in depths of focus: a peak there has two flanks.
 constexpr double depths_beyond = 4;
+/// A measure whose noise is a larger share of its peak is ragged: the peak is uncertain by a quarter of a
+/// depth of focus.
+constexpr double ragged = 0.1;
+/// How often the samples are made four times as many for a ragged measure.
+constexpr int more_samples_times = 2;
 
 /// Where the film stands for an object at infinity: at the paraxial focus, or where the spot on the axis is
 /// smallest, whichever is nearer to the lens (spherical aberration parts them).
@@ -76,7 +81,11 @@ class ZoneRenderer {
  public:
   ZoneRenderer(const PreparedScene& scene, const render::World& world, std::vector<FocusZone> zones,
                const Context& context)
-      : scene_(scene), world_(world), zones_(std::move(zones)), context_(context) {}
+      : scene_(scene),
+        world_(world),
+        zones_(std::move(zones)),
+        context_(context),
+        samples_(scene.request.autofocus.samples_per_pixel) {}
 
   std::vector<ZonePicture> at(double film_distance_mm) {
     const render::SceneCamera moved = scene_camera(scene_).with_film_distance_mm(film_distance_mm);
@@ -91,12 +100,14 @@ class ZoneRenderer {
   }
   const std::vector<FocusZone>& zones() const { return zones_; }
   std::uint64_t rays() const { return rays_; }
+  int samples() const { return samples_; }
+  void take_more_samples() { samples_ *= 4; }
 
  private:
   GreyPicture picture(const render::SceneCamera& set_up, const render::FilmCamera& camera,
                       const render::PixelWindow& window, std::uint64_t seed) {
     render::RenderOptions options = render_options(scene_);
-    options.samples_per_pixel = std::max(1, scene_.request.autofocus.samples_per_pixel / 2);
+    options.samples_per_pixel = std::max(1, samples_ / 2);
     options.window = window;
     options.seed = seed;
     const render::Rendering rendered =
@@ -109,6 +120,7 @@ class ZoneRenderer {
   const render::World& world_;
   std::vector<FocusZone> zones_;
   const Context& context_;
+  int samples_;
   std::uint64_t rays_ = 0;
 };
 
@@ -116,44 +128,76 @@ std::vector<FocusZone> zones_or_middle(const AutofocusOptions& options) {
   return options.zones.empty() ? std::vector<FocusZone>{{1.0 / 3, 2.0 / 3, 1.0 / 3, 2.0 / 3}} : options.zones;
 }
 
+/// Film distances to search, and the depth of focus.
+struct FocusRange {
+  double from_mm, to_mm, depth_mm;
+};
+
+FocusRange range_of(const PreparedScene& scene) {
+  const AutofocusOptions& wanted = scene.request.autofocus;
+  const FirstOrder first = first_order(*scene.lens);
+  const double depth_mm = wanted.depth_mm.value_or(first.f_number * scene.film.pitch_um * mm_per_um);
+  const double infinity_mm = infinity_focus_mm(*scene.lens);
+  return {wanted.from_mm.value_or(std::max(infinity_mm - depths_beyond * depth_mm, infinity_mm / 2)),
+          wanted.to_mm.value_or(infinity_mm + extension * first.efl_mm), depth_mm};
+}
+
+FocusResult searched(const AutofocusOptions& wanted, const PicturesAt& pictures,
+                     const std::vector<FocusZone>& zones, const FocusRange& range) {
+  if (wanted.search == AutofocusOptions::Search::golden_2006) {
+    GoldenSearchOptions options;
+    options.measure = wanted.measure;
+    options.nearest_mm = range.from_mm, options.farthest_mm = range.to_mm;
+    options.tolerance_mm = share_of_depth * range.depth_mm;
+    return find_focus_2006(pictures, zones, options);
+  }
+  if (wanted.search == AutofocusOptions::Search::scan)
+    return scan_focus(pictures, zones, wanted.measure, range.from_mm, range.to_mm, wanted.most_evaluations);
+  FocusSearchOptions options;
+  options.measure = wanted.measure;
+  options.nearest_mm = range.from_mm, options.farthest_mm = range.to_mm;
+  options.depth_mm = range.depth_mm;
+  options.most_evaluations = wanted.most_evaluations;
+  return find_focus(pictures, zones, options);
+}
+
+/// \throws InputError for a measure that tells nothing of focus.
+void require_a_peak(const FocusResult& result, int samples) {
+  if (result.noise_share() > ragged)
+    throw InputError(
+        fmt::format("the focus measure is ragged: with {} paths a pixel its noise is {:.0f} % of its peak; a "
+                    "larger zone (`zones`), one with more detail, or more paths (`focus_spp`) would be right",
+                    samples, 100 * result.noise_share()));
+  if (result.at_the_end)
+    throw InputError(fmt::format(
+        "the sharpest of the film distances searched, {:.4f} mm, is the last of them; a range that "
+        "reaches beyond it (`autofocus.from_mm`, `autofocus.to_mm`), or a zone that can be sharp "
+        "within it (`zones`), would be right",
+        result.film_distance_mm));
+}
+
 FocusRun search(const PreparedScene& scene, const render::World& world, const Context& context,
                 const ProgressCallback& progress) {
   const AutofocusOptions& wanted = scene.request.autofocus;
-  const FirstOrder first = first_order(*scene.lens);
   ZoneRenderer zones(scene, world, zones_or_middle(wanted), context);
   int asked = 0;
   const PicturesAt pictures = [&](double film_distance_mm) {
     progress(std::min(1.0, asked++ / static_cast<double>(std::max(1, wanted.most_evaluations))), "focus");
     return zones.at(film_distance_mm);
   };
+  const FocusRange range = range_of(scene);
   FocusRun run;
   run.lens = scene.lens->name;
-  run.depth_mm = wanted.depth_mm.value_or(first.f_number * scene.film.pitch_um * mm_per_um);
-  const double infinity_mm = infinity_focus_mm(*scene.lens);
-  const double from =
-      wanted.from_mm.value_or(std::max(infinity_mm - depths_beyond * run.depth_mm, infinity_mm / 2));
-  const double to = wanted.to_mm.value_or(infinity_mm + extension * first.efl_mm);
-  if (wanted.search == AutofocusOptions::Search::golden_2006) {
-    GoldenSearchOptions options;
-    options.measure = wanted.measure;
-    options.nearest_mm = from, options.farthest_mm = to;
-    options.tolerance_mm = share_of_depth * run.depth_mm;
-    run.result = find_focus_2006(pictures, zones.zones(), options);
-  } else if (wanted.search == AutofocusOptions::Search::scan) {
-    run.result = scan_focus(pictures, zones.zones(), wanted.measure, from, to, wanted.most_evaluations);
-  } else {
-    FocusSearchOptions options;
-    options.measure = wanted.measure;
-    options.nearest_mm = from, options.farthest_mm = to;
-    options.depth_mm = run.depth_mm;
-    options.most_evaluations = wanted.most_evaluations;
-    run.result = find_focus(pictures, zones.zones(), options);
+  run.depth_mm = range.depth_mm;
+  run.result = searched(wanted, pictures, zones.zones(), range);
+  for (int more = 0; more < more_samples_times && run.result.noise_share() > ragged; ++more) {
+    zones.take_more_samples();
+    asked = 0;
+    run.result = searched(wanted, pictures, zones.zones(), range);
   }
+  require_a_peak(run.result, zones.samples());
+  run.samples_per_pixel = zones.samples();
   run.camera_rays = zones.rays();
-  if (run.result.at_the_end)
-    send_note(context,
-              "the sharpest place lies at an end of the distances searched; `autofocus.from_mm` and "
-              "`autofocus.to_mm` widen them");
   return run;
 }
 
