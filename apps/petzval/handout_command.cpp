@@ -27,19 +27,19 @@ struct HandoutCommand {
 };
 
 /// A folder that goes when this goes.
-class ScratchFolder {
+class HandoutFolder {
  public:
-  ScratchFolder() {
+  HandoutFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "petzval-handout-XXXXXX").string();
     if (!mkdtemp(name.data())) throw Failure("no folder can be made in " + name);
     path_ = name;
   }
-  ~ScratchFolder() {
+  ~HandoutFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  HandoutFolder(const HandoutFolder&) = delete;
+  HandoutFolder& operator=(const HandoutFolder&) = delete;
   std::string file(const std::string& name) const { return (path_ / name).string(); }
 
  private:
@@ -47,7 +47,7 @@ class ScratchFolder {
 };
 
 /// The words of a command line as they run: what steps write lies in the folder.
-std::vector<std::string> words_to_run(const Exercise& exercise, std::size_t step, const ScratchFolder& folder,
+std::vector<std::string> words_to_run(const Exercise& exercise, std::size_t step, const HandoutFolder& folder,
                                       const Shared& shared) {
   std::istringstream line(command_line(exercise, step));
   std::vector<std::string> words;
@@ -65,7 +65,7 @@ std::vector<std::string> words_to_run(const Exercise& exercise, std::size_t step
   return words;
 }
 
-html::Block shown(const ExerciseStep& step, const std::string& path) {
+html::Block step_block(const ExerciseStep& step, const std::string& path) {
   const std::string bytes = read_whole_file(path);
   if (step.makes != ExerciseStep::Makes::picture) return html::figure(html::drawing(bytes), step.caption);
   html::Image image = html::embedded_image(bytes, step.caption);
@@ -77,7 +77,7 @@ html::Block shown(const ExerciseStep& step, const std::string& path) {
 }
 
 std::string handout_html(const Exercise& exercise, const Shared& shared) {
-  const ScratchFolder folder;
+  const HandoutFolder folder;
   ProgressBar bar(!shared.quiet);
   std::vector<html::Block> drawings, pictures;
   std::string commands;
@@ -90,7 +90,7 @@ std::string handout_html(const Exercise& exercise, const Shared& shared) {
     const ExerciseStep& step = exercise.steps[i];
     if (step.makes == ExerciseStep::Makes::lens) continue;
     (step.makes == ExerciseStep::Makes::picture ? pictures : drawings)
-        .push_back(shown(step, folder.file(output_of(exercise, i))));
+        .push_back(step_block(step, folder.file(output_of(exercise, i))));
   }
   html::Page page(exercise.title);
   page.one_sheet();

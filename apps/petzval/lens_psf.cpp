@@ -144,7 +144,9 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
 void write_map(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request) {
   const std::optional<FrameSize> frame = frame_of_fields(lens);
   if (!frame)
-    throw InputError("--map: the lens has no field beside its axis; `--fields` would say how far it reaches");
+    throw InputError(
+        "--map: the lens has no field beside its axis; fields in its file that reach the corners would be "
+        "right");
   constexpr int across = 7;
   std::vector<PsfPlace> places = even_places(frame->width_mm, frame->height_mm, across);
   std::map<long, std::vector<MappedPsf>> known;  // by radius [nm]: places come in fours
