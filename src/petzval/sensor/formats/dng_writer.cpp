@@ -219,7 +219,7 @@ std::string mosaic_note(const RawImage& raw) {
   if (raw.mosaic.is_uniform() || (rgb && square && (raw.mosaic.rows == bayer || raw.mosaic.rows == x_trans)))
     return {};
   return "few other programs develop raw files of this mosaic; developed as .dng it is a picture in linear "
-         "light that all of them read";
+         "light that LibRaw, RawTherapee and darktable read";
 }
 
 std::string dng_bytes(const RawImage& raw, const std::string& path) {
