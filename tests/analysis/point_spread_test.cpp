@@ -244,7 +244,7 @@ TEST(PointSpread, OfCoatedSurfacesHasTheSameShape) {
   const Lens lens = read_lens("cooke-triplet").lens;
   FieldTracer clear(lens, 550), coated(lens, 550);
   Losses losses;
-  losses.air_glass = CoatingReflectance::constant(0.02);
+  losses.air_glass = Coating::constant(0.02);
   coated.set_losses(losses);
   const ChiefRay chief = *clear.chief_ray(12);
   const SmoothPupil bright = *fit_pupil(clear, chief), dim = *fit_pupil(coated, chief);
