@@ -50,6 +50,11 @@ void steps(const StepsCommand& options, const Shared& shared) {
   const std::optional<ChiefRay> chief = tracer.chief_ray(object_field(lens, lens.fields.kind, field));
   if (!chief) throw no_ray_passes(lens, field, wavelength_nm);
   const std::vector<RayStep> ray = ray_steps(tracer, *chief, options.stop[0], options.stop[1]);
+  if (ray.empty() && options.stop[0] == 0 && options.stop[1] == 0)
+    throw InputError(
+        fmt::format("{}: no light of field {:g} passes through the middle of the stop; a smaller field, or "
+                    "another point by --stop, would be right",
+                    lens.name, field));
   if (ray.empty())
     throw InputError(
         fmt::format("{}: no ray of field {:g} passes at ({:g}, {:g}) of the stop; a point nearer to "
@@ -86,7 +91,7 @@ void add_lens_steps(CLI::App& lens, Shared& shared) {
   options->camera.add_to(*command);
   command->add_option("--field", options->field, "Field, in the lens file's kind; default: its largest");
   command->add_option("--wavelength", options->wavelength_nm, "In nm; default: the reference wavelength")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--stop", options->stop, "Where the ray crosses the stop, X,Y in stop radii; default: 0,0")
       ->delimiter(',')

@@ -16,6 +16,15 @@ namespace petzval::app {
 
 namespace {
 
+/// Planes of bands as numbers of pixels, the order that irradiance is written in.
+std::vector<float> bands_last(const std::vector<float>& planes, std::size_t bands) {
+  const std::size_t pixels = planes.size() / bands;
+  std::vector<float> result(planes.size());
+  for (std::size_t band = 0; band < bands; ++band)
+    for (std::size_t i = 0; i < pixels; ++i) result[i * bands + band] = planes[band * pixels + i];
+  return result;
+}
+
 void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture, StagedFiles& files) {
   const auto rows = static_cast<std::size_t>(picture.irradiance.rows());
   const auto columns = static_cast<std::size_t>(picture.irradiance.columns());
@@ -27,8 +36,8 @@ void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture
     write_npy(files.stage(outputs.normals), std::vector<std::size_t>{rows, columns, 3},
               picture.first_surfaces->normal);
   if (!outputs.albedo.empty())
-    write_npy(files.stage(outputs.albedo), std::vector<std::size_t>{bands, rows, columns},
-              picture.first_surfaces->albedo);
+    write_npy(files.stage(outputs.albedo), std::vector<std::size_t>{rows, columns, bands},
+              bands_last(picture.first_surfaces->albedo, bands));
 }
 
 }  // namespace
@@ -40,7 +49,8 @@ void RenderOutputs::add_to(CLI::App& command) {
       ->check(output_file());
   command.add_option("--normals", normals, "Also write its normals in world space (.npy)")
       ->check(output_file());
-  command.add_option("--albedo", albedo, "Also write its reflectance by band (.npy)")->check(output_file());
+  command.add_option("--albedo", albedo, "Also write its reflectance: rows x columns x bands (.npy)")
+      ->check(output_file());
   command
       .add_option("-o,--output", pictures,
                   "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "

@@ -53,6 +53,14 @@ class FirstWords(ProgramTest):
                              (["lens", "scale", "double-gauss", "-o", "x.json"], "--efl")):
             self.assert_refused(*words, words=[right])
 
+    def test_other_trades_words(self):
+        self.write("room.pbrt", "WorldBegin\n")
+        self.assert_refused("image", "room.pbrt", "--lens", "double-gauss", "-o", "x.png", words=["petzval render"])
+        self.assert_refused("lens", "steps", "double-gauss", "--wavelength", "450,550", words=["--wavelength"])
+        for line in self.petzval("lens", "steps", "double-gauss", "--wavelength", "450,550").stderr.splitlines():
+            self.assertLess(len(line), 200)
+        self.assert_refused("lens", "steps", "dgauss-50mm", "--field", "40", words=["smaller field"])
+
     def test_an_object_that_moves_alone_is_noted(self):
         done = self.petzval("lens", "info", "cooke-triplet", "--set", "object_distance_mm=400")
         self.assertIn("--focus", done.stderr)

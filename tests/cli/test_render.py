@@ -52,6 +52,18 @@ class Render(ProgramTest):
         self.assertEqual(said["film_distance_mm"], 38)
         self.assertGreater(said["camera_rays_passed"] / said["camera_rays"], 0.9)
         self.assertEqual(sorted(self.contents()), ["a.exr", "a.npy", "a.png", "d.npy", "n.npy", "r.npy", "s.pbrt"])
+        for file, shape in [("a.npy", b"(24, 32, 31)"), ("r.npy", b"(24, 32, 31)"), ("n.npy", b"(24, 32, 3)"), ("d.npy", b"(24, 32)")]:
+            self.assertIn(shape, (self.folder / file).read_bytes()[:128], file)
+
+    def test_albedo_has_the_bands_of_a_pixel_side_by_side(self):
+        red = SCENE.replace('"texture reflectance" "t"', '"rgb reflectance" [ .9 .1 .1 ]')
+        (self.folder / "red.pbrt").write_text(red)
+        self.assert_succeeds("render", "red.pbrt", *LENS, "--spp", "4", "--quiet", "-o", "a.npy", "--albedo", "r.npy")
+        data = (self.folder / "r.npy").read_bytes()
+        values = struct.unpack(f"<{24 * 32 * 31}f", data[-4 * 24 * 32 * 31:])
+        middle = values[31 * (12 * 32 + 16):31 * (12 * 32 + 17)]
+        self.assertLess(middle[0], 0.3)   # 400 nm
+        self.assertGreater(middle[-1], 0.7)  # 700 nm
 
     def test_seed_decides_and_threads_do_not(self):
         def picture(*options):

@@ -166,6 +166,20 @@ TEST(SceneReader, ListsEverythingThatIsNotSupported) {
                                             "s.pbrt:5:1 LightSource \"goniometric\""}));
 }
 
+TEST(SceneReader, NamesWhatDirectivesOfOlderVersionsAreNow) {
+  expect_refused(complaint("SurfaceIntegrator \"path\" \"integer maxdepth\" [5]\nWorldBegin"),
+                 "s.pbrt:1:1: ", "now Integrator");
+  Unsupported all(true);
+  const SceneDescription scene = parse_scene_description(
+      "SurfaceIntegrator \"path\" \"integer maxdepth\" [5]\nRenderer \"sampler\"\nWorldBegin\nVolume "
+      "\"grid\"\n"
+      "Shape \"sphere\"\nWorldEnd\n",
+      "s.pbrt", all);
+  EXPECT_EQ(all.list().size(), 3U);
+  EXPECT_EQ(scene.shapes.size(), 1U);
+  EXPECT_EQ(in_world("Shape \"sphere\"\nWorldEnd"), "");
+}
+
 TEST(SceneReader, FollowsTransformationsAndBlocks) {
   const SceneDescription scene = described(
       "AttributeBegin\nTranslate 1 2 3\nScale 2 2 2\nCoordinateSystem \"there\"\nShape "

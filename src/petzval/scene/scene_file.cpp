@@ -175,6 +175,8 @@ Scene read_mat_file(const std::string& path, const SceneOptions& options) {
 
 Scene read_spectral_file(const std::string& path, const SceneOptions& options) {
   const std::string extension = lower_extension(path);
+  if (extension == ".pbrt" || extension == ".gltf" || extension == ".glb")
+    throw InputError(path, "is a scene in three dimensions; petzval render takes it");
   if (extension != ".mat" && extension != ".exr" && extension != ".npy" && !is_envi_path(path))
     throw InputError(path,
                      "a scene is an ISET .mat, a spectral .exr, an ENVI .hdr, a NumPy .npy, a photograph "

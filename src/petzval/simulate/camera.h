@@ -27,7 +27,7 @@ struct Camera {
     ignored       ///< nothing but the stop clips, whatever the prescription says
   };
 
-  Lens lens;  // without "= {}", which makes g++ 12 warn of what it does not see through
+  Lens lens = Lens();  // "= {}" makes g++ 12 warn of what it does not see through
   Focus focus = {};
   std::optional<double> f_number = {};    ///< paraxial, at infinity; absent: as the prescription has it
   std::optional<StopBlades> blades = {};  ///< absent: as the prescription has them

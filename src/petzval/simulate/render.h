@@ -38,7 +38,7 @@ struct RenderRequest {
   std::string scene = {};
   /// Without surfaces, its lens is the one of the scene's camera, if that has one. Without a sensor the film
   /// is the scene's. Automatic focus is autofocus on the zones below; an ideal camera has none.
-  Camera camera = {};
+  Camera camera = Camera();  // "= {}" makes g++ 12 warn of what it does not see through
   /// The focus is the one in the scene's file, or the prescription's where there is none, whatever
   /// `camera.focus` says.
   bool focus_as_in_scene = false;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace petzval::render {
 
@@ -49,9 +50,22 @@ void SceneReader::follow(Tokens& tokens) {
       throw scene_error(at, fmt::format("{} stands where a directive would be right", token->text));
     const std::string word(token->text);
     if (!follow_transform(word, tokens, at) && !follow_block(word, tokens, at) &&
-        !follow_option(word, tokens, at) && !follow_world(word, tokens, at))
+        !follow_option(word, tokens, at) && !follow_world(word, tokens, at) && !follow_old(word, tokens, at))
       refuse_unknown(word, at);
   }
+}
+
+bool SceneReader::follow_old(const std::string& word, Tokens& tokens, const Location& at) {
+  if (word == "WorldEnd") return true;  // the world of version 4 ends with the file
+  static const std::map<std::string, const char*> now{{"SurfaceIntegrator", "Integrator"},
+                                                      {"VolumeIntegrator", "Integrator"},
+                                                      {"Renderer", "Integrator"},
+                                                      {"Volume", "MakeNamedMedium"}};
+  const auto old = now.find(word);
+  if (old == now.end()) return false;
+  unsupported_.report(at, fmt::format("{} of pbrt before version 4 (now {})", word, old->second));
+  entity(tokens, at, "directive");
+  return true;
 }
 
 void SceneReader::refuse_unknown(const std::string& word, const Location& at) {

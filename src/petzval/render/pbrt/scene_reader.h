@@ -42,6 +42,8 @@ class SceneReader {
   bool follow_block(const std::string& word, Tokens& tokens, const Location& at);
   bool follow_option(const std::string& word, Tokens& tokens, const Location& at);
   bool follow_world(const std::string& word, Tokens& tokens, const Location& at);
+  /// Directives of pbrt before version 4: what they are now.
+  bool follow_old(const std::string& word, Tokens& tokens, const Location& at);
   [[noreturn]] void refuse_unknown(const std::string& word, const Location& at);
 
   void include(Tokens& tokens, const Location& at);
