@@ -186,6 +186,16 @@ TEST(Mtf, ByRaysIsThatOfCountedRays) {
   }
 }
 
+TEST(Mtf, EmptyListsAreTheLensesOwn) {
+  const Lens lens = read_lens("cooke-triplet").lens;
+  MtfOptions options;
+  options.frequencies_cpmm = {20};
+  const std::vector<MtfRow> all = mtf_table(lens, {}, options),
+                            own = mtf_table(lens, FieldTableRequest::of(lens), options);
+  ASSERT_EQ(all.size(), lens.fields.values.size() * lens.wavelengths_nm.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].tangential, own[i].tangential);
+}
+
 TEST(Mtf, LateralColourCancelsTwoWavelengthsHalfAPeriodApart) {
   // Two equal PSFs d apart: |cos(π ν d)| of one of them.
   const Lens lens = read_lens("edmund-54852").lens;

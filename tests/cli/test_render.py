@@ -62,8 +62,8 @@ class Render(ProgramTest):
         data = (self.folder / "r.npy").read_bytes()
         values = struct.unpack(f"<{24 * 32 * 31}f", data[-4 * 24 * 32 * 31:])
         middle = values[31 * (12 * 32 + 16):31 * (12 * 32 + 17)]
-        self.assertLess(middle[0], 0.3)   # 400 nm
-        self.assertGreater(middle[-1], 0.7)  # 700 nm
+        self.assertLess(middle[13], 0.3)  # 530 nm
+        self.assertGreater(middle[25], 0.7)  # 650 nm
 
     def test_seed_decides_and_threads_do_not(self):
         def picture(*options):

@@ -9,6 +9,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -19,11 +20,20 @@ inline InputError no_ray_passes(const Lens& lens, double field, double wavelengt
                                 lens.name, field, wavelength_nm));
 }
 
+/// Lists that are empty become the lens's own.
+inline FieldTableRequest with_own_lists(FieldTableRequest request, const Lens& lens) {
+  const FieldTableRequest own = FieldTableRequest::of(lens);
+  if (request.fields.empty()) request.field_kind = own.field_kind, request.fields = own.fields;
+  if (request.wavelengths_nm.empty()) request.wavelengths_nm = own.wavelengths_nm;
+  return request;
+}
+
 /// Rows [field][wavelength], wavelengths in parallel; `make(tracer, chief)` gives one row as an optional,
 /// empty where no ray passes. Sets row.field and row.wavelength_nm.
 /// \throws InputError naming a field at which no chief ray or no ray at all passes.
 template <class Row, class Make>
-std::vector<Row> field_rows(const Lens& lens, const FieldTableRequest& request, Make&& make) {
+std::vector<Row> field_rows(const Lens& lens, FieldTableRequest request, Make&& make) {
+  request = with_own_lists(std::move(request), lens);
   std::vector<double> objects;
   for (const double field : request.fields) objects.push_back(object_field(lens, request.field_kind, field));
   const std::size_t wavelengths = request.wavelengths_nm.size();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
@@ -38,7 +39,8 @@ void require_light(const Lens& lens, const std::vector<Row>& rows) {
 /// Fills rows [field][wavelength], wavelengths in parallel; `make(tracer, field, object_field)` gives one
 /// row.
 template <class Row, class Make>
-std::vector<Row> tabulate(const Lens& lens, const FieldTableRequest& request, Make&& make) {
+std::vector<Row> tabulate(const Lens& lens, FieldTableRequest request, Make&& make) {
+  request = with_own_lists(std::move(request), lens);
   const std::vector<double> fields = object_fields(lens, request);
   const std::size_t wavelengths = request.wavelengths_nm.size();
   std::vector<Row> rows(fields.size() * wavelengths);

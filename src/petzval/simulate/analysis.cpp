@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/analysis/best_focus.h>
+#include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ghosts.h>
 #include <petzval/lens/first_order.h>
@@ -381,9 +382,7 @@ AnalysisResult analyse(std::string_view name, const Lens& lens, const AnalysisRe
     }
     lens.validate();
     AnalysisRequest asked = request;
-    const FieldTableRequest own = FieldTableRequest::of(lens);
-    if (asked.at.fields.empty()) asked.at.field_kind = own.field_kind, asked.at.fields = own.fields;
-    if (asked.at.wavelengths_nm.empty()) asked.at.wavelengths_nm = own.wavelengths_nm;
+    asked.at = with_own_lists(std::move(asked.at), lens);
     return result_within(context, [&](const ProgressCallback&) { return each.run(lens, asked, context); });
   }
   throw InputError(fmt::format("there is no analysis \"{}\"; there are {}", name, names));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
@@ -62,10 +63,7 @@ PsfOptions common_options(const Lens& lens, const FieldTableRequest& at, const P
 PsfStack psf_stack(const Lens& lens, const FieldTableRequest& at, const PsfOptions& options,
                    const Context& context) {
   lens.validate();
-  FieldTableRequest asked = at;
-  const FieldTableRequest own = FieldTableRequest::of(lens);
-  if (asked.fields.empty()) asked.field_kind = own.field_kind, asked.fields = own.fields;
-  if (asked.wavelengths_nm.empty()) asked.wavelengths_nm = own.wavelengths_nm;
+  const FieldTableRequest asked = with_own_lists(at, lens);
   return result_within(context, [&](const ProgressCallback&) {
     const PsfOptions common = common_options(lens, asked, options);
     const std::size_t count = asked.fields.size() * asked.wavelengths_nm.size();
