@@ -48,14 +48,15 @@ SpectralImage of_array(const FloatsIn& values, const Numbers& wavelengths_nm, do
 
 using Curve = std::pair<Numbers, Numbers>;
 /// Everything but the values, for pickle.
-using State =
-    std::tuple<Numbers, double, std::string, std::string,
-               std::optional<std::tuple<std::string, double, double, double>>, std::optional<Curve>>;
+using State = std::tuple<Numbers, double, std::string, std::string,
+                         std::optional<std::tuple<std::string, double, double, double, Numbers, Numbers>>,
+                         std::optional<Curve>>;
 
 State state_of(const SpectralImage& image) {
   State state{image.wavelengths_nm(), image.pitch_um(), aperture_text(image), image.provenance, {}, {}};
   if (const auto& lens = image.lens)
-    std::get<4>(state) = {lens->name, lens->focal_length_mm, lens->f_number, lens->exit_pupil_mm};
+    std::get<4>(state) = {lens->name, lens->focal_length_mm, lens->f_number, lens->exit_pupil_mm,
+                          lens->warp, lens->vignetting};
   if (const auto& light = image.illuminant) std::get<5>(state) = {light->wavelengths_nm(), light->values()};
   return state;
 }
@@ -65,8 +66,8 @@ SpectralImage of_state(const FloatsIn& values, const State& state) {
   SpectralImage image = of_array(values, wavelengths_nm, pitch_um, aperture);
   image.provenance = provenance;
   if (lens) {
-    const auto& [name, focal_length_mm, f_number, exit_pupil_mm] = *lens;
-    image.lens = LensFacts{name, focal_length_mm, f_number, exit_pupil_mm};
+    const auto& [name, focal_length_mm, f_number, exit_pupil_mm, warp, vignetting] = *lens;
+    image.lens = LensFacts{name, focal_length_mm, f_number, exit_pupil_mm, warp, vignetting};
   }
   if (light) image.illuminant = Spectrum(light->first, light->second);
   return image;
@@ -91,6 +92,14 @@ void bind_light(nb::module_& module) {
       .def_ro("f_number", &LensFacts::f_number, "The working f-number.")
       .def_ro("exit_pupil_mm", &LensFacts::exit_pupil_mm,
               "From the sensor, negative in front of it; 0: unknown or infinite.")
+      .def_prop_ro(
+          "warp", [](const LensFacts& f) { return tuple_of(f.warp); },
+          "What undoes distortion, as in DNG's WarpRectilinear: w0 to w3 of r (w0 + w1 r^2 + ...), r = 1 in "
+          "the corners; empty: unknown.")
+      .def_prop_ro(
+          "vignetting", [](const LensFacts& f) { return tuple_of(f.vignetting); },
+          "What undoes fall-off, as in DNG's FixVignetteRadial: v0 to v4 of 1 + v0 r^2 + ...; empty: "
+          "unknown.")
       .def("__repr__", [](const LensFacts& f) {
         return fmt::format("<LensFacts '{}': {:.4g} mm f/{:.3g}>", f.name, f.focal_length_mm, f.f_number);
       });

@@ -38,7 +38,7 @@ class Note(UserWarning):
 
 
 # Parameters of the library that Python calls otherwise.
-_KEYWORDS = {"losses": "fresnel, coating or absorption", "matrix": "colours",
+_KEYWORDS = {"focus_spp": "samples_per_pixel", "losses": "fresnel, coating or absorption", "matrix": "colours",
              "set": "settings", "substitute": "substitutions", "wavelength": "wavelengths_nm"}
 
 

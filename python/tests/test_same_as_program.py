@@ -121,8 +121,8 @@ def test_rendering(program, tmp_path):
 
 
 def test_autofocus(program):
-    told = program.json("focus", "spheres", "--lens", "dgauss-50mm", "--size", "64x48")
-    ours = pz.Camera("dgauss-50mm").autofocus("spheres", size=(64, 48))
+    told = program.json("focus", "spheres", "--lens", "dgauss-50mm", "--size", "160x120")
+    ours = pz.Camera("dgauss-50mm").autofocus("spheres", size=(160, 120))
     assert ours.film_distance_mm == told["film_distance_mm"]
 
 
