@@ -165,7 +165,7 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       nb::arg("scene"), "[(place, what)] of what a three-dimensional scene has and Petzval has not.");
   camera.def(
       "autofocus", focus_on, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
-      nb::arg("zones") = Zones(), nb::arg("focus_measure") = "sml", nb::arg("focus_search") = "brent",
+      nb::arg("zones") = Zones(), nb::arg("focus_measure") = "gradient", nb::arg("focus_search") = "brent",
       nb::arg("samples_per_pixel") = 16, nb::arg("most_evaluations") = 12,
       nb::arg("from_mm").none() = nb::none(), nb::arg("to_mm").none() = nb::none(),
       nb::arg("film_diagonal_mm").none() = nb::none(), nb::arg("threads") = 0, nb::arg("seed") = 1,
