@@ -136,6 +136,7 @@ void checkerboard_section(Demo& demo, const LensDataTable& table) {
 
   ImagingOptions options;
   options.method = BlurMethod::sections;  // the paper's: sections of 16 pixels, transforms of 64 × 64
+  options.supersample = 1;                // a cell is a pixel there
   options.sections.section = 16;
   options.sections.transform = 64;
   const Formed after = form(demo, scene, table, sensor, options);
