@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/progress.h>
+#include <petzval/base/scratch_folder.h>
 #include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/report/html.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -26,35 +25,15 @@ struct HandoutCommand {
   std::string exercise, output;
 };
 
-/// A folder that goes when this goes.
-class HandoutFolder {
- public:
-  HandoutFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "petzval-handout-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw Failure("no folder can be made in " + name);
-    path_ = name;
-  }
-  ~HandoutFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  HandoutFolder(const HandoutFolder&) = delete;
-  HandoutFolder& operator=(const HandoutFolder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// The words of a command line as they run: what steps write lies in the folder.
-std::vector<std::string> words_to_run(const Exercise& exercise, std::size_t step, const HandoutFolder& folder,
+std::vector<std::string> words_to_run(const Exercise& exercise, std::size_t step, const ScratchFolder& folder,
                                       const Shared& shared) {
   std::istringstream line(command_line(exercise, step));
   std::vector<std::string> words;
   line.ignore(std::string("petzval ").size());
   for (std::string word; line >> word;) {
     for (std::size_t made = 0; made <= step; ++made)
-      if (word == output_of(exercise, made)) word = folder.file(word);
+      if (word == output_of(exercise, made)) word = folder.path() + "/" + word;
     words.push_back(word);
   }
   words.emplace_back("--quiet");
@@ -77,7 +56,7 @@ html::Block step_block(const ExerciseStep& step, const std::string& path) {
 }
 
 std::string handout_html(const Exercise& exercise, const Shared& shared) {
-  const HandoutFolder folder;
+  const ScratchFolder folder;
   ProgressBar bar(!shared.quiet);
   std::vector<html::Block> drawings, pictures;
   std::string commands;
@@ -90,7 +69,7 @@ std::string handout_html(const Exercise& exercise, const Shared& shared) {
     const ExerciseStep& step = exercise.steps[i];
     if (step.makes == ExerciseStep::Makes::lens) continue;
     (step.makes == ExerciseStep::Makes::picture ? pictures : drawings)
-        .push_back(step_block(step, folder.file(output_of(exercise, i))));
+        .push_back(step_block(step, folder.path() + "/" + output_of(exercise, i)));
   }
   html::Page page(exercise.title);
   page.one_sheet();

@@ -9,52 +9,18 @@
 #include <petzval/image/formats/tiff.h>
 #include <petzval/image/photograph.h>
 #include <tiffio.h>
-// libjpeg's header wants this one before it.
-#include <cstdio>
-
-#include <jpeglib.h>
 
 #include <cmath>
 #include <functional>
 
 #include "hostile.h"
+#include "jpeg_bytes.h"
 
 namespace petzval {
 namespace {
 
+using test::jpeg_bytes;
 using test::Scratch;
-
-/// Samples to JPEG by libjpeg itself. \param more  sets what is to be different.
-std::string jpeg_bytes(int columns, int rows, int channels, std::vector<std::uint8_t> samples,
-                       const std::function<void(jpeg_compress_struct&)>& more = {},
-                       const std::string& app1 = {}) {
-  jpeg_error_mgr error;
-  jpeg_compress_struct jpeg{};
-  jpeg.err = jpeg_std_error(&error);
-  jpeg_create_compress(&jpeg);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&jpeg, &bytes, &size);
-  jpeg.image_width = static_cast<JDIMENSION>(columns), jpeg.image_height = static_cast<JDIMENSION>(rows);
-  jpeg.input_components = channels;
-  jpeg.in_color_space = channels == 1 ? JCS_GRAYSCALE : channels == 3 ? JCS_RGB : JCS_CMYK;
-  jpeg_set_defaults(&jpeg);
-  jpeg_set_quality(&jpeg, 100, TRUE);
-  if (more) more(jpeg);
-  jpeg_start_compress(&jpeg, TRUE);
-  if (!app1.empty())
-    jpeg_write_marker(&jpeg, JPEG_APP0 + 1, reinterpret_cast<const JOCTET*>(app1.data()),
-                      static_cast<unsigned>(app1.size()));
-  for (int row = 0; row < rows; ++row) {
-    JSAMPROW line = samples.data() + row * columns * channels;
-    jpeg_write_scanlines(&jpeg, &line, 1);
-  }
-  jpeg_finish_compress(&jpeg);
-  std::string result(reinterpret_cast<const char*>(bytes), size);
-  jpeg_destroy_compress(&jpeg);
-  std::free(bytes);
-  return result;
-}
 
 /// An Exif segment with one tag, little- or big-endian.
 std::string exif(int orientation, bool big_endian) {

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <jpeglib.h>
 #include <petzval/image/formats/tiff.h>
 #include <petzval/measure/sfr/picture_planes.h>
 #include <petzval/sensor/formats/dng.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "image/hostile.h"
+#include "jpeg_bytes.h"
 #include "scratch.h"
 
 namespace petzval {
@@ -40,31 +39,9 @@ TEST(PicturePlanes, ATiffIsLinearWhereItsDescriptionSaysSo) {
 
 /// A grey ramp as another program would write it.
 std::string jpeg_of_ramp(int columns, int rows) {
-  jpeg_error_mgr error;
-  jpeg_compress_struct jpeg{};
-  jpeg.err = jpeg_std_error(&error);
-  jpeg_create_compress(&jpeg);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&jpeg, &bytes, &size);
-  jpeg.image_width = static_cast<JDIMENSION>(columns), jpeg.image_height = static_cast<JDIMENSION>(rows);
-  jpeg.input_components = 1;
-  jpeg.in_color_space = JCS_GRAYSCALE;
-  jpeg_set_defaults(&jpeg);
-  jpeg_set_quality(&jpeg, 100, TRUE);
-  jpeg_start_compress(&jpeg, TRUE);
-  for (int row = 0; row < rows; ++row) {
-    std::vector<unsigned char> codes;
-    for (int column = 0; column < columns; ++column)
-      codes.push_back(static_cast<unsigned char>(20 + 4 * column));
-    unsigned char* line = codes.data();
-    jpeg_write_scanlines(&jpeg, &line, 1);
-  }
-  jpeg_finish_compress(&jpeg);
-  std::string result(reinterpret_cast<const char*>(bytes), size);
-  std::free(bytes);
-  jpeg_destroy_compress(&jpeg);
-  return result;
+  std::vector<std::uint8_t> codes;
+  for (int i = 0; i < columns * rows; ++i) codes.push_back(static_cast<std::uint8_t>(20 + 4 * (i % columns)));
+  return test::jpeg_bytes(columns, rows, 1, codes);
 }
 
 // By the sRGB curve of IEC 61966-2-1, written here once more.

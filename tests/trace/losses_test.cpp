@@ -122,22 +122,27 @@ TEST(Losses, AirGlassCoatingLeavesCementedSurfacesBare) {
   EXPECT_NEAR(transmittance(lens, losses, tilted(0)), 1 - std::pow(0.2 / 3.2, 2), 1e-15);
 }
 
-TEST(Losses, TheSameForwardsAndBackwards) {
-  // Reciprocity: a skew ray through a real lens and the same ray back lose the same.
+/// Reciprocity: a skew ray through a real lens and the same ray back lose the same. \returns what passes.
+double passing_both_ways(const Losses& losses) {
   const Lens lens = read_lens("dgauss-50mm").lens;
   const Tracer tracer(lens, lambda_nm);
-  Losses losses;
-  losses.fresnel = losses.absorption = true;
   const LensTransmittance transmittance(lens, lambda_nm, losses);
   const Ray there{{6, -4, -5}, {0.1, 0.15, std::sqrt(1 - 0.0325)}};
   std::vector<Intersection> path, path_back;
   const Ray end = tracer.trace(there, Tracer::Clip::none, &path);
-  ASSERT_EQ(end.status, RayStatus::ok);
+  EXPECT_EQ(end.status, RayStatus::ok);
   Ray back = end;
   for (double& cosine : back.direction) cosine = -cosine;
-  ASSERT_EQ(tracer.trace_backward(back, Tracer::Clip::none, &path_back).status, RayStatus::ok);
+  EXPECT_EQ(tracer.trace_backward(back, Tracer::Clip::none, &path_back).status, RayStatus::ok);
   const double forward = transmittance.along(there, path);
   EXPECT_NEAR(transmittance.along(back, path_back, true), forward, 1e-13);
+  return forward;
+}
+
+TEST(Losses, TheSameForwardsAndBackwards) {
+  Losses losses;
+  losses.fresnel = losses.absorption = true;
+  const double forward = passing_both_ways(losses);
   EXPECT_LT(forward, 0.7) << "ten air-glass surfaces";
   EXPECT_GT(forward, 0.4);
 }
@@ -160,25 +165,15 @@ TEST(Losses, FilmsOfAPlateAreThoseOfBothPolarisations) {
 }
 
 TEST(Losses, FilmsAreTheSameForwardsAndBackwards) {
-  const Lens lens = read_lens("dgauss-50mm").lens;
-  const Tracer tracer(lens, lambda_nm);
   Losses losses;
   losses.fresnel = true;
   losses.air_glass = read_coating("quarter-half-quarter");
   losses.air_glass->layers[1].material = Material(Material::Constant{2.2});  // whose order counts
-  const LensTransmittance transmittance(lens, lambda_nm, losses);
-  const Ray there{{6, -4, -5}, {0.1, 0.15, std::sqrt(1 - 0.0325)}};
-  std::vector<Intersection> path, path_back;
-  const Ray end = tracer.trace(there, Tracer::Clip::none, &path);
-  ASSERT_EQ(end.status, RayStatus::ok);
-  Ray back = end;
-  for (double& cosine : back.direction) cosine = -cosine;
-  ASSERT_EQ(tracer.trace_backward(back, Tracer::Clip::none, &path_back).status, RayStatus::ok);
-  EXPECT_NEAR(transmittance.along(back, path_back, true), transmittance.along(there, path), 1e-13);
+  passing_both_ways(losses);
 }
 
-// What such a coating is for: a fiftieth of bare glass's reflection in the middle, and little over the
-// visible.
+// A quarter wave of 1.38 leaves 0.30 of bare glass's reflection at its wavelength, by its closed form, and
+// more towards the ends of the visible; of three layers one asks that they do better than that everywhere.
 TEST(Losses, BundledFilmsReflectLittle) {
   const Coating single = read_coating("mgf2"), triple = read_coating("quarter-half-quarter");
   const double bare = std::pow(0.52 / 2.52, 2);

@@ -40,8 +40,8 @@ struct Ghost {
 /// disc and the disc of a single point make the ghost by convolution, with the flux over the area of the
 /// larger of the two in its middle. Heights and slopes go through the unfolded lens: a surface of curvature c
 /// in index n that light meets from the front has the power −2nc, from behind 2nc. Powers are of normal
-/// incidence. (R. Kingslake, Optical System Design, 1983, ch. 6; M. Hullin et al., ACM Trans. Graph. 30
-/// (2011) 108, trace the same ways with real rays.)
+/// incidence. (M. Hullin et al., ACM Trans. Graph. 30 (2011) 108, trace the same
+/// ways with real rays.)
 /// \throws InputError for a reflectance outside 0…1, a source that is not positive, a lens without an image,
 /// and as Losses::validate().
 std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options = {});

@@ -63,22 +63,32 @@ class Launcher {
   Pencil pencil_;
 };
 
+/// Rays of the nodes inside a boundary that arrive. \param weigh  sets their weights; false leaves one out.
+template <class Weigh>
+std::vector<PupilRay> node_rays(const Launcher& launcher, const PupilBoundary& pupil, int radial_nodes,
+                                Weigh&& weigh) {
+  std::vector<PupilRay> rays;
+  for (const PupilNode& node : pupil_nodes(pupil, radial_nodes)) {
+    const Tracer::Clearance traced = launcher.trace(node.u, node.v);
+    if (!Launcher::arrived(traced)) continue;
+    PupilRay ray = launcher.at_image(traced);
+    ray.mirrored = pupil.mirrored();
+    if (weigh(node, ray)) rays.push_back(ray);
+  }
+  return rays;
+}
+
 }  // namespace
 
 std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chief,
                                  const PupilSampling& sampling) {
-  std::vector<PupilRay> rays;
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, sampling.azimuths);
-  if (!pupil) return rays;
+  if (!pupil) return {};
   const Launcher launcher(tracer, chief);
   const double nudge = opd_nudge_per_radius * *std::max_element(pupil->radius.begin(), pupil->radius.end());
-  for (const PupilNode& node : pupil_nodes(*pupil, sampling.radial_nodes)) {
-    const Tracer::Clearance traced = launcher.trace(node.u, node.v);
-    if (!Launcher::arrived(traced)) continue;
-    PupilRay ray = launcher.at_image(traced);
-    ray.mirrored = pupil->mirrored();
-    if (launcher.weigh(node, nudge, ray)) rays.push_back(ray);
-  }
+  std::vector<PupilRay> rays =
+      node_rays(launcher, *pupil, sampling.radial_nodes,
+                [&](const PupilNode& node, PupilRay& ray) { return launcher.weigh(node, nudge, ray); });
   if (rays.empty()) return rays;
   for (std::size_t i = 0; i < pupil->own(); ++i) {
     const double u = pupil->radius[i] * std::sin(pupil->azimuth(i)),
@@ -93,18 +103,13 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
 
 std::vector<PupilRay> light_rays(const FieldTracer& tracer, const ChiefRay& chief,
                                  const PupilSampling& sampling) {
-  std::vector<PupilRay> rays;
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, sampling.azimuths);
-  if (!pupil) return rays;
-  const Launcher launcher(tracer, chief);
-  for (const PupilNode& node : pupil_nodes(*pupil, sampling.radial_nodes)) {
-    const Tracer::Clearance traced = launcher.trace(node.u, node.v);
-    if (!Launcher::arrived(traced)) continue;
-    rays.push_back(launcher.at_image(traced));
-    rays.back().mirrored = pupil->mirrored();
-    rays.back().entrance_measure = node.weight;
-  }
-  return rays;
+  if (!pupil) return {};
+  return node_rays(Launcher(tracer, chief), *pupil, sampling.radial_nodes,
+                   [](const PupilNode& node, PupilRay& ray) {
+                     ray.entrance_measure = node.weight;
+                     return true;
+                   });
 }
 
 namespace {

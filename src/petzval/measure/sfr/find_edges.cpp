@@ -3,11 +3,12 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/find_edges.h>
+#include <petzval/measure/sfr/outlines.h>
+#include <petzval/measure/sfr/quiet_plane.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 namespace petzval {
@@ -17,128 +18,6 @@ namespace {
 /// What lies farther from an edge changes its levels, but not what lies between them: at this distance a
 /// PSF's tail changes by 1e-5 from one side of an edge to the other.
 constexpr double near_px = 200;
-
-double distance_to_chord(const ContourPoint& p, const ContourPoint& a, const ContourPoint& b) {
-  const double ex = b.x - a.x, ey = b.y - a.y, length = std::hypot(ex, ey);
-  if (length == 0) return std::hypot(p.x - a.x, p.y - a.y);
-  return std::abs((p.x - a.x) * ey - (p.y - a.y) * ex) / length;
-}
-
-/// Indices of the points that stay, between first and last.
-void divide(const std::vector<ContourPoint>& points, std::size_t first, std::size_t last, double tolerance,
-            std::vector<std::size_t>& kept) {
-  // Iterative, for contours of any length.
-  std::vector<std::pair<std::size_t, std::size_t>> open{{first, last}};
-  while (!open.empty()) {
-    const auto [a, b] = open.back();
-    open.pop_back();
-    double worst = 0;
-    std::size_t at = a;
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const double d = distance_to_chord(points[i], points[a], points[b]);
-      if (d > worst) worst = d, at = i;
-    }
-    if (worst <= tolerance) continue;
-    kept.push_back(at);
-    open.push_back({a, at});
-    open.push_back({at, b});
-  }
-}
-
-/// A line through the middle of a stretch of points: a point and a direction. Nothing for short stretches.
-struct Fitted {
-  ContourPoint at;
-  double ux = 0, uy = 0;
-};
-
-std::optional<Fitted> line_through(const std::vector<ContourPoint>& points, std::size_t first,
-                                   std::size_t last) {
-  constexpr std::size_t least = 16;
-  if (last < first + least) return std::nullopt;
-  const std::size_t trim = (last - first) / 6;
-  Fitted line;
-  double n = 0, xx = 0, xy = 0, yy = 0;
-  for (std::size_t i = first + trim; i <= last - trim; ++i)
-    n += 1, line.at.x += points[i].x, line.at.y += points[i].y;
-  line.at.x /= n, line.at.y /= n;
-  for (std::size_t i = first + trim; i <= last - trim; ++i) {
-    const double x = points[i].x - line.at.x, y = points[i].y - line.at.y;
-    xx += x * x, xy += x * y, yy += y * y;
-  }
-  const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
-  line.ux = std::cos(angle), line.uy = std::sin(angle);
-  return line;
-}
-
-/// The corners of a contour: where the lines through its stretches meet, since blur has rounded the contour
-/// itself.
-std::vector<ContourPoint> sharpened(const std::vector<ContourPoint>& points,
-                                    const std::vector<std::size_t>& kept, bool closed) {
-  const std::size_t sides = closed ? kept.size() : kept.size() - 1;
-  std::vector<std::optional<Fitted>> lines;
-  for (std::size_t s = 0; s < sides; ++s)
-    lines.push_back(line_through(points, kept[s], s + 1 < kept.size() ? kept[s + 1] : points.size() - 1));
-  // Blur cuts corners: a short stretch between two straight ones stands for the corner where these meet.
-  const auto meeting_of = [&](std::size_t before, std::size_t after,
-                              const ContourPoint& near) -> std::optional<ContourPoint> {
-    const std::optional<Fitted>&a = lines[before % sides], &b = lines[after % sides];
-    if (!a || !b) return std::nullopt;
-    const double turn = a->ux * b->uy - a->uy * b->ux;
-    if (std::abs(turn) < 0.25) return std::nullopt;
-    const double t = ((b->at.x - a->at.x) * b->uy - (b->at.y - a->at.y) * b->ux) / turn;
-    const ContourPoint meeting{a->at.x + t * a->ux, a->at.y + t * a->uy};
-    constexpr double farthest = 40;  // lines that meet farther away than any blur's rounding make no corner
-    if (std::hypot(meeting.x - near.x, meeting.y - near.y) > farthest) return std::nullopt;
-    return meeting;
-  };
-  std::vector<ContourPoint> corners;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const ContourPoint corner = points[kept[i]];
-    const bool inner = closed || (i > 0 && i + 1 < kept.size());
-    const std::size_t before = i + sides - 1;  // the side that ends here; side i begins here
-    if (inner && i < sides && !lines[i]) {
-      // This corner and the next are one, if the sides beyond them meet; the next then falls to the branch
-      // below.
-      if (const auto meeting = meeting_of(before, i + 1, corner);
-          meeting && (closed || i + 2 < kept.size())) {
-        corners.push_back(*meeting);
-        continue;
-      }
-    }
-    if (inner && !lines[before % sides] && meeting_of(before + sides - 1, i, corner) && (closed || i > 1))
-      continue;
-    const auto meeting = inner ? meeting_of(before, i, corner) : std::nullopt;
-    corners.push_back(meeting.value_or(corner));
-  }
-  return corners;
-}
-
-std::vector<ContourPoint> straightened(const LevelContour& contour, double tolerance) {
-  std::vector<ContourPoint> points = contour.points;
-  std::vector<std::size_t> kept;
-  if (contour.closed) {
-    // Start at a corner: the point farthest from the first, and from there the farthest again.
-    const auto farthest = [&](std::size_t from) {
-      std::size_t best = 0;
-      for (std::size_t i = 0; i < points.size(); ++i)
-        if (std::hypot(points[i].x - points[from].x, points[i].y - points[from].y) >
-            std::hypot(points[best].x - points[from].x, points[best].y - points[from].y))
-          best = i;
-      return best;
-    };
-    std::rotate(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(farthest(0)), points.end());
-    const std::size_t opposite = farthest(0);
-    points.push_back(points.front());
-    kept = {0, opposite};
-    divide(points, 0, opposite, tolerance, kept);
-    divide(points, opposite, points.size() - 1, tolerance, kept);
-  } else {
-    kept = {0, points.size() - 1};
-    divide(points, 0, points.size() - 1, tolerance, kept);
-  }
-  std::sort(kept.begin(), kept.end());
-  return sharpened(points, kept, contour.closed);
-}
 
 struct Axis {
   ContourPoint middle;
@@ -203,16 +82,6 @@ void choose_part(FoundEdge& edge, double greatest_reach) {
   edge.reach_dark_px = best.dark, edge.reach_bright_px = best.bright;
 }
 
-/// The outlines of a target, as corners joined by straight lines.
-struct Outline {
-  std::vector<ContourPoint> corners;
-  bool closed = false;
-  std::size_t sides() const { return corners.size() - (closed ? 0 : 1); }
-  OutlineSide side(std::size_t s) const {
-    return {corners[s % corners.size()], corners[(s + 1) % corners.size()]};
-  }
-};
-
 /// Sides of all outlines by where they lie, so that what is near a place is found without looking at all.
 class SideGrid {
  public:
@@ -252,86 +121,6 @@ class SideGrid {
   }
   std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, std::size_t>>> cells_;
 };
-
-double turn_between(const OutlineSide& a, const OutlineSide& b) {
-  const double ax = a.to.x - a.from.x, ay = a.to.y - a.from.y, bx = b.to.x - b.from.x, by = b.to.y - b.from.y;
-  return std::atan2(ax * by - ay * bx, ax * bx + ay * by);
-}
-
-/// Sides first … first + count − 1 of an outline, which go on into each other without a corner.
-struct Stretch {
-  std::size_t first = 0, count = 1;
-};
-
-std::vector<Stretch> stretches_of(const Outline& outline) {
-  constexpr double smooth = 8 * pi / 180, most = 25 * pi / 180;
-  const std::size_t sides = outline.sides();
-  std::size_t start = 0;  // at a corner, if a closed outline has one
-  if (outline.closed)
-    while (start < sides &&
-           std::abs(turn_between(outline.side(start + sides - 1), outline.side(start))) < smooth)
-      ++start;
-  if (start == sides) start = 0;
-  std::vector<Stretch> stretches;
-  double turned = 0;
-  for (std::size_t i = 0; i < sides; ++i) {
-    const std::size_t s = (start + i) % sides;
-    const double turn = i == 0 ? pi : turn_between(outline.side(s + sides - 1), outline.side(s));
-    turned += turn;
-    if (i > 0 && std::abs(turn) < smooth && std::abs(turned) < most) {
-      ++stretches.back().count;
-    } else {
-      stretches.push_back({s, 1});
-      turned = 0;
-    }
-  }
-  return stretches;
-}
-
-/// Standard deviation of the noise, from how far pixels lie from the mean of their neighbours to the left and
-/// right.
-double noise_of(const Plane& plane) {
-  std::vector<double> rest;
-  const std::size_t most = 100'000, pixels = plane.values.size(), step = 1 + pixels / most;
-  for (std::size_t i = 1; i + 1 < pixels; i += step)
-    rest.push_back(std::abs(plane.values[i] - 0.5 * (plane.values[i - 1] + plane.values[i + 1])));
-  if (rest.empty()) return 0;
-  const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
-  std::nth_element(rest.begin(), middle, rest.end());
-  constexpr double median_of_normal = 0.6745, of_difference = 1.2247;  // √(1 + 2/4)
-  return *middle / (median_of_normal * of_difference);
-}
-
-/// Every pixel the mean of itself and its neighbours, by weights 1 2 1 along both axes.
-Plane smoothed(const Plane& plane) {
-  Plane result = plane;
-  const auto columns = static_cast<std::size_t>(plane.columns), rows = static_cast<std::size_t>(plane.rows);
-  for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t c = 1; c + 1 < columns; ++c) {
-      const double* at = plane.values.data() + r * columns + c;
-      result.values[r * columns + c] = 0.25 * (at[-1] + 2 * at[0] + at[1]);
-    }
-  std::vector<double> above(result.values.begin(),
-                            result.values.begin() + static_cast<std::ptrdiff_t>(columns));
-  for (std::size_t r = 1; r + 1 < rows; ++r)
-    for (std::size_t c = 0; c < columns; ++c) {
-      double& here = result.values[r * columns + c];
-      const double before = here;
-      here = 0.25 * (above[c] + 2 * here + result.values[(r + 1) * columns + c]);
-      above[c] = before;
-    }
-  return result;
-}
-
-/// What contours are drawn through: with noise of a hundredth of the contrast and more, smoothed.
-Plane quiet(const Plane& plane) {
-  const auto [low, high] = std::minmax_element(plane.values.begin(), plane.values.end());
-  const double share = noise_of(plane) / std::max(1e-300, *high - *low);
-  const int passes = share < 0.005 ? 0 : share < 0.02 ? 1 : share < 0.05 ? 3 : 6;
-  Plane result = plane;
-  for (int i = 0; i < passes; ++i) result = smoothed(result);
-  return result;
-}
 
 /// ∫ (x·n)/r³ ds along a straight line seen from p, n to the left of its way in the picture (the dark side).
 double flux_through(const ContourPoint& p, const ContourPoint& a, const ContourPoint& b) {

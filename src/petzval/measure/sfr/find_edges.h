@@ -4,16 +4,12 @@
 
 #include <petzval/measure/sfr/edge_line.h>
 #include <petzval/measure/sfr/level_contours.h>
+#include <petzval/measure/sfr/outlines.h>
 
 #include <memory>
 #include <vector>
 
 namespace petzval {
-
-/// A straight piece of an outline, the bright side to the same hand all along.
-struct OutlineSide {
-  ContourPoint from, to;
-};
 
 /// A stretch of an outline without corners, straight or bent a little.
 struct FoundEdge {

@@ -2,12 +2,11 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/measure/sfr/edge_alignment.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/measure/sfr/sample_comb.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,50 +15,6 @@ namespace petzval {
 
 namespace {
 
-/// Samples by distance from a line; those beyond the range in which every distance is well covered are left
-/// out.
-struct Profile {
-  std::vector<EdgePoint> points;
-  std::vector<std::size_t> sample;                     ///< of each point
-  std::vector<double> variation;                       ///< what does not belong to the profile at each point
-  std::vector<EdgeSpreadModel::ValueAndSlope> fitted;  ///< of the profile at each point
-  double low = 0, high = 0;
-};
-
-/// From the edge outwards as long as a pixel's width of distances holds a quarter of what it holds at the
-/// edge.
-Profile profile_along(const std::vector<EdgeSample>& samples, const EdgeLine& line) {
-  std::vector<EdgeFrame::Place> places;
-  places.reserve(samples.size());
-  double reach = 0;
-  const EdgeFrame frame(line);
-  for (const EdgeSample& s : samples) {
-    places.push_back(frame.at(s.x, s.y));
-    reach = std::max(reach, std::abs(places.back().distance));
-  }
-  const int half = static_cast<int>(reach / 2) + 1;
-  std::vector<int> count(2 * static_cast<std::size_t>(half) + 1);  // of cells two pixels wide
-  const auto cell = [&](double d) {
-    return static_cast<std::size_t>(half + static_cast<int>(std::lround(d / 2)));
-  };
-  for (const EdgeFrame::Place& place : places) ++count[cell(place.distance)];
-  const auto middle = static_cast<std::size_t>(half);
-  const int enough = std::max(4, count[middle] / 4);
-  std::size_t first = middle, last = middle;
-  while (first > 0 && count[first - 1] >= enough) --first;
-  while (last + 1 < count.size() && count[last + 1] >= enough) ++last;
-  Profile profile;
-  profile.low = 2 * (static_cast<double>(first) - half) - 1;
-  profile.high = 2 * (static_cast<double>(last) - half) + 1;
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    if (places[i].distance >= profile.low && places[i].distance <= profile.high) {
-      profile.points.push_back({places[i].distance, samples[i].value, places[i].along, 0});
-      profile.sample.push_back(i);
-    }
-  profile.variation.assign(profile.points.size(), 0.0);
-  return profile;
-}
-
 /// Variance of the samples about a profile, as a function of the value: one near each level, linear between.
 struct Noise {
   double dark = 0, bright = 0;  ///< variances
@@ -67,7 +22,7 @@ struct Noise {
 };
 
 /// \param unknowns  of the profile, that the data settle.
-Noise noise_about(const Profile& profile, const EdgeSpreadModel& model, double unknowns) {
+Noise noise_about(const EdgeProfile& profile, const EdgeSpreadModel& model, double unknowns) {
   double sum[2] = {0, 0}, weight[2] = {0, 0};
   for (std::size_t i = 0; i < profile.points.size(); ++i) {
     const double expected = profile.fitted[i].value;
@@ -83,74 +38,8 @@ Noise noise_about(const Profile& profile, const EdgeSpreadModel& model, double u
           (sum[0] + sum[1]) / n / freedom};
 }
 
-/// Takes the logistic profile of the guess for the fitted one.
-void fit_logistic(Profile& profile, const EdgeGuess& guess) {
-  const double step = guess.bright - guess.dark;
-  profile.fitted.clear();
-  for (const EdgePoint& point : profile.points) {
-    const double share = 1 / (1 + std::exp(-point.distance / guess.scale_px));
-    profile.fitted.push_back({guess.dark + step * share, step / guess.scale_px * share * (1 - share)});
-  }
-}
-
-/// What a Gauss-Newton step would do to direction and bends.
-struct Alignment {
-  static constexpr int most = 6;
-  int order = 1;
-  double change[most] = {};  ///< of bend[k − 1] for k = 1 … order; 0 is an offset, left to the profile
-  double significance[most] = {};  ///< over its standard deviation
-};
-
-/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`. \param noise  standard deviation.
-Alignment alignment(const Profile& profile, int order, double reach_px, double noise) {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, Alignment::most, Alignment::most>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, Alignment::most, 1>;
-  const Eigen::Index n = order + 1;
-  Matrix normal = Matrix::Zero(n, n);
-  Vector right = Vector::Zero(n), row(n);
-  for (std::size_t i = 0; i < profile.points.size(); ++i) {
-    const EdgePoint& point = profile.points[i];
-    if (std::abs(point.distance) > reach_px) continue;
-    const EdgeSpreadModel::ValueAndSlope& at = profile.fitted[i];
-    double power = -at.slope;
-    for (Eigen::Index k = 0; k < n; ++k, power *= point.along) row[k] = power;
-    normal.noalias() += row * row.transpose();
-    right += row * (point.value - profile.variation[i] - at.value);
-  }
-  normal.diagonal() *= 1 + 1e-12;
-  const Eigen::LDLT<Matrix> ldlt(normal);
-  const Vector change = ldlt.solve(right);
-  if (!change.allFinite()) throw InputError("the edge is too short to tell its direction");
-  Alignment result;
-  result.order = order;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Vector unit = ldlt.solve(Vector::Unit(n, k));
-    result.change[k] = change[k];
-    result.significance[k] =
-        std::abs(change[k]) / std::max(1e-300, noise * std::sqrt(std::max(0.0, unit[k])));
-  }
-  return result;
-}
-
-/// \returns the largest shift of the line anywhere [pixels].
-double align(EdgeLine& line, const Alignment& alignment) {
-  double shift = 0;
-  for (int k = 1; k <= alignment.order; ++k) {
-    line.bend[static_cast<std::size_t>(k - 1)] += alignment.change[k];
-    shift += std::abs(alignment.change[k]);
-  }
-  return shift;
-}
-
-/// A straight bend belongs to the direction, so that distances are exact.
-void turn_by_bend(EdgeLine& line) {
-  if (line.bend.size() != 1) return;
-  line.normal_rad -= std::atan(line.bend[0] / line.half_length);
-  line.bend[0] = 0;
-}
-
-void refuse_clipped(const Profile& profile, const std::vector<EdgeSample>& samples, const SfrOptions& options,
-                    double rise_px) {
+void refuse_clipped(const EdgeProfile& profile, const std::vector<EdgeSample>& samples,
+                    const SfrOptions& options, double rise_px) {
   // A level that is reached exactly within one rise of the edge, before a profile can have come to rest.
   for (const bool high : {false, true}) {
     const std::optional<double> clip = high ? options.clip_high : options.clip_low;
@@ -252,7 +141,7 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model,
   }
 }
 
-void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const Profile& profile) {
+void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const EdgeProfile& profile) {
   constexpr double spacing = 0.125;
   const double low = std::ceil(profile.low / spacing) * spacing;
   double least = 0, most = 1;
@@ -363,7 +252,7 @@ class EdgeFit {
   }
 
   const EdgeLine& line() const { return line_; }
-  const Profile& profile() const { return profile_; }
+  const EdgeProfile& profile() const { return profile_; }
   const EdgeSpreadModel& model() const { return *model_; }
   double unknowns() const { return unknowns_; }
   double comb_px() const { return comb_px_; }
@@ -417,7 +306,9 @@ class EdgeFit {
     noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
   }
 
-  Alignment alignment_of(int order) const { return alignment(profile_, order, model_->core_px(), noise_); }
+  EdgeAlignment alignment_of(int order) const {
+    return alignment(profile_, order, model_->core_px(), noise_);
+  }
 
   /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
   /// scatters.
@@ -428,7 +319,7 @@ class EdgeFit {
     const double reach = 6 * guess_.scale_px + 1;
     constexpr int rounds = 12;
     for (int round = 0; round < rounds; ++round) {
-      Profile profile = profile_along(samples_, bent);
+      EdgeProfile profile = profile_along(samples_, bent);
       fit_logistic(profile, guess_);
       const double shift = align(bent, alignment(profile, static_cast<int>(bent.bend.size()), reach, 1));
       if (shift < 1e-3) break;
@@ -458,7 +349,7 @@ class EdgeFit {
 
   void bend_by_evidence() {
     if (line_.bend.size() > 1) return;  // it is bent already
-    const Alignment bends = alignment_of(3);
+    const EdgeAlignment bends = alignment_of(3);
     const auto shown = [&](int k) {
       return bends.significance[k] > significant && std::abs(bends.change[k]) > least_bend_px;
     };
@@ -482,7 +373,7 @@ class EdgeFit {
   const std::vector<EdgeSample>& samples_;
   const EdgeGuess& guess_;
   EdgeLine line_;
-  Profile profile_;
+  EdgeProfile profile_;
   std::optional<EdgeSpreadModel> model_;
   std::vector<double> missing_;
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
@@ -501,7 +392,7 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   EdgeFit fit(samples, guess, options);
   fit.run(options);
   const EdgeSpreadModel& model = fit.model();
-  const Profile& profile = fit.profile();
+  const EdgeProfile& profile = fit.profile();
 
   EdgeMeasurement result;
   result.line = fit.line();

@@ -58,16 +58,15 @@ class LinearDngWriter {
   }
 
   void set_camera() {
-    const std::uint8_t version[] = {1, 4, 0, 0}, backward[] = {1, 1, 0, 0};
-    set(TIFFTAG_DNGVERSION, version);
+    const std::uint8_t written_for[] = {1, 4, 0, 0}, backward[] = {1, 1, 0, 0};
+    set(TIFFTAG_DNGVERSION, written_for);
     set(TIFFTAG_DNGBACKWARDVERSION, backward);
     set(TIFFTAG_MAKE, "Petzval");
     set(TIFFTAG_MODEL, picture_.model.c_str());
     set(TIFFTAG_UNIQUECAMERAMODEL, ("Petzval " + picture_.model).c_str());
-    set(TIFFTAG_SOFTWARE, fmt::format("petzval {}", version_text()).c_str());
+    set(TIFFTAG_SOFTWARE, fmt::format("petzval {}", version()).c_str());
     if (!picture_.provenance.empty()) set(TIFFTAG_IMAGEDESCRIPTION, picture_.provenance.c_str());
   }
-  static std::string version_text() { return petzval::version(); }
 
   void set_levels_and_colour() {
     const std::vector<float> neutral(primaries, 1);
