@@ -42,7 +42,7 @@ struct Ghost {
 /// in index n that light meets from the front has the power −2nc, from behind 2nc. Powers are of normal
 /// incidence. (M. Hullin et al., ACM Trans. Graph. 30 (2011) 108, trace the same
 /// ways with real rays.)
-/// \throws InputError for a reflectance outside 0…1, a source that is not positive, a lens without an image,
+/// \throws InputError for a reflectance outside 0…1, a source that is not positive,
 /// and as Losses::validate().
 std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options = {});
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
 #include <petzval/imaging/lens_corrections.h>
 
 #include <Eigen/Dense>
@@ -117,7 +118,7 @@ void add_corrections(LensFacts& facts, const LensDataTable& table, const SensorG
   const std::vector<FieldPoint> points = field_points(table, corner_mm);
   if (points.empty()) return;
   constexpr double pixels = 0.2;
-  facts.warp = warp_of(points, pixels * frame.pitch_um * 1e-3 / corner_mm);
+  facts.warp = warp_of(points, pixels * frame.pitch_um * mm_per_um / corner_mm);
   facts.vignetting = vignetting_of(points);
 }
 
