@@ -28,7 +28,9 @@ void scale(const ScaleCommand& options, const Shared& shared) {
     throw InputError("lens scale needs either --factor or --efl");
   const Lens lens = options.lens.read(shared);
   const double efl_mm = std::abs(first_order(lens).efl_mm);
-  const Lens scaled = scaled_lens(lens, options.factor ? *options.factor : *options.efl_mm / efl_mm);
+  const double factor = options.factor ? *options.factor : *options.efl_mm / efl_mm;
+  Lens scaled = scaled_lens(lens, factor);
+  scaled.name = fmt::format("{}, scaled by {:.4g}", lens.name, factor);
   for (const std::string& line : write_lens(scaled, options.output)) note(shared, line);
   if (shared.quiet) return;
   fmt::print("{}: focal length {:.6g} mm, was {:.6g} mm\n", options.output, first_order(scaled).efl_mm,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens trace: explicit rays from a CSV file.
 #include <fmt/format.h>
+#include <petzval/analysis/ray_steps.h>
 #include <petzval/base/error.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/base/whole_file.h>
@@ -9,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -119,6 +121,7 @@ struct TracedRay {
   Ray ray;
   double wavelength_nm;
   std::optional<double> transmittance;  ///< with losses, of a ray that arrived
+  std::optional<BlockedRay> end;        ///< of one that did not
 
   bool arrived() const { return ray.status == RayStatus::ok; }
 };
@@ -126,21 +129,31 @@ struct TracedRay {
 TracedRay traced(const RayLine& line, const Prepared& prepared, Tracer::Clip clip, bool with_losses) {
   std::vector<Intersection> path;
   const Ray ray = prepared.tracer.trace(line.ray, clip, with_losses ? &path : nullptr);
-  TracedRay result{ray, line.wavelength_nm, {}};
+  TracedRay result{ray, line.wavelength_nm, {}, {}};
+  if (!result.arrived()) result.end = blocked(prepared.tracer, line.ray, clip);
   if (with_losses && result.arrived()) result.transmittance = prepared.transmittance.along(line.ray, path);
   return result;
+}
+
+/// By how much an aperture stops it; NaN for one that misses a surface or is totally reflected.
+double beyond_mm(const BlockedRay& end) {
+  return end.why == RayStatus::vignetted ? end.beyond_mm() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string beyond_text(const BlockedRay& end) {
+  return std::isnan(beyond_mm(end)) ? "nan" : fmt::format("{:.6g}", beyond_mm(end));
 }
 
 std::string csv_line(const TracedRay& traced, bool with_losses) {
   const Ray& ray = traced.ray;
   if (!traced.arrived())
-    return fmt::format("{},nan,nan,nan,nan,nan,nan,nan{}\n", to_string(ray.status),
-                       with_losses ? ",nan" : "");
+    return fmt::format("{},nan,nan,nan,nan,nan,nan,nan{},{},{}\n", to_string(ray.status),
+                       with_losses ? ",nan" : "", traced.end->surface, beyond_text(*traced.end));
   std::string text = fmt::format("ok,{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}",
                                  ray.point_mm[0], ray.point_mm[1], ray.point_mm[2], ray.direction[0],
                                  ray.direction[1], ray.direction[2], ray.opl_mm);
   if (traced.transmittance) text += fmt::format(",{:.17g}", *traced.transmittance);
-  return text + "\n";
+  return text + ",,\n";
 }
 
 /// Numbers of a ray that did not arrive are null.
@@ -153,6 +166,10 @@ nlohmann::ordered_json json_row(const TracedRay& traced, bool with_losses) {
                              {"M", number(ray.direction[1])},   {"N", number(ray.direction[2])},
                              {"opl_mm", number(ray.opl_mm)}};
   if (with_losses) row["transmittance"] = number(traced.transmittance.value_or(0));
+  if (traced.end) {
+    row["ends_at_surface"] = traced.end->surface;
+    row["beyond_aperture_mm"] = number_or_null(beyond_mm(*traced.end));
+  }
   return row;
 }
 
@@ -162,7 +179,8 @@ void trace(const TraceCommand& options, const Shared& shared) {
   const Losses losses = options.losses.losses(lens, shared);
   std::map<double, Prepared> prepared;
   std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm";
-  csv += losses.any() ? ",transmittance\n" : "\n";
+  csv += losses.any() ? ",transmittance" : "";
+  csv += ",ends_at_surface,beyond_aperture_mm\n";
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const RayLine& line : read_rays(options.rays)) {
     const double nm = line.wavelength_nm;

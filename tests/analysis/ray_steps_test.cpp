@@ -50,6 +50,38 @@ TEST_P(GoldenSteps, ObeySnellsLawInThePlaneOfIncidence) {
   EXPECT_TRUE(ray_steps(tracer, chief, 0, 1.2).empty());
 }
 
+TEST_P(GoldenSteps, RunBackwardsOnTheSameWay) {
+  FieldTracer tracer(lens, lens.reference_wavelength_nm);
+  const ChiefRay chief = *tracer.chief_ray(lens.fields.values[1]);
+  const std::vector<RayStep> chief_forth = ray_steps(tracer, chief, 0, 0);
+  const std::vector<RayStep> back =
+      ray_steps_from_film(tracer.tracer(), chief_forth.back().point_mm[1], 0, 0);
+  ASSERT_EQ(back.size() + 1, chief_forth.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    const RayStep &here = back[i], &there = chief_forth[back.size() - 1 - i];
+    EXPECT_EQ(here.surface, there.surface);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(here.point_mm[k], there.point_mm[k], 1e-7);  // the aims at the stop
+      EXPECT_NEAR(here.direction_after[k], -there.direction_before[k], 1e-8);
+    }
+    EXPECT_NEAR(here.incidence_deg, there.refraction_deg, 1e-5);
+  }
+}
+
+TEST_P(GoldenSteps, SayWhereARayEnds) {
+  const Tracer tracer(lens, lens.reference_wavelength_nm);
+  const double rim = lens.surfaces[0].semi_diameter_mm.value_or(0);
+  if (rim == 0) GTEST_SKIP() << "its first surface has no rim";
+  // Along the axis, a millimetre beyond the rim of the first surface.
+  const auto end = blocked(tracer, {{0, rim + 1, -5}, {0, 0, 1}});
+  ASSERT_TRUE(end);
+  EXPECT_EQ(end->surface, 0);
+  EXPECT_NEAR(end->radius_mm, rim + 1, 1e-12);
+  EXPECT_NEAR(end->beyond_mm(), 1, 1e-6);  // rims are a rounding wider
+  EXPECT_NE(end->text().find("surfaces[0]"), std::string::npos);
+  EXPECT_FALSE(blocked(tracer, {{0, 0, -5}, {0, 0, 1}}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, GoldenSteps, golden_lenses());
 
 }  // namespace

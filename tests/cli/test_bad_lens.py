@@ -160,7 +160,7 @@ class BadTrace(ProgramTest):
         self.write("rays.csv", self.HEADER + "0,0,-5,0,0,1,587.56\n0,7,-5,0,0,1,587.56\n0,100,-5,0,0,1,587.56\n")
         self.assert_succeeds("lens", "trace", "singlet.json", "--rays", "rays.csv", "-o", "out.csv")
         rows = (self.folder / "out.csv").read_text().splitlines()
-        self.assertEqual(rows[0], "status,x_mm,y_mm,z_mm,L,M,N,opl_mm")
+        self.assertEqual(rows[0], "status,x_mm,y_mm,z_mm,L,M,N,opl_mm,ends_at_surface,beyond_aperture_mm")
         self.assertEqual([row.split(",")[0] for row in rows[1:]], ["ok", "vignetted", "vignetted"])
         self.assert_succeeds("lens", "trace", "singlet.json", "--rays", "rays.csv", "-o", "out.csv", "--ignore-apertures")
         rows = (self.folder / "out.csv").read_text().splitlines()

@@ -25,6 +25,9 @@ MeridionalPath path_of(const Tracer& tracer, const Ray& start, double lead_mm, d
   const double z = std::max(-lead_mm, object_z_mm);
   if (start.direction[2] > 0 && z < first[2])
     path.push_back({z, first[1] + (z - first[2]) * start.direction[1] / start.direction[2]});
+  else if (!(start.direction[2] > 0))  // from the side or from behind
+    path.push_back(
+        {first[2] - 2 * lead_mm * start.direction[2], first[1] - 2 * lead_mm * start.direction[1]});
   for (const Intersection& hit : hits) path.push_back({hit.point_mm[2], hit.point_mm[1]});
   return path;
 }

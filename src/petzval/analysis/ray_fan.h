@@ -13,7 +13,8 @@ namespace petzval {
 using MeridionalPath = std::vector<std::array<double, 2>>;
 
 /// `count` rays of a field across its vignetted pupil in the y-z plane, from rim to rim (one: the chief ray),
-/// each beginning `lead_mm` in front of vertex 1 (or at a nearer object). Empty where no ray passes.
+/// each beginning `lead_mm` in front of vertex 1 (or at a nearer object; light from the side or from behind
+/// twice as far from the lens). Empty where no ray passes.
 std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_field, int count,
                                            double lead_mm);
 

@@ -5,6 +5,8 @@
 #include <petzval/analysis/stop_aim.h>
 
 #include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace petzval {
@@ -25,5 +27,30 @@ struct RayStep {
 /// aperture stops it.
 std::vector<RayStep> ray_steps(const FieldTracer& tracer, const ChiefRay& chief, double stop_x,
                                double stop_y);
+
+/// The ray from a point of the film at this height (on +y as the lens images it) backwards through a point of
+/// the stop, whatever apertures there are: surfaces from the last to the first. Empty where the glass brings
+/// no ray there.
+std::vector<RayStep> ray_steps_from_film(const Tracer& tracer, double height_mm, double stop_x,
+                                         double stop_y);
+
+/// Where a ray ends.
+struct BlockedRay {
+  RayStatus why = RayStatus::ok;
+  int surface = -1;
+  /// Of a ray that an aperture stops: where it crosses the surface, from the axis, and where that ends.
+  double radius_mm = 0, clear_radius_mm = 0;
+
+  double beyond_mm() const { return radius_mm - clear_radius_mm; }
+  /// "ends at surfaces[3], 12.3 mm from the axis, 2.1 mm beyond its clear aperture".
+  std::string text() const;
+};
+/// Nothing for a ray that reaches the image. \param ray  in object space.
+std::optional<BlockedRay> blocked(const Tracer& tracer, const Ray& ray,
+                                  Tracer::Clip clip = Tracer::Clip::apertures);
+/// The same for the ray of a field through a point of the stop; nothing also for one that the glass does not
+/// bring there.
+std::optional<BlockedRay> blocked(const FieldTracer& tracer, double object_field, double stop_x,
+                                  double stop_y);
 
 }  // namespace petzval

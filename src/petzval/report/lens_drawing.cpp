@@ -257,10 +257,21 @@ void draw_scale_bar(XmlWriter& xml, const View& view) {
            short_number(length) + " mm");
 }
 
-void draw_title_and_legend(XmlWriter& xml, const LensDrawingOptions& options) {
+/// A long title is written smaller.
+double title_size_px(const std::string& title, double width_px) {
+  constexpr double usual = 15, smallest = 8, width_of_letter = 0.58, side_px = 24;
+  const double letters = static_cast<double>(character_count(title));
+  return std::clamp((width_px - side_px) / (width_of_letter * letters), smallest, usual);
+}
+
+void draw_title_and_legend(XmlWriter& xml, const LensDrawingOptions& options, double width_px) {
   if (!options.title.empty())
     xml.text("text",
-             {{"class", "pz-ink"}, {"x", 12.0}, {"y", 24.0}, {"font-size", 15.0}, {"font-weight", "600"}},
+             {{"class", "pz-ink"},
+              {"x", 12.0},
+              {"y", 24.0},
+              {"font-size", title_size_px(options.title, width_px)},
+              {"font-weight", "600"}},
              options.title);
   double x = 12;
   const double y = options.title.empty() ? 18 : 46;
@@ -312,7 +323,7 @@ std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
   XmlWriter xml;
   open_svg(xml, view.width_px, view.top_px + view.height_px + scale_bar_px,
            "Layout of " + (lens.name.empty() ? "a lens" : lens.name));
-  draw_title_and_legend(xml, options);
+  draw_title_and_legend(xml, options, view.width_px);
   if (options.surface_numbers) draw_surface_numbers(xml, scene, view, rows);
   xml.open(
       "svg",

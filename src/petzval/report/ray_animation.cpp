@@ -77,7 +77,8 @@ Table ray_steps_table(const std::vector<RayStep>& steps) {
               {}};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const RayStep& step = steps[i];
-    const std::string name = i + 1 == steps.size() ? "image" : fmt::format("{}", step.surface);
+    const bool image = i + 1 == steps.size() && i > 0 && step.surface > steps[i - 1].surface;
+    const std::string name = image ? "image" : fmt::format("{}", step.surface);
     table.rows.push_back({name, step.point_mm[0], step.point_mm[1], step.point_mm[2], step.normal[0],
                           step.normal[1], step.normal[2], step.index_before, step.index_after,
                           step.incidence_deg, step.refraction_deg, step.direction_after[0],
