@@ -63,6 +63,11 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     ExitPupilRegions regions = find_regions(lens);
     if (options.losses.any()) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
     if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_ = std::move(regions);
+    if (regions_ && !options.diffraction && !options.lamps.empty())
+      guide_ =
+          LampGuide(options.lamps, spectrum_ends(),
+                    {options.scene_units_per_mm, options.origin_at_front ? 0 : tracers_.front().image_z_mm()},
+                    film, options.margin_pixels * film.pitch_um * mm_per_um, *regions_);
   }
 
   const Surface& last = lens.surfaces.back();
@@ -77,11 +82,15 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   }
 }
 
+std::vector<Tracer> LensCamera::spectrum_ends() const {
+  if (!disperses_) return {tracers_.front()};
+  return {tracers_[tracers_.size() / 2], tracers_.front(), tracers_.back()};
+}
+
 /// Of the round stop, whatever its blades: regions depend on the film radius alone. The pupils of the ends
 /// and the middle of the spectrum hold those between.
 ExitPupilRegions LensCamera::find_regions(const Lens& lens) const {
-  std::vector<Tracer> ends{tracers_.front()};
-  if (disperses_) ends = {tracers_.front(), tracers_[tracers_.size() / 2], tracers_.back()};
+  const std::vector<Tracer> ends = spectrum_ends();
   const double corner_mm =
       film_.half_diagonal_mm() + std::sqrt(2) * options_.margin_pixels * film_.pitch_um * mm_per_um;
   ExitPupilRegions regions(ends, corner_mm * corner_margin);
@@ -95,7 +104,23 @@ std::size_t LensCamera::band(int group, int lane) const {
   return disperses_ ? static_cast<std::size_t>(std::max(0, groups_.band(group, lane))) : 0;
 }
 
+LensCamera::Start LensCamera::guided_start(double x_mm, double y_mm, double u, double v) const {
+  LampGuide::Direction direction;
+  if (u < LampGuide::share) {
+    direction = guide_.sample(x_mm, y_mm, u / LampGuide::share, v);
+  } else {
+    const auto sample = regions_->sample(x_mm, y_mm, (u - LampGuide::share) / (1 - LampGuide::share), v);
+    if (!sample) return {};
+    direction = {sample->alpha, sample->beta};
+  }
+  const auto [alpha, beta] = direction;
+  const double density = LampGuide::share * guide_.density_per_sr(x_mm, y_mm, alpha, beta) +
+                         (1 - LampGuide::share) * regions_->density_per_sr(x_mm, y_mm, alpha, beta);
+  return {alpha, beta, density > 0 ? 1 / density : 0};
+}
+
 LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v) const {
+  if (regions_ && guide_.concerns(x_mm, y_mm)) return guided_start(x_mm, y_mm, u, v);
   if (regions_) {
     const std::optional<ExitPupilRegions::Sample> sample = regions_->sample(x_mm, y_mm, u, v);
     return sample ? Start{sample->alpha, sample->beta, sample->area_sr} : Start{};
@@ -108,7 +133,18 @@ LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v
 }
 
 void LensCamera::densities(const PupilDirections& rays, float* per_sr) const {
-  if (regions_) return regions_->densities_per_sr(rays, per_sr);
+  if (regions_) {
+    regions_->densities_per_sr(rays, per_sr);
+    for (std::size_t i = 0; i < rays.count; ++i) {
+      const auto x = static_cast<double>(rays.x_mm[i]), y = static_cast<double>(rays.y_mm[i]);
+      if (!guide_.concerns(x, y)) continue;
+      const double guided =
+          guide_.density_per_sr(x, y, static_cast<double>(rays.alpha[i]), static_cast<double>(rays.beta[i]));
+      per_sr[i] = static_cast<float>(LampGuide::share * guided +
+                                     (1 - LampGuide::share) * static_cast<double>(per_sr[i]));
+    }
+    return;
+  }
   const auto radius = static_cast<float>(rear_radius_mm_), distance = static_cast<float>(rear_distance_mm_);
   const float disk_sr = static_cast<float>(pi) * radius * radius / (distance * distance);
   for (std::size_t i = 0; i < rays.count; ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/render/camera/film_camera.h>
+#include <petzval/render/camera/lamp_guide.h>
 #include <petzval/render/camera/stop_diffraction.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/sensor/sensor.h>
@@ -32,6 +33,9 @@ struct LensCameraOptions {
       false;  ///< the camera's place is the first vertex, as in 2006; else the film's centre
   /// Rays are bent at the stop (StopDiffraction), each wavelength by itself: every path serves one alone.
   bool diffraction = false;
+  /// What is small and bright in the scene: directions are drawn towards it, too (LampGuide). Not with
+  /// diffraction, nor over the disk of the last surface.
+  std::vector<Lamp> lamps;
 };
 
 /// Traces every film sample backwards through every surface, at its own wavelength: prescription, glass,
@@ -57,7 +61,10 @@ class LensCamera final : public FilmCamera {
   };
   struct Led;
   ExitPupilRegions find_regions(const Lens& lens) const;
+  /// Tracers of the middle of the spectrum and of its ends.
+  std::vector<Tracer> spectrum_ends() const;
   Start start(double x_mm, double y_mm, double u, double v) const;
+  Start guided_start(double x_mm, double y_mm, double u, double v) const;
   void densities(const PupilDirections& directions, float* per_sr) const;
   void launch(Led& led) const;
   void trace_led(Led& led) const;
@@ -76,6 +83,7 @@ class LensCamera final : public FilmCamera {
   std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
   std::vector<StopDiffraction> diffraction_;  ///< by band, if it is wanted
   bool disperses_ = false;
+  LampGuide guide_;
   std::optional<ExitPupilRegions> regions_;  ///< that directions are drawn from
   std::optional<PupilTransmittance> transmittance_;
   double rear_radius_mm_ = 0, rear_distance_mm_ = 0;
