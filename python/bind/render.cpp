@@ -24,8 +24,13 @@ RenderRequest request(const CameraInPython& camera, const std::string& scene, Ma
                       bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
                       Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
                       double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra,
-                      bool skip_unsupported, const std::string& checkpoint, const std::string& sampling) {
+                      bool skip_unsupported, const std::string& checkpoint, const std::string& sampling,
+                      Maybe<std::array<double, 2>> focus_pixel, Maybe<std::array<double, 3>> camera_at,
+                      Maybe<std::array<double, 3>> look_at, Maybe<double> field_of_view_deg,
+                      double light_scale) {
   RenderRequest r;
+  r.focus_pixel = focus_pixel, r.camera_at = camera_at, r.look_at = look_at;
+  r.field_of_view_deg = field_of_view_deg, r.light_scale = light_scale;
   r.scene = scene, r.camera = camera.value();
   if (size) r.columns = size->first, r.rows = size->second;
   r.wavelengths_nm = wavelengths_nm;
@@ -46,12 +51,15 @@ Rendering render(const CameraInPython& camera, const std::string& scene, Maybe<s
                  bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
                  Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
                  double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra, bool skip_unsupported,
-                 const std::string& checkpoint, const std::string& sampling, int threads, std::uint64_t seed,
-                 const nb::object& progress) {
+                 const std::string& checkpoint, const std::string& sampling,
+                 Maybe<std::array<double, 2>> focus_pixel, Maybe<std::array<double, 3>> camera_at,
+                 Maybe<std::array<double, 3>> look_at, Maybe<double> field_of_view_deg, double light_scale,
+                 int threads, std::uint64_t seed, const nb::object& progress) {
   const RenderRequest asked =
       request(camera, scene, size, wavelengths_nm, samples_per_pixel, noise, first_surfaces, zones, pinhole,
               film_diagonal_mm, aperture_diameter_mm, diffraction, max_depth, scene_unit_mm, sky_cd_m2,
-              absolute_spectra, skip_unsupported, checkpoint, sampling);
+              absolute_spectra, skip_unsupported, checkpoint, sampling, focus_pixel, camera_at, look_at,
+              field_of_view_deg, light_scale);
   Call call({threads, seed, progress});
   return call([&](const Context& context) { return render_scene(asked, context); });
 }
@@ -97,7 +105,8 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
           nb::rv_policy::reference_internal, "The irradiance on the sensor.")
       .def_prop_ro(
           "depth", [](nb::handle self) { return first_surface<&render::FirstSurfaces::depth>(self, 0); },
-          "Distance from the film along the axis [scene units], (row, column), 0 where nothing is met; None "
+          "Distance from the film along the axis [scene units], (row, column), infinity where nothing is "
+          "met; None "
           "unless `first_surfaces`.")
       .def_prop_ro(
           "normals", [](nb::handle self) { return first_surface<&render::FirstSurfaces::normal>(self, 3); },
@@ -130,28 +139,33 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
             return all;
           },
           "(film distance [mm], measure, stage) in the order in which they were made.")
+      .def_ro("distance_m", &FocusRun::distance_m, "From the film to what is sharp.")
       .def_ro("depth_mm", &FocusRun::depth_mm, "Depth of focus.")
       .def_ro("camera_rays", &FocusRun::camera_rays)
       .def("__repr__", [](const FocusRun& f) {
         return fmt::format("<FocusRun: film at {:.6g} mm after {} pictures>", f.result.film_distance_mm,
                            f.result.evaluations.size());
       });
-  camera.def("render", render, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
-             nb::arg("wavelengths_nm") = Numbers(), nb::arg("samples_per_pixel").none() = nb::none(),
-             nb::arg("noise") = 0.0, nb::arg("first_surfaces") = false, nb::arg("zones") = Zones(),
-             nb::arg("pinhole") = false, nb::arg("film_diagonal_mm").none() = nb::none(),
-             nb::arg("aperture_diameter_mm").none() = nb::none(), nb::arg("diffraction") = false,
-             nb::arg("max_depth").none() = nb::none(), nb::arg("scene_unit_mm") = 1000.0,
-             nb::arg("sky_cd_m2").none() = nb::none(), nb::arg("absolute_spectra") = false,
-             nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "",
-             nb::arg("sampling") = "exit-pupil", nb::arg("threads") = 0, nb::arg("seed") = 1,
-             nb::arg("progress").none() = nb::none(),
-             "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the "
-             "sensor, path-traced through every "
-             "surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS error over mean "
-             "light is reached. `zones`: "
-             "(left, right, top, bottom) in fractions of the picture, for focus \"auto\". Raises InputError; "
-             "Cancelled.");
+  camera.def(
+      "render", render, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
+      nb::arg("wavelengths_nm") = Numbers(), nb::arg("samples_per_pixel").none() = nb::none(),
+      nb::arg("noise") = 0.0, nb::arg("first_surfaces") = false, nb::arg("zones") = Zones(),
+      nb::arg("pinhole") = false, nb::arg("film_diagonal_mm").none() = nb::none(),
+      nb::arg("aperture_diameter_mm").none() = nb::none(), nb::arg("diffraction") = false,
+      nb::arg("max_depth").none() = nb::none(), nb::arg("scene_unit_mm") = 1000.0,
+      nb::arg("sky_cd_m2").none() = nb::none(), nb::arg("absolute_spectra") = false,
+      nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "", nb::arg("sampling") = "exit-pupil",
+      nb::arg("focus_pixel").none() = nb::none(), nb::arg("camera_at").none() = nb::none(),
+      nb::arg("look_at").none() = nb::none(), nb::arg("field_of_view_deg").none() = nb::none(),
+      nb::arg("light_scale") = 1.0, nb::arg("threads") = 0, nb::arg("seed") = 1,
+      nb::arg("progress").none() = nb::none(),
+      "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the "
+      "sensor, path-traced through every "
+      "surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS error over mean "
+      "light is reached. `zones`: "
+      "(left, right, top, bottom) in fractions of the picture, for focus \"auto\". `focus_pixel`: (column, "
+      "row) of what is to be sharp. `camera_at`, `look_at`: (x, y, z) [scene units]; "
+      "`field_of_view_deg`: across the picture, without a lens. Raises InputError; Cancelled.");
   module.def(
       "list_unsupported",
       [](const std::string& scene) {

@@ -9,6 +9,8 @@
 #include <petzval/render/camera/perspective_camera.h>
 #include <petzval/render/film/noise.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -131,15 +133,120 @@ TEST(Renderer, LeavesNothingBehindWhenItIsStoppedAtOnce) {
   const test::Scratch scratch;
   RenderOptions options;
   options.checkpoint = scratch.path("checkpoint");
-  options.so_far = [](const Rendering&) { ADD_FAILURE() << "of no pass"; };
+  options.so_far = [](const Rendering&) { ADD_FAILURE() << "of no tile"; };
   Context context;
   int questions = 0;
-  context.progress = [&](double, const std::string&) { return ++questions < 2; };
+  context.progress = [&](double, const std::string&) { return ++questions < 1; };
   EXPECT_THROW(
       run_within(context,
                  [&](const ProgressCallback& progress) { small.render_surfaces(options, 24, progress); }),
       Cancelled);
   EXPECT_TRUE(scratch.is_empty());
+}
+
+/// A picture whose k-th report of progress ends it.
+Rendering stopped_at(const SmallPicture& small, int report) {
+  const ThreadLimit limit(1);
+  RenderOptions options;
+  std::optional<Rendering> so_far;
+  options.so_far = [&](Rendering picture) { so_far = std::move(picture); };
+  Context context;
+  int reports = 0;
+  std::string last;
+  bool stop = false;
+  context.progress = [&](double, const std::string&) { return !stop; };
+  EXPECT_THROW(run_within(context,
+                          [&](const ProgressCallback& progress) {
+                            small.render_with(options, 24, [&](double fraction, const std::string& what) {
+                              stop = ++reports >= report;
+                              progress(fraction, what);
+                            });
+                          }),
+               Cancelled);
+  EXPECT_TRUE(so_far);
+  return so_far.value_or(Rendering());
+}
+
+/// The worst difference in a tile, away from its sides, over which colours stray. Tiles count from the upper
+/// left, three a row.
+float difference_in_tile(const Rendering& a, const Rendering& b, int tile) {
+  float worst = 0;
+  for (int band = 0; band < a.irradiance.bands(); ++band)
+    for (int row = tile / 3 * 16 + 2; row < std::min(tile / 3 * 16 + 14, 30); ++row)
+      for (int column = tile % 3 * 16 + 2; column < std::min(tile % 3 * 16 + 14, 40); ++column)
+        worst = std::max(worst,
+                         std::abs(a.irradiance.at(band, row, column) - b.irradiance.at(band, row, column)) /
+                             b.irradiance.at(band, row, column));
+  return worst;
+}
+
+TEST(Renderer, GivesTheTilesThatAreDoneWhenItIsStopped) {
+  const SmallPicture small;
+  const auto with = [&](int samples) { return small.render_with({}, samples); };
+  const float rounding = 1e-6F;
+  // Six tiles a pass; one thread does them one after the other. After two of the first pass:
+  const Rendering first = stopped_at(small, 2), one_pass = with(8);
+  EXPECT_FALSE(first.complete);
+  EXPECT_LT(difference_in_tile(first, one_pass, 0), rounding);
+  EXPECT_LT(difference_in_tile(first, one_pass, 1), rounding);
+  EXPECT_EQ(first.irradiance.at(0, 24, 24), 0);  // the fifth
+  // After two tiles of the third pass.
+  const Rendering third = stopped_at(small, 14), two_passes = with(16), three_passes = with(24);
+  EXPECT_EQ(third.samples_per_pixel, 16);
+  EXPECT_LT(difference_in_tile(third, three_passes, 0), rounding);
+  EXPECT_GT(difference_in_tile(third, two_passes, 0), 100 * rounding);
+  EXPECT_LT(difference_in_tile(third, two_passes, 5), rounding);
+}
+
+TEST(Renderer, ShowsThePictureSoFar) {
+  const SmallPicture small;
+  RenderOptions options;
+  std::vector<int> samples;
+  std::vector<float> last;
+  options.preview = [&](const Rendering& picture) {
+    samples.push_back(picture.samples_per_pixel);
+    last = values(picture);
+  };
+  options.preview_seconds = 0;
+  small.render_with(options, 24);
+  EXPECT_EQ(samples, (std::vector{8, 16}));  // the third pass is the picture itself
+  EXPECT_EQ(last, values(small.render_with({}, 16)));
+}
+
+TEST(Renderer, KnowsTheLampsAndTheLightOfItsScene) {
+  // A lamp of 3000 K in view, and a wall that it lights.
+  const char* lit =
+      "LookAt 0 0 -1  0 0 0  0 1 0\n"
+      "AttributeBegin\nAreaLightSource \"diffuse\" \"blackbody L\" 3000 \"float scale\" 5\n"
+      "Translate 0 .1 -.3\nShape \"sphere\" \"float radius\" 0.05\nAttributeEnd\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ .8 .1 .1 ]\n"
+      "Shape \"bilinearmesh\" \"point3 P\" [ -2 -2 .4  2 -2 .4  -2 2 .4  2 2 .4 ]\n";
+  const auto world = world_of(lit, {450, 550, 650});
+  const SensorGeometry film{40, 30, 600};
+  PerspectiveOptions perspective;
+  perspective.columns = 40, perspective.rows = 30;
+  RenderOptions options;
+  options.samples_per_pixel = 64;
+  const Rendering picture = render_picture(*world, PerspectiveCamera(perspective),
+                                           Transform::translation({0, 0, -1}), film, options);
+  const std::vector<std::uint8_t>& lamps = picture.irradiance.lamps;
+  ASSERT_EQ(lamps.size(), 1200u);
+  // A ball of 0.05 at 0.7 m, 0.1 m above the axis, where 15 pixels are a unit at a distance of 1: its middle
+  // is 2.1 pixels above that of the picture, its radius 1.07 pixels.
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < lamps.size(); ++i)
+    if (lamps[i] == 1) shown.push_back(i);
+  ASSERT_FALSE(shown.empty());
+  for (const std::size_t i : shown) {
+    EXPECT_NEAR(static_cast<double>(i % 40) + 0.5, 20, 1.07 + 1);
+    EXPECT_NEAR(static_cast<double>(i / 40) + 0.5, 15 - 2.1, 1.07 + 1);
+  }
+  // The light on the wall is that of the lamp, whatever the colour of the wall: Planck's ratios.
+  ASSERT_TRUE(picture.irradiance.illuminant);
+  const auto planck = [](double nm) { return std::pow(nm, -5) / std::expm1(1.438776877e7 / (nm * 3000)); };
+  for (const double nm : {450.0, 650.0})
+    EXPECT_NEAR(picture.irradiance.illuminant->at(nm) / picture.irradiance.illuminant->at(550),
+                planck(nm) / planck(550), 1e-3 * planck(nm) / planck(550));
 }
 
 TEST(Renderer, AddsSamplesToThoseOfAFinishedPicture) {

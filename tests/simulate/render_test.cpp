@@ -213,7 +213,12 @@ TEST(RenderScene, GivesThePictureSoFarWhenItIsStopped) {
   // The first pass of sixteen is done when the second has begun.
   context.progress = [](double fraction, const std::string&) { return fraction < 1.5 / 16; };
   std::optional<Rendering> so_far;
-  EXPECT_THROW(render_scene(scene, context, &so_far), Cancelled);
+  PictureWatch watch;
+  watch.show = [&](const Rendering& picture, bool stopped) {
+    EXPECT_TRUE(stopped);
+    so_far = picture;
+  };
+  EXPECT_THROW(render_scene(scene, context, watch), Cancelled);
   ASSERT_TRUE(so_far);
   EXPECT_EQ(so_far->samples_per_pixel, 4);
   EXPECT_NE(so_far->irradiance.provenance.find("4 samples a pixel"), std::string::npos);

@@ -14,7 +14,8 @@ namespace petzval {
 /// and accept an empty one.
 using ProgressCallback = std::function<void(double fraction, const std::string& what)>;
 
-/// A bar on stderr: appears only on a terminal and only for work that lasts over two seconds.
+/// A bar on stderr for work that lasts over two seconds; where stderr is no terminal, a line every ten
+/// seconds.
 class ProgressBar {
  public:
   /// \param enabled  false (--quiet) keeps it silent whatever stderr is.
@@ -28,7 +29,7 @@ class ProgressBar {
   ProgressCallback callback();
 
  private:
-  bool enabled_;
+  bool enabled_, terminal_;
   bool drawn_ = false;
   std::chrono::steady_clock::time_point start_, last_;
   std::mutex mutex_;

@@ -45,6 +45,15 @@ void check(const PictureOptions& options) {
     throw InputError(fmt::format("a white level of {}; it must be positive", options.white_level));
 }
 
+/// The levels that are metered.
+std::vector<float> without_lamps(const std::vector<float>& levels, const std::vector<std::uint8_t>& lamps) {
+  std::vector<float> metered;
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    if (lamps.empty() || lamps[i] == 0) metered.push_back(levels[i]);
+  const bool dark = std::ranges::none_of(metered, [](float level) { return level > 0; });
+  return dark ? levels : metered;
+}
+
 /// The smallest level that at least `percent` % of the levels do not exceed; if that is no light, the largest
 /// level.
 double percentile_of(std::vector<float>& levels, double percent) {
@@ -144,6 +153,7 @@ PictureRenderer::PictureRenderer(const SpectralImage& image, const PictureOption
   weights_ = level_weights(image.wavelengths_nm(), visible_);
   false_colour_ = !visible_ && options.false_colour;
   display_ = options.display;
+  frames_ = options.frames;
   grey_ = !visible_ || (image.bands() == 1 && !options.monochrome_in_colour);
   display_from_xyz_ = srgb_from_xyz();
   if (options.scene_white && !grey_ && image.bands() > 1)
@@ -163,17 +173,22 @@ PictureRenderer::PictureRenderer(const SpectralImage& image, const PictureOption
 
 double PictureRenderer::level_for(const PictureOptions& options, std::vector<float> levels) {
   const char* unit = visible_ ? "lx" : "W/m2";
+  const std::size_t all = levels.size();
+  levels = without_lamps(levels, image_.lamps);
+  const char* beside = levels.size() < all ? " of what is no lamp" : "";
   double level = options.white_level;
   std::string rule = "as asked for";
   if (options.exposure == PictureOptions::Exposure::percentile) {
     std::vector<float> metered = levels;
     const bool lights = leave_lights(metered);
     level = percentile_of(metered, options.percentile);
-    rule = fmt::format("the {}th percentile{}", options.percentile, lights ? " of what is lit" : "");
+    rule = fmt::format("the {}th percentile{}", options.percentile, lights ? " of what is lit" : beside);
   } else if (options.exposure == PictureOptions::Exposure::mean_grey) {
     level = mean_of(levels) / options.grey;
-    rule = fmt::format("the mean is {} of it", options.grey);
+    rule = fmt::format("the mean{} is {} of it", beside, options.grey);
   }
+  level *= std::exp2(-options.compensation_ev);
+  if (options.compensation_ev != 0) rule += fmt::format(", {:+g} EV", options.compensation_ev);
   if (!(level > 0)) {
     description_ = "no light";
     return 1;
@@ -217,6 +232,9 @@ void PictureRenderer::linear_row(int row, std::span<LinearRgb> pixels) const {
     const Xyz rgb = grey_ ? Xyz{sums[i].y, sums[i].y, sums[i].y} : display_from_xyz_ * sums[i];
     pixels[i] = {rgb.x, rgb.y, rgb.z};
   }
+  for (const PictureFrame& frame : frames_)
+    for (int column = frame.left; column < std::min(frame.right, image_.columns()); ++column)
+      if (frame.is_on_rim(column, row)) pixels[static_cast<std::size_t>(column)] = {1, 0.8, 0};
 }
 
 PngImage srgb_picture(const SpectralImage& image, const PictureOptions& options, int bits) {

@@ -14,9 +14,22 @@
 
 namespace petzval {
 
+/// A frame drawn into a picture: its outermost pixels [left, right) × [top, bottom), in yellow.
+struct PictureFrame {
+  int left = 0, top = 0, right = 0, bottom = 0;
+
+  bool holds(int column, int row) const {
+    return column >= left && column < right && row >= top && row < bottom;
+  }
+  bool is_on_rim(int column, int row) const {
+    return holds(column, row) && (column == left || column + 1 == right || row == top || row + 1 == bottom);
+  }
+};
+
 /// How irradiance becomes sRGB. The level of a pixel is its illuminance [lx] (683 lm/W · Y of its
 /// irradiance); in an image without visible light (all bands outside 370 to 730 nm) it is its irradiance
-/// [W·m⁻²].
+/// [W·m⁻²]. Pixels that show a lamp of the scene (SpectralImage::lamps) are not metered, unless there is no
+/// other.
 struct PictureOptions {
   enum class Exposure {
     /// The level that `percentile` % of the pixels do not exceed becomes white; of lights in darkness, which
@@ -29,6 +42,7 @@ struct PictureOptions {
   double percentile = 99.5;
   double grey = 0.18;
   double white_level = 0;
+  double compensation_ev = 0;  ///< +1 halves the level that is shown as white
 
   /// How levels below white are shown. The light of a star falls by thousands within a few pixels: `gamma`
   /// shows the square root of a level, `log` its logarithm, three decades from black to white, evenly in the
@@ -49,6 +63,8 @@ struct PictureOptions {
   /// false colours (ColourMap::inferno). With the exposure `percentile` these run from the level that
   /// 100 − percentile % of the pixels do not reach: a warm scene has little contrast over much light.
   bool false_colour = false;
+
+  std::vector<PictureFrame> frames = {};  ///< drawn over the picture
 };
 
 /// An image made ready to be shown: the exposure is settled, rows come out one by one. It refers to the
@@ -72,6 +88,7 @@ class PictureRenderer {
 
   const SpectralImage& image_;
   bool visible_ = true, grey_ = false, false_colour_ = false;
+  std::vector<PictureFrame> frames_;
   std::vector<Xyz> weights_;  ///< of each band, in the unit of the level
   ColourMatrix display_from_xyz_{};
   PictureOptions::Display display_ = PictureOptions::Display::linear;

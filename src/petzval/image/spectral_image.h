@@ -6,6 +6,7 @@
 #include <petzval/colour/spectrum.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,6 +84,8 @@ class SpectralImage {
   /// What else is known of it; stored in files.
   std::optional<LensFacts> lens;
   std::optional<Spectrum> illuminant = {};  ///< the light of the scene, on any scale
+  /// 1 for pixels that show a lamp of the scene itself, by which nobody meters. Empty: none, or not known.
+  std::vector<std::uint8_t> lamps = {};
 
  private:
   int columns_ = 0, rows_ = 0;

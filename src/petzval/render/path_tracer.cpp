@@ -54,6 +54,7 @@ void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& poi
       weight = balanced(path.pdf, world_.lights.area_pdf(world_.geometries, area, path.scattered_at, point));
   }
   add(path, weight * radiance);
+  if (path.depth == 0) path.light.straight += radiance;
 }
 
 void PathTracer::add_sky(Path& path, int group) const {
@@ -87,6 +88,7 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   const Vector3 way = light->place ? *light->place - origin : light->direction;
   if (world_.intersector->blocked(origin, way, light->place ? shadow_end : infinity)) return;
   double weight = std::abs(wi.z) / light->pdf;
+  if (path.depth == 1) path.light.arriving += weight * light->light;
   if (!light->small && options_.lights == PathOptions::Lights::both)
     weight *= balanced(light->pdf, bsdf.pdf(wo, wi));
   add(path, weight * (f * light->light));

@@ -19,6 +19,10 @@ struct PathOptions {
 /// Radiance along one ray [W·m⁻²·sr⁻¹·nm⁻¹].
 struct PathLight {
   Lanes shared = Lanes::all(0);  ///< over paths that all wavelengths of the group could have taken
+  Lanes straight =
+      Lanes::all(0);  ///< the part of `shared` that comes from a lamp itself, scattered by nothing
+  /// Irradiance of the first surface straight from the lights [W·m⁻²·nm⁻¹].
+  Lanes arriving = Lanes::all(0);
   float alone = 0;  ///< of the hero wavelength, over paths through dispersing glass, which only it takes
 };
 

@@ -36,8 +36,12 @@ struct RenderOptions {
   /// Called with passes done and all; returning false ends rendering there (after a checkpoint, if one is
   /// kept).
   std::function<bool(int, int)> after_pass;
-  /// Given the picture so far before Cancelled leaves render_picture(), if there is a checkpoint with any.
+  /// Given the picture so far before Cancelled leaves render_picture(), if a tile of it is done: what the
+  /// checkpoint has, or else all samples of the tiles that are done.
   std::function<void(Rendering)> so_far;
+  /// Given the picture after passes, at most so often, but after the first.
+  std::function<void(const Rendering&)> preview;
+  double preview_seconds = 5;
 };
 
 /// Renders a picture. The same arguments give the same bytes for any number of threads, and whether or not it

@@ -13,7 +13,7 @@ namespace petzval::render {
 /// What a picture's first surfaces are, seen through the lens: means over the rays that met one.
 struct FirstSurfaces {
   std::vector<float>
-      depth;  ///< distance from the film along the camera's axis [scene units]; 0 where nothing is met
+      depth;  ///< distance from the film along the camera's axis [scene units]; infinity where nothing is met
   std::vector<float> normal;  ///< world space, [pixel][3]
   std::vector<float> albedo;  ///< [band][pixel]
   std::vector<float> share;   ///< of the rays that met a surface

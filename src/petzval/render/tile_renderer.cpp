@@ -13,12 +13,20 @@ constexpr std::size_t paths_between_questions = 4;
 class TileRenderer {
  public:
   TileRenderer(const TileTask& task, const PixelWindow& tile, bool half, Film& film)
-      : task_(task), tracer_(task.world, task.options.path), tile_(tile), half_(half), film_(film) {}
+      : task_(task),
+        tracer_(task.world, task.options.path),
+        tile_(tile),
+        half_(half),
+        whole_(film),
+        film_(film.part(tile)) {}
 
   TileResult run(const std::vector<SampleRange>& of_group) {
     result_.strays.resize(of_group.size());
+    result_.arriving.resize(whole_.arriving.size());
     for (int group = 0; group < task_.world.groups.count(); ++group)
       take_samples(group, of_group[static_cast<std::size_t>(group)]);
+    whole_.put(film_);
+    result_.done = true;
     return std::move(result_);
   }
 
@@ -35,10 +43,14 @@ class TileRenderer {
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
     task_.camera.trace(group, task_.sampling, places_, rays_);
+    arriving_ = Lanes::all(0);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (i % paths_between_questions == 0) check_stop();
       follow(i, group);
     }
+    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
+      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
+          static_cast<double>(arriving_[lane]);
   }
 
   void start_sample(int group, int index, Pixel pixel) {
@@ -71,6 +83,7 @@ class TileRenderer {
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
                       (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, light);
+    arriving_ += light.arriving;
     if (first.met) add_first(i, group, first);
   }
 
@@ -78,7 +91,9 @@ class TileRenderer {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
     const Pixel own = pixel_of(i);
-    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane) {
+    if (!light.straight.is_black()) add_lamp(own, light.straight, ray, task_.world.groups.lanes(group));
+    const int lanes = task_.world.groups.lanes(group);
+    for (int lane = 0; lane < lanes; ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
@@ -91,34 +106,45 @@ class TileRenderer {
     }
   }
 
+  /// In the pixel where the hero lands: metering asks for no more.
+  void add_lamp(Pixel pixel, const Lanes& light, const CameraRay& ray, int lanes) {
+    double sum = 0;
+    for (int lane = 0; lane < lanes; ++lane) sum += static_cast<double>(light[lane] * ray.weight[lane]);
+    film_.lamps[tile_.index(pixel.column, pixel.row)] += sum;
+  }
+
   void add(Pixel pixel, int group, int lane, double value) {
-    const std::size_t within = film_.window.index(pixel.column, pixel.row);
-    const auto band = static_cast<std::size_t>(task_.world.groups.band(group, lane));
-    const std::size_t at = band * film_.window.size() + within;
+    // As WavelengthGroups::band(), for lanes that have one.
+    const auto band = static_cast<std::size_t>(group + lane * task_.world.groups.count());
+    const PixelWindow& all = whole_.window;
     if (!tile_.contains(pixel.column, pixel.row))
-      return result_.strays[static_cast<std::size_t>(group)].push_back({at, value});
-    film_.light[at] += value;
+      return result_.strays[static_cast<std::size_t>(group)].push_back(
+          {band * all.size() + all.index(pixel.column, pixel.row), value});
+    const std::size_t within = tile_.index(pixel.column, pixel.row);
+    film_.light[band * tile_.size() + within] += value;
     if (half_) film_.half[within] += value;
   }
 
   void add_first(std::size_t i, int group, const FirstSurface& first) {
     const Pixel pixel = pixel_of(i);
-    const std::size_t at = film_.window.index(pixel.column, pixel.row);
-    film_.met[at] += 1;
+    const std::size_t at = tile_.index(pixel.column, pixel.row), plane = tile_.size();
+    film_.met[static_cast<std::size_t>(group) * plane + at] += 1;
     film_.depth[at] += task_.world_from_camera.inverse_point(first.position).z;
-    film_.normal[3 * at] += first.normal.x;
-    film_.normal[3 * at + 1] += first.normal.y;
-    film_.normal[3 * at + 2] += first.normal.z;
+    film_.normal[at] += first.normal.x;
+    film_.normal[plane + at] += first.normal.y;
+    film_.normal[2 * plane + at] += first.normal.z;
     for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
-      film_.albedo[static_cast<std::size_t>(task_.world.groups.band(group, lane)) * film_.window.size() +
-                   at] += static_cast<double>(first.albedo[lane]);
+      film_.albedo[static_cast<std::size_t>(task_.world.groups.band(group, lane)) * plane + at] +=
+          static_cast<double>(first.albedo[lane]);
   }
 
   const TileTask& task_;
   PathTracer tracer_;
   PixelWindow tile_;
   bool half_;
-  Film& film_;
+  Film& whole_;
+  Film film_;  ///< of the tile
+  Lanes arriving_ = Lanes::all(0);
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;

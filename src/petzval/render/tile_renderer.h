@@ -34,11 +34,14 @@ struct Stray {
 
 /// All that one tile adds in one pass, beside what it has added to its own pixels.
 struct TileResult {
+  bool done = false;
   std::vector<std::vector<Stray>> strays;  ///< by group of wavelengths
+  std::vector<double> arriving;            ///< for Film::arriving
   std::uint64_t rays = 0, passed = 0;
 };
 
-/// Takes samples for each pixel of a tile. Of the film, only the tile's own pixels are changed.
+/// Takes samples for each pixel of a tile. Of the film, only the tile's own pixels are changed, and those
+/// when the tile is done: one that is stopped leaves nothing.
 /// \param of_group  the samples to be taken, by group of wavelengths. \param half  whether they are of the
 /// half whose light is also gathered in Film::half.
 TileResult render_tile(const TileTask& task, const PixelWindow& tile,

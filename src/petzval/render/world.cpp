@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/stop.h>
-#include <petzval/render/lights/light_reader.h>
 #include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
 
@@ -17,7 +16,7 @@ bool is_mesh(const ShapeDescription& shape) {
 /// Puts the pieces of a world together.
 class WorldBuilder {
  public:
-  WorldBuilder(const SceneDescription& scene, const WorldOptions& options, const TextureLibrary& textures,
+  WorldBuilder(const SceneDescription& scene, const LightOptions& options, const TextureLibrary& textures,
                Unsupported& unsupported, World& world)
       : scene_(scene), options_(options), textures_(textures), unsupported_(unsupported), world_(world) {}
 
@@ -78,15 +77,14 @@ class WorldBuilder {
     Lights& lights = world_.lights;
     const bool two_sided = entity.parameters.boolean("twosided", false);
     const int spectrum = static_cast<int>(lights.area_spectra.size());
-    lights.area_spectra.push_back(
-        area_radiance(entity, area, world_.groups, options_.absolute_spectra, unsupported_));
+    lights.area_spectra.push_back(area_radiance(entity, area, world_.groups, options_, unsupported_));
     geometry.first_light = static_cast<int>(lights.areas.size());
     for (std::size_t i = 0; i < geometry.primitives(); ++i)
       lights.areas.push_back({static_cast<int>(world_.geometries.size()), i, spectrum, two_sided});
   }
 
   const SceneDescription& scene_;
-  const WorldOptions& options_;
+  const LightOptions& options_;
   const TextureLibrary& textures_;
   Unsupported& unsupported_;
   World& world_;
@@ -95,7 +93,7 @@ class WorldBuilder {
 }  // namespace
 
 std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
-                                         const WorldOptions& options, Unsupported& unsupported) {
+                                         const LightOptions& options, Unsupported& unsupported) {
   auto world = std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, nullptr});
   const TextureLibrary textures(scene, world->groups, unsupported);
   world->materials = make_materials(scene, textures, unsupported);
@@ -106,7 +104,7 @@ std::unique_ptr<const World> build_world(const SceneDescription& scene, const Wa
   for (const InstanceDescription& instance : scene.instances)
     world->placed.push_back({instance.object, instance.world_from_instance});
   for (const LightDescription& light : scene.lights)
-    add_light(light, world->groups, options.absolute_spectra, unsupported, world->lights);
+    add_light(light, world->groups, options, unsupported, world->lights);
   world->intersector = std::make_unique<Intersector>(world->geometries, standing, objects, world->placed);
   const auto box = world->intersector->bounds();
   world->lights.prepare(world->geometries, box ? length((*box)[1] - (*box)[0]) / 2 : 1);

@@ -2,7 +2,7 @@
 // A scene that is ready to be rendered.
 #pragma once
 
-#include <petzval/render/lights/lights.h>
+#include <petzval/render/lights/light_reader.h>
 #include <petzval/render/materials/material.h>
 #include <petzval/render/shapes/intersector.h>
 
@@ -10,13 +10,6 @@
 #include <vector>
 
 namespace petzval::render {
-
-struct WorldOptions {
-  /// pbrt-v4 scales every light so that a strength of 1 is a luminance (or luminous intensity) of 1 in the
-  /// unit of ∫ L ȳ dλ. If set, spectra of lights given as tables, files or black bodies are radiances
-  /// [W·m⁻²·sr⁻¹·nm⁻¹] as they stand.
-  bool absolute_spectra = false;
-};
 
 /// Shapes, materials and lights at the wavelengths of one picture. Immutable once built.
 struct World {
@@ -34,6 +27,6 @@ struct World {
 
 /// \throws InputError with file, line and column, and through `unsupported`; Failure.
 std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
-                                         const WorldOptions& options, Unsupported& unsupported);
+                                         const LightOptions& options, Unsupported& unsupported);
 
 }  // namespace petzval::render

@@ -11,11 +11,19 @@ namespace petzval {
 
 namespace {
 
-double level_to_meter(const PhotoCurrent& current, Metering::Rule rule) {
+/// The currents that are metered.
+std::vector<float> metered_levels(const std::vector<float>& currents,
+                                  std::span<const std::uint8_t> left_out) {
+  if (left_out.size() != currents.size()) return currents;
+  std::vector<float> levels;
+  for (std::size_t i = 0; i < currents.size(); ++i)
+    if (left_out[i] == 0) levels.push_back(currents[i]);
+  return std::ranges::any_of(levels, [](float level) { return level > 0; }) ? levels : currents;
+}
+
+double level_to_meter(std::vector<float> levels, Metering::Rule rule) {
   if (rule == Metering::Rule::average)
-    return std::accumulate(current.e_per_s.begin(), current.e_per_s.end(), 0.0) /
-           static_cast<double>(current.e_per_s.size());
-  std::vector<float> levels = current.e_per_s;
+    return std::accumulate(levels.begin(), levels.end(), 0.0) / static_cast<double>(levels.size());
   const auto rank =
       static_cast<std::size_t>(std::ceil(Metering::highlight_share * static_cast<double>(levels.size())) - 1);
   const auto nth = levels.begin() + static_cast<std::ptrdiff_t>(std::min(rank, levels.size() - 1));
@@ -37,8 +45,9 @@ double lx_s_per_electron(const Sensor& sensor, const Spectrum& light) {
 
 }  // namespace
 
-double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering) {
-  const double level = level_to_meter(current, metering.rule);
+double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering,
+                          std::span<const std::uint8_t> left_out) {
+  const double level = level_to_meter(metered_levels(current.e_per_s, left_out), metering.rule);
   if (!(level > 0)) throw InputError("there is no light to meter; an exposure in seconds would be right");
   const double share =
       metering.rule == Metering::Rule::average ? Metering::average_level : Metering::highlight_level;

@@ -6,7 +6,9 @@
 #include <petzval/sensor/photo_current.h>
 #include <petzval/sensor/sensor.h>
 
+#include <cstdint>
 #include <optional>
+#include <span>
 
 namespace petzval {
 
@@ -23,8 +25,10 @@ struct Metering {
   static constexpr double highlight_share = 0.99, highlight_level = 0.80, average_level = 0.127;
 };
 
-/// \param saturation_e  SensorElectronics::saturation_e. \throws InputError if there is no light to meter.
-double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering);
+/// \param saturation_e  SensorElectronics::saturation_e. \param left_out  not 0 for pixels that are not
+/// metered, unless no other has light; may be empty. \throws InputError if there is no light to meter.
+double metered_exposure_s(const PhotoCurrent& current, double saturation_e, const Metering& metering,
+                          std::span<const std::uint8_t> left_out = {});
 
 /// Exposure time of an exposure value at ISO 100 as photographers count: t = N²/2^EV.
 double exposure_of_ev_s(double ev, double f_number);

@@ -10,7 +10,9 @@
 #include <petzval/focus/focus_scan.h>
 #include <petzval/focus/golden_search_2006.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/simulate/depth_of_field.h>
 #include <petzval/simulate/prepared_world.h>
+#include <petzval/simulate/scene_depth.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,6 +190,9 @@ FocusRun search(const PreparedScene& scene, const render::World& world, const Co
   const FocusRange range = range_of(scene);
   FocusRun run;
   run.lens = scene.lens->name;
+  for (const FocusZone& zone : zones.zones())
+    run.zones +=
+        fmt::format(", zone {:.3g} {:.3g} {:.3g} {:.3g}", zone.left, zone.right, zone.top, zone.bottom);
   run.depth_mm = range.depth_mm;
   run.result = searched(wanted, pictures, zones.zones(), range);
   for (int more = 0; more < more_samples_times && run.result.noise_share() > ragged; ++more) {
@@ -201,6 +206,42 @@ FocusRun search(const PreparedScene& scene, const render::World& world, const Co
   return run;
 }
 
+/// By which the sensor stands behind the paraxial image where the spot on the axis is smallest.
+double best_spot_shift_mm(const Lens& lens) {
+  Lens sharp = lens;
+  const double distance_mm = distance_in_focus_m(lens) * mm_per_m - lens.total_track_mm();
+  sharp.object_distance_mm = std::isfinite(distance_mm) ? std::optional(distance_mm) : std::nullopt;
+  sharp.surfaces.back().thickness_mm =
+      paraxial_image_distance_mm(sharp, sharp.object_distance_mm, lens.reference_wavelength_nm);
+  FieldTableRequest axis = FieldTableRequest::of(sharp);
+  axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};
+  if (sharp.object_distance_mm) axis.field_kind = Fields::Kind::object_height_mm;
+  return best_spot_focus(sharp, axis).shift_mm;
+}
+
+/// A note for every zone in which two things stand, one behind the other.
+void note_two_depths(const PreparedScene& scene, const FocusRun& run, const Context& context) {
+  Lens lens = *scene.lens;
+  const double object_mm = run.distance_m * mm_per_m - lens.total_track_mm();
+  if (!std::isfinite(object_mm)) return;
+  lens.object_distance_mm = object_mm;
+  const DepthOfField sharp = geometric_depth_of_field(lens, scene.film.pitch_um * mm_per_um);
+  for (const FocusZone& zone : zones_or_middle(scene.request.autofocus)) {
+    const auto parted =
+        parted_depths(depths_seen_m(scene, window_of(zone, scene.film)), sharp.far_m - sharp.near_m);
+    if (parted)
+      send_note(
+          context,
+          fmt::format(
+              "two things stand in the zone {:g} {:g} {:g} {:g}, {:.3g} m and {:.3g} m away; {:.3g} m "
+              "is sharp (`focus` {:.3g}m is the other)",
+              zone.left, zone.right, zone.top, zone.bottom, parted->near_m, parted->far_m, run.distance_m,
+              std::abs(run.distance_m - parted->near_m) > std::abs(run.distance_m - parted->far_m)
+                  ? parted->near_m
+                  : parted->far_m));
+  }
+}
+
 }  // namespace
 
 AutofocusOptions::Search autofocus_search_of(std::string_view name) {
@@ -211,21 +252,38 @@ AutofocusOptions::Search autofocus_search_of(std::string_view name) {
       fmt::format("`focus_search` {}: brent, golden-2006 or scan would be right", quotable(name)));
 }
 
+const render::World& world_for_focus(const PreparedScene& scene) {
+  if (!scene.request.wavelengths_nm.empty()) return *scene.world->world;
+  WorldForFocus& kept = *scene.world->for_focus;
+  std::call_once(kept.once, [&] {
+    render::Unsupported unsupported(true);  // what it finds has been reported
+    kept.world =
+        build_world_at(*scene.world->description, scene.request, eight_wavelengths_nm(), unsupported);
+  });
+  return *kept.world;
+}
+
 const FocusRun& autofocus(PreparedScene& scene, const Context& context) {
   if (!scene.lens) throw InputError("an ideal camera has nothing to focus; `lens` names a lens");
   if (scene.request.camera.image_distance_mm)
     throw InputError("`image_distance_mm` and autofocus both place the sensor; one of them would be right");
   FocusRun run = result_within(context, [&](const ProgressCallback& progress) {
-    // The light of the picture serves if its wavelengths were asked for; otherwise fewer are quicker.
-    if (!scene.request.wavelengths_nm.empty()) return search(scene, *scene.world->world, context, progress);
-    render::Unsupported unsupported(true);  // what it finds has been reported
-    const auto world =
-        build_world_at(scene.world->description, scene.request, eight_wavelengths_nm(), unsupported);
-    return search(scene, *world, context, progress);
+    return search(scene, world_for_focus(scene), context, progress);
   });
   scene.lens = scene_camera(scene).with_film_distance_mm(run.result.film_distance_mm).lens;
+  run.distance_m = distance_in_focus_m(*scene.lens, best_spot_shift_mm(*scene.lens));
+  note_two_depths(scene, run, context);
   scene.focus = std::move(run);
   return *scene.focus;
+}
+
+std::vector<PictureFrame> frames_of_zones(const PreparedScene& scene) {
+  std::vector<PictureFrame> frames;
+  for (const FocusZone& zone : zones_or_middle(scene.request.autofocus)) {
+    const render::PixelWindow window = window_of(zone, scene.film);
+    frames.push_back({window.left, window.top, window.right, window.bottom});
+  }
+  return frames;
 }
 
 FocusRun autofocus(RenderRequest request, const Context& context) {

@@ -37,8 +37,10 @@ AutofocusOptions::Search autofocus_search_of(std::string_view name);
 
 /// A search, and what it took.
 struct FocusRun {
-  std::string lens;  ///< its name
+  std::string lens;   ///< its name
+  std::string zones;  ///< that were looked at: ", zone 0.33 0.67 0.33 0.67"
   FocusResult result;
+  double distance_m = 0;      ///< from the film to what is sharp; infinite beyond the focus of infinity
   double depth_mm = 0;        ///< of focus: f-number × pixel, unless it was given
   int samples_per_pixel = 0;  ///< at last
   std::uint64_t camera_rays = 0;

@@ -36,7 +36,8 @@ std::optional<double> time_s(std::string_view text) {
 double exposure_s(const ExposeOptions& options, const SpectralImage& light, const PhotoCurrent& current,
                   double saturation_e) {
   if (options.exposure.kind == Exposure::Kind::automatic)
-    return metered_exposure_s(current, saturation_e, {options.metering, options.compensation_ev});
+    return metered_exposure_s(current, saturation_e, {options.metering, options.compensation_ev},
+                              light.lamps);
   const double compensation = std::exp2(options.compensation_ev);
   if (options.exposure.kind == Exposure::Kind::seconds) return options.exposure.value * compensation;
   const double n = options.f_number.value_or(light.lens ? light.lens->f_number : 0);

@@ -8,6 +8,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/scaled_lens.h>
+#include <petzval/simulate/depth_of_field.h>
 #include <petzval/simulate/lens_on_sensor.h>
 #include <petzval/simulate/mounting.h>
 
@@ -29,46 +30,6 @@ FieldTableRequest places_of(const Lens& lens, const SensorGeometry& frame,
   at.fields = {0, frame.half_diagonal_mm() / 2, frame.half_diagonal_mm()};
   if (!wavelengths_nm.empty()) at.wavelengths_nm = wavelengths_nm;
   return at;
-}
-
-/// The object [mm in front of vertex 1] whose paraxial image lies this far behind that of the lens's own.
-double object_of_image_shift_mm(const Lens& lens, double shift_mm) {
-  const double nm = lens.reference_wavelength_nm;
-  const double here_mm = paraxial_image_distance_mm(lens, lens.object_distance_mm, nm);
-  const auto beyond = [&](double inverse_mm) {  // grows as the object comes nearer
-    const double image_mm =
-        paraxial_image_distance_mm(lens, inverse_mm > 0 ? std::optional(1 / inverse_mm) : std::nullopt, nm);
-    return image_mm - here_mm - shift_mm;
-  };
-  double far = 0, near = lens.object_distance_mm ? 2 / *lens.object_distance_mm : 1e-9;
-  if (beyond(far) >= 0) return infinite;
-  constexpr int doublings = 60, halvings = 200;
-  for (int i = 0; i < doublings && beyond(near) < 0; ++i) near *= 1.5;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = (far + near) / 2;
-    (beyond(middle) < 0 ? far : near) = middle;
-  }
-  return 1 / near;
-}
-
-/// The objects whose images lie so far behind and before that of the object in focus.
-DepthOfField depth_of(const Lens& lens, double behind_mm, double before_mm) {
-  const auto from_sensor_m = [&](double object_mm) { return (object_mm + lens.total_track_mm()) / mm_per_m; };
-  return {from_sensor_m(object_of_image_shift_mm(lens, behind_mm)),
-          from_sensor_m(object_of_image_shift_mm(lens, -before_mm))};
-}
-
-/// Cones from the exit pupil (width D, L before the sensor) are one pixel c wide there if they meet c L/(D ∓
-/// c) behind or before it.
-DepthOfField geometric_depth(const Lens& lens, const FirstOrder& first, double pixel_mm) {
-  const double wide_mm = std::abs(first.exit_pupil.diameter_mm),
-               far_mm = std::abs(first.exit_pupil.position_mm);
-  if (!std::isfinite(far_mm) || !std::isfinite(wide_mm)) {
-    const double shift_mm = pixel_mm * first.working_f_number;
-    return depth_of(lens, shift_mm, shift_mm);
-  }
-  const double behind_mm = wide_mm > pixel_mm ? pixel_mm * far_mm / (wide_mm - pixel_mm) : infinite;
-  return depth_of(lens, behind_mm, pixel_mm * far_mm / (wide_mm + pixel_mm));
 }
 
 /// Of all wavelengths together at one field, both directions alike.
@@ -105,7 +66,7 @@ std::optional<DepthOfField> mtf_depth(const Lens& lens, const FirstOrder& first,
     return reach_mm;
   };
   // A nearer object has its image behind the sensor: it is as if the sensor stood before its own focus.
-  return depth_of(lens, end(-1), end(1));
+  return depth_of_field(lens, end(-1), end(1));
 }
 
 PlaceOnSensor place_of(const Lens& lens, FieldTableRequest at, double height_mm, double nyquist_cpmm) {
@@ -174,7 +135,7 @@ LensOnSensor judged(const Camera& camera, std::optional<double> distance_m,
   const std::optional<FrameSize> fields = frame_of_fields(lens);
   result.image_circle_mm = fields ? 2 * fields->half_diagonal_mm() : 0;
   result.sensor_diagonal_mm = 2 * frame.half_diagonal_mm();
-  result.geometric = geometric_depth(lens, first, pixel_mm);
+  result.geometric = geometric_depth_of_field(lens, pixel_mm);
   result.by_mtf = mtf_depth(lens, first, at, result.nyquist_cpmm / 2);
   result.hyperfocal_m =
       (first.efl_mm * first.efl_mm / (first.f_number * pixel_mm) + std::abs(first.efl_mm)) / mm_per_m;

@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/simulate/camera.h>
+#include <petzval/simulate/depth_of_field.h>
 #include <petzval/simulate/frame_view.h>
 
 #include <limits>
@@ -12,11 +13,6 @@
 #include <vector>
 
 namespace petzval {
-
-/// The nearest and the farthest object that is still sharp, from the sensor plane [m]; far may be infinite.
-struct DepthOfField {
-  double near_m = 0, far_m = 0;
-};
 
 /// MTF of all wavelengths together, and light, at a height of the real image. NaN where no light arrives.
 struct PlaceOnSensor {

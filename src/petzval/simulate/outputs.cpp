@@ -71,10 +71,31 @@ std::optional<Spectrum> usable_white(const SpectralImage& light, const std::opti
   }
 }
 
+/// What saturates a sensor of ISO 100 (H = 78/S lx·s, ISO 12232) shows as white.
+void expose_picture(const SpectralImage& light, const ExposeOptions& options, PictureOptions& shown) {
+  shown.compensation_ev = options.compensation_ev;
+  if (options.exposure.kind == Exposure::Kind::automatic) return;
+  constexpr double saturation_lx_s = 78.0 / 100;
+  double seconds = options.exposure.value;
+  if (options.exposure.kind == Exposure::Kind::exposure_value) {
+    const double n = light.lens ? light.lens->f_number : 0;
+    if (!(n > 0))
+      throw InputError(
+          "`exposure` with an exposure value needs an f-number, and this camera has none; a time would be "
+          "right");
+    seconds = exposure_of_ev_s(options.exposure.value, n);
+  }
+  if (!(seconds > 0)) throw InputError("`exposure` 0: a picture needs a time above 0");
+  shown.exposure = PictureOptions::Exposure::fixed;
+  shown.white_level = saturation_lx_s / seconds;
+}
+
 /// The light as a viewer would see it.
 void show(const SpectralImage& light, const std::string& path, const OutputOptions& options,
           StagedFiles& files, const Context& context) {
   PictureOptions shown = options.shown;
+  expose_picture(light, options.expose, shown);
+  if (!shown.scene_white) shown.scene_white = light.illuminant;
   if (shown.scene_white) shown.scene_white = usable_white(light, shown.scene_white, context);
   send_note(context,
             fmt::format("{}: {}", path, write_picture(files.stage(path), light, shown, options.bits)));
@@ -169,9 +190,9 @@ Outputs write_outputs(SpectralImage light, const std::vector<std::string>& paths
   for (std::size_t i = 0; i < of_light.size(); ++i) {
     const std::string staged = files.stage(of_light[i]);
     if (i + 1 < of_light.size())
-      write_irradiance(staged, light);
+      write_irradiance(staged, light, options.layers);
     else
-      write_irradiance(staged, std::move(light));
+      write_irradiance(staged, std::move(light), options.layers);
   }
   return made;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/staged_files.h>
+#include <petzval/image/formats/plane_exr.h>
 #include <petzval/image/picture.h>
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>
@@ -25,7 +26,11 @@ struct OutputOptions {
   ExposeOptions expose = {};
   Development development = {};
   std::vector<std::pair<std::string, std::string>> step_files = {};  ///< of development: name, file
-  PictureOptions shown = {};  ///< how a picture of the light shows it; its scene white where bands allow it
+  /// How a picture of the light shows it: its white that of the scene where bands allow it, absent: as the
+  /// light says. `expose` says how bright: a time or an exposure value as on a sensor of ISO 100, and more
+  /// stops.
+  PictureOptions shown = {};
+  std::vector<ExrPlane> layers = {};  ///< further channels of an .exr of the light
 };
 
 /// What became of the light.

@@ -7,9 +7,12 @@
 #include <petzval/render/gltf/gltf_scene.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/pbrt/scene_files.h>
+#include <petzval/simulate/camera_in_scene.h>
 #include <petzval/simulate/mounting.h>
 #include <petzval/simulate/prepared_world.h>
+#include <petzval/simulate/scene_depth.h>
 
+#include <cmath>
 #include <utility>
 
 namespace petzval {
@@ -29,8 +32,8 @@ bool has_lens(const Camera& camera) {
 
 /// Whether the camera focuses by itself, if it has a lens.
 bool is_automatic(const RenderRequest& request) {
-  return !request.focus_as_in_scene && request.camera.focus.kind == Focus::Kind::automatic &&
-         !request.camera.image_distance_mm;
+  return !request.focus_as_in_scene && !request.focus_pixel &&
+         request.camera.focus.kind == Focus::Kind::automatic && !request.camera.image_distance_mm;
 }
 
 void check(const RenderRequest& request) {
@@ -41,6 +44,11 @@ void check(const RenderRequest& request) {
                                  request.scene_unit_mm));
   if (request.aperture_diameter_mm && request.camera.f_number)
     throw InputError("`aperture_diameter_mm` and `f_number` both set the stop; one of them would be right");
+  if (!(request.light_scale > 0 && std::isfinite(request.light_scale)))
+    throw InputError(fmt::format("`light_scale` {}: a factor above 0 would be right", request.light_scale));
+  if (request.focus_pixel && request.camera.image_distance_mm)
+    throw InputError(
+        "`focus_pixel` and `image_distance_mm` both place the sensor; one of them would be right");
   if (!request.autofocus.zones.empty() && !is_automatic(request))
     throw InputError(
         "`zones` are for automatic focus; together with `focus` or `image_distance_mm`, which place the "
@@ -53,6 +61,7 @@ void require_no_lens_settings(const RenderRequest& request) {
   const bool focused = !request.focus_as_in_scene && camera.focus.kind != Focus::Kind::automatic;
   const char* const set = camera.image_distance_mm           ? "image_distance_mm"
                           : focused                          ? "focus"
+                          : request.focus_pixel              ? "focus_pixel"
                           : request.aperture_diameter_mm     ? "aperture_diameter_mm"
                           : camera.f_number                  ? "f_number"
                           : camera.focus_wavelength_nm       ? "focus_wavelength_nm"
@@ -88,7 +97,7 @@ void focus_as_scene(const render::SceneFocus& scene, const RenderRequest& reques
                     const Context& context) {
   camera.focus = scene.distance_m ? Focus::at_m(*scene.distance_m) : Focus::design();
   camera.image_distance_mm = scene.film_distance_mm;
-  if (request.focus_as_in_scene && !scene.distance_m && !scene.film_distance_mm)
+  if (request.focus_as_in_scene && !request.focus_pixel && !scene.distance_m && !scene.film_distance_mm)
     send_note(
         context,
         "the lens is focused as its prescription has it: the scene gives no distance, and `focus` none");
@@ -99,7 +108,7 @@ Lens lens_as_used(const render::SceneCamera& scene, const RenderRequest& request
   camera.lens = *scene.lens;
   if (camera.image_distance_mm && request.focus_as_in_scene)
     camera.focus = Focus::design();
-  else if (request.focus_as_in_scene || is_automatic(request))
+  else if (request.focus_as_in_scene || request.focus_pixel || is_automatic(request))
     focus_as_scene(scene.focus, request, camera, context);
   const MountedLens mounted = mounted_lens(camera, context);
   FieldTableRequest at = FieldTableRequest::of(mounted.lens());
@@ -135,10 +144,10 @@ render::PathOptions path_options(const RenderRequest& request, const render::Sce
   return path;
 }
 
-/// White light of this luminance from all around.
-render::LightDescription white_sky(double cd_m2) {
+/// White light of this luminance from all around. \param light_scale  that all lights are multiplied by.
+render::LightDescription white_sky(double cd_m2, double light_scale) {
   render::EntityMaker light("infinite", {std::make_shared<const std::string>("sky"), 0, 0});
-  return {light.rgb("L", {1, 1, 1}).number("scale", cd_m2 / lumens_per_watt).made(), {}};
+  return {light.rgb("L", {1, 1, 1}).number("scale", cd_m2 / lumens_per_watt / light_scale).made(), {}};
 }
 
 render::SceneDescription read_description(const std::string& name, render::Unsupported& unsupported) {
@@ -147,27 +156,60 @@ render::SceneDescription read_description(const std::string& name, render::Unsup
                                      : render::read_scene_description(path, unsupported);
 }
 
-PreparedScene prepare(const RenderRequest& request, const Context& context,
+std::vector<double> wavelengths_of(const RenderRequest& request) {
+  return request.wavelengths_nm.empty() ? usual_wavelengths_nm() : request.wavelengths_nm;
+}
+
+/// Whether one world serves both.
+bool same_world(const RenderRequest& a, const RenderRequest& b) {
+  return a.scene == b.scene && a.absolute_spectra == b.absolute_spectra && a.light_scale == b.light_scale &&
+         a.sky_cd_m2 == b.sky_cd_m2 && a.skip_unsupported == b.skip_unsupported &&
+         wavelengths_of(a) == wavelengths_of(b);
+}
+
+void build(const RenderRequest& request, render::Unsupported& unsupported, PreparedWorld& made) {
+  made.world = build_world_at(*made.description, request, wavelengths_of(request), unsupported);
+  made.for_focus = std::make_shared<WorldForFocus>();
+}
+
+/// What the pixel sees is sharp.
+void focus_on_pixel(const Context& context, PreparedScene& scene) {
+  RenderRequest sharp = scene.request;
+  sharp.camera.focus = Focus::at_m(depth_of_pixel_m(scene, *scene.request.focus_pixel));
+  sharp.focus_as_in_scene = false;
+  sharp.focus_pixel.reset();
+  scene.lens = lens_as_used(scene.world->camera, sharp, context);
+}
+
+/// \param before  whose world is kept if it serves; may be null.
+PreparedScene prepare(const RenderRequest& request, const PreparedScene* before, const Context& context,
                       render::Unsupported& unsupported) {
   check(request);
   auto made = std::make_shared<PreparedWorld>();
-  made->description = read_description(request.scene, unsupported);
-  if (request.sky_cd_m2) made->description.lights.push_back(white_sky(*request.sky_cd_m2));
-  made->camera = render::set_up_camera(made->description, camera_choice(request), unsupported);
-  for (const auto* notes : {&made->description.notes, &made->camera.notes})
-    for (const std::string& line : *notes) send_note(context, line);
+  const bool kept = before && same_world(request, before->request);
+  if (kept) {
+    *made = *before->world;
+  } else {
+    render::SceneDescription description = read_description(request.scene, unsupported);
+    if (request.sky_cd_m2) description.lights.push_back(white_sky(*request.sky_cd_m2, request.light_scale));
+    made->description = std::make_shared<const render::SceneDescription>(std::move(description));
+  }
+  made->camera = render::set_up_camera(*made->description, camera_choice(request), unsupported);
+  if (!kept)
+    for (const std::string& line : made->description->notes) send_note(context, line);
+  for (const std::string& line : made->camera.notes) send_note(context, line);
   PreparedScene scene{request, made->camera.film, made->camera.photosite, {}, {}, {}, {}};
   if (made->camera.lens)
     scene.lens = lens_as_used(made->camera, request, context);
   else
     require_no_lens_settings(request);
   clip(request, made->camera.clipping);
-  made->path = path_options(request, made->description, unsupported);
-  made->world = build_world_at(
-      made->description, request,
-      request.wavelengths_nm.empty() ? usual_wavelengths_nm() : request.wavelengths_nm, unsupported);
-  scene.files = render::scene_files(made->description);
+  made->path = path_options(request, *made->description, unsupported);
+  if (!kept) build(request, unsupported, *made);
+  place_camera(request, scene.lens, *made, context);
+  scene.files = render::scene_files(*made->description);
   scene.world = std::move(made);
+  if (request.focus_pixel) focus_on_pixel(context, scene);
   return scene;
 }
 
@@ -194,7 +236,7 @@ std::unique_ptr<const render::World> build_world_at(const render::SceneDescripti
                                                     const std::vector<double>& wavelengths_nm,
                                                     render::Unsupported& unsupported) {
   return render::build_world(description, render::WavelengthGroups(wavelengths_nm),
-                             {request.absolute_spectra}, unsupported);
+                             {request.absolute_spectra, request.light_scale}, unsupported);
 }
 
 render::SceneCamera scene_camera(const PreparedScene& scene) {
@@ -214,11 +256,20 @@ render::RenderOptions render_options(const PreparedScene& scene) {
 PreparedScene prepare_scene(const RenderRequest& request, const Context& context) {
   return result_within(context, [&](const ProgressCallback&) {
     render::Unsupported unsupported(request.skip_unsupported);
-    PreparedScene scene = prepare(request, context, unsupported);
+    PreparedScene scene = prepare(request, nullptr, context, unsupported);
     if (const std::size_t count = unsupported.list().size(); count > 0)
       send_note(context,
                 fmt::format("{} of the scene's features are left out; `list_unsupported` shows them", count));
     return scene;
+  });
+}
+
+PreparedScene prepare_scene(const RenderRequest& request, const PreparedScene& before,
+                            const Context& context) {
+  if (!same_world(request, before.request)) return prepare_scene(request, context);
+  return result_within(context, [&](const ProgressCallback&) {
+    render::Unsupported unsupported(true);  // what it finds has been reported
+    return prepare(request, &before, context, unsupported);
   });
 }
 
@@ -228,7 +279,7 @@ std::vector<UnsupportedFeature> unsupported_features(RenderRequest request, cons
   silent.note = {};
   return result_within(context, [&](const ProgressCallback&) {
     render::Unsupported unsupported(true);
-    prepare(request, silent, unsupported);
+    prepare(request, nullptr, silent, unsupported);
     std::vector<UnsupportedFeature> features;
     for (const render::Complaint& each : unsupported.list())
       features.push_back({each.at.file ? *each.at.file : "", each.at.line, each.at.column,

@@ -7,14 +7,22 @@
 #include <petzval/simulate/render.h>
 
 #include <memory>
+#include <mutex>
 #include <string>
 
 namespace petzval {
 
-struct PreparedWorld {
-  render::SceneDescription description;
-  render::SceneCamera camera;  ///< but for its lens, which is that of the PreparedScene
+/// A world of fewer wavelengths, for looking at: built when it is first asked for.
+struct WorldForFocus {
+  std::once_flag once;
   std::unique_ptr<const render::World> world;
+};
+
+struct PreparedWorld {
+  std::shared_ptr<const render::SceneDescription> description;
+  render::SceneCamera camera;  ///< but for its lens, which is that of the PreparedScene
+  std::shared_ptr<const render::World> world;
+  std::shared_ptr<WorldForFocus> for_focus;
   render::PathOptions path;
 };
 
@@ -24,11 +32,18 @@ render::SceneCamera scene_camera(const PreparedScene& scene);
 /// What a path follows from the request: sampling is left to the caller.
 render::RenderOptions render_options(const PreparedScene& scene);
 
+/// How many samples a pixel has at most.
+int samples_asked(const PreparedScene& scene);
+
 /// The world of a description at these wavelengths.
 std::unique_ptr<const render::World> build_world_at(const render::SceneDescription& description,
                                                     const RenderRequest& request,
                                                     const std::vector<double>& wavelengths_nm,
                                                     render::Unsupported& unsupported);
+
+/// The world that autofocus looks at: the picture's if its wavelengths were asked for; otherwise eight of
+/// them, which one path serves, are quicker.
+const render::World& world_for_focus(const PreparedScene& scene);
 
 /// What decides about the light of a rendering, one line for each thing, its name first: version, options,
 /// camera, lens with its indices, and every file of the scene with a hash of its bytes. A checkpoint of

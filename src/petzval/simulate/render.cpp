@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <petzval/base/version.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/render/lamps.h>
 #include <petzval/sensor/lens_facts.h>
+#include <petzval/simulate/framing.h>
 #include <petzval/simulate/prepared_world.h>
 
+#include <cmath>
 #include <utility>
 
 namespace petzval {
@@ -16,8 +19,7 @@ constexpr int usual_samples = 64, most_samples_for_noise = 4096;
 render::RenderOptions sampling_of(const PreparedScene& scene, const Context& context) {
   const RenderRequest& request = scene.request;
   render::RenderOptions options = render_options(scene);
-  options.samples_per_pixel =
-      request.samples_per_pixel.value_or(request.noise > 0 ? most_samples_for_noise : usual_samples);
+  options.samples_per_pixel = samples_asked(scene);
   options.noise = request.noise;
   options.seed = context.seed;
   options.first_surfaces = request.first_surfaces;
@@ -36,11 +38,16 @@ void add_facts(const PreparedScene& scene, const Context& context, Rendering& pi
 
 }  // namespace
 
-Rendering render_scene(const PreparedScene& scene, const Context& context, std::optional<Rendering>* so_far) {
+int samples_asked(const PreparedScene& scene) {
+  const RenderRequest& request = scene.request;
+  return request.samples_per_pixel.value_or(request.noise > 0 ? most_samples_for_noise : usual_samples);
+}
+
+Rendering render_scene(const PreparedScene& scene, const Context& context, const PictureWatch& watch) {
   if (scene.wants_autofocus()) {
     PreparedScene focused = scene;
     autofocus(focused, context);
-    return render_scene(focused, context, so_far);
+    return render_scene(focused, context, watch);
   }
   const render::World& world = *scene.world->world;
   if (world.lights.empty()) send_note(context, "the scene has no lights; the picture will be black");
@@ -49,13 +56,18 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, std::
   if (samples != options.samples_per_pixel)
     send_note(context, fmt::format("{} bands need at least {} samples a pixel",
                                    world.groups.wavelengths_nm().size(), samples));
-  if (so_far)
-    options.so_far = [&](Rendering picture) {
-      add_facts(scene, context, picture);
-      *so_far = std::move(picture);
-    };
+  const auto show = [&](Rendering picture, bool stopped) {
+    add_facts(scene, context, picture);
+    watch.show(picture, stopped);
+  };
+  if (watch.show) options.so_far = [&](Rendering picture) { show(std::move(picture), true); };
+  if (watch.show && std::isfinite(watch.every_s)) {
+    options.preview = [&](const Rendering& picture) { show(picture, false); };
+    options.preview_seconds = watch.every_s;
+  }
   Rendering picture = result_within(context, [&](const ProgressCallback& progress) {
-    const render::SceneCamera camera = scene_camera(scene);
+    render::SceneCamera camera = scene_camera(scene);
+    camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
     return render_picture(world, *camera.make(world.groups), camera.world_from_camera, scene.film, options,
                           progress);
   });
@@ -64,6 +76,12 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, std::
                                    "`samples_per_pixel` would let it fall to {:g}",
                                    *picture.noise, picture.samples_per_pixel, scene.request.noise));
   add_facts(scene, context, picture);
+  if (const auto seen = scene.lens ? std::optional(framing(scene)) : std::nullopt;
+      seen && lights_too_little(*seen))
+    send_note(context, fmt::format("{} lights a circle of {:.3g} mm of a film that is {:.3g} x {:.3g} mm; "
+                                   "`film_diagonal_mm` {:.3g} would show that alone",
+                                   scene.lens->name, seen->lit_circle_mm, seen->film_width_mm,
+                                   seen->film_height_mm, seen->lit_circle_mm));
   return picture;
 }
 

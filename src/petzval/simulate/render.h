@@ -3,10 +3,13 @@
 #pragma once
 
 #include <petzval/base/context.h>
+#include <petzval/image/picture.h>
 #include <petzval/render/rendering.h>
 #include <petzval/simulate/autofocus.h>
 #include <petzval/simulate/camera.h>
 
+#include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -39,6 +42,8 @@ struct RenderRequest {
   /// Without surfaces, its lens is the one of the scene's camera, if that has one. Without a sensor the film
   /// is the scene's. Automatic focus is autofocus on the zones below; an ideal camera has none.
   Camera camera = Camera();  // "= {}" makes g++ 12 warn of what it does not see through
+  /// What this pixel (column, row) of the picture sees is to be sharp, whatever `camera.focus` says.
+  std::optional<std::array<double, 2>> focus_pixel = {};
   /// The focus is the one in the scene's file, or the prescription's where there is none, whatever
   /// `camera.focus` says.
   bool focus_as_in_scene = false;
@@ -48,9 +53,15 @@ struct RenderRequest {
   std::optional<double> film_diagonal_mm = {};
   std::optional<double> aperture_diameter_mm = {};  ///< of the stop, in place of an f-number
 
+  /// Where the camera stands and what is in the middle of its picture [scene units, world space]; absent: as
+  /// in the scene, or, with one of them alone, the middle of the scene.
+  std::optional<std::array<double, 3>> camera_at = {}, look_at = {};
+  std::optional<double> field_of_view_deg = {};  ///< of a camera without a lens, across the picture's width
+
   std::vector<double> wavelengths_nm = {};  ///< empty: 400 to 700 in steps of 10
   double scene_unit_mm = 1000;              ///< length of the scene's unit
   bool absolute_spectra = false;  ///< spectra of lights are radiances [W·m⁻²·sr⁻¹·nm⁻¹] as they stand
+  double light_scale = 1;         ///< all lights of the scene this much stronger
   std::optional<double> sky_cd_m2 = {};  ///< white light from all around, added to that of the scene
   bool skip_unsupported = false;  ///< leave out what the scene has and Petzval has not, instead of refusing
 
@@ -98,6 +109,11 @@ std::string camera_text(const PreparedScene& scene);
 /// file, line and column for what is wrong in the scene; Failure; Cancelled.
 PreparedScene prepare_scene(const RenderRequest& request, const Context& context = {});
 
+/// The same scene as another request has its camera: lens, focus, stop, place, samples. The world is kept if
+/// what is asked of it is the same, and else built anew.
+PreparedScene prepare_scene(const RenderRequest& request, const PreparedScene& before,
+                            const Context& context = {});
+
 /// Something in a scene that is not supported, and where.
 struct UnsupportedFeature {
   std::string file;
@@ -113,15 +129,25 @@ std::vector<UnsupportedFeature> unsupported_features(RenderRequest request, cons
 /// distance. \throws InputError for a camera without a lens and for zones of fewer than 4 × 4 pixels;
 /// Cancelled.
 const FocusRun& autofocus(PreparedScene& scene, const Context& context = {});
+/// The zones that autofocus looks at, in pixels of the picture. \throws InputError for those of fewer than
+/// 4 × 4.
+std::vector<PictureFrame> frames_of_zones(const PreparedScene& scene);
+
 /// The film distance at which the zones of a scene are sharpest. Without wavelengths, light is followed at
 /// eight of them, which one path serves.
 FocusRun autofocus(RenderRequest request, const Context& context = {});
 
+/// Shown a picture that is not done yet.
+struct PictureWatch {
+  /// `stopped`: the work ends here, with Cancelled; else it goes on.
+  std::function<void(const Rendering& so_far, bool stopped)> show;
+  double every_s = std::numeric_limits<double>::infinity();  ///< while it goes on; infinite: not at all
+};
+
 /// The light on the sensor, with its provenance and the lens's facts, after autofocus if that is asked and
-/// has not been. The seed is the context's. \param so_far  if not null, is given the picture as far as it got
-/// when the work is stopped and there is a checkpoint. \throws InputError; Failure; Cancelled.
+/// has not been. The seed is the context's. \throws InputError; Failure; Cancelled.
 Rendering render_scene(const PreparedScene& scene, const Context& context = {},
-                       std::optional<Rendering>* so_far = nullptr);
+                       const PictureWatch& watch = {});
 /// prepare_scene() and render_scene() in one.
 Rendering render_scene(const RenderRequest& request, const Context& context = {});
 

@@ -60,15 +60,22 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
                   : camera.options.origin_at_front ? "lens, its origin at the front"
                                                    : "lens, its origin at the film",
                   request.sampling == RenderRequest::Sampling::rear_disk ? "rear-disk" : "exit-pupil");
+  if (camera.lens)
+    text += fmt::format("focus: film {} mm behind the last surface\nstop {} mm wide\n",
+                        scene.film_distance_mm(), 2 * stop_radius_mm(*camera.lens));
+  else
+    text += fmt::format("field of view {}\n", camera.perspective.field_of_view_deg);
+  for (const auto& row : camera.world_from_camera.matrix())
+    text += fmt::format("camera's place {}\n", fmt::join(row, " "));
   const StopBlades blades = camera.lens ? camera.lens->stop_blades() : StopBlades{};
   text += fmt::format("blades {} turned by {}\ndiffraction {}\n", blades.count, blades.rotation_deg,
                       request.diffraction);
   text +=
       fmt::format("scene-unit {}\nabsolute-spectra {}\n", request.scene_unit_mm, request.absolute_spectra);
-  text +=
-      fmt::format("sky {} skip-unsupported {}\n", request.sky_cd_m2.value_or(0), request.skip_unsupported);
+  text += fmt::format("light-scale {} sky {} skip-unsupported {}\n", request.light_scale,
+                      request.sky_cd_m2.value_or(0), request.skip_unsupported);
   text += lens_line(camera, nm) + losses_line(camera.options.losses);
-  return text + render::scene_files_fingerprint(scene.world->description);
+  return text + render::scene_files_fingerprint(*scene.world->description);
 }
 
 }  // namespace petzval

@@ -39,8 +39,10 @@ std::string extension_of(const std::string& path) {
 }
 
 /// All but the values.
-SpectralExr description_of(const SpectralImage& image) {
+SpectralExr description_of(const SpectralImage& image, const std::vector<ExrPlane>& layers) {
   SpectralExr exr;
+  exr.others = layers;
+  exr.lamps.assign(image.lamps.begin(), image.lamps.end());
   exr.width = image.columns();
   exr.height = image.rows();
   exr.wavelengths_nm = image.wavelengths_nm();
@@ -115,17 +117,19 @@ std::optional<Spectrum> illuminant_of(const SpectralExr& exr, const std::string&
 
 }  // namespace
 
-void write_irradiance(const std::string& path, const SpectralImage& image) {
+void write_irradiance(const std::string& path, const SpectralImage& image,
+                      const std::vector<ExrPlane>& layers) {
   const std::string extension = extension_of(path);
   if (extension == ".exr")
-    return write_spectral_exr(path, description_of(image), image.values(), [&] { image.release_memory(); });
+    return write_spectral_exr(path, description_of(image, layers), image.values(),
+                              [&] { image.release_memory(); });
   if (extension == ".npy") return write_npy(path, image);
   throw InputError(path, "irradiance is written as .exr or .npy");
 }
 
-void write_irradiance(const std::string& path, SpectralImage&& image) {
+void write_irradiance(const std::string& path, SpectralImage&& image, const std::vector<ExrPlane>& layers) {
   if (extension_of(path) == ".npy") return write_npy(path, std::move(image));
-  write_irradiance(path, std::as_const(image));
+  write_irradiance(path, std::as_const(image), layers);
 }
 
 SpectralImage read_irradiance(const std::string& path) {
@@ -161,6 +165,8 @@ SpectralImage read_irradiance(const std::string& path) {
   image.provenance = exr.strings[provenance_attribute];
   image.lens = lens_of(exr, path);
   image.illuminant = illuminant_of(exr, path);
+  image.lamps.resize(exr.lamps.size());
+  std::ranges::transform(exr.lamps, image.lamps.begin(), [](float lamp) { return lamp > 0 ? 1 : 0; });
   return image;
 }
 

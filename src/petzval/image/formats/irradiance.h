@@ -2,21 +2,26 @@
 // Irradiance pictures in files, the format chosen by the extension.
 #pragma once
 
+#include <petzval/image/formats/plane_exr.h>
 #include <petzval/image/spectral_image.h>
 
 #include <string>
+#include <vector>
 
 namespace petzval {
 
 /// Writes an image as spectral OpenEXR (.exr) or NumPy array (.npy).
 ///
 /// .exr carries everything: channels S0.…nm, emissiveUnits "W.m^-2.nm^-1", and the attributes pixelPitch_um
-/// (double), pixelAperture ("box" or "point") and comments (the provenance). .npy is float32 of shape (rows,
+/// (double), pixelAperture ("box" or "point") and comments (the provenance); and `layers`, whatever they are,
+/// as further channels, which read_irradiance() leaves aside. .npy is float32 of shape (rows,
 /// columns, bands) and carries neither wavelengths nor pitch nor units. \throws InputError for another
 /// extension, and as the writers; Failure.
-void write_irradiance(const std::string& path, const SpectralImage& image);
+void write_irradiance(const std::string& path, const SpectralImage& image,
+                      const std::vector<ExrPlane>& layers = {});
 /// The same for an image whose values nobody needs any more: as write_npy().
-void write_irradiance(const std::string& path, SpectralImage&& image);
+void write_irradiance(const std::string& path, SpectralImage&& image,
+                      const std::vector<ExrPlane>& layers = {});
 
 /// Reads what write_irradiance wrote as .exr.
 /// \throws InputError for a file that is damaged or holds something else (radiance, no pitch, NaN), and for

@@ -90,11 +90,13 @@ void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralE
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < bands.size(); ++i)
     buffer.insert(bands[i].channel, window.plane(exr.plane(i).data()));
-  if (const Imf::Channel* channel = file.header().channels().findChannel(exr_depth_channel);
-      channel != nullptr && is_whole(*channel)) {
-    exr.depth.resize(exr.band_size());
-    buffer.insert(exr_depth_channel, window.plane(exr.depth.data()));
-  }
+  for (const auto& [name, plane] :
+       {std::pair{exr_depth_channel, &exr.depth}, std::pair{exr_lamps_channel, &exr.lamps}})
+    if (const Imf::Channel* channel = file.header().channels().findChannel(name);
+        channel != nullptr && is_whole(*channel)) {
+      plane->resize(exr.band_size());
+      buffer.insert(name, window.plane(plane->data()));
+    }
   file.setFrameBuffer(buffer);
   for (int row = window.box.min.y; row <= window.box.max.y; row += rows_at_a_time) {
     file.readPixels(row, std::min(row + rows_at_a_time - 1, window.box.max.y));
@@ -129,15 +131,24 @@ SpectralExr read_spectra(const std::string& path, const std::function<void(const
 
 // ---- writing
 
+/// Those that are no bands.
+std::vector<ExrPlane> planes_beside(const SpectralExr& exr) {
+  std::vector<ExrPlane> planes = exr.others;
+  if (!exr.depth.empty()) planes.push_back({exr_depth_channel, exr.depth});
+  if (!exr.lamps.empty()) planes.push_back({exr_lamps_channel, exr.lamps});
+  return planes;
+}
+
 void check(const std::string& path, const SpectralExr& exr, std::span<const float> values) {
   if (exr.width < 1 || exr.height < 1 || exr.wavelengths_nm.empty())
     throw InputError(path, "an image needs at least one pixel and one wavelength");
   if (values.size() != exr.band_size() * exr.wavelengths_nm.size())
     throw InputError(path, fmt::format("{} values for {} x {} pixels in {} bands", values.size(), exr.width,
                                        exr.height, exr.wavelengths_nm.size()));
-  if (!exr.depth.empty() && exr.depth.size() != exr.band_size())
-    throw InputError(path,
-                     fmt::format("{} depths for {} x {} pixels", exr.depth.size(), exr.width, exr.height));
+  for (const ExrPlane& plane : planes_beside(exr))
+    if (plane.values.size() != exr.band_size())
+      throw InputError(path, fmt::format("{} values in channel {} for {} x {} pixels", plane.values.size(),
+                                         plane.name, exr.width, exr.height));
   for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i)
     if (!(exr.wavelengths_nm[i] > 0) || std::isinf(exr.wavelengths_nm[i]) ||
         (i > 0 && exr.wavelengths_nm[i] - exr.wavelengths_nm[i - 1] < same_band_nm))
@@ -160,19 +171,16 @@ void write(OutputFile& output, const SpectralExr& exr, std::span<const float> va
            const std::function<void()>& after_rows) {
   Imf::Header header = header_of(exr);
   Imf::FrameBuffer buffer;
-  for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i) {
-    const std::string channel = spectral_channel_name({exr.kind, 0, exr.wavelengths_nm[i]});
-    header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+  std::vector<ExrPlane> planes = planes_beside(exr);
+  for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i)
+    planes.push_back({spectral_channel_name({exr.kind, 0, exr.wavelengths_nm[i]}),
+                      values.subspan(i * exr.band_size(), exr.band_size())});
+  for (const ExrPlane& plane : planes) {
+    header.channels().insert(plane.name, Imf::Channel(Imf::FLOAT));
     // The library takes non-const memory for reading and for writing alike; a writer only reads it.
-    auto* plane = reinterpret_cast<char*>(const_cast<float*>(values.data() + i * exr.band_size()));
-    buffer.insert(channel, Imf::Slice(Imf::FLOAT, plane, sizeof(float),
-                                      sizeof(float) * static_cast<std::size_t>(exr.width)));
-  }
-  if (!exr.depth.empty()) {
-    header.channels().insert(exr_depth_channel, Imf::Channel(Imf::FLOAT));
-    auto* plane = reinterpret_cast<char*>(const_cast<float*>(exr.depth.data()));
-    buffer.insert(exr_depth_channel, Imf::Slice(Imf::FLOAT, plane, sizeof(float),
-                                                sizeof(float) * static_cast<std::size_t>(exr.width)));
+    auto* first = reinterpret_cast<char*>(const_cast<float*>(plane.values.data()));
+    buffer.insert(plane.name, Imf::Slice(Imf::FLOAT, first, sizeof(float),
+                                         sizeof(float) * static_cast<std::size_t>(exr.width)));
   }
   ExrStream stream(output);
   try {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/large_floats.h>
+#include <petzval/image/formats/plane_exr.h>
 #include <petzval/image/formats/spectral_channel.h>
 
 #include <cstddef>
@@ -19,6 +20,8 @@ inline constexpr const char* spectral_radiance_units = "W.m^-2.sr^-1.nm^-1";
 inline constexpr const char* spectral_irradiance_units = "W.m^-2.nm^-1";
 /// Where OpenEXR keeps depth.
 inline constexpr const char* exr_depth_channel = "Z";
+/// Where Petzval keeps which pixels show a lamp itself: 1 or 0.
+inline constexpr const char* exr_lamps_channel = "lamps";
 
 /// A spectral image as a file holds it: a scene's radiance, a sensor's irradiance, a texture's reflectance.
 ///
@@ -38,6 +41,8 @@ struct SpectralExr {
   std::string units;         ///< attribute emissiveUnits; empty if the file has none (reflectance has none)
   LargeFloats values;        ///< a plane a wavelength, rows from the top
   std::vector<float> depth;  ///< of the channel Z [as the file has it], a plane; empty: none
+  std::vector<float> lamps;  ///< of the channel "lamps", likewise
+  std::vector<ExrPlane> others;                ///< further channels that are written; none is read
   std::map<std::string, std::string> strings;  ///< other attributes of the file that are text
   std::map<std::string, double> numbers;       ///< other attributes that are one number
 

@@ -4,6 +4,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/render/film/film.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -16,7 +17,7 @@ namespace {
 
 /// 16 GiB of sums.
 constexpr double most_values = 2147483648.0;
-constexpr std::string_view magic = "petzval-render-checkpoint/2\n";
+constexpr std::string_view magic = "petzval-render-checkpoint/3\n";
 
 struct CheckpointHead {
   std::uint64_t fingerprint_size, rays, passed;
@@ -52,25 +53,66 @@ void require_same(std::string_view there, std::string_view here, const std::stri
 /// Of a film or a const one.
 template <typename AnyFilm>
 auto sums_of(AnyFilm& film) {
-  return std::array{&film.light, &film.half, &film.met, &film.depth, &film.normal, &film.albedo};
+  return std::array{&film.light, &film.half, &film.lamps, &film.met, &film.depth, &film.normal, &film.albedo};
+}
+
+/// Row by row, where a tile's sums stand in those of a window that holds it.
+template <typename Copy>
+void each_row(const PixelWindow& window, const PixelWindow& tile, std::size_t planes, const Copy& copy) {
+  const auto columns = static_cast<std::size_t>(tile.columns());
+  for (std::size_t plane = 0; plane < planes; ++plane)
+    for (int row = tile.top; row < tile.bottom; ++row)
+      copy(plane * window.size() + window.index(tile.left, row),
+           plane * tile.size() + tile.index(tile.left, row), columns);
 }
 
 }  // namespace
 
-Film::Film(const PixelWindow& pixels, int bands, bool first_surfaces, bool noise) : window(pixels) {
-  const double values = static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + 6);
+Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces, bool noise)
+    : window(pixels) {
+  const double values =
+      static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + groups + 6);
   if (values > most_values)
     throw InputError(
         fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
                     "pixels or bands would fit",
                     pixels.columns(), pixels.rows(), bands, values * 8 / 1073741824));
   light.assign(pixels.size() * static_cast<std::size_t>(bands), 0.0);
+  arriving.assign(static_cast<std::size_t>(bands), 0.0);
+  lamps.assign(pixels.size(), 0.0);
   if (noise) half.assign(pixels.size(), 0.0);
   if (!first_surfaces) return;
-  met.assign(pixels.size(), 0.0);
+  met.assign(pixels.size() * static_cast<std::size_t>(groups), 0.0);
   depth.assign(pixels.size(), 0.0);
   normal.assign(3 * pixels.size(), 0.0);
   albedo.assign(light.size(), 0.0);
+}
+
+Film Film::part(const PixelWindow& tile) const {
+  Film result;
+  result.window = tile;
+  const auto from = sums_of(*this);
+  const auto to = sums_of(result);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::size_t planes = from[i]->size() / window.size();
+    to[i]->resize(planes * tile.size());
+    each_row(window, tile, planes, [&](std::size_t here, std::size_t there, std::size_t count) {
+      std::copy_n(from[i]->begin() + static_cast<std::ptrdiff_t>(here), count,
+                  to[i]->begin() + static_cast<std::ptrdiff_t>(there));
+    });
+  }
+  return result;
+}
+
+void Film::put(const Film& tile) {
+  const auto from = sums_of(tile);
+  const auto to = sums_of(*this);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    each_row(window, tile.window, from[i]->size() / tile.window.size(),
+             [&](std::size_t here, std::size_t there, std::size_t count) {
+               std::copy_n(from[i]->begin() + static_cast<std::ptrdiff_t>(there), count,
+                           to[i]->begin() + static_cast<std::ptrdiff_t>(here));
+             });
 }
 
 void write_checkpoint(const std::string& path, const Film& film, const std::string& fingerprint) {
@@ -84,6 +126,7 @@ void write_checkpoint(const std::string& path, const Film& film, const std::stri
   write(&head, sizeof head);
   write(fingerprint.data(), fingerprint.size());
   for (const std::vector<double>* sums : sums_of(film)) write(sums->data(), sums->size() * sizeof(double));
+  write(film.arriving.data(), film.arriving.size() * sizeof(double));
   out.close();
   if (!out) throw Failure(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
   file.commit();
@@ -104,6 +147,7 @@ bool read_checkpoint(const std::string& path, Film& film, const std::string& fin
   Film read = film;
   for (std::vector<double>* sums : sums_of(read))
     take(bytes, sums->data(), sums->size() * sizeof(double), path);
+  take(bytes, read.arriving.data(), read.arriving.size() * sizeof(double), path);
   if (!bytes.empty())
     throw InputError(path, "is a damaged checkpoint: it is too long; delete it to start afresh");
   read.rays = head.rays, read.passed = head.passed, read.passes = static_cast<int>(head.passes);

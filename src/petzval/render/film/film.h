@@ -16,14 +16,23 @@ struct Film {
   PixelWindow window;
   std::vector<double> light;  ///< sums over samples, [band][pixel]
   std::vector<double> half;   ///< of every second pass, summed over bands: tells the noise if that is wanted
-  /// Of first surfaces, if wanted: sums over rays that met one, and how many did.
-  std::vector<double> met, depth, normal, albedo;  ///< [pixel], [pixel], [pixel][3], [band][pixel]
+  std::vector<double> lamps;  ///< light that comes straight from a lamp, summed over bands
+  /// Of first surfaces, if wanted: how many rays of each group of wavelengths met one, and sums over them.
+  std::vector<double> met, depth, normal, albedo;  ///< [group][pixel], [pixel], [3][pixel], [band][pixel]
+  std::vector<double> arriving;  ///< light that comes straight to what is seen, summed over rays, [band]
   std::uint64_t rays = 0, passed = 0;
   int passes = 0;  ///< rounds of samples that are in the sums
 
   /// \throws InputError if it would not fit into memory.
-  Film(const PixelWindow& window, int bands, bool first_surfaces, bool noise);
+  Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, bool noise);
   bool has_first_surfaces() const { return !met.empty(); }
+
+  /// The sums of a window within this one; and how they are put back.
+  Film part(const PixelWindow& tile) const;
+  void put(const Film& tile);
+
+ private:
+  Film() = default;
 };
 
 /// Saves a film, whole or not at all, and reads it back. `fingerprint` says what is being rendered.

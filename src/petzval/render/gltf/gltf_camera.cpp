@@ -32,22 +32,10 @@ void set_film(double aspect, double view_down_deg, const Location& at, SceneDesc
   scene.camera = EntityMaker("perspective", at).number("fov", degrees(2 * std::atan(half))).made();
 }
 
-/// Looks along −z at the sphere about the scene.
-void stand_back(const GltfFile& file, const std::array<Vector3, 2>& box, SceneDescription& scene) {
-  const Vector3 middle = 0.5 * (box[0] + box[1]);
-  const double radius = std::max(length(box[1] - box[0]) / 2, 1e-6);
-  const double distance = radius / std::sin(radians(default_view_deg) / 2);
-  set_film(default_aspect, default_view_deg, file.at(""), scene);
-  scene.camera_from_world =
-      facing_backwards() * Transform::translation(-1 * (middle + Vector3{0, 0, distance}));
-  scene.notes.push_back(
-      fmt::format("the scene has no camera; one stands {:.3g} m before its middle", distance));
-}
-
 }  // namespace
 
-void add_gltf_camera(const GltfFile& file, const std::vector<GltfNode>& nodes,
-                     const std::array<Vector3, 2>& box, Unsupported& unsupported, SceneDescription& scene) {
+void add_gltf_camera(const GltfFile& file, const std::vector<GltfNode>& nodes, Unsupported& unsupported,
+                     SceneDescription& scene) {
   for (const GltfNode& node : nodes) {
     if (node.node->camera < 0) continue;
     const tinygltf::Camera& camera =
@@ -71,7 +59,9 @@ void add_gltf_camera(const GltfFile& file, const std::vector<GltfNode>& nodes,
     report_gltf_extensions(file, camera.extensions, path, {}, unsupported);
     return;
   }
-  stand_back(file, box, scene);
+  set_film(default_aspect, default_view_deg, file.at(""), scene);
+  scene.camera_from_world = facing_backwards();
+  scene.has_camera = false;
 }
 
 }  // namespace petzval::render

@@ -64,7 +64,6 @@ class MeshPlacer {
     for (const GltfNode& node : nodes_)
       if (node.node->mesh >= 0) place(node);
   }
-  const std::array<Vector3, 2>& box() const { return box_; }
 
  private:
   void read(int index) {
@@ -103,7 +102,6 @@ class MeshPlacer {
     const auto index = static_cast<std::size_t>(node.node->mesh);
     const bool often = uses_[index] > 1;
     for (const ShapeDescription& shape : shapes_[index]) {
-      widen(*shape.mesh, node.world_from_node);
       if (often && shape.area_light < 0) continue;  // what shines must be a shape of its own
       scene_.shapes.push_back(shape);
       scene_.shapes.back().world_from_object = node.world_from_node;
@@ -123,18 +121,6 @@ class MeshPlacer {
     scene_.instances.push_back({objects_[index], node.world_from_node, file_.at(node.path)});
   }
 
-  void widen(const TriangleMesh& mesh, const Transform& to) {
-    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
-      const Vector3 p = to.point(mesh.position(i));
-      const bool first = empty_;
-      empty_ = false;
-      box_[0] =
-          first ? p : Vector3{std::min(box_[0].x, p.x), std::min(box_[0].y, p.y), std::min(box_[0].z, p.z)};
-      box_[1] =
-          first ? p : Vector3{std::max(box_[1].x, p.x), std::max(box_[1].y, p.y), std::max(box_[1].z, p.z)};
-    }
-  }
-
   const GltfFile& file_;
   const std::vector<GltfNode>& nodes_;
   SceneDescription& scene_;
@@ -143,8 +129,6 @@ class MeshPlacer {
   std::vector<int> uses_;                              ///< by nodes, of each mesh
   std::vector<std::vector<ShapeDescription>> shapes_;  ///< of each mesh, its place still open
   std::vector<int> objects_;                           ///< into SceneDescription::objects; −1: none yet
-  std::array<Vector3, 2> box_{};
-  bool empty_ = true;
 };
 
 void report_node(const GltfFile& file, const GltfNode& node, Unsupported& unsupported) {
@@ -175,7 +159,7 @@ SceneDescription parse_gltf_scene(const std::string& bytes, const std::string& p
   }
   MeshPlacer placer(file, nodes, scene, unsupported);
   placer.place_all();
-  add_gltf_camera(file, nodes, placer.box(), unsupported, scene);
+  add_gltf_camera(file, nodes, unsupported, scene);
   return scene;
 }
 

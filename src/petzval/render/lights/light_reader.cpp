@@ -31,16 +31,16 @@ struct Strength {
   }
 };
 
-Strength read_strength(const Parameters& parameters, const char* name, bool absolute,
+Strength read_strength(const Parameters& parameters, const char* name, const LightOptions& options,
                        Unsupported& unsupported) {
   Strength strength;
   strength.place = parameters.location_of(name);
-  strength.scale = parameters.number("scale", 1);
+  strength.scale = options.scale * parameters.number("scale", 1);
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::illuminant, unsupported);
   strength.spectrum = given ? *given : white_light();
   const Parameter* parameter = parameters.find(name);
-  const bool as_it_stands =
-      absolute && parameter && (parameter->type == "spectrum" || parameter->type == "blackbody");
+  const bool as_it_stands = options.absolute_spectra && parameter &&
+                            (parameter->type == "spectrum" || parameter->type == "blackbody");
   if (!as_it_stands) {
     if (!(strength.spectrum.photometric > 0))
       throw scene_error(parameters.location_of(name), "this light has no visible part to scale it by");
@@ -60,20 +60,20 @@ Vector3 triple(const Parameters& parameters, const char* name, Vector3 otherwise
   return value ? Vector3{(*value)[0], (*value)[1], (*value)[2]} : otherwise;
 }
 
-SmallLight read_point(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
-                      Unsupported& unsupported) {
+SmallLight read_point(const LightDescription& description, const WavelengthGroups& groups,
+                      const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
-  const Strength strength = read_strength(parameters, "I", absolute, unsupported);
+  const Strength strength = read_strength(parameters, "I", options, unsupported);
   SmallLight light;
   light.position = description.world_from_light.point(triple(parameters, "from", {}));
   light.strength = strength.at(groups, power_factor(parameters, 4 * pi));
   return light;
 }
 
-SmallLight read_spot(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
-                     Unsupported& unsupported) {
+SmallLight read_spot(const LightDescription& description, const WavelengthGroups& groups,
+                     const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
-  const Strength strength = read_strength(parameters, "I", absolute, unsupported);
+  const Strength strength = read_strength(parameters, "I", options, unsupported);
   SmallLight light;
   light.kind = SmallLight::Kind::spot;
   const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
@@ -92,10 +92,10 @@ SmallLight read_spot(const LightDescription& description, const WavelengthGroups
   return light;
 }
 
-SmallLight read_distant(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
-                        Unsupported& unsupported) {
+SmallLight read_distant(const LightDescription& description, const WavelengthGroups& groups,
+                        const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
-  const Strength strength = read_strength(parameters, "L", absolute, unsupported);
+  const Strength strength = read_strength(parameters, "L", options, unsupported);
   SmallLight light;
   light.kind = SmallLight::Kind::distant;
   const Vector3 from = triple(parameters, "from", {}), to = triple(parameters, "to", {0, 0, 1});
@@ -107,10 +107,10 @@ SmallLight read_distant(const LightDescription& description, const WavelengthGro
   return light;
 }
 
-Environment read_infinite(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
-                          Unsupported& unsupported) {
+Environment read_infinite(const LightDescription& description, const WavelengthGroups& groups,
+                          const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
-  Strength strength = read_strength(parameters, "L", absolute, unsupported);
+  Strength strength = read_strength(parameters, "L", options, unsupported);
   const double illuminance = parameters.number("illuminance", -1);
   const double factor = illuminance > 0 ? illuminance / pi : 1;
   const std::string name = parameters.string("filename", "");
@@ -135,29 +135,29 @@ Environment read_infinite(const LightDescription& description, const WavelengthG
 
 }  // namespace
 
-void add_light(const LightDescription& description, const WavelengthGroups& groups, bool absolute,
-               Unsupported& unsupported, Lights& lights) {
+void add_light(const LightDescription& description, const WavelengthGroups& groups,
+               const LightOptions& options, Unsupported& unsupported, Lights& lights) {
   const std::string& type = description.entity.type;
   if (type == "point")
-    lights.smalls.push_back(read_point(description, groups, absolute, unsupported));
+    lights.smalls.push_back(read_point(description, groups, options, unsupported));
   else if (type == "spot")
-    lights.smalls.push_back(read_spot(description, groups, absolute, unsupported));
+    lights.smalls.push_back(read_spot(description, groups, options, unsupported));
   else if (type == "distant")
-    lights.smalls.push_back(read_distant(description, groups, absolute, unsupported));
+    lights.smalls.push_back(read_distant(description, groups, options, unsupported));
   else if (type == "infinite")
-    lights.environments.push_back(read_infinite(description, groups, absolute, unsupported));
+    lights.environments.push_back(read_infinite(description, groups, options, unsupported));
   else
     return unsupported.report(description.entity.location(), fmt::format("LightSource \"{}\"", type));
   unsupported.report_unused(description.entity.parameters, fmt::format("LightSource \"{}\"", type));
 }
 
-BandSpectrum area_radiance(const Entity& entity, double area, const WavelengthGroups& groups, bool absolute,
-                           Unsupported& unsupported) {
+BandSpectrum area_radiance(const Entity& entity, double area, const WavelengthGroups& groups,
+                           const LightOptions& options, Unsupported& unsupported) {
   if (entity.type != "diffuse") {
     unsupported.report(entity.location(), fmt::format("AreaLightSource \"{}\"", entity.type));
     return groups.sampled([](double) { return 0; });
   }
-  const Strength strength = read_strength(entity.parameters, "L", absolute, unsupported);
+  const Strength strength = read_strength(entity.parameters, "L", options, unsupported);
   const double sides = entity.parameters.boolean("twosided", false) ? 2 : 1;
   const double factor = power_factor(entity.parameters, sides * pi * area);
   unsupported.report_unused(entity.parameters, "AreaLightSource \"diffuse\"");

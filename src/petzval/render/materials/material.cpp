@@ -9,6 +9,18 @@ namespace petzval::render {
 
 namespace {
 
+/// What materials of pbrt before version 4 are called now.
+std::string name_now(const std::string& material) {
+  static const std::map<std::string, const char*> now{
+      {"matte", "diffuse"},         {"glass", "dielectric"},
+      {"metal", "conductor"},       {"mirror", "conductor"},
+      {"plastic", "coateddiffuse"}, {"substrate", "coateddiffuse"},
+      {"uber", "coateddiffuse"},    {"translucent", "diffusetransmission"},
+      {"roughglass", "dielectric"}, {"shinymetal", "conductor"}};
+  const auto found = now.find(material);
+  return found == now.end() ? "" : fmt::format(" of pbrt before version 4 (now \"{}\")", found->second);
+}
+
 void read_roughness(const Parameters& parameters, const TextureLibrary& textures, double otherwise,
                     Material& material) {
   FloatTexture both = textures.float_parameter(parameters, "roughness", otherwise);
@@ -134,7 +146,8 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
   } else if (entity.type == "mix") {
     read_mix(scene, parameters, textures, material);
   } else {
-    unsupported.report(entity.location(), fmt::format("Material \"{}\"", entity.type));
+    unsupported.report(entity.location(),
+                       fmt::format("Material \"{}\"{}", entity.type, name_now(entity.type)));
     material.reflectance = textures.spectrum_parameter(Parameters(), "", SpectrumRole::albedo, 0.5);
     return material;
   }

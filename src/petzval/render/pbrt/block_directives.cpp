@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/render/gltf/gltf_scene.h>
 #include <petzval/render/pbrt/scene_reader.h>
 
 namespace petzval::render {
@@ -44,8 +45,11 @@ void SceneReader::restore(const std::string& word, const Location& at) {
 }
 
 void SceneReader::include(Tokens& tokens, const Location& at) {
-  const std::string path = resolved_path(at, quoted(tokens, at, "file"));
-  read_file(path, &at);
+  const std::string name = quoted(tokens, at, "file");
+  if (has_gltf_name(name))
+    return unsupported_.report(
+        at, fmt::format("Include of the glTF scene {} (petzval render {} shows it by itself)", name, name));
+  read_file(resolved_path(at, name), &at);
 }
 
 void SceneReader::begin_object(Tokens& tokens, const Location& at) {

@@ -76,6 +76,7 @@ struct SceneDescription {
   std::vector<std::string> notes;  ///< what the reader decided by itself
   Entity film, camera, sampler, integrator, pixel_filter;
   Transform camera_from_world;
+  bool has_camera = true;                    ///< else whoever renders it stands back until it fits
   std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one
   std::vector<Entity> materials;             ///< the first is pbrt's default, grey diffuse
   std::map<std::string, int> named_materials;

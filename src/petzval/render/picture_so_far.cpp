@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/render/picture_so_far.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace petzval::render {
+
+namespace {
+
+/// Pixels of which the light that comes straight from lamps is the greater part.
+std::vector<std::uint8_t> lamps_of(const Film& film) {
+  const std::size_t pixels = film.window.size();
+  std::vector<double> light(pixels, 0.0);
+  for (std::size_t i = 0; i < film.light.size(); ++i) light[i % pixels] += film.light[i];
+  std::vector<std::uint8_t> lamps(pixels);
+  std::ranges::transform(film.lamps, light, lamps.begin(),
+                         [](double lamp, double all) { return lamp > all / 2 ? 1 : 0; });
+  return std::ranges::count(lamps, 1) > 0 ? lamps : std::vector<std::uint8_t>();
+}
+
+/// The light of the scene, as it falls on what is seen: each band has as many rays as its group.
+std::optional<Spectrum> illuminant_of(const Film& film, const WavelengthGroups& groups,
+                                      const Passes& passes) {
+  std::vector<double> light;
+  for (int band = 0; band < static_cast<int>(film.arriving.size()); ++band)
+    light.push_back(film.arriving[static_cast<std::size_t>(band)] /
+                    std::max(1, passes.taken(band % groups.count(), film.passes)));
+  const double most = *std::ranges::max_element(light);
+  if (light.size() < 2 || !(most > 0)) return {};
+  for (double& value : light) value /= most;
+  return Spectrum(groups.wavelengths_nm(), light);
+}
+
+FirstSurfaces first_surfaces(const Film& film, int groups, int samples_per_pixel) {
+  const std::size_t pixels = film.window.size();
+  const auto nothing = std::numeric_limits<float>::infinity();
+  FirstSurfaces first;
+  first.depth.assign(pixels, nothing), first.normal.assign(3 * pixels, 0), first.share.assign(pixels, 0);
+  first.albedo.assign(film.albedo.size(), 0);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double met = 0;
+    for (std::size_t at = i; at < film.met.size(); at += pixels) met += film.met[at];
+    if (!(met > 0)) continue;
+    first.share[i] = static_cast<float>(met / samples_per_pixel);
+    first.depth[i] = static_cast<float>(film.depth[i] / met);
+    const Vector3 normal = normalised({film.normal[i], film.normal[pixels + i], film.normal[2 * pixels + i]});
+    first.normal[3 * i] = static_cast<float>(normal.x);
+    first.normal[3 * i + 1] = static_cast<float>(normal.y);
+    first.normal[3 * i + 2] = static_cast<float>(normal.z);
+    for (std::size_t band = 0; band * pixels < film.albedo.size(); ++band) {
+      // Of the rays that carried this band.
+      const double carried = film.met[band % static_cast<std::size_t>(groups) * pixels + i];
+      if (carried > 0)
+        first.albedo[band * pixels + i] = static_cast<float>(film.albedo[band * pixels + i] / carried);
+    }
+  }
+  return first;
+}
+
+}  // namespace
+
+Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
+                         const Photosite& photosite, const Passes& passes) {
+  Rendering result;
+  result.irradiance =
+      SpectralImage(film.window.columns(), film.window.rows(), groups.wavelengths_nm(), sensor.pitch_um,
+                    photosite.is_plain() ? PixelAperture::box : PixelAperture::photosite);
+  if (!photosite.is_plain()) result.irradiance.photosite = photosite.text();
+  result.irradiance.lamps = lamps_of(film);
+  result.irradiance.illuminant = illuminant_of(film, groups, passes);
+  const std::size_t pixels = film.window.size();
+  for (int band = 0; band < result.irradiance.bands(); ++band) {
+    const std::span<float> plane = result.irradiance.band(band);
+    const double samples = std::max(1, passes.taken(band % groups.count(), film.passes));
+    for (std::size_t i = 0; i < pixels; ++i)
+      plane[i] = static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i] / samples);
+  }
+  result.samples_per_pixel = passes.taken(film.passes);
+  result.rays = film.rays, result.passed = film.passed;
+  if (film.has_first_surfaces())
+    result.first_surfaces = first_surfaces(film, groups.count(), result.samples_per_pixel);
+  return result;
+}
+
+void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool half, Film& film) {
+  // Groups of wavelengths have no band in common.
+  parallel_for(groups, [&](std::size_t group) {
+    for (const TileResult& tile : results)
+      if (tile.done)
+        for (const Stray& stray : tile.strays[group]) film.light[stray.at] += stray.light;
+  });
+  for (const TileResult& tile : results) {
+    if (half)
+      for (const std::vector<Stray>& strays : tile.strays)
+        for (const Stray& stray : strays) film.half[stray.at % film.half.size()] += stray.light;
+    for (std::size_t band = 0; band < tile.arriving.size(); ++band)
+      film.arriving[band] += tile.arriving[band];
+    film.rays += tile.rays, film.passed += tile.passed;
+  }
+}
+
+std::optional<Rendering> picture_of_stopped_pass(const std::vector<PixelWindow>& tiles,
+                                                 const std::vector<TileResult>& results, Film& film,
+                                                 const WavelengthGroups& groups, const SensorGeometry& sensor,
+                                                 const Photosite& photosite, const Passes& passes) {
+  const bool first = film.passes == 0;
+  if (first && std::ranges::none_of(results, &TileResult::done)) return {};
+  add_strays(results, static_cast<std::size_t>(groups.count()), false, film);
+  if (first) film.passes = 1;
+  Rendering picture = picture_so_far(film, groups, sensor, photosite, passes);
+  picture.complete = false;
+  if (first) return picture;
+  for (int band = 0; band < picture.irradiance.bands(); ++band) {
+    const int group = band % groups.count();
+    const double before = std::max(1, passes.taken(group, film.passes));
+    const auto share = static_cast<float>(before / std::max(1, passes.taken(group, film.passes + 1)));
+    const std::span<float> plane = picture.irradiance.band(band);
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      if (results[i].done)
+        for (int row = tiles[i].top; row < tiles[i].bottom; ++row)
+          for (int column = tiles[i].left; column < tiles[i].right; ++column)
+            plane[film.window.index(column, row)] *= share;
+  }
+  return picture;
+}
+
+}  // namespace petzval::render
