@@ -5,6 +5,7 @@
 #include <petzval/base/context.h>
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
+#include <petzval/simulate/render_session.h>
 
 #include <cstdint>
 #include <functional>
@@ -21,7 +22,8 @@ struct Shared {
   std::uint64_t seed = 1;
   bool quiet = false;  ///< no notes, no progress
   bool json = false;
-  bool parse_only = false;  ///< the command line is checked, and nothing is done
+  RenderSession* renders = nullptr;  ///< of a command that runs many others; null: none
+  bool parse_only = false;           ///< the command line is checked, and nothing is done
 };
 
 /// The context of a command: its notes go to stderr, its progress to a bar there, and Ctrl-C stops it.

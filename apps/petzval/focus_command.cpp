@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval focus: the film distance at which a scene is sharpest.
 #include <fmt/format.h>
+#include <petzval/base/error.h>
 
 #include "field_option.h"
 #include "focus_output.h"
@@ -25,6 +26,7 @@ nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& com
   const AutofocusChoice& choice = command.choice.autofocus;
   return {{"scene", command.choice.request.scene},
           {"film_distance_mm", result.film_distance_mm},
+          {"distance_m", number_or_null(run.distance_m)},
           {"measure", choice.measure},
           {"search", choice.search},
           {"depth_mm", run.depth_mm},
@@ -37,11 +39,14 @@ nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& com
 
 void focus(const SceneFocusCommand& command, const Shared& shared) {
   if (!command.plot.empty()) require_extension(command.plot, {".svg"}, "a plot");
+  if (command.choice.request.scene.empty())
+    throw InputError(
+        "a scene would be right: a .pbrt, .gltf or .glb file or a name of petzval render --list");
   const RenderRequest request = command.choice.read(shared);
   const FocusRun run = autofocus(request, context_of(shared));
   if (!command.plot.empty()) draw_focus(run, command.plot);
   if (shared.json) return print_json(to_json(run, command));
-  fmt::print("{}", focus_text(run.result, command.choice.autofocus.measure));
+  fmt::print("{}", focus_text(run, command.choice.autofocus.measure));
 }
 
 }  // namespace

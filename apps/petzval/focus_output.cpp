@@ -5,6 +5,8 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/report/svg_plot.h>
 
+#include "render_output.h"
+
 #include <algorithm>
 
 namespace petzval::app {
@@ -21,7 +23,7 @@ void draw_focus(const FocusRun& run, const std::string& path) {
     y.push_back(each.measure / result.measure);
   }
   Plot plot;
-  plot.title = run.lens;
+  plot.title = run.lens + run.zones;
   plot.x = {"film distance", "mm"};
   plot.y = {"focus measure / largest", ""};
   plot.y.from = 0;
@@ -32,12 +34,14 @@ void draw_focus(const FocusRun& run, const std::string& path) {
   write_whole_file(path, plot.svg());
 }
 
-std::string focus_text(const FocusResult& result, const std::string& measure) {
+std::string focus_text(const FocusRun& run, const std::string& measure) {
+  const FocusResult& result = run.result;
   std::string text = fmt::format("  film distance [mm]     {:>8} measure  stage\n", measure);
   for (const FocusEvaluation& each : result.evaluations)
     text += fmt::format("  {:>18.4f}  {:>16.6g}  {}\n", each.film_distance_mm, each.measure, each.stage);
-  return text + fmt::format("film distance {:.4f} mm, after {} evaluations\n", result.film_distance_mm,
-                            result.evaluations.size());
+  return text + fmt::format("film distance {:.4f} mm, after {} evaluations: sharp at {}\n",
+                            result.film_distance_mm, result.evaluations.size(),
+                            rounded_distance_text(run.distance_m));
 }
 
 }  // namespace petzval::app

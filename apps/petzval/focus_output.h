@@ -10,8 +10,8 @@
 
 namespace petzval::app {
 
-/// A line an evaluation, and the film distance that was found.
-std::string focus_text(const FocusResult& result, const std::string& measure);
+/// A line an evaluation, and the film distance that was found, with what is sharp there.
+std::string focus_text(const FocusRun& run, const std::string& measure);
 
 /// The evaluations as a curve, into an SVG file.
 void draw_focus(const FocusRun& run, const std::string& path);

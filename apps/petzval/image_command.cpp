@@ -29,7 +29,6 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
         &formed.report);
   else
     formed.light = image(formed.plan, context, &formed.report);
-  outputs.shown.scene_white = formed.plan.scene.illuminant;
   outputs.shown.false_colour = true;
   const Outputs made = write_image(choice.outputs, formed, sensor, outputs, context);
   if (shared.json) return print_json(summary_json(formed, made, choice.outputs));

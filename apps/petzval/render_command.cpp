@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/stop.h>
+#include <petzval/simulate/render_estimate.h>
 
 #include <chrono>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "output_option.h"
 #include "render_option.h"
 #include "render_output.h"
+#include "scene_list.h"
 
 namespace petzval::app {
 
@@ -21,8 +23,8 @@ namespace {
 struct RenderCommand {
   RenderChoice choice;
   RenderOutputs outputs;
-  std::string focus_plot;
-  bool autofocus = false, list_unsupported = false;
+  std::string focus_plot, preview;
+  bool autofocus = false, list_unsupported = false, list = false, dry_run = false, show_zones = false;
 
   bool focuses_itself() const {
     return autofocus || !choice.autofocus.zones_file.empty() || !choice.autofocus.zones.empty();
@@ -70,45 +72,98 @@ RenderRequest read_request(const RenderCommand& command, const Shared& shared) {
 void focus(const RenderCommand& command, const Context& context, const Shared& shared, PreparedScene& scene) {
   const FocusRun& run = autofocus(scene, context);
   if (!command.focus_plot.empty()) draw_focus(run, command.focus_plot);
-  if (!shared.quiet && !shared.json)
-    fmt::print("{}", focus_text(run.result, command.choice.autofocus.measure));
+  if (!shared.quiet && !shared.json) fmt::print("{}", focus_text(run, command.choice.autofocus.measure));
+}
+
+/// The picture of the light as far as it has come, instead of the one before.
+void write_preview(const Rendering& picture, const RenderCommand& command, const Context& context) {
+  Context silent = context;
+  silent.note = {};
+  OutputOptions shown = command.outputs.shot.options();
+  shown.picture = OutputOptions::Shows::irradiance;
+  write_outputs(picture.irradiance, {command.preview}, {}, shown, silent);
+}
+
+std::string how_to_go_on(const RenderRequest& request, int samples) {
+  const std::string saved = fmt::format("the same command goes on from {}", request.checkpoint);
+  if (request.checkpoint.empty()) return "with --checkpoint FILE the same command would go on from there";
+  return samples > 0 ? saved : "it begins anew, for no pass over the picture was complete";
 }
 
 /// The light; when the user stops it, what there is of it is written.
 Rendering render_or_save(const RenderCommand& command, const PreparedScene& scene,
                          const OutputOptions& outputs, const Context& context) {
-  std::optional<Rendering> so_far;
+  std::optional<Rendering> stopped_at;
+  PictureWatch watch;
+  watch.show = [&](const Rendering& so_far, bool stopped) {
+    if (stopped)
+      stopped_at = so_far;
+    else
+      write_preview(so_far, command, context);
+  };
+  constexpr double preview_s = 5;
+  if (!command.preview.empty()) watch.every_s = preview_s;
   try {
-    return render_scene(scene, context, &so_far);
+    return render_scene(scene, context, watch);
   } catch (const Cancelled&) {
-    if (!so_far) throw;
+    if (!stopped_at) throw;
     const ListenerScope unhurried(nullptr);
-    command.outputs.write(*so_far, scene.request.camera.sensor, outputs, context);
-    throw Interrupted(
-        fmt::format("stopped after {} samples a pixel; the picture so far is written, and the same command "
-                    "goes on from {}",
-                    so_far->samples_per_pixel, scene.request.checkpoint));
+    command.outputs.write(*stopped_at, scene.request.camera.sensor, outputs, context);
+    const bool whole = stopped_at->complete;
+    throw Interrupted(fmt::format("stopped {} {} samples a pixel; the picture so far is written, and {}",
+                                  whole ? "after" : "within the first", stopped_at->samples_per_pixel,
+                                  how_to_go_on(scene.request, whole ? stopped_at->samples_per_pixel : 0)));
   }
 }
 
+/// What the command would take, from a small picture of the scene.
+void estimate(const RenderCommand& command, const PreparedScene& scene, const Context& context,
+              const Shared& shared) {
+  const RenderEstimate cost = estimate_render(scene, context);
+  if (shared.json)
+    return print_json({{"scene", command.choice.request.scene},
+                       {"samples_per_pixel", cost.samples_per_pixel},
+                       {"seconds", cost.seconds},
+                       {"memory_bytes", cost.memory_bytes},
+                       {"probe_seconds", cost.probe_seconds}});
+  fmt::print("{} x {} pixels, {} samples each: about {}, and {:.3g} MB for the light\n", scene.film.columns,
+             scene.film.rows, cost.samples_per_pixel, duration_text(cost.seconds), cost.memory_bytes / 1e6);
+}
+
+PreparedScene prepared(const RenderRequest& request, const Context& context, const Shared& shared) {
+  return shared.renders ? shared.renders->prepare(request, context) : prepare_scene(request, context);
+}
+
 void run_render(const RenderCommand& command, const CLI::App& app, const Shared& shared) {
+  if (command.list) return print_scenes(rows_of_worlds(), shared.json);
+  if (command.choice.request.scene.empty())
+    throw InputError(
+        "a scene would be right: a .pbrt, .gltf or .glb file or a name of petzval render --list");
   const RenderRequest request = read_request(command, shared);
   if (command.list_unsupported) return list_unsupported(request, shared);
+  if (command.dry_run) {
+    const Context context = context_of(shared);
+    return estimate(command, prepare_scene(request, context), context, shared);
+  }
   const std::optional<Sensor>& sensor = request.camera.sensor;
-  const OutputOptions outputs = command.outputs.checked(sensor, app);
+  OutputOptions outputs = command.outputs.checked(sensor, app);
   if (!command.focus_plot.empty()) require_extension(command.focus_plot, {".svg"}, "a plot");
+  if (!command.preview.empty()) require_extension(command.preview, {".png"}, "a preview");
 
   const auto start = std::chrono::steady_clock::now();
   const auto seconds_since = [](std::chrono::steady_clock::time_point from) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
   };
   const Context context = context_of(shared);
-  PreparedScene scene = prepare_scene(request, context);
-  command.outputs.keep_off(scene.files,
-                           {{"--focus-plot", command.focus_plot}, {"--checkpoint", request.checkpoint}});
-  if (!request.focus_as_in_scene && request.camera.focus.kind == Focus::Kind::automatic &&
-      !request.camera.image_distance_mm)
+  PreparedScene scene = prepared(request, context, shared);
+  command.outputs.keep_off(scene.files, {{"--focus-plot", command.focus_plot},
+                                         {"--preview", command.preview},
+                                         {"--checkpoint", request.checkpoint}});
+  // Also without a lens, which is then said.
+  if (!request.focus_as_in_scene && !request.focus_pixel && !request.camera.image_distance_mm &&
+      request.camera.focus.kind == Focus::Kind::automatic)
     focus(command, context, shared, scene);
+  if (command.show_zones) outputs.shown.frames = frames_of_zones(scene);
   RenderSeconds seconds{seconds_since(start), 0};
   const auto begin = std::chrono::steady_clock::now();
   const Rendering picture = render_or_save(command, scene, outputs, context);
@@ -122,7 +177,8 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
   command.add_option(
       "--focus", options.choice.camera.focus,
       "Where the film stands: auto (sharp on the zones, by autofocus), design (as in the prescription), "
-      "infinity, the distance from the film of what is to be sharp (1.2m, 250mm), paraxial, best-spot, "
+      "infinity, the distance from the film of what is to be sharp (1.2m, 250mm), pixel@COLUMN,ROW (what is "
+      "seen there), paraxial, best-spot, "
       "best-mtf@CYCLES_PER_MM, or these of an object there (250mm+best-spot); default: as the scene's file "
       "says");
   options.choice.camera.add_focus_corrections(command);
@@ -140,6 +196,8 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
           "Focus by itself on the zones of this file (see petzval focus), or on the middle of the picture")
       ->expected(0, 1)
       ->type_name("[FILE]");
+  command.add_flag("--show-zones", options.show_zones,
+                   "Draw the zones of autofocus into a .png of the light");
   command.add_option("--focus-plot", options.focus_plot, "Draw the evaluations of that into this SVG file")
       ->check(output_file());
 }
@@ -176,6 +234,13 @@ void add_render_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   add_focus_options(*options, *command);
   add_sampling_options(options->choice.request, *command);
+  command->add_flag("--list", options->list, "Only list the bundled three-dimensional scenes");
+  command->add_flag("--dry-run", options->dry_run,
+                    "Only estimate time and memory, from a small picture of the scene");
+  command
+      ->add_option("--preview", options->preview,
+                   "A .png of the light so far, written anew every few seconds while it renders")
+      ->check(output_file());
   command->add_flag("--list-unsupported", options->list_unsupported,
                     "Only list what the scene has and Petzval has not, each with its place");
   options->outputs.add_to(*command);

@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "render_option.h"
 
+#include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/quantities.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/scene/wavelength_list.h>
+
+#include <cmath>
+#include <string_view>
 
 namespace petzval::app {
 
 namespace {
+
+/// --focus on what a pixel sees.
+constexpr std::string_view by_pixel = "pixel@";
 
 void add_camera_options(RenderChoice& choice, CLI::App& command) {
   RenderRequest& request = choice.request;
@@ -34,6 +43,19 @@ void add_camera_options(RenderChoice& choice, CLI::App& command) {
           "Directions from a film point: inside of the pupil, or over the disk of the last surface (2006)")
       ->check(CLI::IsMember({"exit-pupil", "rear-disk"}))
       ->capture_default_str();
+  command
+      .add_option("--camera-at", choice.camera_at,
+                  "X,Y,Z: where the camera stands [scene units]; default: as in the scene")
+      ->type_name("X,Y,Z");
+  command
+      .add_option("--look-at", choice.look_at,
+                  "X,Y,Z: what is in the middle of the picture [scene units]; default: as in the scene, with "
+                  "--camera-at the middle of the scene")
+      ->type_name("X,Y,Z");
+  command
+      .add_option("--field-of-view", request.field_of_view_deg,
+                  "Across the picture, of a camera without a lens [deg]")
+      ->check(positive_number());
   command.add_option("--camera-origin", choice.camera_origin, "What stands where the scene puts its camera")
       ->check(CLI::IsMember({"film", "front"}))
       ->capture_default_str();
@@ -58,6 +80,9 @@ void add_scene_options(RenderChoice& choice, CLI::App& command) {
       .add_option("--sky", request.sky_cd_m2,
                   "White light from all around of this luminance, added to that of the scene [cd/m2]")
       ->check(positive_number());
+  command.add_option("--light-scale", request.light_scale, "All lights of the scene this much stronger")
+      ->check(positive_number())
+      ->capture_default_str();
   command.add_flag("--skip-unsupported", request.skip_unsupported,
                    "Leave out what the scene has and Petzval has not, instead of refusing the scene");
   command.add_flag(
@@ -123,21 +148,52 @@ AutofocusOptions AutofocusChoice::read() const {
 
 void RenderChoice::add_to(CLI::App& command) {
   camera.usual_focus = Focus::automatic();
-  command
-      .add_option(
-          "scene", request.scene,
-          "Scene in the text format of pbrt-v4 or in glTF 2.0 (.gltf, .glb), or the name of a bundled one")
-      ->required();
+  command.add_option(
+      "scene", request.scene,
+      "Scene in the text format of pbrt-v4 or in glTF 2.0 (.gltf, .glb), or the name of a bundled one");
   add_camera_options(*this, command);
   add_scene_options(*this, command);
   autofocus.add_to(command);
 }
 
+namespace {
+
+/// So many numbers with commas between them. \throws InputError in the words of the option.
+template <std::size_t count>
+std::array<double, count> numbers_of(const std::string& text, const std::string& option,
+                                     const std::string& right) {
+  std::array<double, count> numbers{};
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t to = i + 1 < count ? text.find(',', from) : text.size();
+    const auto number = to == text.npos ? std::nullopt : parse_number(text.substr(from, to - from));
+    if (!number || !std::isfinite(*number))
+      throw InputError(fmt::format("{} {}: {} would be right", option, quotable(text), right));
+    numbers[i] = *number, from = to + 1;
+  }
+  return numbers;
+}
+
+std::optional<std::array<double, 3>> place_of(const std::string& text, const char* option) {
+  if (text.empty()) return {};
+  return numbers_of<3>(text, option, "three numbers as in 0,1.5,-2");
+}
+
+}  // namespace
+
 RenderRequest RenderChoice::read(const Shared& shared) const {
   if (request.pinhole && !camera.lens.path_or_name.empty())
     throw InputError("--pinhole and --lens exclude each other");
   RenderRequest result = request;
-  result.camera = camera.camera(shared);
+  CameraChoice seen = camera;
+  if (seen.focus.starts_with(by_pixel)) {
+    result.focus_pixel = numbers_of<2>(seen.focus.substr(by_pixel.size()), "--focus " + std::string(by_pixel),
+                                       "a column and a row as in pixel@120,80");
+    seen.focus.clear();
+  }
+  result.camera = seen.camera(shared);
+  result.camera_at = place_of(camera_at, "--camera-at");
+  result.look_at = place_of(look_at, "--look-at");
   if (camera.lens.path_or_name.empty()) {
     // The scene may have a lens.
     result.camera.blades = camera.blades.of_unknown_lens();

@@ -3,12 +3,17 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
+#include <petzval/base/units.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/spectral_exr.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "command.h"
+#include "field_option.h"
 #include "output_option.h"
 #include "raw_levels.h"
 
@@ -23,6 +28,41 @@ std::vector<float> bands_last(const std::vector<float>& planes, std::size_t band
   for (std::size_t band = 0; band < bands; ++band)
     for (std::size_t i = 0; i < pixels; ++i) result[i * bands + band] = planes[band * pixels + i];
   return result;
+}
+
+/// Channels of an .exr, as Blender and Nuke call depth and normals; reflectance as spectral layouts have it.
+struct Layers {
+  std::vector<std::vector<float>> values;
+  std::vector<std::string> names;
+
+  void add(std::string name, std::vector<float> plane) {
+    names.push_back(std::move(name));
+    values.push_back(std::move(plane));
+  }
+  std::vector<ExrPlane> planes() const {
+    std::vector<ExrPlane> result;
+    for (std::size_t i = 0; i < names.size(); ++i) result.push_back({names[i], values[i]});
+    return result;
+  }
+};
+
+Layers layers_of(const Rendering& picture) {
+  const render::FirstSurfaces& first = *picture.first_surfaces;
+  const std::size_t pixels = first.depth.size();
+  Layers layers;
+  layers.add(exr_depth_channel, first.depth);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<float> plane(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) plane[i] = first.normal[3 * i + axis];
+    layers.add(std::string("N.") + "XYZ"[axis], std::move(plane));
+  }
+  const std::vector<double>& nm = picture.irradiance.wavelengths_nm();
+  for (std::size_t band = 0; band < nm.size(); ++band) {
+    const auto from = first.albedo.begin() + static_cast<std::ptrdiff_t>(band * pixels);
+    layers.add(spectral_channel_name({SpectralChannel::Kind::reflective, 0, nm[band]}),
+               std::vector<float>(from, from + static_cast<std::ptrdiff_t>(pixels)));
+  }
+  return layers;
 }
 
 void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture, StagedFiles& files) {
@@ -44,13 +84,19 @@ void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture
 
 void RenderOutputs::add_to(CLI::App& command) {
   command
-      .add_option("--depth", depth,
-                  "Also write the distance of what is seen from the film [scene units] (.npy)")
+      .add_option(
+          "--depth", depth,
+          "Also write the distance along the axis of what is seen from the film [scene units], infinity "
+          "where nothing is: rows x columns (.npy)")
       ->check(output_file());
-  command.add_option("--normals", normals, "Also write its normals in world space (.npy)")
+  command
+      .add_option("--normals", normals, "Also write its normals in world space: rows x columns x 3 (.npy)")
       ->check(output_file());
   command.add_option("--albedo", albedo, "Also write its reflectance: rows x columns x bands (.npy)")
       ->check(output_file());
+  command.add_flag(
+      "--layers", layers,
+      "Every .exr of the light also has depth (Z), normals (N.X, N.Y, N.Z) and reflectance (T.550,0nm)");
   command
       .add_option("-o,--output", pictures,
                   "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
@@ -61,7 +107,7 @@ void RenderOutputs::add_to(CLI::App& command) {
   shot.add_display_to(command);
   command
       .add_option("--illuminant", shot.sense.illuminant,
-                  "Light of the scene, for white balance; default: grey on average")
+                  "Light of the scene, for white balance; default: as it falls on what is seen")
       ->group("Exposure of the sensor");
 }
 
@@ -70,6 +116,8 @@ OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const 
     throw InputError("-o names the picture to be written (.exr, .npy, .png; with a --sensor .dng and .tif)");
   for (const std::string& path : pictures)
     require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
+  if (layers && std::ranges::none_of(pictures, [](const auto& path) { return extension_of(path) == ".exr"; }))
+    throw InputError("--layers are written beside the light: -o picture.exr would be right");
   for (const std::string* path : {&depth, &normals, &albedo})
     if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
   return shot.checked(sensor, pictures, command);
@@ -91,11 +139,61 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
 Outputs RenderOutputs::write(const Rendering& picture, const std::optional<Sensor>& sensor,
                              const OutputOptions& options, const Context& context) const {
   StagedFiles files;
-  Outputs made = write_outputs(picture.irradiance, pictures, sensor, options, files, context);
+  const Layers beside = layers ? layers_of(picture) : Layers();
+  OutputOptions all = options;
+  all.layers = beside.planes();
+  Outputs made = write_outputs(picture.irradiance, pictures, sensor, all, files, context);
   write_first_surfaces(*this, picture, files);
   files.commit();
   return made;
 }
+
+std::string rounded_distance_text(double distance_m) {
+  if (!std::isfinite(distance_m)) return "infinity";
+  return distance_m < 1 ? fmt::format("{:.3g} mm", distance_m * mm_per_m)
+                        : fmt::format("{:.3g} m", distance_m);
+}
+
+std::string duration_text(double seconds) {
+  constexpr double minute = 60, hour = 3600;
+  if (seconds < 2 * minute) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 2 * hour) return fmt::format("{:.0f} min", seconds / minute);
+  return fmt::format("{:.1f} h", seconds / hour);
+}
+
+namespace {
+
+nlohmann::ordered_json framing_json(const Framing& framing) {
+  return {{"film_width_mm", framing.film_width_mm},
+          {"film_height_mm", framing.film_height_mm},
+          {"efl_mm", framing.efl_mm},
+          {"f_number", framing.f_number},
+          {"working_f_number", framing.working_f_number},
+          {"horizontal_field_of_view_deg", number_or_null(framing.view.width)},
+          {"vertical_field_of_view_deg", number_or_null(framing.view.height)},
+          {"diagonal_field_of_view_deg", number_or_null(framing.view.diagonal)},
+          {"lit_circle_mm", framing.lit_circle_mm},
+          {"distance_in_focus_m", number_or_null(framing.distance_m)},
+          {"depth_of_field_near_m", number_or_null(framing.sharp.near_m)},
+          {"depth_of_field_far_m", number_or_null(framing.sharp.far_m)}};
+}
+
+std::string angle_text(double deg) {
+  return std::isfinite(deg) ? fmt::format("{:.1f}", deg) : "-";
+}
+
+void print_framing(const Framing& framing) {
+  fmt::print(
+      "  view     {} x {} degrees on a film of {:.4g} x {:.4g} mm; f = {:.4g} mm, f/{:.3g} (working "
+      "f/{:.3g})\n",
+      angle_text(framing.view.width), angle_text(framing.view.height), framing.film_width_mm,
+      framing.film_height_mm, framing.efl_mm, framing.f_number, framing.working_f_number);
+  fmt::print("  focus    {} from the film; sharp to a pixel from {} to {}\n",
+             rounded_distance_text(framing.distance_m), rounded_distance_text(framing.sharp.near_m),
+             rounded_distance_text(framing.sharp.far_m));
+}
+
+}  // namespace
 
 nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering& picture, const Outputs& made,
                                     const RenderSeconds& seconds, const std::vector<std::string>& outputs) {
@@ -121,6 +219,7 @@ nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering&
                {"prepare_seconds", seconds.prepare},
                {"render_seconds", seconds.light},
                {"outputs", outputs}};
+  if (scene.lens) json.update(framing_json(framing(scene)));
   if (!made.raw) return json;
   json["exposure_s"] = made.raw->exposure_s;
   json["iso"] = made.raw->iso;
@@ -139,6 +238,7 @@ void print_summary(const PreparedScene& scene, const Rendering& picture, const O
   else
     fmt::print("{} bands from {:g} to {:g} nm\n", bands.size(), bands.front(), bands.back());
   fmt::print("  camera   {}\n", camera_text(scene));
+  if (scene.lens) print_framing(framing(scene));
   fmt::print("  samples  {} a pixel; {:.1f} % of {} camera rays pass\n", picture.samples_per_pixel,
              100.0 * static_cast<double>(picture.passed) /
                  static_cast<double>(std::max<std::uint64_t>(picture.rays, 1)),

@@ -2,7 +2,7 @@
 // What `render` writes and tells.
 #pragma once
 
-#include <petzval/simulate/render.h>
+#include <petzval/simulate/framing.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,10 +16,11 @@ namespace petzval::app {
 struct RenderOutputs {
   std::vector<std::string> pictures;   ///< of the light, and of what the sensor makes of it
   std::string depth, normals, albedo;  ///< of the first surfaces
+  bool layers = false;                 ///< these in every .exr of the light, too
   ShotChoice shot;
 
   void add_to(CLI::App& command);
-  bool first_surfaces() const { return !depth.empty() || !normals.empty() || !albedo.empty(); }
+  bool first_surfaces() const { return layers || !depth.empty() || !normals.empty() || !albedo.empty(); }
   /// \throws InputError for outputs and options that make no sense together. \param command  what add_to was
   /// given.
   OutputOptions checked(const std::optional<Sensor>& sensor, const CLI::App& command) const;
@@ -41,5 +42,10 @@ nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering&
 
 void print_summary(const PreparedScene& scene, const Rendering& picture, const Outputs& made,
                    const RenderSeconds& seconds);
+
+/// To three digits: "1.53 m", "420 mm", "infinity".
+std::string rounded_distance_text(double distance_m);
+/// "40 s", "3 min", "2.5 h".
+std::string duration_text(double seconds);
 
 }  // namespace petzval::app

@@ -13,9 +13,10 @@
 
 namespace petzval::app {
 
-CommandOutcome run_command(std::vector<std::string> arguments) {
+CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders) {
   CLI::App program{"", "petzval"};
   Shared shared;
+  shared.renders = renders;
   add_all_commands(program, shared);
   const JsonTaker taker;
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them

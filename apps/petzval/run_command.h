@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "command.h"
+
 namespace petzval::app {
 
 struct CommandOutcome {
@@ -14,7 +16,8 @@ struct CommandOutcome {
   std::string error;               ///< what is wrong, if it failed
 };
 
-/// Runs the words of a command line, without "petzval" before them. \throws Cancelled.
-CommandOutcome run_command(std::vector<std::string> arguments);
+/// Runs the words of a command line, without "petzval" before them. \param renders  that keeps the world of
+/// three-dimensional scenes from one command to the next; may be null. \throws Cancelled.
+CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders = nullptr);
 
 }  // namespace petzval::app

@@ -4,6 +4,7 @@
 #include "depth_picture.h"
 #include "field_option.h"
 #include "output_option.h"
+#include "scene_list.h"
 #include "scene_option.h"
 
 #include <fmt/format.h>
@@ -33,9 +34,11 @@ void list_scenes(const Shared& shared) {
     for (const std::string& name : bundled_names("scenes", extension))
       rows.push_back(
           {{"name", name}, {"kind", "file"}, {"description", std::string("bundled ") + (extension + 1)}});
-  if (shared.json) return fmt::print("{}\n", ordered_json{{"rows", rows}}.dump(2));
-  for (const ordered_json& row : rows)
-    fmt::print("{:<24}{}\n", row["name"].get<std::string>(), row["description"].get<std::string>());
+  for (ordered_json row : rows_of_worlds()) {
+    row["description"] = row["description"].get<std::string>() + " (for petzval render)";
+    rows.push_back(row);
+  }
+  print_scenes(rows, shared.json);
 }
 
 struct RadianceRange {

@@ -8,7 +8,10 @@
 namespace petzval::app {
 
 void SenseChoice::add_to(CLI::App& command, bool after_light) {
-  command.add_option("--exposure", exposure, "auto, seconds, or an exposure value at ISO 100 (ev:12)")
+  command
+      .add_option("--exposure", exposure,
+                  "auto, a time (0.01, 10ms, 1/100), or an exposure value at ISO 100 (ev:12)" +
+                      std::string(after_light ? "; of a .png of the light: as on a sensor of ISO 100" : ""))
       ->capture_default_str();
   command
       .add_option("--metering", metering,

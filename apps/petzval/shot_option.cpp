@@ -14,10 +14,16 @@ namespace {
 
 constexpr const char *exposing = "Exposure of the sensor", *developing = "Development of the picture";
 
-/// The first option of a group that was given, or nothing.
-std::string given_option(const CLI::App& command, const char* group) {
+/// Of the group "Exposure of the sensor" also for pictures of the light.
+bool exposes_light(const CLI::Option& option) {
+  return option.get_name() == "--exposure" || option.get_name() == "--exposure-compensation";
+}
+
+/// The first option of a group that was given, or nothing. \param light  also exposed by such options.
+std::string given_option(const CLI::App& command, const char* group, bool light = false) {
   for (const CLI::Option* option : command.get_options())
-    if (option->get_group() == group && option->count() > 0) return option->get_name();
+    if (option->get_group() == group && option->count() > 0 && !(light && exposes_light(*option)))
+      return option->get_name();
   return "";
 }
 
@@ -60,8 +66,7 @@ void ShotChoice::add_display_to(CLI::App& command) {
   command
       .add_option("--white", white,
                   "Illuminance that a .png of the light shows as white [lx]: the same in several pictures; "
-                  "default: the "
-                  "brightest")
+                  "default: what 99.5 % of the pixels that show no lamp stay below")
       ->check(positive_number());
   command
       .add_option("--display", display,
@@ -97,7 +102,12 @@ OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
   check_outputs(outputs, sensor, options);
   const bool raw = std::ranges::any_of(outputs, is_raw_name);
   const bool developed = develops(options, sensor) && std::ranges::any_of(outputs, is_picture_name);
-  if (const std::string option = given_option(command, exposing); !raw && !developed && !option.empty())
+  const bool light =
+      shows_light_ && !develops(options, sensor) && std::ranges::any_of(outputs, is_picture_name);
+  if (light && white && command.get_option("--exposure")->count() > 0)
+    throw InputError("--white and --exposure both say what is white; one of them would be right");
+  if (const std::string option = given_option(command, exposing, light);
+      !raw && !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: {}", option, why_not_exposed(sensor)));
   if (const std::string option = given_option(command, developing); !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));

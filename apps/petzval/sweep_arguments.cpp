@@ -147,7 +147,7 @@ void check_command_lines(const CLI::App& app, const SweepCommand& options,
       SweepPoint point = first;
       point[i].second = value;
       std::vector<std::string> arguments = arguments_of(app, options, point, shared);
-      if (options.command == "image") arguments.insert(arguments.end(), {"-o", "point.png"});
+      if (options.makes_pictures()) arguments.insert(arguments.end(), {"-o", "point.png"});
       const std::string wrong = check.complaint(arguments);
       if (wrong.empty()) continue;
       // A word too many: the scene or lens stands there, and is varied.

@@ -8,12 +8,17 @@
 namespace petzval::app {
 
 struct SweepCommand {
-  std::string command;             ///< image or lens
+  std::string command;             ///< image, render or lens
   std::vector<std::string> words;  ///< what goes to it
   std::vector<std::string> vary;
   std::string folder;
   std::string irradiance;            ///< exr, npy or nothing
   std::string scene_width = "same";  ///< of all points, or each as its frame needs
+  std::string clip;                  ///< a film of the pictures, or nothing
+  double frames_per_second = 12;
+  std::optional<int> frames;  ///< of ranges that have no step
+
+  bool makes_pictures() const { return command != "lens"; }
 };
 
 /// The command of this program that is swept, with its options. \throws InputError if there is none.

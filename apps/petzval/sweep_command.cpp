@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "clip.h"
 #include "field_option.h"
 #include "output_option.h"
 #include "sweep_folder.h"
@@ -53,7 +54,7 @@ int pictures_per_row(const std::vector<SweptParameter>& parameters) {
 std::set<std::string> planned_files(const SweepCommand& options, std::size_t points) {
   std::set<std::string> names{"index.html", "sweep.csv", "sweep.json"};
   std::vector<std::string> extensions{".json"};
-  if (options.command == "image") {
+  if (options.makes_pictures()) {
     names.insert("contact-sheet.png");
     extensions.push_back(".png");
     if (!options.irradiance.empty()) extensions.push_back("." + options.irradiance);
@@ -119,7 +120,8 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   const CLI::App& app = swept_app(program, options);
   std::vector<SweptParameter> parameters;
   std::vector<std::string> notes;
-  for (const std::string& text : options.vary) parameters.push_back(parse_swept(text, notes));
+  for (const std::string& text : options.vary) parameters.push_back(parse_swept(text, notes, options.frames));
+  if (!options.clip.empty()) require_clip_maker(options.clip);
   const std::vector<SweepPoint> points = sweep_points(parameters);
   check_command_lines(app, options, parameters, shared);
   for (const std::string& text : notes) note(shared, text);
@@ -128,12 +130,15 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
 
   const std::vector<std::string> angles = scene_angles(app, options, points, folder, shared);
   std::vector<PointResult> results;
+  RenderSession renders;
+  Shared with_session = shared;
+  with_session.renders = &renders;
   std::set<std::string> written;
   std::vector<std::string> held;
   std::size_t failed = 0;
   for (const SweepPoint& point : points) {
     const std::size_t index = results.size();
-    results.push_back(run_point(app, options, point, index, angles[index], shared));
+    results.push_back(run_point(app, options, point, index, angles[index], with_session));
     const PointResult& result = results.back();
     check_scene_angle(result, angles[index], shared);
     if (!result.done) {
@@ -155,6 +160,8 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   const Json rows = rows_of(results);
   written.merge(write_summary(options, results, rows, pictures_per_row(parameters)));
   folder.finish(rows, written);
+  if (!options.clip.empty() && failed == 0)
+    write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
   if (failed == points.size())
     throw Failure(fmt::format("every point failed, the last one: {}", results.back().error));
   if (shared.json) return print_json({{"points", points.size()}, {"failed", failed}, {"rows", rows}});
@@ -186,6 +193,18 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   command->add_option("-o,--output", options->folder, "Folder for pictures, tables and index.html")
       ->check(output_folder())
       ->required();
+  command
+      ->add_option("--frames", options->frames,
+                   "So many values of a range without a step, --vary KEY=START:STOP")
+      ->check(CLI::Range(2, 10000));
+  if (name == "lens") return;
+  command
+      ->add_option("--clip", options->clip,
+                   "Also put the pictures together into a film (.mp4, .webm or .gif), by the program ffmpeg")
+      ->check(output_file());
+  command->add_option("--fps", options->frames_per_second, "Pictures a second of that")
+      ->check(positive_number())
+      ->capture_default_str();
   if (name != "image") return;
   command
       ->add_option("--irradiance", options->irradiance, "Keep the irradiance of every point too: exr or npy")
@@ -207,6 +226,10 @@ void add_sweep_command(CLI::App& app, Shared& shared) {
   add_swept(*sweeps, app, shared, "image", "Sweep petzval image; what is not listed here goes to it",
             "petzval sweep image checkerboard --lens edmund-54852 --sensor 64x48@60 --wavelengths 550 "
             "--vary surfaces[4].thickness_mm=0.4:0.1:0.6 --vary f-number=2,4 -o sweep");
+  add_swept(*sweeps, app, shared, "render",
+            "Sweep petzval render: focus, f-number, lens, camera; what is not listed here goes to it",
+            "petzval sweep render spheres --lens dgauss-50mm --size 120x90 --spp 16 --vary "
+            "focus=1m:0.25m:2m -o sweep");
   add_swept(
       *sweeps, app, shared, "lens", "Sweep an analysis of petzval lens; what is not listed here goes to it",
       "petzval sweep lens distortion edmund-54852 --fields 2 --vary surfaces[4].thickness_mm=0.4:0.1:0.6 "

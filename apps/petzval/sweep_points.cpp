@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -31,6 +32,7 @@ bool takes_lists(const std::string& key) {
 
 struct Range {
   double from = 0, step = 0, to = 0;
+  std::string unit;  ///< of all three; may be empty
 
   /// How many values it has; nothing if the step does not lead from one end to the other.
   std::optional<double> count() const {
@@ -38,29 +40,57 @@ struct Range {
     constexpr double rounding = 1e-9;
     return std::floor((to - from) / step + rounding) + 1;
   }
+  /// Twelve digits: 0.1 three times is 0.3.
+  std::string value(double number) const { return fmt::format("{:.12g}{}", number, unit); }
 };
 
-/// START:STEP:STOP, if the text is three numbers. \throws InputError if one is none.
-std::optional<Range> parse_range(const std::string& key, const std::string& text) {
+/// A number and the letters behind it.
+struct Quantity {
+  double value;
+  std::string unit;
+};
+
+std::optional<Quantity> quantity_of(const std::string& text) {
+  std::size_t end = text.size();
+  while (end > 0 && std::isalpha(static_cast<unsigned char>(text[end - 1]))) --end;
+  const auto number = parse_number(text.substr(0, end));
+  if (!number) return {};
+  return Quantity{*number, text.substr(end)};
+}
+
+/// START:STEP:STOP, or START:STOP for so many frames, if the text is numbers with colons between them.
+/// \throws InputError if one is none.
+std::optional<Range> parse_range(const std::string& key, const std::string& text, std::optional<int> frames) {
   if (text.find(',') != text.npos) return {};
   const std::vector<std::string> parts = split(text, ':');
-  if (parts.size() != 3) return {};
-  const auto from = parse_number(parts[0]), step = parse_number(parts[1]), to = parse_number(parts[2]);
-  if (from && step && to) return Range{*from, *step, *to};
-  if (!from && !step && !to) return {};
-  throw InputError(
-      fmt::format("--vary {}={}: START:STEP:STOP are three numbers, as in 0.4:0.05:0.6", key, text));
+  std::vector<Quantity> numbers;
+  for (const std::string& part : parts)
+    if (const auto quantity = quantity_of(part)) numbers.push_back(*quantity);
+  if (parts.size() == 2 && numbers.size() == 2 && !frames)
+    throw InputError(
+        fmt::format("--vary {}={}: a step, as in START:STEP:STOP, or --frames would be right", key, text));
+  if ((parts.size() != 3 && parts.size() != 2) || numbers.empty()) return {};
+  if (numbers.size() != parts.size() || numbers.front().unit != numbers.back().unit ||
+      numbers[1].unit != numbers.back().unit)
+    throw InputError(fmt::format(
+        "--vary {}={}: START:STEP:STOP are three numbers of one unit, as in 0.4:0.05:0.6 or 1m:0.1m:2m", key,
+        text));
+  const std::string unit = numbers.front().unit;
+  if (numbers.size() == 3) return Range{numbers[0].value, numbers[1].value, numbers[2].value, unit};
+  const double way = numbers[1].value - numbers[0].value;
+  return Range{numbers[0].value, way / (*frames - 1), numbers[1].value, unit};
 }
 
 std::vector<std::string> values_of(const std::string& key, const Range& range, const std::string& text) {
   const std::optional<double> count = range.count();
   // One value of a range that has two ends is the other order of the three: 0.4:0.6:0.05.
   if (!count || (*count < 2 && range.from != range.to)) {
-    const Range turned{range.from, range.to, range.step};
-    const std::string right = range.step == 0 ? std::string("a step other than 0")
-                              : turned.count().value_or(0) >= 2
-                                  ? fmt::format("{}:{}:{}", turned.from, turned.step, turned.to)
-                                  : fmt::format("{}:{}:{}", range.from, -range.step, range.to);
+    const Range turned{range.from, range.to, range.step, range.unit};
+    const std::string right =
+        range.step == 0 ? std::string("a step other than 0")
+        : turned.count().value_or(0) >= 2
+            ? fmt::format("{0}{3}:{1}{3}:{2}{3}", turned.from, turned.step, turned.to, range.unit)
+            : fmt::format("{0}{3}:{1}{3}:{2}{3}", range.from, -range.step, range.to, range.unit);
     throw InputError(fmt::format("--vary {}={}: steps of {} do not lead from {} to {}; {} would be right",
                                  key, text, range.step, range.from, range.to, right));
   }
@@ -68,9 +98,8 @@ std::vector<std::string> values_of(const std::string& key, const Range& range, c
     throw InputError(
         fmt::format("--vary {}={}: {} values; at most {} are right", key, text, *count, most_points));
   std::vector<std::string> values;
-  // Twelve digits: 0.1 three times is 0.3.
   for (int i = 0; i < static_cast<int>(*count); ++i)
-    values.push_back(fmt::format("{:.12g}", range.from + i * range.step));
+    values.push_back(range.value(range.from + i * range.step));
   return values;
 }
 
@@ -95,7 +124,8 @@ std::vector<std::string> without_duplicates(const SweptParameter& parameter,
 
 }  // namespace
 
-SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes) {
+SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes,
+                           std::optional<int> frames) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(
@@ -105,12 +135,12 @@ SweptParameter parse_swept(const std::string& text, std::vector<std::string>& no
   SweptParameter parameter{text.substr(0, equals), {}};
   const std::string values = text.substr(equals + 1);
   const std::optional<Range> range =
-      takes_lists(parameter.key) ? std::nullopt : parse_range(parameter.key, values);
+      takes_lists(parameter.key) ? std::nullopt : parse_range(parameter.key, values, frames);
   if (!range) {
     parameter.values = split(values, ',');
   } else {
     parameter.values = values_of(parameter.key, *range, values);
-    if (parameter.values.back() != fmt::format("{:.12g}", range->to))
+    if (parameter.values.back() != range->value(range->to))
       notes.push_back(fmt::format("--vary {}: the last value is {}; steps of {:g} do not meet {:g}", text,
                                   parameter.values.back(), range->step, range->to));
   }

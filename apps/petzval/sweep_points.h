@@ -2,6 +2,7 @@
 // The points of a sweep: which parameters take which values.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,10 +15,12 @@ struct SweptParameter {
   std::vector<std::string> values;
 };
 
-/// "KEY=START:STEP:STOP" (START, START + STEP and so on, not beyond STOP) or "KEY=A,B,…". \param notes  gains
-/// what the user should know: an end that is not met, values that stand there twice. \throws InputError
-/// saying what would be right, or for more than 10,000 values.
-SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes);
+/// "KEY=START:STEP:STOP" (START, START + STEP and so on, not beyond STOP), all three in one unit if they have
+/// one (1m:0.05m:3m), or "KEY=A,B,…". \param notes  gains what the user should know: an end that is not met,
+/// values that stand there twice. \param frames  if given, "KEY=START:STOP" are so many values evenly between
+/// them. \throws InputError saying what would be right, or for more than 10,000 values.
+SweptParameter parse_swept(const std::string& text, std::vector<std::string>& notes,
+                           std::optional<int> frames = {});
 
 /// Values of all parameters at one point, in the order of the parameters.
 using SweepPoint = std::vector<std::pair<std::string, std::string>>;

@@ -71,8 +71,8 @@ bool recall(const std::string& record_path, PointResult& result, const Shared& s
 }
 
 /// Runs the command of the point, and records what it made.
-void make(PointResult& result, const std::string& folder, const std::string& name) {
-  const CommandOutcome outcome = run_command(result.arguments);
+void make(PointResult& result, const std::string& folder, const std::string& name, RenderSession* renders) {
+  const CommandOutcome outcome = run_command(result.arguments, renders);
   result.exit_code = outcome.exit_code;
   result.numbers = outcome.numbers;
   result.done = outcome.exit_code == 0 && result.numbers.is_object();
@@ -109,14 +109,14 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   if (!scene_angle.empty())
     result.arguments.insert(result.arguments.end(), {"--scene-angle-least", scene_angle});
   const std::string name = name_of_point(index), stem = options.folder + "/" + name;
-  if (options.command == "image") {
+  if (options.makes_pictures()) {
     result.outputs = {result.picture = stem + ".png"};
     if (!options.irradiance.empty()) result.outputs.push_back(stem + "." + options.irradiance);
   }
   for (const std::string& path : result.outputs)
     result.arguments.insert(result.arguments.end(), {"-o", path});
   result.checksums = checksums_of_files(result.arguments, stem);
-  if (!recall(stem + ".json", result, shared)) make(result, options.folder, name);
+  if (!recall(stem + ".json", result, shared)) make(result, options.folder, name, shared.renders);
   return result;
 }
 

@@ -269,8 +269,8 @@ class Render(ProgramTest):
         def refused(word, **changed):
             self.assert_refused(*self.rendering("x.npy", **changed), words=["c.petzval", word])
         refused("seed 3", seed=4)
-        refused("lens ", f_number=4)
-        refused("lens ", film_distance=38.001)
+        refused("stop ", f_number=4)
+        refused("focus: film 38", film_distance=38.001)
         refused("sampling exit-pupil", sampling="rear-disk")
         refused("wavelengths 400,410", wavelengths="500,600")
         for name, old, new in [("s.pbrt", "[ -2 -2 .4", "[ -2.1 -2 .4"), ("t.pbrt", "diffuse", "coateddiffuse"),
