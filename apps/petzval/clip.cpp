@@ -5,40 +5,26 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "command.h"
-
-extern char** environ;
+#include "other_program.h"
 
 namespace petzval::app {
 
 namespace {
 
-/// Runs ffmpeg, which prints its errors itself. \returns its exit code, or nothing if it cannot be started.
 std::optional<int> ffmpeg(std::vector<std::string> words) {
   words.insert(words.begin(), {"ffmpeg", "-nostdin", "-loglevel", "error"});
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  // What it prints is no result of ours.
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  const int failed = posix_spawnp(&child, "ffmpeg", &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return {};
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  return run_other_program(std::move(words));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "field_option.h"
 #include "focus_output.h"
 #include "output_option.h"
+#include "plot_output.h"
 #include "render_option.h"
 
 namespace petzval::app {
@@ -38,7 +39,7 @@ nlohmann::ordered_json to_json(const FocusRun& run, const SceneFocusCommand& com
 }
 
 void focus(const SceneFocusCommand& command, const Shared& shared) {
-  if (!command.plot.empty()) require_extension(command.plot, {".svg"}, "a plot");
+  if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   if (command.choice.request.scene.empty())
     throw InputError(
         "a scene would be right: a .pbrt, .gltf or .glb file or a name of petzval render --list");
@@ -61,7 +62,7 @@ void add_focus_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command->add_option("--zones", options->choice.autofocus.zones_file,
                       "A file of zones: left right top bottom, in fractions of the film, a line each");
-  command->add_option("--plot", options->plot, "Draw the evaluations into this SVG file")
+  command->add_option("--plot", options->plot, "Draw the evaluations: .svg, .png or .pdf")
       ->check(output_file());
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "focus_output.h"
+#include "plot_output.h"
 
 #include <fmt/format.h>
 #include <petzval/base/whole_file.h>
@@ -31,7 +32,7 @@ void draw_focus(const FocusRun& run, const std::string& path) {
   line.marker = PlotMarker::circle;
   plot.guides.push_back(
       {PlotGuide::At::x, result.film_distance_mm, fmt::format("{:.4f} mm", result.film_distance_mm)});
-  write_whole_file(path, plot.svg());
+  write_drawing(path, plot.svg());
 }
 
 std::string focus_text(const FocusRun& run, const std::string& measure) {

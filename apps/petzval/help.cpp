@@ -17,18 +17,29 @@ namespace {
 constexpr std::size_t few_options = 16;
 
 /// Shown without --help-all.
-const std::set<std::string> everyday{
-    "--help",         "--lens",          "--optics",      "--set",      "--f-number",      "--focus",
-    "--sensor",       "--output",        "--wavelengths", "--fields",   "--frequencies",   "--json",
-    "--csv",          "--plot",          "--illuminant",  "--exposure", "--white-balance", "--scene-distance",
-    "--scene-angle",  "--spp",           "--noise",       "--size",     "--autofocus",     "--zone",
-    "--zones",        "--pinhole",       "--checkpoint",  "--quiet",    "--rectangle",     "--half-plane",
-    "--polygons",     "--text",          "--chart",       "--sigma",    "--pixel-pitch",   "--field",
-    "--wavelength",   "--polychromatic", "--over-field",  "--radii",    "--method",        "--roi",
-    "--annotate",     "--profile",       "--gain",        "--demosaic", "--brightness",    "--tone",
-    "--denoise",      "--seed",          "--scene-depth", "--rays",     "--depth",         "--psf",
-    "--spacing",      "--field-type",    "--by-light",    "--vary",     "--black",         "--order",
-    "--film-distance"};
+const std::set<std::string> everyday{"--help",          "--lens",          "--optics",
+                                     "--set",           "--f-number",      "--focus",
+                                     "--sensor",        "--output",        "--wavelengths",
+                                     "--fields",        "--frequencies",   "--json",
+                                     "--csv",           "--plot",          "--illuminant",
+                                     "--exposure",      "--white-balance", "--scene-distance",
+                                     "--scene-angle",   "--spp",           "--noise",
+                                     "--size",          "--autofocus",     "--zone",
+                                     "--zones",         "--pinhole",       "--checkpoint",
+                                     "--quiet",         "--rectangle",     "--half-plane",
+                                     "--polygons",      "--text",          "--chart",
+                                     "--sigma",         "--pixel-pitch",   "--field",
+                                     "--wavelength",    "--polychromatic", "--over-field",
+                                     "--radii",         "--method",        "--roi",
+                                     "--annotate",      "--profile",       "--gain",
+                                     "--demosaic",      "--brightness",    "--tone",
+                                     "--denoise",       "--seed",          "--scene-depth",
+                                     "--rays",          "--depth",         "--psf",
+                                     "--spacing",       "--field-type",    "--by-light",
+                                     "--vary",          "--black",         "--order",
+                                     "--film-distance", "--dry-run",       "--preview",
+                                     "--list",          "--camera-at",     "--look-at",
+                                     "--layers",        "--frames",        "--clip"};
 
 struct HelpGroup {
   const char* heading;
@@ -40,18 +51,19 @@ const std::vector<HelpGroup>& help_groups() {
   static const std::vector<HelpGroup> groups{
       {"Scene",
        {"--scene-*", "--illuminant", "--wavelengths", "--sky", "--absolute-spectra", "--near", "--far",
-        "--skip-unsupported", "--list-unsupported", "--surround"}},
+        "--skip-unsupported", "--list-unsupported", "--surround", "--camera-at", "--look-at",
+        "--field-of-view", "--light-scale"}},
       {"Lens",
        {"--lens", "--optics", "--set", "--substitute", "--glass-catalogue", "--f-number",
         "--aperture-diameter", "--blades", "--blade-rotation", "--apertures", "--ignore-apertures",
         "--fresnel", "--coating", "--absorption", "--pinhole"}},
       {"Focus",
        {"--focus", "--film-distance", "--image-distance", "--move-lens", "--autofocus", "--zone", "--zones",
-        "--focus-*"}},
+        "--focus-*", "--show-zones"}},
       {"Sensor", {"--sensor", "--sensor-set", "--film-diagonal"}},
       {"Output",
-       {"--output", "--picture", "--bits", "--plot", "--csv", "--depth", "--normals", "--albedo", "--white",
-        "--display", "--json"}}};
+       {"--output", "--picture", "--bits", "--plot", "--csv", "--depth", "--normals", "--albedo", "--layers",
+        "--white", "--display", "--preview", "--json"}}};
   return groups;
 }
 

@@ -13,6 +13,7 @@
 #include "loss_option.h"
 #include "option_names.h"
 #include "output_option.h"
+#include "plot_output.h"
 #include "table_output.h"
 
 namespace petzval::app {
@@ -38,7 +39,10 @@ void write_map(const AnalysisCommand& command, const Lens& lens, AnalysisRequest
   const bool numbers = command.map.ends_with(".csv");
   request.plots = !numbers;
   const AnalysisResult map = analyse("wavefront-map", lens, request, context);
-  write_whole_file(command.map, numbers ? to_csv(map.rows()) : drawn(map));
+  if (numbers)
+    write_whole_file(command.map, to_csv(map.rows()));
+  else
+    write_drawing(command.map, drawn(map));
 }
 
 void print_as_json(const AnalysisResult& result) {
@@ -81,9 +85,9 @@ void fit_to_sensor(const AnalysisCommand& command, const Lens& lens, AnalysisReq
 }
 
 void run(const AnalysisCommand& command, const Shared& shared) {
-  if (!command.plot.empty()) require_extension(command.plot, {".svg"}, "a plot");
+  if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   if (!command.csv.empty()) require_extension(command.csv, {".csv"}, "a table");
-  if (!command.map.empty()) require_extension(command.map, {".svg", ".csv"}, "a wavefront map");
+  if (!command.map.empty()) require_drawing(command.map, "a wavefront map", {".csv"});
   Context context = context_of(shared);
   context.progress = {};
   const Lens read = command.lens.read(shared);
@@ -101,7 +105,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   if (command.as_psf) request.mtf.model = {PupilModel::Amplitude::light, PupilModel::Phase::plane_waves};
 
   const AnalysisResult result = analyse(command.name, lens, request, context);
-  if (!command.plot.empty()) write_whole_file(command.plot, drawn(result));
+  if (!command.plot.empty()) write_drawing(command.plot, drawn(result));
   if (!command.csv.empty()) write_whole_file(command.csv, to_csv(result.rows()));
   if (!command.map.empty()) write_map(command, lens, request, context);
   shared.json ? print_as_json(result) : print_as_text(result);
@@ -224,7 +228,7 @@ void add_lens_analyses(CLI::App& lens, Shared& shared) {
     command->camera.add_sensor(*app,
                                "By name or file, or 768x576@6.25: fields to its corners and frequencies to "
                                "Nyquist, unless others are given");
-    app->add_option("--plot", command->plot, "Also draw the result into this SVG file")->check(output_file());
+    app->add_option("--plot", command->plot, "Also draw the result: .svg, .png or .pdf")->check(output_file());
     app->add_option("--csv", command->csv, "Also write the table into this CSV file, with every digit")
         ->check(output_file());
     if (own && own->add) own->add(*app, *command);

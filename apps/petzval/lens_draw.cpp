@@ -16,6 +16,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "output_option.h"
+#include "plot_output.h"
 
 namespace petzval::app {
 
@@ -55,7 +56,7 @@ std::string usual_output(const LensChoice& lens) {
 
 void draw(const DrawCommand& options, const Shared& shared) {
   const std::string output = options.output.empty() ? usual_output(options.lens) : options.output;
-  require_extension(output, {".svg"}, "a drawing");
+  require_drawing(output, "a drawing");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   const FieldTableRequest request = options.fields.request(lens);
@@ -75,7 +76,7 @@ void draw(const DrawCommand& options, const Shared& shared) {
     drawing.legend.push_back(
         {fmt::format("{:g} {}", request.fields[i], field_unit(request.field_kind)), colour});
   }
-  write_whole_file(output, draw_lens(lens, rays, drawing));
+  write_drawing(output, draw_lens(lens, rays, drawing));
   if (!shared.quiet)
     fmt::print("{}: {} rays through {} surfaces\n", output, rays.size(), lens.surfaces.size());
 }
@@ -101,7 +102,7 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
           "Of the rays from film points: in the plane of point and axis, or across it, seen from above")
       ->check(CLI::IsMember({"meridional", "sagittal"}))
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "SVG file to write; default: NAME.svg, of the lens")
+  command->add_option("-o,--output", options->output, ".svg, .png or .pdf; default: NAME.svg, of the lens")
       ->check(output_file());
 }
 

@@ -23,6 +23,7 @@
 #include "lens_commands.h"
 #include "loss_option.h"
 #include "output_option.h"
+#include "plot_output.h"
 
 namespace petzval::app {
 
@@ -162,11 +163,11 @@ void write_map(const PsfCommand& options, const Lens& lens, const FieldTableRequ
     }
     place.light = light;
   }
-  write_whole_file(options.map, psf_map_svg(places, across, frame->width_mm, lens.name));
+  write_drawing(options.map, psf_map_svg(places, across, frame->width_mm, lens.name));
 }
 
 void psf(const PsfCommand& options, const Shared& shared) {
-  if (!options.map.empty()) require_extension(options.map, {".svg"}, "a map of PSFs");
+  if (!options.map.empty()) require_drawing(options.map, "a map of PSFs");
   if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);

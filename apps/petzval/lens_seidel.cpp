@@ -12,6 +12,7 @@
 #include "field_option.h"
 #include "lens_commands.h"
 #include "output_option.h"
+#include "plot_output.h"
 
 namespace petzval::app {
 
@@ -51,7 +52,7 @@ void seidel(const SeidelCommand& options, const Shared& shared) {
   const SeidelSums sums = seidel_sums(lens);
   if (!options.plot.empty()) {
     const Plot plot = seidel_plot(sums);
-    write_whole_file(options.plot, plot_grid_svg({plot}, 1, lens.name));
+    write_drawing(options.plot, plot_grid_svg({plot}, 1, lens.name));
   }
   if (shared.json) {
     nlohmann::ordered_json json = {
@@ -85,13 +86,12 @@ void add_lens_seidel(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<SeidelCommand>();
   CLI::App* command = add_command(lens, shared, "seidel", "Third-order aberrations, surface by surface",
                                   "petzval lens seidel cooke-triplet --plot seidel.svg", true, [=, &shared] {
-                                    if (!options->plot.empty())
-                                      require_extension(options->plot, {".svg"}, "a plot");
+                                    if (!options->plot.empty()) require_drawing(options->plot, "a plot");
                                     seidel(*options, shared);
                                   });
   options->lens.add_to(*command);
   options->camera.add_to(*command);
-  command->add_option("--plot", options->plot, "Also draw the coefficients into this SVG file")
+  command->add_option("--plot", options->plot, "Also draw the coefficients: .svg, .png or .pdf")
       ->check(output_file());
 }
 

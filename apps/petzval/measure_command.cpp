@@ -2,6 +2,7 @@
 // petzval measure sensor | noise | matrix | shading | colour | scielab
 #include "measure_command.h"
 #include "output_option.h"
+#include "plot_output.h"
 
 #include <petzval/base/staged_files.h>
 #include <petzval/base/whole_file.h>
@@ -10,18 +11,18 @@ namespace petzval::app {
 
 void MeasureOutputs::add_to(CLI::App& command, bool with_plot) {
   command.add_option("--csv", csv, "Write the table as .csv")->check(output_file());
-  if (with_plot) command.add_option("--plot", plot, "Draw it as .svg")->check(output_file());
+  if (with_plot) command.add_option("--plot", plot, "Draw it as .svg, .png or .pdf")->check(output_file());
 }
 
 void MeasureOutputs::check() const {
   if (!csv.empty()) require_extension(csv, {".csv"}, "the table");
-  if (!plot.empty()) require_extension(plot, {".svg"}, "the plot");
+  if (!plot.empty()) require_drawing(plot, "the plot");
 }
 
 void MeasureOutputs::write(const Table& table, const Plot& plot_to_write) const {
   StagedFiles files;
   if (!csv.empty()) write_whole_file(files.stage(csv), to_csv(table));
-  if (!plot.empty()) write_whole_file(files.stage(plot), plot_to_write.svg());
+  if (!plot.empty()) write_drawing(files.stage(plot), plot_to_write.svg(), plot);
   files.commit();
 }
 

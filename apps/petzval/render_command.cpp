@@ -12,6 +12,7 @@
 #include "focus_output.h"
 #include "interrupted.h"
 #include "output_option.h"
+#include "plot_output.h"
 #include "render_option.h"
 #include "render_output.h"
 #include "scene_list.h"
@@ -147,7 +148,7 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   }
   const std::optional<Sensor>& sensor = request.camera.sensor;
   OutputOptions outputs = command.outputs.checked(sensor, app);
-  if (!command.focus_plot.empty()) require_extension(command.focus_plot, {".svg"}, "a plot");
+  if (!command.focus_plot.empty()) require_drawing(command.focus_plot, "a plot");
   if (!command.preview.empty()) require_extension(command.preview, {".png"}, "a preview");
 
   const auto start = std::chrono::steady_clock::now();
@@ -198,7 +199,7 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
       ->type_name("[FILE]");
   command.add_flag("--show-zones", options.show_zones,
                    "Draw the zones of autofocus into a .png of the light");
-  command.add_option("--focus-plot", options.focus_plot, "Draw the evaluations of that into this SVG file")
+  command.add_option("--focus-plot", options.focus_plot, "Draw the evaluations of that: .svg, .png or .pdf")
       ->check(output_file());
 }
 

@@ -12,6 +12,7 @@
 
 #include "output_option.h"
 #include "picture_list.h"
+#include "plot_output.h"
 #include "sfr_output.h"
 
 namespace petzval::app {
@@ -46,10 +47,10 @@ void check_outputs(const SfrCommand& command, bool single) {
     throw InputError("give either --roi, for edges at known places, or --chart auto, to find them");
   for (const auto& [path, extensions, what] :
        {std::tuple{command.csv, std::vector<std::string>{".csv"}, "a table"},
-        {command.plot, {".svg"}, "a plot"},
-        {command.profile, {".csv", ".svg"}, "a profile"},
         {command.annotate, {".svg"}, "an annotated picture"}})
     if (!path.empty()) require_extension(path, extensions, what);
+  if (!command.plot.empty()) require_drawing(command.plot, "a plot");
+  if (!command.profile.empty()) require_drawing(command.profile, "a profile", {".csv"});
   if (!command.against.empty() && command.plot.empty())
     throw InputError("--against draws into --plot FILE.svg; give both");
   if (!command.annotate.empty() && !single)
@@ -120,8 +121,10 @@ void run(const SfrCommand& command, const Shared& shared) {
                                  reports.failed.front().second));
   StagedFiles files;
   if (!command.csv.empty()) write_sfr_csv(files.stage(command.csv), reports);
-  if (!command.plot.empty()) write_sfr_plot(files.stage(command.plot), reports, others);
-  if (command.profile.ends_with(".svg")) write_profile_plot(files.stage(command.profile), reports);
+  if (!command.plot.empty())
+    write_drawing(files.stage(command.plot), sfr_plot_svg(reports, others), command.plot);
+  if (is_drawing_name(command.profile))
+    write_drawing(files.stage(command.profile), profile_plot_svg(reports), command.profile);
   if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), reports);
   if (!command.annotate.empty())
     write_annotated(files.stage(command.annotate), reports.pictures.front(), seen);
@@ -175,7 +178,7 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
   command->add_option("--pixel-pitch", options->pitch_um, "Pixel pitch [um], for results in lp/mm")
       ->check(positive_number());
   command->add_option("--csv", options->csv, "Write the SFR table: .csv")->check(output_file());
-  command->add_option("--plot", options->plot, "Draw the SFRs: .svg")->check(output_file());
+  command->add_option("--plot", options->plot, "Draw the SFRs: .svg, .png or .pdf")->check(output_file());
   command
       ->add_option(
           "--against", options->against,

@@ -220,8 +220,7 @@ NamedCurve read_sfr_table(const std::string& path) {
   return curve;
 }
 
-void write_sfr_plot(const std::string& path, const SfrReports& reports,
-                    const std::vector<NamedCurve>& others) {
+std::string sfr_plot_svg(const SfrReports& reports, const std::vector<NamedCurve>& others) {
   Plot plot;
   plot.title = "Spatial frequency response";
   plot.x = {"spatial frequency", "cycles/pixel", PlotScale::linear, 0.0, 1.0};
@@ -238,10 +237,10 @@ void write_sfr_plot(const std::string& path, const SfrReports& reports,
     plot.line(others[i].name, others[i].frequencies_cpp, others[i].sfr).stroke =
         i % 2 == 0 ? PlotStroke::dashed : PlotStroke::dotted;
   plot.guides.push_back({PlotGuide::At::x, 0.5, "Nyquist"});
-  write_whole_file(path, plot.svg());
+  return plot.svg();
 }
 
-void write_profile_plot(const std::string& path, const SfrReports& reports) {
+std::string profile_plot_svg(const SfrReports& reports) {
   Plot plot;
   plot.title = "Edge spread";
   plot.x = {"distance from the edge", "pixels", PlotScale::linear, -10.0, 10.0};
@@ -253,7 +252,7 @@ void write_profile_plot(const std::string& path, const SfrReports& reports) {
       if (std::abs(edge.distance_px[k]) <= 10) x.push_back(edge.distance_px[k]), y.push_back(edge.esf[k]);
     plot.line(curve_file(reports, report) + name_of(report.edges[i], i), x, y);
   });
-  write_whole_file(path, plot.svg());
+  return plot.svg();
 }
 
 void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane) {

@@ -44,9 +44,8 @@ struct NamedCurve {
 NamedCurve read_sfr_table(const std::string& path);
 
 /// The measured edges, and beside them, broken, what others say.
-void write_sfr_plot(const std::string& path, const SfrReports& reports,
-                    const std::vector<NamedCurve>& others);
-void write_profile_plot(const std::string& path, const SfrReports& reports);
+std::string sfr_plot_svg(const SfrReports& reports, const std::vector<NamedCurve>& others);
+std::string profile_plot_svg(const SfrReports& reports);
 /// The picture with its edges and their MTF50.
 void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane);
 

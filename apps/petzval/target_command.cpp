@@ -23,6 +23,7 @@
 #include "command.h"
 #include "field_option.h"
 #include "output_option.h"
+#include "plot_output.h"
 #include "target_optics.h"
 #include "target_output.h"
 
@@ -190,9 +191,8 @@ TargetRequest request_of(const TargetCommand& command, const Shared& shared) {
 
 void run(const TargetCommand& command, const Shared& shared) {
   const TargetRequest request = request_of(command, shared);
-  for (const auto& [path, what, extension] :
-       {std::tuple{command.exact_sfr, "a table of exact SFRs", ".csv"}, {command.plot, "a plot", ".svg"}})
-    if (!path.empty()) require_extension(path, {extension}, what);
+  if (!command.exact_sfr.empty()) require_extension(command.exact_sfr, {".csv"}, "a table of exact SFRs");
+  if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   const TargetOptions options = target_options(request);
   const std::shared_ptr<const Otf> otf = target_otf(request);
   const TargetImage image = levels_of(command, request, shared);
@@ -204,7 +204,8 @@ void run(const TargetCommand& command, const Shared& shared) {
   if (!command.exact_sfr.empty())
     write_whole_file(files.stage(command.exact_sfr), exact_sfr_csv(exact_sfr(request.scene, *otf, options)));
   if (!command.plot.empty())
-    write_whole_file(files.stage(command.plot), target_plot_svg(*otf, options, plot_title(command, options)));
+    write_drawing(files.stage(command.plot), target_plot_svg(*otf, options, plot_title(command, options)),
+                  command.plot);
   files.commit();
   print_target_summary(request, command.optics.psf, *otf, image, shared);
 }
@@ -256,7 +257,7 @@ void add_target_command(CLI::App& app, Shared& shared) {
     command->get_option(exposing)->needs(sensor);
   command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv")
       ->check(output_file());
-  command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg")->check(output_file());
+  command->add_option("--plot", options->plot, "Draw PSF and MTF: .svg, .png or .pdf")->check(output_file());
 }
 
 }  // namespace petzval::app

@@ -182,7 +182,7 @@ class SensorChain(ProgramTest):
         refuse("--sensor", "96x64@3.75", "-o", "a.exr", "-o", "a.dng", words=["channels"])
         refuse("-o", "a.dng", words=["--sensor"])
         refuse("--sensor", "96x64@3.75", "-o", "a.tif", words=["a.tif", "developed"])
-        refuse("--sensor", "96x64@3.75", "--exposure", "1", "-o", "a.png", words=["--exposure", "no effect"])
+        refuse("--sensor", "96x64@3.75", "--frames", "2", "-o", "a.png", words=["--frames", "no effect"])
         refuse("--sensor", "small.json", "--sharpen", "1", "-o", "a.dng", words=["--sharpen", "no effect"])
         refuse("--sensor", "small.json", "--picture", "developed", "-o", "a.dng", words=["--picture"])
         refuse("--sensor", "small.json", "-o", "a.dng", "-o", "no/a.png", words=["no"])

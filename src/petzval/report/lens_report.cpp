@@ -178,11 +178,11 @@ class LensSections {
     section("Spots", "spots");
     const std::vector<SpotDiagram> diagrams = spot_diagrams(lens_, request_, spot_rings);
     const std::vector<SpotRow> rows = spot_table(lens_, request_);
-    page_.add(
-        figure_with_data(spot_plot(kind_, diagrams, rows).svg(),
-                         "Spots about the chief ray of the first wavelength; circle: Airy disc of the "
-                         "field. RMS radius about the centroid, rays weighing as their area on the stop.",
-                         "spot_diagrams.csv", tabulate(kind_, diagrams)));
+    page_.add(figure_with_data(
+        plot_grid_svg(spot_plots(kind_, diagrams, rows), spot_plots_across, ""),
+        "Spots about the chief ray of the first wavelength, each field on its own scale; circle: Airy disc "
+        "of the field. RMS radius about the centroid, rays weighing as their area on the stop.",
+        "spot_diagrams.csv", tabulate(kind_, diagrams)));
     page_.add(html::table(tabulate(kind_, rows)));
     page_.add(html::download("spots.csv", "text/csv", to_csv(tabulate(kind_, rows)), "table (CSV)"));
   }

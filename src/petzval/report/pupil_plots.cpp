@@ -4,6 +4,7 @@
 #include <petzval/report/heat_map.h>
 #include <petzval/report/pupil_plots.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,51 +26,46 @@ void draw_circle(Plot& plot, double x, double y, double radius) {
 
 }  // namespace
 
-Plot spot_plot(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams,
-               const std::vector<SpotRow>& rows) {
+std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams,
+                             const std::vector<SpotRow>& rows) {
+  constexpr double side_px = 320, stroke_px = 1.5, margin = 1.1;
   const std::size_t wavelengths = wavelengths_of(rows), fields = rows.size() / wavelengths;
-  const auto above_um = [&](std::size_t i) {
-    return diagrams[i].height_um - diagrams[i - i % wavelengths].height_um;  // lateral colour
-  };
-  double reach = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    reach = std::max({reach, rows[i].airy_radius_um,
-                      rows[i].max_radius_um + std::abs(rows[i].centroid_um) + std::abs(above_um(i))});
-  Plot plot;
-  plot.title = "Spots and Airy circle";
-  plot.x = {"sagittal, fields side by side", "µm"};
-  plot.y = {"from the chief ray", "µm", PlotScale::linear, -1.3 * reach, 1.1 * reach};
-  plot.equal_aspect = true;
-  plot.width_px = 1000;
-  const double pitch = 2.2 * reach;
-  plot.x.from = -0.5 * pitch;
-  plot.x.to = (static_cast<double>(fields) - 0.5) * pitch;
-  constexpr double stroke_px = 1.3;
-  const double stroke = stroke_px * pitch * static_cast<double>(fields) / plot.width_px;
-  for (std::size_t w = 0; w < wavelengths; ++w) {
-    std::vector<double> xs, ys;
-    for (std::size_t f = 0; f < fields; ++f) {
-      const SpotDiagram& diagram = diagrams[f * wavelengths + w];
+  std::vector<Plot> plots;
+  for (std::size_t f = 0; f < fields; ++f) {
+    const std::size_t first = f * wavelengths;
+    const double airy_um = rows[first].airy_radius_um;
+    double reach = airy_um;
+    for (std::size_t i = first; i < first + wavelengths; ++i) {
+      const double above_um = diagrams[i].height_um - diagrams[first].height_um;  // lateral colour
+      for (std::size_t k = 0; k < diagrams[i].x_um.size(); ++k)
+        reach = std::max({reach, std::abs(diagrams[i].x_um[k]), std::abs(diagrams[i].y_um[k] + above_um)});
+    }
+    Plot plot;
+    plot.title =
+        fmt::format("{}: RMS {:.2f} µm", field_text(kind, rows[first].field), rows[first].rms_radius_um);
+    plot.x = {"sagittal", "µm", PlotScale::linear, -margin * reach, margin * reach};
+    plot.y = {"from the chief ray", "µm", PlotScale::linear, -margin * reach, margin * reach};
+    plot.equal_aspect = true;
+    plot.width_px = side_px;
+    const double stroke = stroke_px * 2 * margin * reach / side_px;
+    for (std::size_t w = 0; w < wavelengths; ++w) {
+      const SpotDiagram& diagram = diagrams[first + w];
+      const double above_um = diagram.height_um - diagrams[first].height_um;
+      std::vector<double> xs, ys;
       for (std::size_t k = 0; k < diagram.x_um.size(); ++k) {
         // A stroke as short as it is thick: markers of the plot would hide each other.
-        const double x = diagram.x_um[k] + pitch * static_cast<double>(f);
-        const double y = diagram.y_um[k] + above_um(f * wavelengths + w);
+        const double x = diagram.x_um[k], y = diagram.y_um[k] + above_um;
         xs.insert(xs.end(), {x - 0.5 * stroke, x + 0.5 * stroke, std::nan("")});
         ys.insert(ys.end(), {y, y, y});
       }
+      PlotSeries& dots = plot.line(f == 0 ? wavelength_text(rows[first + w].wavelength_nm) : "", xs, ys);
+      dots.colour = wavelength_colour(rows[first + w].wavelength_nm).hex();
+      dots.width_px = stroke_px;
     }
-    PlotSeries& dots = plot.line(wavelength_text(rows[w].wavelength_nm), xs, ys);
-    dots.colour = wavelength_colour(rows[w].wavelength_nm).hex();
-    dots.width_px = stroke_px;
+    draw_circle(plot, 0, 0, airy_um);
+    plots.push_back(std::move(plot));
   }
-  for (std::size_t f = 0; f < fields; ++f) {
-    const double x = pitch * static_cast<double>(f);
-    draw_circle(plot, x, 0, rows[f * wavelengths].airy_radius_um);
-    plot.notes.push_back({x - 0.9 * reach, -1.15 * reach,
-                          fmt::format("{}: RMS {:.2f} µm", field_text(kind, rows[f * wavelengths].field),
-                                      rows[f * wavelengths].rms_radius_um)});
-  }
-  return plot;
+  return plots;
 }
 
 std::vector<Plot> fan_plots(Fields::Kind kind, const std::vector<AberrationFans>& rows,

@@ -11,8 +11,11 @@ namespace petzval {
 
 // Rows of all of these are in the order fields × wavelengths, as the analyses give them.
 
-/// Fields side by side, each about the chief ray of its first wavelength, with that wavelength's Airy circle.
-Plot spot_plot(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams, const std::vector<SpotRow>& rows);
+/// A plot a field on a scale of its own, about the chief ray of its first wavelength, with that wavelength's
+/// Airy circle.
+std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams,
+                             const std::vector<SpotRow>& rows);
+constexpr int spot_plots_across = 3;
 
 enum class FanQuantity { transverse, opd };
 /// Two plots a field, tangential and sagittal, a curve a wavelength, all on one scale.

@@ -139,8 +139,10 @@ AnalysisResult spots(const Lens& lens, const AnalysisRequest& request, const Con
                 fmt::format("spot radii about the centroid, rays weighted by {}",
                             request.spot_weight == RayWeight::light ? "their light" : "area on the stop"),
                 tabulate(request.at.field_kind, rows));
-  if (request.plots)
-    result.plots = {spot_plot(request.at.field_kind, spot_diagrams(lens, request.at, diagram_rings), rows)};
+  if (request.plots) {
+    result.plots = spot_plots(request.at.field_kind, spot_diagrams(lens, request.at, diagram_rings), rows);
+    result.plots_across = spot_plots_across;
+  }
   return result;
 }
 
