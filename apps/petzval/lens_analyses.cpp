@@ -228,7 +228,8 @@ void add_lens_analyses(CLI::App& lens, Shared& shared) {
     command->camera.add_sensor(*app,
                                "By name or file, or 768x576@6.25: fields to its corners and frequencies to "
                                "Nyquist, unless others are given");
-    app->add_option("--plot", command->plot, "Also draw the result: .svg, .png or .pdf")->check(output_file());
+    app->add_option("--plot", command->plot, "Also draw the result: .svg, .png or .pdf")
+        ->check(output_file());
     app->add_option("--csv", command->csv, "Also write the table into this CSV file, with every digit")
         ->check(output_file());
     if (own && own->add) own->add(*app, *command);
