@@ -17,6 +17,7 @@
 #include <nanobind/stl/vector.h>
 #include <petzval/petzval.h>
 
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -30,8 +31,21 @@ namespace petzval::python {
 using Numbers = std::vector<double>;
 template <typename T>
 using Array = nb::ndarray<nb::numpy, T>;
-/// What functions take for arrays of floats: NumPy, or anything with DLPack or the buffer protocol.
-using FloatsIn = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
+/// What functions take for bands of floats: NumPy, or anything with DLPack or the buffer protocol, in
+/// whatever order of memory.
+using FloatsIn = nb::ndarray<const float, nb::device::cpu>;
+
+/// A view (row, column, band) of bands that lie one after the other.
+inline Array<float> bands_view(float* data, int rows, int columns, int bands, nb::handle owner) {
+  const std::size_t shape[] = {static_cast<std::size_t>(rows), static_cast<std::size_t>(columns),
+                               static_cast<std::size_t>(bands)};
+  const std::int64_t strides[] = {columns, 1, static_cast<std::int64_t>(rows) * columns};
+  return Array<float>(data, 3, shape, owner, strides);
+}
+
+/// The bands of an array (row, column, band), one after the other.
+/// \throws InputError, naming the parameter, unless there are as many as wavelengths.
+std::vector<float> bands_of(const char* parameter, const FloatsIn& values, const Numbers& wavelengths_nm);
 
 void bind_errors(nb::module_& module);
 void bind_glass(nb::module_& module);

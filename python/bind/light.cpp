@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Light on the sensor: SpectralImage.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/image/formats/irradiance.h>
 
 #include "bind.h"
@@ -24,25 +25,19 @@ std::string aperture_text(const SpectralImage& image) {
 
 Array<float> values_view(nb::handle self) {
   auto& image = nb::cast<SpectralImage&>(self);
-  const std::size_t shape[] = {static_cast<std::size_t>(image.bands()),
-                               static_cast<std::size_t>(image.rows()),
-                               static_cast<std::size_t>(image.columns())};
-  return Array<float>(image.bands() > 0 ? image.band(0).data() : nullptr, 3, shape, self);
+  return bands_view(image.bands() > 0 ? image.band(0).data() : nullptr, image.rows(), image.columns(),
+                    image.bands(), self);
 }
 
 SpectralImage of_array(const FloatsIn& values, const Numbers& wavelengths_nm, double pitch_um,
                        const std::string& aperture) {
-  if (values.ndim() != 3 || values.shape(0) != wavelengths_nm.size())
-    throw InputError(
-        fmt::format("`values` with {} dimensions and {} `wavelengths_nm`; an array (wavelength, row, column) "
-                    "would be right",
-                    values.ndim(), wavelengths_nm.size()));
-  SpectralImage image(static_cast<int>(values.shape(2)), static_cast<int>(values.shape(1)), wavelengths_nm,
+  const std::vector<float> bands = bands_of("values", values, wavelengths_nm);
+  SpectralImage image(static_cast<int>(values.shape(1)), static_cast<int>(values.shape(0)), wavelengths_nm,
                       pitch_um, aperture_of(aperture));
   if (image.pixel_aperture() == PixelAperture::photosite) image.photosite = aperture;
   for (int band = 0; band < image.bands(); ++band)
     image.store_band(band,
-                     {values.data() + static_cast<std::size_t>(band) * image.band_size(), image.band_size()});
+                     {bands.data() + static_cast<std::size_t>(band) * image.band_size(), image.band_size()});
   return image;
 }
 
@@ -84,6 +79,25 @@ nb::bytes png_of(const SpectralImage& image) {
 
 }  // namespace
 
+std::vector<float> bands_of(const char* parameter, const FloatsIn& values, const Numbers& wavelengths_nm) {
+  if (values.ndim() != 3 || values.shape(2) != wavelengths_nm.size())
+    throw InputError(fmt::format(
+        "`{}` of shape ({}) and {} `wavelengths_nm`; an array (row, column, wavelength) would be right",
+        parameter, fmt::join(values.shape_ptr(), values.shape_ptr() + values.ndim(), ", "),
+        wavelengths_nm.size()));
+  const std::size_t rows = values.shape(0), columns = values.shape(1), count = values.shape(2);
+  std::vector<float> bands;
+  bands.reserve(values.size());
+  for (std::size_t band = 0; band < count; ++band)
+    for (std::size_t row = 0; row < rows; ++row) {
+      const float* value = values.data() + static_cast<std::int64_t>(row) * values.stride(0) +
+                           static_cast<std::int64_t>(band) * values.stride(2);
+      for (std::size_t column = 0; column < columns; ++column, value += values.stride(1))
+        bands.push_back(*value);
+    }
+  return bands;
+}
+
 void bind_light(nb::module_& module) {
   module.def("_light_from_state", of_state);
   nb::class_<LensFacts>(module, "LensFacts", "The lens that light came through, as far as a camera notes it.")
@@ -105,18 +119,18 @@ void bind_light(nb::module_& module) {
       });
   nb::class_<SpectralImage>(
       module, "SpectralImage",
-      "Spectral irradiance on the sensor [W/(m2 nm)], (wavelength, row, column), upright, row 0 on top.")
+      "Spectral irradiance on the sensor [W/(m2 nm)], (row, column, wavelength), upright, row 0 on top.")
       .def(nb::new_(&of_array), nb::arg("values"), nb::arg("wavelengths_nm"), nb::arg("pitch_um"),
            nb::arg("pixel_aperture") = "box",
-           "Of an array (wavelength, row, column) of float32, which is copied.")
+           "Of an array (row, column, wavelength) of float32, which is copied.")
       .def_static("load", &read_irradiance, nb::arg("path"), "Reads what `save` wrote as .exr.")
       .def_prop_ro("values", values_view,
-                   "A view (wavelength, row, column) of float32, without a copy; it may be written to.")
+                   "A view (row, column, wavelength) of float32, without a copy; it may be written to.")
       .def_prop_ro("wavelengths_nm", [](const SpectralImage& i) { return tuple_of(i.wavelengths_nm()); })
       .def_prop_ro("columns", &SpectralImage::columns)
       .def_prop_ro("rows", &SpectralImage::rows)
       .def_prop_ro("shape",
-                   [](const SpectralImage& i) { return nb::make_tuple(i.bands(), i.rows(), i.columns()); })
+                   [](const SpectralImage& i) { return nb::make_tuple(i.rows(), i.columns(), i.bands()); })
       .def_prop_ro("pitch_um", &SpectralImage::pitch_um)
       .def_prop_ro("pixel_aperture", aperture_text,
                    "box, point, or what the photosite is like (Sensor.photosite).")
@@ -142,7 +156,7 @@ void bind_light(nb::module_& module) {
           "Irradiance as .exr or .npy, a picture of it as .png or .tif; all of several files, or none.")
       .def(
           "to_xarray", [](nb::handle self) { return call_python("petzval._xarray", "light", self); },
-          "As xarray.DataArray (wavelength, y, x) in mm of the upright picture, sharing the memory.")
+          "As xarray.DataArray (y, x, wavelength) in mm of the upright picture, sharing the memory.")
       .def(
           "__array__",
           [](nb::handle self, const nb::object& dtype, const nb::object& copy) {

@@ -106,11 +106,20 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       .def_prop_ro(
           "depth", [](nb::handle self) { return first_surface<&render::FirstSurfaces::depth>(self, 0); },
           "Distance from the film along the axis [scene units], (row, column), infinity where nothing is "
-          "met; None "
-          "unless `first_surfaces`.")
+          "met; None unless `first_surfaces`.")
       .def_prop_ro(
           "normals", [](nb::handle self) { return first_surface<&render::FirstSurfaces::normal>(self, 3); },
           "In world space, (row, column, 3).")
+      .def_prop_ro(
+          "albedo",
+          [](nb::handle self) -> nb::object {
+            auto& r = nb::cast<Rendering&>(self);
+            if (!r.first_surfaces) return nb::none();
+            const SpectralImage& light = r.irradiance;
+            return nb::cast(bands_view(r.first_surfaces->albedo.data(), light.rows(), light.columns(),
+                                       light.bands(), self));
+          },
+          "What the surfaces reflect of the light that falls on them, 0 to 1, (row, column, wavelength).")
       .def_prop_ro(
           "share", [](nb::handle self) { return first_surface<&render::FirstSurfaces::share>(self, 0); },
           "Of the rays that met a surface, (row, column).")

@@ -80,20 +80,16 @@ Scene of_arrays(const FloatsIn& values, const Numbers& wavelengths_nm, double ho
                 const Maybe<nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>>& depth_m,
                 const std::string& depth_from_word, SceneQuantity quantity) {
   const char* name = quantity == SceneQuantity::reflectance ? "reflectance" : "radiance";
-  if (values.ndim() != 3 || values.shape(0) != wavelengths_nm.size())
-    throw InputError(fmt::format(
-        "`{}` with {} dimensions and {} `wavelengths_nm`; an array (wavelength, row, column) would be right",
-        name, values.ndim(), wavelengths_nm.size()));
   SpectralCube cube;
-  cube.bands = static_cast<int>(values.shape(0)), cube.rows = static_cast<int>(values.shape(1)),
-  cube.columns = static_cast<int>(values.shape(2));
+  cube.values = LargeFloats(bands_of(name, values, wavelengths_nm));
+  cube.rows = static_cast<int>(values.shape(0)), cube.columns = static_cast<int>(values.shape(1)),
+  cube.bands = static_cast<int>(values.shape(2));
   cube.wavelengths_nm = wavelengths_nm;
-  cube.values = LargeFloats(std::vector<float>(values.data(), values.data() + values.size()));
   cube.quantity = quantity;
   cube.horizontal_angle_deg = horizontal_angle_deg, cube.distance_m = distance_m;
   cube.name = "array";
   if (depth_m) {
-    if (depth_m->shape(0) != values.shape(1) || depth_m->shape(1) != values.shape(2))
+    if (depth_m->shape(0) != values.shape(0) || depth_m->shape(1) != values.shape(1))
       throw InputError(
           fmt::format("`depth_m` of {} x {}; as many rows and columns as the scene would be right",
                       depth_m->shape(0), depth_m->shape(1)));
@@ -133,10 +129,8 @@ Scene of_reflectance(
 
 Array<float> radiance_view(nb::handle self) {
   auto& scene = nb::cast<Scene&>(self);
-  const std::size_t shape[] = {static_cast<std::size_t>(scene.bands()),
-                               static_cast<std::size_t>(scene.rows()),
-                               static_cast<std::size_t>(scene.columns())};
-  return Array<float>(scene.bands() > 0 ? scene.band(0).data() : nullptr, 3, shape, self);
+  return bands_view(scene.bands() > 0 ? scene.band(0).data() : nullptr, scene.rows(), scene.columns(),
+                    scene.bands(), self);
 }
 
 nb::object depth_view(nb::handle self) {
@@ -195,7 +189,7 @@ void bind_scene(nb::module_& module) {
            nb::arg("horizontal_angle_deg") = 40.0, nb::arg("distance_m").none() = nb::none(),
            nb::arg("illuminant").none() = nb::none(), nb::arg("depth_m").none() = nb::none(),
            nb::arg("depth_from") = "sensor",
-           "Of an array (wavelength, row, column) of float32 radiance. `distance_m` None: at infinity. "
+           "Of an array (row, column, wavelength) of float32 radiance. `distance_m` None: at infinity. "
            "`illuminant`: the "
            "light of the scene, where known, by name or as (wavelengths, values). `depth_m`: (row, column), "
            "from the "
@@ -204,8 +198,8 @@ void bind_scene(nb::module_& module) {
                   nb::kw_only(), nb::arg("illuminant") = "D65", nb::arg("mean_luminance_cd_m2") = 100.0,
                   nb::arg("horizontal_angle_deg") = 40.0, nb::arg("distance_m").none() = nb::none(),
                   nb::arg("depth_m").none() = nb::none(), nb::arg("depth_from") = "sensor",
-                  "Of reflectances (wavelength, row, column), 0 to 1, under a light.")
-      .def_prop_ro("radiance", radiance_view, "A view (wavelength, row, column) of float32, without a copy.")
+                  "Of reflectances (row, column, wavelength), 0 to 1, under a light.")
+      .def_prop_ro("radiance", radiance_view, "A view (row, column, wavelength) of float32, without a copy.")
       .def_prop_ro("depth_m", depth_view, "A view (row, column) of the depths [m], or None.")
       .def_prop_ro("wavelengths_nm", [](const Scene& s) { return tuple_of(s.wavelengths_nm()); })
       .def_prop_ro("columns", &Scene::columns)
@@ -221,7 +215,7 @@ void bind_scene(nb::module_& module) {
           nb::arg("illuminant"), "Puts a scene whose light is known under another.")
       .def(
           "to_xarray", [](nb::handle self) { return call_python("petzval._xarray", "scene", self); },
-          "As xarray.DataArray (wavelength, y, x), tangents of the object angle as coordinates.")
+          "As xarray.DataArray (y, x, wavelength), tangents of the object angle as coordinates.")
       .def(
           "__array__",
           [](nb::handle self, const nb::object& dtype, const nb::object& copy) {

@@ -16,7 +16,7 @@ def _pixels(count, pitch_mm):
 def light(image):
     pitch_mm = image.pitch_um * 1e-3
     return xarray.DataArray(
-        image.values, dims=("wavelength", "y", "x"), name="irradiance",
+        image.values, dims=("y", "x", "wavelength"), name="irradiance",
         coords={"wavelength": _axis("wavelength", image.wavelengths_nm, "nm"),
                 "y": _axis("y", -_pixels(image.rows, pitch_mm), "mm"),
                 "x": _axis("x", _pixels(image.columns, pitch_mm), "mm")},
@@ -27,7 +27,7 @@ def light(image):
 def scene(scene):
     step = 2 * numpy.tan(numpy.radians(scene.horizontal_angle_deg / 2)) / scene.columns
     return xarray.DataArray(
-        scene.radiance, dims=("wavelength", "y", "x"), name="radiance",
+        scene.radiance, dims=("y", "x", "wavelength"), name="radiance",
         coords={"wavelength": _axis("wavelength", scene.wavelengths_nm, "nm"),
                 "y": _axis("y", -_pixels(scene.rows, step), "1"), "x": _axis("x", _pixels(scene.columns, step), "1")},
         attrs={"units": "W m-2 sr-1 nm-1", "scene": scene.name})

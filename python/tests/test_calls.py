@@ -40,7 +40,7 @@ def test_what_progress_raises_ends_the_work(camera):
         raise KeyError("mine")
     with pytest.raises(KeyError, match="mine"):
         camera.image(SCENE, progress=fail)
-    assert camera.image(SCENE).shape == (3, 64, 96)
+    assert camera.image(SCENE).shape == (64, 96, 3)
 
 
 def test_interrupt_ends_the_work(camera):

@@ -101,7 +101,7 @@ def test_sensors_survive(name):
     again = pickle.loads(pickle.dumps(sensor))
     assert again == sensor and repr(again) == repr(sensor)
     if sensor.has_electronics:
-        wall = pz.SpectralImage(np.full((31, 64, 96), 1e-4, np.float32), range(400, 701, 10), 40, sensor.photosite)
+        wall = pz.SpectralImage(np.full((64, 96, 31), 1e-4, np.float32), range(400, 701, 10), 40, sensor.photosite)
         raw, same = (each.expose(wall, seed=3, exit_pupil_mm=-20) for each in (sensor, again))
         assert np.array_equal(raw.values, same.values)
 
@@ -162,24 +162,34 @@ def test_arrays_share_memory(camera, light):
 def test_scenes_from_arrays(camera):
     """A uniform wall at infinity on the axis gives E = L g_sensor (docs/CONVENTIONS.md, "Radiometry")."""
     camera.focus = "infinity"
-    radiance = np.full((1, 40, 60), 0.5, np.float32)
+    radiance = np.full((40, 60, 1), 0.5, np.float32)
     light = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70))
     g_sensor = camera.illumination([0], wavelengths_nm=[550])["g_sensor_sr"][0]
-    assert light.values[0, 31:33, 47:49].mean() == pytest.approx(0.5 * g_sensor, rel=2e-3)
-    scene = pz.Scene.from_reflectance(np.full((31, 4, 6), 0.18, np.float32), range(400, 701, 10), mean_luminance_cd_m2=50)
+    assert light.values[31:33, 47:49, 0].mean() == pytest.approx(0.5 * g_sensor, rel=2e-3)
+    scene = pz.Scene.from_reflectance(np.full((4, 6, 31), 0.18, np.float32), range(400, 701, 10), mean_luminance_cd_m2=50)
     assert scene.mean_luminance_cd_m2 == pytest.approx(50)
-    with pytest.raises(pz.InputError, match="wavelength, row, column"):
+    with pytest.raises(pz.InputError, match=r"\(40, 60, 1\) and 2 .*\(row, column, wavelength\)"):
         pz.Scene(radiance, [500, 600])
     with pytest.raises(pz.InputError):
         pz.Scene(-radiance, [550])
 
 
+def test_arrays_in_any_order_of_memory():
+    """Bands first in memory, or every second row of a larger array, give the same scene."""
+    radiance = np.random.default_rng(1).random((8, 12, 3), np.float32)
+    stored_by_band = np.moveaxis(np.ascontiguousarray(np.moveaxis(radiance, 2, 0)), 0, 2)
+    every_second = np.repeat(radiance, 2, axis=0)[::2]
+    for values in (radiance, stored_by_band, every_second):
+        assert np.array_equal(pz.Scene(values, [450, 550, 650]).radiance, radiance)
+        assert np.array_equal(pz.SpectralImage(values, [450, 550, 650], 5.0).values, radiance)
+
+
 def test_depth_from_an_array(camera):
     depth = np.full((40, 60), 1.2, np.float32)
-    radiance = np.full((1, 40, 60), 0.5, np.float32)
+    radiance = np.full((40, 60, 1), 0.5, np.float32)
     flat = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70, distance_m=1.2))
     deep = camera.image(pz.Scene(radiance, [550], horizontal_angle_deg=70, depth_m=depth), surround="extend")
-    assert deep.values[0, 20:40, 30:60] == pytest.approx(flat.values[0, 20:40, 30:60], rel=1e-3)
+    assert deep.values[20:40, 30:60, 0] == pytest.approx(flat.values[20:40, 30:60, 0], rel=1e-3)
 
 
 def test_what_notebooks_show(camera, light):
@@ -195,7 +205,7 @@ def test_what_notebooks_show(camera, light):
 def test_xarray(camera, light):
     pytest.importorskip("xarray")
     array = light.to_xarray()
-    assert array.dims == ("wavelength", "y", "x") and np.shares_memory(array.values, light.values)
+    assert array.dims == ("y", "x", "wavelength") and np.shares_memory(array.values, light.values)
     assert array.y.values[0] > 0 > array.y.values[-1] and array.attrs["units"] == "W m-2 nm-1"
     psfs = camera.psf(wavelengths_nm=[550]).to_xarray()
     assert psfs.psf.sum(("y", "x")).values == pytest.approx(1, abs=1e-6)

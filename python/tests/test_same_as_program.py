@@ -22,21 +22,21 @@ def as_json(column):
 
 def test_image(program, light):
     program.run("image", *SHOT, "-o", "light.npy")
-    assert np.array_equal(np.load(program.folder / "light.npy"), np.moveaxis(light.values, 0, 2))
+    assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
 
 
 @pytest.mark.parametrize("method", ["blended", "sections", "none"])
 def test_image_by_other_methods(program, camera, method):
     program.run("image", *SHOT, "--method", method, "--supersample", 2, "-o", "light.npy")
     light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]), method=method, supersample=2)
-    assert np.array_equal(np.load(program.folder / "light.npy"), np.moveaxis(light.values, 0, 2))
+    assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
 
 
 def test_image_with_losses(program, camera):
     program.run("image", *SHOT, "--fresnel", "--absorption", "-o", "light.npy")
     camera.fresnel = camera.absorption = True
     light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
-    assert np.array_equal(np.load(program.folder / "light.npy"), np.moveaxis(light.values, 0, 2))
+    assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
 
 
 def test_raw_image_and_picture(program, camera, light, tmp_path):
@@ -113,11 +113,14 @@ def test_rays(program, tmp_path):
 
 def test_rendering(program, tmp_path):
     program.run("render", "spheres", "--lens", "dgauss-50mm", "--focus", "1.2m", "--size", "48x32", "--wavelengths",
-                "450,550,650", "--spp", 4, "--seed", 5, "--depth", "depth.npy", "-o", "light.npy")
+                "450,550,650", "--spp", 4, "--seed", 5, "--depth", "depth.npy", "--albedo",
+                "albedo.npy", "-o", "light.npy")
     rendering = pz.Camera("dgauss-50mm", focus="1.2m").render("spheres", size=(48, 32), wavelengths_nm=[450, 550, 650],
                                                               samples_per_pixel=4, seed=5, first_surfaces=True)
-    assert np.array_equal(np.load(tmp_path / "light.npy"), np.moveaxis(rendering.light.values, 0, 2))
+    assert np.array_equal(np.load(tmp_path / "light.npy"), rendering.light.values)
     assert np.array_equal(np.load(tmp_path / "depth.npy"), rendering.depth)
+    assert np.array_equal(np.load(tmp_path / "albedo.npy"), rendering.albedo)
+    assert 0 <= rendering.albedo.min() < rendering.albedo.max() <= 1
 
 
 def test_autofocus(program):
@@ -144,4 +147,4 @@ def test_table(program, tmp_path):
                 "light.npy")
     camera = pz.TableCamera(pz.LensDataTable.load(str(tmp_path / "table.h5")), "96x64@40")
     light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
-    assert np.array_equal(np.load(tmp_path / "light.npy"), np.moveaxis(light.values, 0, 2))
+    assert np.array_equal(np.load(tmp_path / "light.npy"), light.values)
