@@ -197,8 +197,7 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
           "Focus by itself on the zones of this file (see petzval focus), or on the middle of the picture")
       ->expected(0, 1)
       ->type_name("[FILE]");
-  command.add_flag("--show-zones", options.show_zones,
-                   "Draw the zones of autofocus into a .png of the light");
+  command.add_flag("--show-zones", options.show_zones, "Draw the zones of autofocus into the pictures");
   command.add_option("--focus-plot", options.focus_plot, "Draw the evaluations of that: .svg, .png or .pdf")
       ->check(output_file());
 }

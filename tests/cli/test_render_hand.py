@@ -11,6 +11,7 @@ import unittest
 
 import numpy
 
+from picture_files import read_png
 from petzval_cli import PROGRAM, ProgramTest
 
 SCENE = """LookAt 0 0 -1  0 0 0  0 1 0
@@ -89,6 +90,16 @@ class RenderHand(ProgramTest):
         self.assertAlmostEqual(near["distance_in_focus_m"], 2, delta=2e-3)
         for focus, words in [("pixel@24", ["pixel@", "120,80"]), ("pixel@99,3", ["99,3", "48 x 36"])]:
             self.assert_refused("render", "s.pbrt", "--lens", "dgauss-50mm", "--focus", focus, "-o", "x.png", words=words)
+
+    def test_draws_the_zones_into_every_picture(self):
+        shot = ["render", "s.pbrt", *LENS, "--spp", "2", "--quiet"]
+        for sensor in ([], ["--sensor", "third-inch-1280x960", "--size", "48x36"]):
+            self.assert_succeeds(*shot, *sensor, "--show-zones", "-o", "a.png")
+            pixels = read_png(self.folder / "a.png")
+            self.assertEqual((len(pixels[0]), len(pixels)), (48, 36))
+            yellow = {(x, y) for y, row in enumerate(pixels) for x, pixel in enumerate(row) if pixel == (255, 231, 0)}
+            rim = {(x, y) for x in range(16, 32) for y in range(12, 24) if x in (16, 31) or y in (12, 23)}  # the middle ninth
+            self.assertEqual(yellow, rim, sensor)
 
     def test_is_not_dazzled_by_a_lamp(self):
         # The lamp is thousands of times brighter than the wall, and 1 % of the picture and more.

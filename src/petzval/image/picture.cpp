@@ -234,7 +234,8 @@ void PictureRenderer::linear_row(int row, std::span<LinearRgb> pixels) const {
   }
   for (const PictureFrame& frame : frames_)
     for (int column = frame.left; column < std::min(frame.right, image_.columns()); ++column)
-      if (frame.is_on_rim(column, row)) pixels[static_cast<std::size_t>(column)] = {1, 0.8, 0};
+      if (frame.is_on_rim(column, row))
+        pixels[static_cast<std::size_t>(column)] = {frame_colour[0], frame_colour[1], frame_colour[2]};
 }
 
 PngImage srgb_picture(const SpectralImage& image, const PictureOptions& options, int bits) {

@@ -7,6 +7,7 @@
 #include <petzval/image/formats/png.h>
 #include <petzval/image/spectral_image.h>
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,9 @@ struct PictureFrame {
     return holds(column, row) && (column == left || column + 1 == right || row == top || row + 1 == bottom);
   }
 };
+
+/// Linear red, green and blue of frames.
+inline constexpr std::array<float, 3> frame_colour = {1, 0.8F, 0};
 
 /// How irradiance becomes sRGB. The level of a pixel is its illuminance [lx] (683 lm/W · Y of its
 /// irradiance); in an image without visible light (all bands outside 370 to 730 nm) it is its irradiance

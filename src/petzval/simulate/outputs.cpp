@@ -101,6 +101,22 @@ void show(const SpectralImage& light, const std::string& path, const OutputOptio
             fmt::format("{}: {}", path, write_picture(files.stage(path), light, shown, options.bits)));
 }
 
+/// The picture with frames over it, of pixels of a light of that many columns (a sensor may bin).
+Picture framed(Picture picture, const std::vector<PictureFrame>& frames, int columns) {
+  const auto to_picture = [&](int at) { return at * picture.planes.columns / columns; };
+  for (const PictureFrame& each : frames) {
+    const PictureFrame scaled{to_picture(each.left), to_picture(each.top), to_picture(each.right),
+                              to_picture(each.bottom)};
+    for (int row = 0; row < picture.planes.rows; ++row)
+      for (int column = 0; column < picture.planes.columns; ++column)
+        if (scaled.is_on_rim(column, row))
+          for (std::size_t channel = 0; channel < picture.planes.values.size(); ++channel)
+            picture.planes.values[channel][static_cast<std::size_t>(row) * picture.planes.columns + column] =
+                frame_colour[std::min<std::size_t>(channel, 2)];
+  }
+  return picture;
+}
+
 /// Raw files and developed pictures: what expose() and develop() make of the same light, byte for byte.
 Outputs shoot(const SpectralImage& light, const std::vector<std::string>& raws,
               const std::vector<std::string>& pictures, const Sensor& sensor, const OutputOptions& options,
@@ -122,7 +138,11 @@ Outputs shoot(const SpectralImage& light, const std::vector<std::string>& raws,
   };
   made.picture =
       develop(stored, options.development, context, options.step_files.empty() ? DevelopStep() : write_step);
-  for (const std::string& path : pictures) write_picture(files.stage(path), *made.picture, options.bits);
+  for (const std::string& path : pictures)
+    write_picture(files.stage(path),
+                  options.shown.frames.empty() ? *made.picture
+                                               : framed(*made.picture, options.shown.frames, light.columns()),
+                  options.bits);
   return made;
 }
 
