@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "clip.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <optional>
 #include <utility>
 #include <vector>

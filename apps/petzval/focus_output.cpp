@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "focus_output.h"
-#include "plot_output.h"
 
 #include <fmt/format.h>
-#include <petzval/base/whole_file.h>
 #include <petzval/report/svg_plot.h>
 
-#include "render_output.h"
-
 #include <algorithm>
+
+#include "plot_output.h"
+#include "render_output.h"
 
 namespace petzval::app {
 

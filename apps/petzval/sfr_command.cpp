@@ -52,7 +52,7 @@ void check_outputs(const SfrCommand& command, bool single) {
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   if (!command.profile.empty()) require_drawing(command.profile, "a profile", {".csv"});
   if (!command.against.empty() && command.plot.empty())
-    throw InputError("--against draws into --plot FILE.svg; give both");
+    throw InputError("--against draws into --plot; give both");
   if (!command.annotate.empty() && !single)
     throw InputError("--annotate draws one picture; name one file, not several or a folder");
 }
