@@ -54,7 +54,7 @@ void CameraChoice::add_field_azimuth(CLI::App& command) {
       .add_option(
           "--field-azimuth", field_azimuth_deg,
           "Of the fields about the axis, from the top of the film anticlockwise as seen from there [deg]: "
-          "what a stop of blades looks like from there")
+          "for a stop of blades, or a lens with poses")
       ->check(finite_number());
 }
 
@@ -117,10 +117,7 @@ Camera CameraChoice::settings(const Lens& of) const {
   camera.move_lens_mm = move_lens_mm.value_or(0);
   camera.apertures = apertures;
   if (of.surfaces.empty()) return camera;
-  StopBlades seen = blades.blades(of);
-  // Fields lie in the y-z plane: turning them is turning the blades the other way.
-  if (seen.count > 0) seen.rotation_deg -= field_azimuth_deg;
-  camera.blades = seen;
+  camera.blades = blades.blades(of);
   return camera;
 }
 
@@ -138,8 +135,10 @@ Lens CameraChoice::used(const Lens& of, const std::optional<FieldTableRequest>& 
                         const Shared& shared) const {
   Camera camera = settings(of);
   camera.apertures = Camera::Apertures::ignored;  // the caller has seen to them
+  std::optional<FieldTableRequest> at = request;
+  if (at) at->azimuth_deg = field_azimuth_deg;
   const Context context = context_of(shared);
-  return petzval::focus(mounted_lens(camera, context), camera.focus, request, context, camera.defocus_mm);
+  return petzval::focus(mounted_lens(camera, context), camera.focus, at, context, camera.defocus_mm);
 }
 
 }  // namespace petzval::app

@@ -96,6 +96,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   const Lens lens = command.camera.used(clipped, command.fields.request(clipped), shared);
   AnalysisRequest request = command.request;
   request.at = command.fields.request(lens);
+  request.at.azimuth_deg = command.camera.field_azimuth_deg;
   if (!command.camera.sensor.empty()) fit_to_sensor(command, lens, request, context);
   request.at.losses = command.losses.losses(lens, shared);
   request.plots = !command.plot.empty();

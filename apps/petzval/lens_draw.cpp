@@ -63,8 +63,9 @@ void draw(const DrawCommand& options, const Shared& shared) {
   FieldTracer tracer(
       lens,
       options.fields.wavelengths_nm.empty() ? lens.reference_wavelength_nm : request.wavelengths_nm.front(),
-      request.clip);
+      request.clip, options.camera.field_azimuth_deg);
   LensDrawingOptions drawing;
+  drawing.azimuth_deg = options.camera.field_azimuth_deg;
   drawing.title = fmt::format("{} — rays at {:g} nm", lens.name, tracer.tracer().wavelength_nm());
   std::vector<DrawnRay> rays = film_rays(options, lens, tracer.tracer(), drawing, shared);
   for (std::size_t i = 0; options.film_heights_mm.empty() && i < request.fields.size(); ++i) {

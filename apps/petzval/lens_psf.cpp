@@ -77,7 +77,7 @@ std::vector<PsfRow> psf_rows(const PsfCommand& options, const Lens& lens, const 
   for (const double field : request.fields) {
     const double object = object_field(lens, request.field_kind, field);
     for (const double wavelength : request.wavelengths_nm) {
-      FieldTracer tracer(lens, wavelength, request.clip);
+      FieldTracer tracer(lens, wavelength, request.clip, request.azimuth_deg);
       tracer.set_losses(request.losses);
       const std::optional<ChiefRay> chief = tracer.chief_ray(object);
       const std::optional<Psf> psf = chief ? point_spread(tracer, *chief, options.psf) : std::nullopt;
@@ -172,6 +172,7 @@ void psf(const PsfCommand& options, const Shared& shared) {
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   FieldTableRequest request = options.fields.request(lens);
+  request.azimuth_deg = options.camera.field_azimuth_deg;
   request.losses = options.losses.losses(lens, shared);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);
   if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);

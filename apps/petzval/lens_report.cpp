@@ -46,6 +46,7 @@ void report(const ReportCommand& options, const Shared& shared) {
     const Lens read = options.fields.prepare(choice.read(shared), shared);
     const Lens lens = options.camera.used(read, options.fields.request(read), shared);
     lenses.push_back({lens, options.fields.request(lens)});
+    lenses.back().request.azimuth_deg = options.camera.field_azimuth_deg;
   }
   chosen.footer = fmt::format(
       "petzval {}; lengths in mm, wavelengths in nm, angles in degrees; definitions: "

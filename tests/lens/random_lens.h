@@ -29,6 +29,13 @@ class RandomLens {
     lens.reference_wavelength_nm = lens.wavelengths_nm[below(3)];
     const std::size_t count = 1 + below(12), stop = below(count);
     for (std::size_t i = 0; i < count; ++i) lens.surfaces.push_back(surface(i == stop));
+    while (chance(0.2)) {
+      const std::size_t first = below(count);
+      lens.groups.push_back({first, first + below(count - first + 1), pose(), magnitude()});
+    }
+    if (chance(0.1)) lens.sensor_pose = pose();
+    while (chance(0.2)) lens.tolerances.push_back({"surface_tilt_deg", below(count), 0, magnitude()});
+    for (Tolerance& tolerance : lens.tolerances) tolerance.last = tolerance.first;
     return lens;
   }
 
@@ -50,7 +57,14 @@ class RandomLens {
     if (chance(0.7)) s.semi_diameter_mm = magnitude();
     if (chance(0.3)) s.conic = signed_magnitude();
     while (chance(0.4)) s.asphere[static_cast<int>(1 + below(40))] = signed_magnitude() * 1e-12;
+    if (chance(0.1)) s.pose = pose();
+    if (!s.material.is_air() && chance(0.1)) s.material = s.material.melted({1e-3 * uniform(), uniform()});
     return s;
+  }
+
+  Pose pose() {
+    const auto tilt = [&] { return 120 * uniform() - 60; };
+    return {magnitude(), -magnitude(), magnitude(), tilt(), tilt(), 6 * tilt()};
   }
 
   Material material() {

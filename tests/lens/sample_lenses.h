@@ -81,6 +81,10 @@ inline void expect_mentions(const std::string& text, std::initializer_list<const
     EXPECT_NE(text.find(word), text.npos) << "\"" << word << "\" is not in: " << text;
 }
 
+inline void expect_same_pose(const Pose& a, const Pose& b) {
+  for (const PoseNumber& number : pose_numbers) EXPECT_EQ(a.*number.value, b.*number.value) << number.name;
+}
+
 inline void expect_same_surface(const Surface& a, const Surface& b) {
   EXPECT_EQ(a.curvature_per_mm, b.curvature_per_mm);
   EXPECT_EQ(a.thickness_mm, b.thickness_mm);
@@ -92,6 +96,7 @@ inline void expect_same_surface(const Surface& a, const Surface& b) {
   EXPECT_EQ(a.semi_diameter_mm, b.semi_diameter_mm);
   EXPECT_EQ(a.conic, b.conic);
   EXPECT_EQ(a.asphere, b.asphere);
+  expect_same_pose(a.pose, b.pose);
   ASSERT_EQ(a.shape.has_value(), b.shape.has_value());
   if (!a.shape) return;
   EXPECT_EQ(a.shape->kind, b.shape->kind);
@@ -112,12 +117,25 @@ inline void expect_same_optics(const Lens& a, const Lens& b) {
     SCOPED_TRACE("surface " + std::to_string(i));
     expect_same_surface(a.surfaces[i], b.surfaces[i]);
   }
+  ASSERT_EQ(a.groups.size(), b.groups.size());
+  for (std::size_t i = 0; i < a.groups.size(); ++i) {
+    EXPECT_EQ(a.groups[i].first, b.groups[i].first);
+    EXPECT_EQ(a.groups[i].last, b.groups[i].last);
+    EXPECT_EQ(a.groups[i].pivot_mm, b.groups[i].pivot_mm);
+    expect_same_pose(a.groups[i].pose, b.groups[i].pose);
+  }
+  expect_same_pose(a.sensor_pose, b.sensor_pose);
 }
 
 inline void expect_same_lens(const Lens& a, const Lens& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.source, b.source);
   expect_same_optics(a, b);
+  ASSERT_EQ(a.tolerances.size(), b.tolerances.size());
+  for (std::size_t i = 0; i < a.tolerances.size(); ++i) {
+    EXPECT_EQ(place_of(a.tolerances[i]), place_of(b.tolerances[i]));
+    EXPECT_EQ(a.tolerances[i].limit, b.tolerances[i].limit);
+  }
 }
 
 }  // namespace petzval::testing

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A second ray tracer, written apart from the first: in long double, a sphere by its centre and a quadratic,
-// an asphere by bisection on its sag and a normal from differences. It shares no line with src/petzval/trace.
+// an asphere by bisection on its sag and a normal from differences. A pose is a list of elementary moves of
+// points in space. It shares no line with src/petzval/trace.
 #pragma once
 
 #include <petzval/lens/lens.h>
@@ -32,6 +33,66 @@ struct IndependentRay {
   Real path = 0;
 };
 
+/// One elementary move: a shift along an axis, or a turn about a line through `pivot` along it.
+struct Move {
+  int axis;
+  bool turn;
+  Real amount;  ///< [mm] or [rad]
+  Vec pivot{};
+
+  void point(Vec& p, Real sign) const {
+    if (!turn) {
+      p[axis] += sign * amount;
+      return;
+    }
+    for (int a = 0; a < 3; ++a) p[a] -= pivot[a];
+    direction(p, sign);
+    for (int a = 0; a < 3; ++a) p[a] += pivot[a];
+  }
+  void direction(Vec& d, Real sign) const {
+    if (!turn) return;
+    Real& first = d[(axis + 1) % 3];
+    Real& second = d[(axis + 2) % 3];
+    const Real c = std::cos(amount), s = sign * std::sin(amount), before = first;
+    first = c * before - s * second;
+    second = s * before + c * second;
+  }
+};
+
+/// What brings something from its place in the prescription to where it stands. Turns about axes that turn
+/// along, x, y, z in turn, are turns about fixed axes in the opposite order.
+inline void append_moves(const Pose& pose, Real pivot_z, std::vector<Move>& moves) {
+  const Real degree = std::acos(Real(-1)) / 180;
+  const Vec pivot{0, 0, pivot_z};
+  moves.push_back({2, true, pose.tilt_z_deg * degree, pivot});
+  moves.push_back({1, true, pose.tilt_y_deg * degree, pivot});
+  moves.push_back({0, true, pose.tilt_x_deg * degree, pivot});
+  moves.push_back({0, false, pose.decentre_x_mm});
+  moves.push_back({1, false, pose.decentre_y_mm});
+  moves.push_back({2, false, pose.shift_z_mm});
+}
+
+/// Of every surface, and of the sensor last.
+inline std::vector<std::vector<Move>> moves_of(const Lens& lens) {
+  std::vector<std::vector<Move>> all(lens.surfaces.size() + 1);
+  std::vector<Real> z{0};
+  for (const Surface& s : lens.surfaces) z.push_back(z.back() + s.thickness_mm);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    append_moves(i < lens.surfaces.size() ? lens.surfaces[i].pose : lens.sensor_pose, z[i], all[i]);
+  for (const SurfaceGroup& group : lens.groups)
+    for (std::size_t i = group.first; i <= group.last; ++i)
+      append_moves(group.pose, z[group.first] + group.pivot_mm, all[i]);
+  return all;
+}
+
+inline void go_into(const std::vector<Move>& moves, IndependentRay& ray) {
+  for (auto move = moves.rbegin(); move != moves.rend(); ++move)
+    move->point(ray.point, -1), move->direction(ray.direction, -1);
+}
+inline void come_out(const std::vector<Move>& moves, IndependentRay& ray) {
+  for (const Move& move : moves) move.point(ray.point, 1), move.direction(ray.direction, 1);
+}
+
 class SphereTracer {
  public:
   SphereTracer(const Lens& lens, double wavelength_nm, Real stop_radius) {
@@ -44,25 +105,30 @@ class SphereTracer {
       z += s.thickness_mm;
     }
     image_z_ = z;
+    if (has_poses(lens)) moves_ = moves_of(lens);
   }
 
   Real image_z() const { return image_z_; }
 
   /// Through all surfaces in the direction of travel; nothing when it misses, is clipped or totally
-  /// reflected.
+  /// reflected. With poses, rays behind the lens are in the axes of the sensor at image_z().
   std::optional<IndependentRay> trace(IndependentRay ray, bool backward, bool clip = true) const {
     const std::size_t count = surfaces_.size();
+    if (backward && !moves_.empty()) come_out(moves_.back(), ray);
     for (std::size_t step = 0; step < count; ++step) {
       const std::size_t i = backward ? count - 1 - step : step;
       const Real before_surface = i == 0 ? Real(1) : surfaces_[i - 1].index_after;
       const Real n1 = backward ? surfaces_[i].index_after : before_surface;
       const Real n2 = backward ? before_surface : surfaces_[i].index_after;
+      if (!moves_.empty()) go_into(moves_[i], ray);
       if (!meet(surfaces_[i], n1, ray)) return {};
       if (clip &&
           ray.point[0] * ray.point[0] + ray.point[1] * ray.point[1] > surfaces_[i].clear * surfaces_[i].clear)
         return {};
       if (!bend(surfaces_[i], n1, n2, ray)) return {};
+      if (!moves_.empty()) come_out(moves_[i], ray);
     }
+    if (!backward && !moves_.empty()) go_into(moves_.back(), ray);
     return ray;
   }
 
@@ -153,6 +219,7 @@ class SphereTracer {
   }
 
   std::vector<Sphere> surfaces_;
+  std::vector<std::vector<Move>> moves_;  ///< none: no poses
   Real image_z_ = 0;
 };
 

@@ -77,6 +77,32 @@ void expect_batch_equals_scalar(const Lens& lens, const Launch& launch) {
   EXPECT_GT(passed, launch.rays.size() / 20) << "too few rays pass to show anything";
 }
 
+void expect_float_agrees(const Lens& lens, const Launch& launch) {
+  const Tracer tracer(lens, 550);
+  RadianceRays rays(launch.rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = launch.rays[i];
+    rays.x_mm[i] = float(ray.point_mm[0]), rays.y_mm[i] = float(ray.point_mm[1]);
+    rays.z_mm[i] = float(ray.point_mm[2]), rays.l[i] = float(ray.direction[0]);
+    rays.m[i] = float(ray.direction[1]), rays.n[i] = float(ray.direction[2]);
+  }
+  const RadianceTracer single(
+      tracer, launch.backward ? RadianceTracer::Direction::backward : RadianceTracer::Direction::forward);
+  single.trace(rays);
+  std::size_t passed = 0, differ = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray exact = launch.backward ? tracer.trace_backward(launch.rays[i]) : tracer.trace(launch.rays[i]);
+    differ += (exact.status == RayStatus::ok) != (rays.passes[i] != 0);
+    if (exact.status != RayStatus::ok || !rays.passes[i]) continue;
+    ++passed;
+    EXPECT_NEAR(rays.x_mm[i], exact.point_mm[0], 1e-5);
+    EXPECT_NEAR(rays.y_mm[i], exact.point_mm[1], 1e-5);
+    EXPECT_NEAR(rays.m[i], exact.direction[1], 2e-6);
+  }
+  EXPECT_GT(passed, rays.size() / 20);
+  EXPECT_LE(differ, 1u);
+}
+
 class Targets : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(Targets, BatchesEqualSingleRays) {
@@ -85,7 +111,15 @@ TEST_P(Targets, BatchesEqualSingleRays) {
   conics.surfaces[0].conic = -0.6;
   conics.surfaces[3].conic = 1.2;
   conics.surfaces[1].semi_diameter_mm = 2.0;
-  for (const Lens& lens : {triplet_like(), conics, of_every_kind()}) {
+  Lens posed = of_every_kind();
+  posed.surfaces[0].pose = {0.11, -0.07, 0.02, 0.9, -1.3, 20};
+  posed.surfaces[2].pose = {0.05, 0.02, 0, 0.4, 0.3, 0};
+  posed.groups = {{3, 4, {0.09, 0.04, 0.01, 1.1, 0.6, -5}, 1.5}};
+  Lens sensor_alone = triplet_like();
+  sensor_alone.sensor_pose = {0.2, -0.1, 0.04, 1.7, -2.1, 4};
+  Lens all = posed;
+  all.sensor_pose = sensor_alone.sensor_pose;
+  for (const Lens& lens : {triplet_like(), conics, of_every_kind(), posed, sensor_alone, all}) {
     for (const std::size_t count : {1, 2, 7, 8, 23, 24, 25, 100, 999})
       expect_batch_equals_scalar(lens, forward_rays(std::max<std::size_t>(count, 20)));
     expect_batch_equals_scalar(lens, backward_rays(999));
@@ -142,33 +176,11 @@ TEST_P(Targets, FloatAgreesWithDouble) {
 
 TEST_P(Targets, FloatTracesEveryKindOfSurface) {
   const OnlyTarget only(GetParam());
-  const Lens lens = of_every_kind();
-  const Tracer tracer(lens, 550);
-  for (const Launch& launch : {forward_rays(500), backward_rays(500)}) {
-    RadianceRays rays(launch.rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray& ray = launch.rays[i];
-      rays.x_mm[i] = float(ray.point_mm[0]), rays.y_mm[i] = float(ray.point_mm[1]);
-      rays.z_mm[i] = float(ray.point_mm[2]), rays.l[i] = float(ray.direction[0]);
-      rays.m[i] = float(ray.direction[1]), rays.n[i] = float(ray.direction[2]);
-    }
-    const RadianceTracer single(
-        tracer, launch.backward ? RadianceTracer::Direction::backward : RadianceTracer::Direction::forward);
-    single.trace(rays);
-    std::size_t passed = 0, differ = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray exact =
-          launch.backward ? tracer.trace_backward(launch.rays[i]) : tracer.trace(launch.rays[i]);
-      differ += (exact.status == RayStatus::ok) != (rays.passes[i] != 0);
-      if (exact.status != RayStatus::ok || !rays.passes[i]) continue;
-      ++passed;
-      EXPECT_NEAR(rays.x_mm[i], exact.point_mm[0], 1e-5);
-      EXPECT_NEAR(rays.y_mm[i], exact.point_mm[1], 1e-5);
-      EXPECT_NEAR(rays.m[i], exact.direction[1], 2e-6);
-    }
-    EXPECT_GT(passed, rays.size() / 20);
-    EXPECT_LE(differ, 1u);
-  }
+  Lens posed = of_every_kind();
+  posed.surfaces[0].pose = {0.11, -0.07, 0.02, 0.9, -1.3, 20};
+  posed.sensor_pose = {0.2, -0.1, 0.04, 1.7, -2.1, 4};
+  for (const Lens& lens : {of_every_kind(), posed})
+    for (const Launch& launch : {forward_rays(500), backward_rays(500)}) expect_float_agrees(lens, launch);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machine, Targets, testing::ValuesIn(targets_of_this_machine()),

@@ -63,7 +63,7 @@ inline SmoothPupil smooth_disc(double na, const Phase& phase) {
       pupil.high_t_mm = std::max(pupil.high_t_mm, t);
     }
   const std::array<std::span<const double>, 2> both{values, ones};
-  const std::vector<EvenSurface> surfaces = EvenSurface::fit(alpha, beta, both, 8);
+  const std::vector<ChebyshevSurface> surfaces = ChebyshevSurface::fit(alpha, beta, both, 8);
   pupil.phase_waves = surfaces.at(0);
   pupil.amplitude = surfaces.at(1);
   return pupil;

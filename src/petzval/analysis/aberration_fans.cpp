@@ -36,6 +36,7 @@ std::vector<FanPoint> fan(const FieldTracer& tracer, const ChiefRay& chief, Stop
 }  // namespace
 
 std::vector<AberrationFans> aberration_fans(const Lens& lens, const FieldTableRequest& request, int count) {
+  require_centred(lens, "ray fans are those of centred lenses");
   if (count < 3 || count > 100001)
     throw InputError(fmt::format("a fan of {} rays; 3 to 100001 would be right", count));
   const std::map<double, double> reference = reference_heights_mm(lens, request);

@@ -2,7 +2,7 @@
 #include <petzval/analysis/best_focus.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/mtf.h>
-#include <petzval/analysis/pupil_rays.h>
+#include <petzval/analysis/spot_moments.h>
 #include <petzval/base/units.h>
 
 #include <algorithm>
@@ -12,36 +12,10 @@ namespace petzval {
 
 namespace {
 
-/// Weighted sums over the rays of one field and wavelength: places r (from the axis) and slopes s. In x both
-/// have the mean zero, by symmetry, unless the stop has blades.
-struct SlopeSums {
-  double field = 0, wavelength_nm = 0;
-  double x = 0, y = 0, slope_x = 0, slope = 0;   ///< means
-  double r_r = 0, r_slope = 0, slope_slope = 0;  ///< means of products, x and y together
-};
-
-std::optional<SlopeSums> slope_sums(const FieldTracer& tracer, const ChiefRay& chief) {
+std::optional<SpotMoments> stop_moments(const FieldTracer& tracer, const ChiefRay& chief) {
   const std::vector<PupilRay> rays = pupil_rays(tracer, chief);
   if (rays.empty()) return {};
-  SlopeSums sums;
-  double total = 0;
-  for (const PupilRay& ray : rays) {
-    const double gamma = std::sqrt(1 - ray.alpha * ray.alpha - ray.beta * ray.beta), w = ray.stop_area_mm2;
-    const double x = ray.x_mm, y = ray.y_mm + chief.image_height_mm;
-    const double slope_x = ray.alpha / gamma, slope_y = ray.beta / gamma;
-    total += w;
-    if (!ray.mirrored) sums.x += w * x;
-    if (!ray.mirrored) sums.slope_x += w * slope_x;
-    sums.y += w * y;
-    sums.slope += w * slope_y;
-    sums.r_r += w * (x * x + y * y);
-    sums.r_slope += w * (x * slope_x + y * slope_y);
-    sums.slope_slope += w * (slope_x * slope_x + slope_y * slope_y);
-  }
-  for (double* each :
-       {&sums.x, &sums.y, &sums.slope_x, &sums.slope, &sums.r_r, &sums.r_slope, &sums.slope_slope})
-    *each /= total;
-  return sums;
+  return spot_moments(rays, chief, RayWeight::stop_area);
 }
 
 std::vector<double> shares(const std::vector<double>& weights, std::size_t wavelengths) {
@@ -82,32 +56,21 @@ BestFocus best_spot_focus(const Lens& lens, const FieldTableRequest& request,
                           const std::vector<double>& weights) {
   const std::size_t wavelengths = request.wavelengths_nm.size();
   const std::vector<double> share = shares(weights, wavelengths);
-  const std::vector<SlopeSums> rows = field_rows<SlopeSums>(
+  const std::vector<SpotMoments> rows = field_rows<SpotMoments>(
       lens, request,
-      [](const FieldTracer& tracer, const ChiefRay& chief) { return slope_sums(tracer, chief); });
-  double variance = 0, covariance = 0, slope_variance = 0;
-  for (std::size_t first = 0; first < rows.size(); first += wavelengths) {
-    SlopeSums all;
-    for (std::size_t w = 0; w < wavelengths; ++w) {
-      const SlopeSums& one = rows[first + w];
-      all.x += share[w] * one.x;
-      all.y += share[w] * one.y;
-      all.slope_x += share[w] * one.slope_x;
-      all.slope += share[w] * one.slope;
-      all.r_r += share[w] * one.r_r;
-      all.r_slope += share[w] * one.r_slope;
-      all.slope_slope += share[w] * one.slope_slope;
-    }
-    variance += all.r_r - all.y * all.y - all.x * all.x;
-    covariance += all.r_slope - all.y * all.slope - all.x * all.slope_x;
-    slope_variance += all.slope_slope - all.slope * all.slope - all.slope_x * all.slope_x;
-  }
-  const double fields = static_cast<double>(request.fields.size());
+      [](const FieldTracer& tracer, const ChiefRay& chief) { return stop_moments(tracer, chief); });
+  std::vector<SpotMoments> fields;
+  for (std::size_t first = 0; first < rows.size(); first += wavelengths)
+    fields.push_back(mixed(std::span(rows).subspan(first, wavelengths), share));
   BestFocus best;
-  best.shift_mm = -covariance / slope_variance;
-  best.before = std::sqrt(std::max(variance, 0.0) / fields) * um_per_mm;
-  best.after =
-      std::sqrt(std::max(variance - covariance * covariance / slope_variance, 0.0) / fields) * um_per_mm;
+  best.shift_mm = best_shift_mm(fields);
+  const auto radius_um = [&](double shift_mm) {
+    double sum = 0;
+    for (const SpotMoments& field : fields) sum += field.variance(shift_mm);
+    return std::sqrt(sum / static_cast<double>(fields.size())) * um_per_mm;
+  };
+  best.before = radius_um(0);
+  best.after = radius_um(best.shift_mm);
   return best;
 }
 
@@ -120,7 +83,7 @@ BestFocus best_mtf_focus(const Lens& lens, const FieldTableRequest& request, dou
   const BestFocus spot = best_spot_focus(lens, request, weights);
   // A disc of defocus as wide as one period has lost the pattern: with the slopes' spread about the f-number
   // that is a sensor shift of a period over the full cone, and the spot itself adds its own depth.
-  FieldTracer tracer(lens, lens.reference_wavelength_nm, request.clip);
+  FieldTracer tracer(lens, lens.reference_wavelength_nm, request.clip, request.azimuth_deg);
   const std::optional<ChiefRay> axis = tracer.chief_ray(0);
   const double solid_angle = axis ? exit_solid_angle_sr(tracer, pupil_rays(tracer, *axis)) : 0;
   if (!(solid_angle > 0)) throw no_ray_passes(lens, 0, lens.reference_wavelength_nm);

@@ -77,7 +77,7 @@ std::complex<double> overlap(const Chords& chords, const Wave& wave, bool tangen
                              const QuadratureRule& along) {
   const Chord range = chords.longer_than(shift);
   const auto value = [&](double across, double at) {
-    return tangential ? wave(std::abs(across), at) : wave(std::abs(at), across);
+    return tangential ? wave(across, at) : wave(at, across);
   };
   std::complex<double> sum = 0;
   const double width = range.length() / panels;

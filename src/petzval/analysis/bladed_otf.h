@@ -13,7 +13,7 @@ namespace petzval {
 
 /// ∬ P(p) P*(p − s e) dp over ∬ |P|² dp, e along β (tangential) or α (sagittal).
 /// \param outline  of the pupil, once round in (α, β), convex.
-/// \param wave     (|α|, β) → complex amplitude inside the outline; even in α.
+/// \param wave     (α, β) → complex amplitude inside the outline.
 /// \param shift    s, in direction cosines: λ times the frequency.
 /// \param nodes    along a chord; across there are several hundred, for the corners.
 std::complex<double> bladed_otf(const std::vector<std::array<double, 2>>& outline,

@@ -28,6 +28,7 @@ double crossing_mm(const PupilRay& ray) {
 
 std::vector<AxialFocusRow> axial_focus_table(const Lens& lens, const std::vector<double>& wavelengths_nm,
                                              const std::vector<double>& zones, Tracer::Clip clip) {
+  require_centred(lens, "axial colour is that of centred lenses");
   for (const double zone : zones)
     if (!(zone >= 0 && zone <= 1))
       throw InputError(fmt::format("a zone of {:g} stop radii; 0 to 1 would be right", zone));
@@ -49,6 +50,7 @@ std::vector<AxialFocusRow> axial_focus_table(const Lens& lens, const std::vector
 }
 
 std::vector<LateralColourRow> lateral_colour_table(const Lens& lens, const FieldTableRequest& request) {
+  require_centred(lens, "lateral colour is that of centred lenses");
   const std::map<double, double> reference = reference_heights_mm(lens, request);
   return field_rows<LateralColourRow>(
       lens, request, [&](const FieldTracer&, const ChiefRay& chief) -> std::optional<LateralColourRow> {

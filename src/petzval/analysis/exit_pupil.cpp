@@ -38,7 +38,7 @@ std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
   if (!launched) return {};
   const Ray ray = tracer_->tracer().trace(*launched, Tracer::Clip::none);
   if (ray.status != RayStatus::ok) return {};
-  Probe probe{ray.direction[0], ray.direction[1], 0, ray.point_mm[0],
+  Probe probe{ray.direction[0], ray.direction[1], 0, ray.point_mm[0] - chief_.image_x_mm,
               ray.point_mm[1] - chief_.image_height_mm};
   const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
   const double to_foot_mm = -probe.x_mm * probe.alpha - probe.y_mm * probe.beta;
@@ -58,10 +58,18 @@ std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay
     exit.take_whole_outline(*bladed);
   }
   // Every fourth azimuth from the second on: mirror symmetric like the whole.
-  exit.boundary_ = {pupil->centre_v, pupil->chief_v, pupil->stretch, {}, {}, {}};
+  exit.boundary_ = *pupil;
+  exit.boundary_.radius.clear();
   for (std::size_t i = 0; i < pupil->radius.size() / azimuth_stride; ++i)
     exit.boundary_.radius.push_back(
         0.5 * (pupil->radius[azimuth_stride * i + 1] + pupil->radius[azimuth_stride * i + 2]));
+  exit.boundary_.turns.clear(), exit.boundary_.turn_weights.clear();
+  if (pupil->mirrored()) return exit;
+  const std::size_t own = exit.boundary_.radius.size();
+  for (std::size_t i = 0; i < own; ++i)
+    exit.boundary_.turns.push_back(2 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(own));
+  exit.boundary_.turn_weights.assign(own, 2 * pi / static_cast<double>(own));
+  if (exit.whole_outline_.empty()) exit.take_whole_outline(*pupil);
   return exit;
 }
 
@@ -69,10 +77,11 @@ std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, doubl
   const std::array<double, 3> chief = chief_.at_image.direction;
   const double index = tracer_->tracer().image_index();
   const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
-  const double chief_slope = chief[1] / chief[2];
+  const double chief_slope = chief[1] / chief[2], chief_slope_x = mirrored() ? 0 : chief[0] / chief[2];
   const double height_mm = chief_.image_height_mm + sensor_shift_mm * chief_slope;
+  const double x_mm = chief_.image_x_mm + sensor_shift_mm * chief_slope_x;
   const double pupil_mm = pupil_position_mm_ - sensor_shift_mm;
-  const double radius_mm = std::copysign(std::hypot(pupil_mm, height_mm), -pupil_mm);
+  const double radius_mm = std::copysign(std::hypot(pupil_mm, std::hypot(height_mm, x_mm)), -pupil_mm);
   std::vector<Sample> samples;
   const auto add = [&](double u, double v) {
     const std::optional<Probe> at = probe(u, v), right = probe(u + nudge_, v), above = probe(u, v + nudge_);
@@ -81,35 +90,33 @@ std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, doubl
                              (above->alpha - at->alpha) * (right->beta - at->beta)) /
                             (nudge_ * nudge_);
     const double gamma = std::sqrt(1 - at->alpha * at->alpha - at->beta * at->beta);
-    Sample sample{std::abs(at->alpha), at->beta, at->phase_waves, 1, at->x_mm, at->y_mm};
+    Sample sample{
+        mirrored() ? std::abs(at->alpha) : at->alpha, at->beta, at->phase_waves, 1, at->x_mm, at->y_mm};
     if (model.amplitude == PupilModel::Amplitude::light) sample.amplitude = 1 / std::sqrt(std::abs(jacobian));
-    sample.x_mm += sensor_shift_mm * at->alpha / gamma;
+    sample.x_mm += sensor_shift_mm * (at->alpha / gamma - chief_slope_x);
     sample.y_mm += sensor_shift_mm * (at->beta / gamma - chief_slope);
-    double more_mm = sensor_shift_mm * (at->beta * chief_slope + gamma - 1 / chief[2]);
+    double more_mm =
+        sensor_shift_mm * (at->alpha * chief_slope_x + at->beta * chief_slope + gamma - 1 / chief[2]);
     if (model.phase == PupilModel::Phase::reference_sphere)
       more_mm -= sphere_behind_foot_mm(sample.x_mm, sample.y_mm, at->alpha, at->beta, radius_mm);
     sample.phase_waves += index * more_mm / lambda_mm;
     samples.push_back(sample);
   };
   for (const PupilNode& node : pupil_nodes(boundary_, sample_radii)) add(node.u, node.v);
-  for (std::size_t i = 0; i < boundary_.radius.size() / 2; ++i)
-    add(boundary_.radius[i] * std::sin(boundary_.azimuth(i)),
-        boundary_.centre_v + boundary_.radius[i] * std::cos(boundary_.azimuth(i)));
+  for (std::size_t i = 0; i < boundary_.own(); ++i) add(boundary_.rim(i)[0], boundary_.rim(i)[1]);
   return samples;
 }
 
 bool ExitPupil::find_outline(const PupilBoundary& pupil) {
   nudge_ = nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
-  double widest_u = 0, low_v = pupil.centre_v, high_v = pupil.centre_v;
-  for (std::size_t i = 0; i < pupil.radius.size() / 2; ++i) {
-    const double u = pupil.radius[i] * std::sin(pupil.azimuth(i)),
-                 v = pupil.centre_v + pupil.radius[i] * std::cos(pupil.azimuth(i));
+  double low_v = pupil.centre_v, high_v = pupil.centre_v;
+  for (std::size_t i = 0; i < pupil.own(); ++i) {
+    const auto [u, v] = pupil.rim(i);
     const std::optional<Probe> rim = probe(u, v);
     if (!rim) continue;
     outline_alpha_.push_back(std::abs(rim->alpha));
     outline_beta_.push_back(rim->beta);
     transverse_mm_ = std::max(transverse_mm_, std::hypot(rim->x_mm, rim->y_mm));
-    widest_u = std::max(widest_u, u);
     low_v = std::min(low_v, v);
     high_v = std::max(high_v, v);
   }
@@ -122,13 +129,16 @@ bool ExitPupil::find_outline(const PupilBoundary& pupil) {
   const auto [low, high] = std::minmax_element(outline_beta_.begin(), outline_beta_.end());
   beta_range_ = {*low, *high};
   middle_beta_ = 0.5 * (*low + *high);
+  middle_u_ = pupil.centre_u;
   middle_v_ = 0.5 * (low_v + high_v);
   // β may fall as v rises, and α as u: the signs of the map at the middle.
-  const std::optional<Probe> middle = probe(0, middle_v_), right = probe(nudge_, middle_v_),
-                             above = probe(0, middle_v_ + nudge_);
+  const std::optional<Probe> middle = probe(middle_u_, middle_v_),
+                             right = probe(middle_u_ + nudge_, middle_v_),
+                             above = probe(middle_u_, middle_v_ + nudge_);
   if (!middle || !right || !above) return false;
   u_per_alpha_ = nudge_ / (right->alpha - middle->alpha);
   v_per_beta_ = nudge_ / (above->beta - middle->beta);
+  middle_alpha_ = pupil.mirrored() ? 0 : middle->alpha;
   middle_beta_ = middle->beta;
   return alpha_max_ > 0 && beta_range_.length() > 0 && std::isfinite(u_per_alpha_) &&
          std::isfinite(v_per_beta_);
@@ -136,8 +146,7 @@ bool ExitPupil::find_outline(const PupilBoundary& pupil) {
 
 void ExitPupil::take_whole_outline(const PupilBoundary& pupil) {
   for (std::size_t i = 0; i < pupil.radius.size(); ++i)
-    if (const std::optional<Probe> rim = probe(pupil.radius[i] * std::sin(pupil.azimuth(i)),
-                                               pupil.centre_v + pupil.radius[i] * std::cos(pupil.azimuth(i))))
+    if (const std::optional<Probe> rim = probe(pupil.rim(i)[0], pupil.rim(i)[1]))
       whole_outline_.push_back({rim->alpha, rim->beta});
 }
 
@@ -165,7 +174,8 @@ ExitPupil::Chord ExitPupil::along_alpha(double beta) const {
 }
 
 std::complex<double> ExitPupil::wave(double alpha, double beta, const PupilModel& model) const {
-  double u = u_per_alpha_ * alpha, v = middle_v_ + v_per_beta_ * (beta - middle_beta_);
+  double u = middle_u_ + u_per_alpha_ * (alpha - middle_alpha_),
+         v = middle_v_ + v_per_beta_ * (beta - middle_beta_);
   for (int step = 0; step < aim_steps; ++step) {
     const std::optional<Probe> at = probe(u, v), right = probe(u + nudge_, v), above = probe(u, v + nudge_);
     if (!at || !right || !above) return 0;

@@ -28,7 +28,8 @@ struct PupilModel {
 };
 
 /// The light that converges on the chief ray's image point, as a function of the exit direction cosines (α,
-/// β). Mirror symmetric in α; blades cut it, see whole_outline().
+/// β). Mirror symmetric in α of a centred lens; blades cut it, and poses do away with the mirror image: see
+/// whole_outline().
 class ExitPupil {
  public:
   struct Chord {
@@ -49,11 +50,14 @@ class ExitPupil {
   Chord along_beta(double alpha) const;
   Chord along_alpha(double beta) const;
 
-  /// The outline that the blades of the stop leave, once round in (α, β); empty for a round stop. All else
-  /// here is the pupil of the round stop about it.
+  /// Whether the wave is even in α: the lens has no poses.
+  bool mirrored() const { return boundary_.mirrored(); }
+  /// The outline that the blades of the stop leave, or that a lens with poses has, once round in (α, β);
+  /// empty for the round stop of a centred lens. All else here is the pupil of the round stop about it, and
+  /// of a lens with poses nothing but its size.
   const std::vector<std::array<double, 2>>& whole_outline() const { return whole_outline_; }
 
-  /// A ray of the half pupil α ≥ 0.
+  /// A ray of the half pupil α ≥ 0, or of the whole where that is not mirrored.
   struct Sample {
     double alpha = 0, beta = 0;
     double phase_waves = 0, amplitude = 0;  ///< of wave() in that direction
@@ -79,7 +83,8 @@ class ExitPupil {
   ChiefRay chief_;
   Pencil pencil_;
   double nudge_ = 0;
-  double u_per_alpha_ = 0, v_per_beta_ = 0, middle_v_ = 0, middle_beta_ = 0;  ///< first guess
+  double u_per_alpha_ = 0, v_per_beta_ = 0, middle_u_ = 0, middle_v_ = 0, middle_alpha_ = 0,
+         middle_beta_ = 0;                            ///< first guess
   std::vector<double> outline_alpha_, outline_beta_;  ///< half of it, α ≥ 0, closed on the axis
   std::vector<std::array<double, 2>> whole_outline_;
   double alpha_max_ = 0, transverse_mm_ = 0, sphere_radius_mm_ = 0;

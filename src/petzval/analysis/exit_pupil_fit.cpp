@@ -24,9 +24,11 @@ std::optional<ExitPupilFit> ExitPupilFit::of(const ExitPupil& pupil, const Pupil
   const double brightest = *std::max_element(amplitude.begin(), amplitude.end());
   std::vector<std::span<const double>> values{phase};
   if (!uniform) values.push_back(amplitude);
+  const auto symmetry =
+      pupil.mirrored() ? ChebyshevSurface::Symmetry::even_in_x : ChebyshevSurface::Symmetry::none;
   for (const int degree : degrees_tried) {
-    if (alpha.size() < 2 * EvenSurface::unknowns(degree)) return {};
-    std::vector<EvenSurface> surfaces = EvenSurface::fit(alpha, beta, values, degree);
+    if (alpha.size() < 2 * ChebyshevSurface::unknowns(degree, symmetry)) return {};
+    std::vector<ChebyshevSurface> surfaces = ChebyshevSurface::fit(alpha, beta, values, degree, symmetry);
     if (surfaces.empty()) return {};
     if (!(surfaces[0].max_residual() < tolerance)) continue;
     if (!uniform && !(surfaces[1].max_residual() < tolerance * brightest)) continue;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <petzval/analysis/exit_pupil.h>
-#include <petzval/numeric/even_surface.h>
+#include <petzval/numeric/chebyshev_surface.h>
 
 #include <complex>
 #include <optional>
@@ -31,8 +31,8 @@ class ExitPupilFit {
 
  private:
   double transverse_mm_ = 0;
-  EvenSurface phase_;
-  std::optional<EvenSurface> amplitude_;  ///< absent: 1 everywhere
+  ChebyshevSurface phase_;
+  std::optional<ChebyshevSurface> amplitude_;  ///< absent: 1 everywhere
 };
 
 }  // namespace petzval

@@ -46,13 +46,14 @@ std::vector<PupilNode> grid_nodes(const PupilBoundary& pupil, double radius, int
 
 std::optional<Psf> fft_point_spread(const FieldTracer& tracer, const ChiefRay& chief, const PsfGrid& grid,
                                     int pupil_samples) {
+  require_centred(tracer.lens(), "the plain FFT's model knows centred lenses");
   require_round_stop(tracer.lens(), "the plain FFT's model knows round ones");
   if (pupil_samples < least_pupil_samples || pupil_samples > most_pupil_samples || pupil_samples % 2 != 0)
     throw InputError("the pupil of an FFT PSF is sampled by an even number of points, 8 to 1024 across");
   if (grid.samples_per_cell != 1) throw InputError("an FFT PSF has samples, not cells");
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief);
   // The scale of the axial pupil holds for all fields.
-  const ChiefRay axis{0, 0, 0, {}};
+  const ChiefRay axis;
   const std::optional<PupilBoundary> axial = tracer.object_pupil(axis);
   if (!pupil || !axial) return {};
   const double radius = *std::max_element(axial->radius.begin(), axial->radius.end());

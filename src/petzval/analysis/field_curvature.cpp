@@ -66,6 +66,7 @@ AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief)
 }
 
 std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const FieldTableRequest& request) {
+  require_centred(lens, "field curvature is that of centred lenses");
   return field_rows<FieldCurvatureRow>(
       lens, request,
       [&](const FieldTracer& tracer, const ChiefRay& chief) -> std::optional<FieldCurvatureRow> {

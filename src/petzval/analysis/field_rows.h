@@ -39,7 +39,7 @@ std::vector<Row> field_rows(const Lens& lens, FieldTableRequest request, Make&& 
   const std::size_t wavelengths = request.wavelengths_nm.size();
   std::vector<Row> rows(objects.size() * wavelengths);
   parallel_for(wavelengths, [&](std::size_t w) {
-    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip);
+    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip, request.azimuth_deg);
     for (std::size_t f = 0; f < objects.size(); ++f) {
       const std::optional<ChiefRay> chief = tracer.chief_ray(objects[f]);
       std::optional<Row> row = chief ? make(tracer, *chief) : std::nullopt;

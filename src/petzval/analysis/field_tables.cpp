@@ -45,7 +45,7 @@ std::vector<Row> tabulate(const Lens& lens, FieldTableRequest request, Make&& ma
   const std::size_t wavelengths = request.wavelengths_nm.size();
   std::vector<Row> rows(fields.size() * wavelengths);
   parallel_for(wavelengths, [&](std::size_t w) {
-    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip);
+    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip, request.azimuth_deg);
     tracer.set_losses(request.losses);
     for (std::size_t f = 0; f < fields.size(); ++f) {
       Row row = make(tracer, request.fields[f], fields[f]);
@@ -81,6 +81,7 @@ FieldTableRequest FieldTableRequest::of(const Lens& lens) {
 }
 
 std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request) {
+  require_centred(lens, "distortion is that of centred lenses");
   auto rows = tabulate<DistortionRow>(lens, request, [&](FieldTracer& tracer, double, double object_field) {
     const double wavelength = tracer.tracer().wavelength_nm();
     const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);

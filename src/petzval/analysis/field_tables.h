@@ -18,6 +18,9 @@ struct FieldTableRequest {
   std::vector<double> wavelengths_nm = {};
   Tracer::Clip clip = Tracer::Clip::apertures;
   Losses losses = {};  ///< that illumination counts
+  /// Of the fields, anticlockwise from +y as seen from the film: says something of lenses with poses or
+  /// blades. Tangential is along it, sagittal across.
+  double azimuth_deg = 0;
 
   /// The lens's own field kind, fields and wavelengths.
   static FieldTableRequest of(const Lens& lens);

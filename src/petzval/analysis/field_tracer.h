@@ -8,15 +8,17 @@
 #include <petzval/trace/pupil.h>
 #include <petzval/trace/tracer.h>
 
+#include <array>
 #include <optional>
 
 namespace petzval {
 
 /// The real chief ray of one object field.
 struct ChiefRay {
-  double object_field = 0;     ///< degrees (object at infinity) or object height in mm
-  double v = 0;                ///< its label in Pencil
-  double image_height_mm = 0;  ///< y' on the image surface, signed
+  double object_field = 0;       ///< degrees (object at infinity) or object height in mm
+  double v = 0;                  ///< its label in Pencil
+  double image_height_mm = 0;    ///< y' on the image surface, signed
+  double u = 0, image_x_mm = 0;  ///< 0 of a centred lens: label, and x' on the image surface
   Ray at_image;
 };
 
@@ -25,8 +27,10 @@ struct ChiefRay {
 class FieldTracer {
  public:
   /// \param clip  apertures: every clear aperture counts; stop_only: --ignore-apertures.
-  /// \throws InputError as Tracer.
-  FieldTracer(const Lens& lens, double wavelength_nm, Tracer::Clip clip = Tracer::Clip::apertures);
+  /// \param azimuth_deg  of the fields, anticlockwise from +y as seen from the film. All else here is in axes
+  /// turned with them, so that the field lies in the y-z plane. \throws InputError as Tracer.
+  FieldTracer(const Lens& lens, double wavelength_nm, Tracer::Clip clip = Tracer::Clip::apertures,
+              double azimuth_deg = 0);
   FieldTracer(const FieldTracer&) = delete;
   FieldTracer& operator=(const FieldTracer&) = delete;
 
@@ -40,7 +44,8 @@ class FieldTracer {
   const LensTransmittance* transmittance() const { return transmittance_ ? &*transmittance_ : nullptr; }
   Tracer::Clip clip() const { return clip_; }
 
-  /// Nothing where no chief ray reaches the image surface.
+  /// Nothing where no chief ray reaches the image surface. Of a lens with poses it goes through the middle of
+  /// the stop where that stands.
   std::optional<ChiefRay> chief_ray(double object_field);
   /// The vignetted pupil in object space; nothing where no ray passes.
   std::optional<PupilBoundary> object_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
@@ -77,8 +82,16 @@ class FieldTracer {
   static constexpr int default_azimuths = 256;
 
  private:
+  Pencil image_pencil(const ChiefRay& chief) const;
+  /// Of a lens with poses: turns the designed lens's chief ray into that of a tracer.
+  std::optional<ChiefRay> aimed_chief(const Tracer& tracer, ChiefRay chief) const;
+  /// Where the chief ray lands (x', y') of an object in this direction, or at this place [mm].
+  std::optional<std::array<double, 2>> image_of(double across, double along, double forward);
+  double object_area_by_neighbours(const ChiefRay& chief);
+
   Lens lens_;
   Tracer tracer_;
+  std::optional<Tracer> designed_;  ///< of a lens with poses: without them, where the chief ray is sought
   Tracer::Clip clip_;
   ChiefRayMarch march_;
   std::optional<LensTransmittance> transmittance_;  ///< nothing: no loss

@@ -48,7 +48,8 @@ FilmRay path_of(const Tracer& tracer, const Directions& directions, double along
   std::vector<Intersection> met;
   const Ray ray = directions.ray(tracer, along);
   const Ray out = tracer.trace_backward(ray, Tracer::Clip::apertures, &met);
-  FilmRay path{{ray.point_mm[2], ray.point_mm[across]}};
+  const Frame::Vector film = tracer.sensor_frame().point_to_lens(ray.point_mm, tracer.image_z_mm());
+  FilmRay path{{film[2], film[across]}};
   for (const Intersection& each : met) path.push_back({each.point_mm[2], each.point_mm[across]});
   const double on = (-lead_mm - out.point_mm[2]) / out.direction[2];
   if (on > 0) path.push_back({-lead_mm, out.point_mm[across] + on * out.direction[across]});

@@ -175,6 +175,7 @@ Way way(const UnfoldedLens& unfolded, const Lens& lens, std::size_t first, std::
 }
 
 void check(const Lens& lens, const GhostOptions& options) {
+  require_centred(lens, "ghosts are those of centred lenses");
   options.losses.validate(lens);
   if (!(options.sensor_reflectance >= 0 && options.sensor_reflectance <= 1))
     throw InputError(

@@ -7,6 +7,7 @@
 #include <petzval/numeric/quadrature.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace petzval {
@@ -150,8 +151,10 @@ std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pup
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
   const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
   if (!pupil.whole_outline().empty())
-    return bladed_otf(pupil.whole_outline(), wave, direction, shift,
-                      nodes_for(2 * frequency_cpmm * transverse_mm));
+    return bladed_otf(
+        pupil.whole_outline(),
+        [&](double alpha, double beta) { return wave(pupil.mirrored() ? std::abs(alpha) : alpha, beta); },
+        direction, shift, nodes_for(2 * frequency_cpmm * transverse_mm));
   const Autocorrelation<Wave> pairs(pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm));
   // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
   const Autocorrelation<Wave> whole(pupil, wave, fewest_nodes);
@@ -161,7 +164,7 @@ std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pup
 
 /// Both OTFs of a field and wavelength on one sensor, frequency by frequency.
 struct SensorOtf {
-  double image_height_mm = 0;
+  std::array<double, 2> image_mm{};  ///< of the chief ray: x', y'
   std::vector<std::complex<double>> tangential, sagittal;
 };
 
@@ -171,9 +174,9 @@ struct OtfRow {
 };
 
 template <class Otf>
-SensorOtf fill(const std::vector<double>& frequencies, double height_mm, Otf&& otf) {
+SensorOtf fill(const std::vector<double>& frequencies, const std::array<double, 2>& image_mm, Otf&& otf) {
   SensorOtf result;
-  result.image_height_mm = height_mm;
+  result.image_mm = image_mm;
   for (const double frequency : frequencies) {
     result.tangential.push_back(otf(MtfDirection::tangential, frequency));
     result.sagittal.push_back(otf(MtfDirection::sagittal, frequency));
@@ -183,10 +186,11 @@ SensorOtf fill(const std::vector<double>& frequencies, double height_mm, Otf&& o
 
 /// Where rays are on a sensor behind the image surface, from the chief ray's point there.
 std::vector<PupilRay> on_moved_sensor(std::vector<PupilRay> rays, const ChiefRay& chief, double shift_mm) {
-  const double chief_slope = chief.at_image.direction[1] / chief.at_image.direction[2];
+  const std::array<double, 3>& direction = chief.at_image.direction;
+  const double chief_slope = direction[1] / direction[2], chief_slope_x = direction[0] / direction[2];
   for (PupilRay& ray : rays) {
     const double gamma = std::sqrt(1 - ray.alpha * ray.alpha - ray.beta * ray.beta);
-    ray.x_mm += shift_mm * ray.alpha / gamma;
+    ray.x_mm += shift_mm * (ray.alpha / gamma - chief_slope_x);
     ray.y_mm += shift_mm * (ray.beta / gamma - chief_slope);
   }
   return rays;
@@ -204,10 +208,10 @@ double difference(const std::vector<SensorOtf>& a, const std::vector<SensorOtf>&
 
 /// By rays alone, twice as many each way until that makes no difference: the more periods of the pattern fit
 /// into the spot, the more rays it takes. \returns empty where no ray passes.
-template <class Height>
+template <class Place>
 std::vector<SensorOtf> geometric_otfs(const FieldTracer& tracer, const ChiefRay& chief,
                                       const std::vector<double>& frequencies,
-                                      const std::vector<double>& shifts, Height&& height_mm) {
+                                      const std::vector<double>& shifts, Place&& image_mm) {
   constexpr double close = 1e-5;
   constexpr PupilSampling first{32, 192};
   constexpr int most_radial_nodes = 512;  // enough for a hundred periods in the spot, where little is left
@@ -221,7 +225,7 @@ std::vector<SensorOtf> geometric_otfs(const FieldTracer& tracer, const ChiefRay&
     for (const double shift : shifts) {
       check_stop();
       const std::vector<PupilRay> moved = on_moved_sensor(rays, chief, shift);
-      fine.push_back(fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
+      fine.push_back(fill(frequencies, image_mm(shift), [&](MtfDirection direction, double frequency) {
         return geometric_otf(moved, direction, frequency);
       }));
     }
@@ -236,11 +240,14 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   const std::vector<double>& frequencies = options.frequencies_cpmm;
   const std::vector<double> shifts =
       options.sensor_shifts_mm.empty() ? std::vector<double>{0} : options.sensor_shifts_mm;
-  const double chief_slope = chief.at_image.direction[1] / chief.at_image.direction[2];
-  const auto height_mm = [&](double shift) { return chief.image_height_mm + shift * chief_slope; };
+  const std::array<double, 3>& direction = chief.at_image.direction;
+  const auto image_mm = [&](double shift) {
+    return std::array{chief.image_x_mm + shift * (direction[0] / direction[2]),
+                      chief.image_height_mm + shift * (direction[1] / direction[2])};
+  };
   OtfRow row;
   if (options.geometric) {
-    row.sensors = geometric_otfs(tracer, chief, frequencies, shifts, height_mm);
+    row.sensors = geometric_otfs(tracer, chief, frequencies, shifts, image_mm);
     if (row.sensors.empty()) return {};
     return row;
   }
@@ -254,7 +261,7 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
           fmt::format("{}: the wave at field {:g} is too rough to be moved by {:g} mm; set the "
                       "last thickness instead",
                       tracer.lens().name, chief.object_field, shift));
-    row.sensors.push_back(fill(frequencies, height_mm(shift), [&](MtfDirection direction, double frequency) {
+    row.sensors.push_back(fill(frequencies, image_mm(shift), [&](MtfDirection direction, double frequency) {
       return smooth ? diffraction_otf(tracer, *pupil, *smooth, direction, frequency)
                     : diffraction_otf(tracer, *pupil, direction, frequency, options.model);
     }));
@@ -272,11 +279,12 @@ SensorOtf polychromatic(const OtfRow* rows, std::size_t sensor, const MtfOptions
   for (const double weight : options.weights) sum += weight;
   for (std::size_t w = 0; w < options.weights.size(); ++w) {
     const SensorOtf& otf = rows[w].sensors[sensor];
-    const double above_mm = otf.image_height_mm - rows[0].sensors[sensor].image_height_mm;
+    const std::array<double, 2>& first_mm = rows[0].sensors[sensor].image_mm;
+    const double beside_mm = otf.image_mm[0] - first_mm[0], above_mm = otf.image_mm[1] - first_mm[1];
     for (std::size_t k = 0; k < frequencies; ++k) {
-      const double share = options.weights[w] / sum, cycles = options.frequencies_cpmm[k] * above_mm;
-      result.tangential[k] += share * otf.tangential[k] * std::polar(1.0, -2 * pi * cycles);
-      result.sagittal[k] += share * otf.sagittal[k];
+      const double share = options.weights[w] / sum, frequency = options.frequencies_cpmm[k];
+      result.tangential[k] += share * otf.tangential[k] * std::polar(1.0, -2 * pi * frequency * above_mm);
+      result.sagittal[k] += share * otf.sagittal[k] * std::polar(1.0, -2 * pi * frequency * beside_mm);
     }
   }
   return result;

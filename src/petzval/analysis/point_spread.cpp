@@ -59,8 +59,7 @@ std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
   if (!pupil) return {};
   std::vector<PupilNode> nodes = pupil_nodes(*pupil, scout_radial);
   for (std::size_t i = 0; i < pupil->own(); ++i)  // the rim itself
-    nodes.push_back({pupil->radius[i] * std::sin(pupil->azimuth(i)),
-                     pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i)), 0});
+    nodes.push_back({pupil->rim(i)[0], pupil->rim(i)[1], 0});
   Extent extent;
   double low = 2, high = -2, left = 2, right = -2;
   for (const WaveRay& ray : trace_wave_rays(tracer, chief, *pupil, nodes)) {
@@ -210,7 +209,8 @@ Psf point_spread(const SmoothPupil& pupil, const PsfOptions& options) {
 
 std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
   const bool bladed = tracer.tracer().stop_blades().count > 0;
-  const bool own_nodes = bladed || options.radial_nodes > 0 || options.azimuths > 0;
+  const bool own_nodes =
+      bladed || !tracer.tracer().is_centred() || options.radial_nodes > 0 || options.azimuths > 0;
   if (const auto pupil = own_nodes ? std::nullopt : fit_pupil(tracer, chief))
     return point_spread(*pupil, options);
   const std::optional<Extent> extent = scout(tracer, chief);

@@ -144,7 +144,7 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
   const std::array<std::span<const double>, 2> values{phase, amplitude};
   bool good = false;
   for (int degree = limits.lowest_degree; degree <= limits.highest_degree; degree += 4) {
-    std::vector<EvenSurface> surfaces = EvenSurface::fit(alpha, beta, values, degree);
+    std::vector<ChebyshevSurface> surfaces = ChebyshevSurface::fit(alpha, beta, values, degree);
     if (surfaces.empty() || (good && surfaces[0].rms_residual() > pupil.phase_waves.rms_residual())) break;
     pupil.phase_waves = std::move(surfaces[0]);
     pupil.amplitude = std::move(surfaces[1]);
@@ -160,7 +160,7 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
 
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits) {
-  if (tracer.tracer().stop_blades().count > 0) return {};  // not mirror symmetric
+  if (tracer.tracer().stop_blades().count > 0 || !tracer.tracer().is_centred()) return {};  // no mirror image
   const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, fit_outline_azimuths);
   if (!boundary) return {};
   const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary).points();

@@ -30,7 +30,7 @@ class Launcher {
     PupilRay result;
     result.stop_x_mm = traced.stop_x_mm;
     result.stop_y_mm = traced.stop_y_mm;
-    result.x_mm = ray.point_mm[0];
+    result.x_mm = ray.point_mm[0] - chief_.image_x_mm;
     result.y_mm = ray.point_mm[1] - chief_.image_height_mm;
     result.alpha = ray.direction[0];
     result.beta = ray.direction[1];
@@ -91,8 +91,7 @@ std::vector<PupilRay> pupil_rays(const FieldTracer& tracer, const ChiefRay& chie
                 [&](const PupilNode& node, PupilRay& ray) { return launcher.weigh(node, nudge, ray); });
   if (rays.empty()) return rays;
   for (std::size_t i = 0; i < pupil->own(); ++i) {
-    const double u = pupil->radius[i] * std::sin(pupil->azimuth(i)),
-                 v = pupil->centre_v + pupil->radius[i] * std::cos(pupil->azimuth(i));
+    const auto [u, v] = pupil->rim(i);
     const Tracer::Clearance traced = launcher.trace(u, v);
     if (!Launcher::arrived(traced)) continue;
     rays.push_back(launcher.at_image(traced));
@@ -122,7 +121,7 @@ class RimByArea {
       before_.push_back(before_.back() + 0.5 * pupil.radius[i] * pupil.radius[i] * pupil.azimuth_weight(i));
   }
 
-  /// The rim where this share of the area, counted from +v towards +u, lies before it, as (u, v − centre).
+  /// The rim where this share of the area, counted from +v towards +u, lies before it, as (u, v) − centre.
   std::pair<double, double> at(double share) const {
     const double area = share * before_.back();
     const auto next = std::upper_bound(before_.begin() + 1, before_.end() - 1, area);
@@ -166,7 +165,8 @@ std::vector<PupilRay> ring_rays(const FieldTracer& tracer, const ChiefRay& chief
     for (int i = 0; i < 6 * ring; ++i) {
       const auto [u, v] = rim.at((i + 0.5) / (6 * ring));
       const double share = (ring - 0.5) / (rings - 0.5);
-      const Tracer::Clearance traced = launcher.trace(share * u, pupil->centre_v + share * v);
+      const Tracer::Clearance traced =
+          launcher.trace(pupil->centre_u + share * u, pupil->centre_v + share * v);
       if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
     }
   return rays;

@@ -40,7 +40,8 @@ double meridional_rim(const FieldTracer& tracer, const Pencil& pencil, const Pup
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (inside + outside);
     const double v = pupil.centre_v + side * middle;
-    (pencil.clearance(tracer.tracer(), 0, v, tracer.clip()).worst < 0 ? inside : outside) = middle;
+    (pencil.clearance(tracer.tracer(), pupil.centre_u, v, tracer.clip()).worst < 0 ? inside : outside) =
+        middle;
   }
   return inside;
 }
@@ -60,7 +61,7 @@ std::vector<MeridionalPath> meridional_fan(FieldTracer& tracer, double object_fi
   for (int i = 0; i < count; ++i) {
     const double share = count == 1 ? 0 : 2.0 * i / (count - 1) - 1;
     const double v = count == 1 ? chief->v : pupil->centre_v + share * (share > 0 ? top : bottom);
-    if (const std::optional<Ray> ray = pencil.ray(0, v)) {
+    if (const std::optional<Ray> ray = pencil.ray(chief->u, v)) {
       MeridionalPath path = path_of(tracer.tracer(), *ray, lead_mm, pencil.point_mm()[2]);
       if (!path.empty()) fan.push_back(std::move(path));
     }

@@ -39,7 +39,7 @@ std::vector<RayStep> steps_along(const Tracer& glass, const std::vector<Intersec
     RayStep step;
     step.surface = static_cast<int>(surface);
     step.point_mm = path[i].point_mm;
-    step.normal = image ? Vector{0, 0, 1} : path[i].normal;
+    step.normal = path[i].normal;
     step.direction_before = direction;
     step.direction_after = image ? direction : path[i].direction_after;
     step.index_before = backward ? back : front;
@@ -104,7 +104,9 @@ std::vector<RayStep> ray_steps_from_film(const Tracer& tracer, double height_mm,
   std::vector<Intersection> path;
   const Ray ray = from_film(x, y);
   if (tracer.trace_backward(ray, Tracer::Clip::none, &path).status != RayStatus::ok) return {};
-  return steps_along(tracer, path, ray.point_mm, ray.direction, true);
+  const Frame& sensor = tracer.sensor_frame();
+  return steps_along(tracer, path, sensor.point_to_lens(ray.point_mm, image_z), sensor.to_lens(ray.direction),
+                     true);
 }
 
 std::string BlockedRay::text() const {
@@ -123,7 +125,9 @@ std::optional<BlockedRay> blocked(const Tracer& tracer, const Ray& ray, Tracer::
   tracer.trace(ray, Tracer::Clip::none, &path);
   const auto surface = static_cast<std::size_t>(end.failed_at);
   if (surface >= path.size()) return result;
-  result.radius_mm = std::hypot(path[surface].point_mm[0], path[surface].point_mm[1]);
+  const Frame& frame = tracer.surfaces()[surface].frame;
+  const Vector own = frame.point_from_lens(path[surface].point_mm, tracer.vertex_z_mm(surface));
+  result.radius_mm = std::hypot(own[0], own[1]);
   result.clear_radius_mm = std::sqrt(tracer.clip_radius_sq(surface, clip));
   return result;
 }

@@ -6,7 +6,7 @@ namespace petzval {
 
 std::map<double, double> reference_heights_mm(const Lens& lens, const FieldTableRequest& request) {
   std::map<double, double> heights;
-  FieldTracer tracer(lens, lens.reference_wavelength_nm, request.clip);
+  FieldTracer tracer(lens, lens.reference_wavelength_nm, request.clip, request.azimuth_deg);
   for (const double field : request.fields) {
     const double object = object_field(lens, request.field_kind, field);
     const std::optional<ChiefRay> chief = tracer.chief_ray(object);

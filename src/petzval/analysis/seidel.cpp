@@ -125,6 +125,7 @@ SeidelTerms& SeidelTerms::operator+=(const SeidelTerms& other) {
 }
 
 SeidelSums seidel_sums(const Lens& lens) {
+  require_centred(lens, "Seidel sums belong to centred lenses");
   const ParaxialLens paraxial(lens);
   const TracedRay marginal = paraxial.marginal(), chief = paraxial.chief();
   SeidelSums sums;

@@ -27,7 +27,7 @@ StopAim::StopAim(const FieldTracer& tracer, const ChiefRay& chief, double nudge)
       pencil_(Pencil::from_object(tracer.lens(), chief.object_field)),
       nudge_(nudge),
       radius_mm_(tracer.tracer().stop_radius_mm()),
-      start_{0, 0, 0, chief.v},
+      start_{0, 0, chief.u, chief.v},
       last_(start_) {}
 
 std::optional<StopAim> StopAim::of(const FieldTracer& tracer, const ChiefRay& chief) {
@@ -83,7 +83,7 @@ std::optional<PupilRay> StopAim::ray(double x, double y) {
   const std::optional<Tracer::Clearance> traced = aimed(x, y);
   if (!traced) return {};
   PupilRay ray;
-  ray.x_mm = traced->ray.point_mm[0];
+  ray.x_mm = traced->ray.point_mm[0] - chief_.image_x_mm;
   ray.y_mm = traced->ray.point_mm[1] - chief_.image_height_mm;
   ray.alpha = traced->ray.direction[0];
   ray.beta = traced->ray.direction[1];

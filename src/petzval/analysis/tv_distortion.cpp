@@ -37,6 +37,7 @@ double FrameSize::half_diagonal_mm() const {
 
 std::vector<TvDistortion> tv_distortion(const Lens& lens, const FrameSize& frame,
                                         std::span<const double> wavelengths_nm) {
+  require_centred(lens, "distortion is that of centred lenses");
   if (!(frame.width_mm > 0 && frame.height_mm > 0 && std::isfinite(frame.half_diagonal_mm())))
     throw InputError("a frame has a width and a height above 0");
   const double corner =

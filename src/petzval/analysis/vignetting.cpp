@@ -24,9 +24,8 @@ std::optional<VignettingRow> vignetting(const FieldTracer& tracer, const ChiefRa
   const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
   bool first = true;
   for (std::size_t i = 0; i < pupil->own(); ++i) {
-    const double azimuth = pupil->azimuth(i), r = pupil->radius[i];
-    const Tracer::Clearance rim = pencil.clearance(tracer.tracer(), r * std::sin(azimuth),
-                                                   pupil->centre_v + r * std::cos(azimuth), tracer.clip());
+    const auto [u, v] = pupil->rim(i);
+    const Tracer::Clearance rim = pencil.clearance(tracer.tracer(), u, v, tracer.clip());
     if (!rim.reached_stop) continue;
     const double x = std::abs(rim.stop_x_mm) / radius, y = rim.stop_y_mm / radius;
     if (first || y < row.pupil_low) {

@@ -74,7 +74,7 @@ std::vector<WaveRay> trace_wave_rays(const FieldTracer& tracer, const ChiefRay& 
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     const std::size_t ray = rays_per_node * node;
     if (rays.status[ray] != RayStatus::ok) continue;
-    const double x_mm = rays.x_mm[ray], y_mm = rays.y_mm[ray] - chief.image_height_mm;
+    const double x_mm = rays.x_mm[ray] - chief.image_x_mm, y_mm = rays.y_mm[ray] - chief.image_height_mm;
     const double to_foot_mm = -x_mm * rays.l[ray] - y_mm * rays.m[ray];
     WaveRay& wave = waves[node];
     wave.passes = true;

@@ -13,24 +13,37 @@ namespace petzval {
 
 namespace {
 
-/// Sums over the stop.
+/// Sums over the stop. Those of x are zero where rays stand for their mirror images.
 struct StopMoments {
-  double area = 0, w = 0, ww = 0, y = 0, yy = 0, wy = 0;
+  double area = 0, w = 0, ww = 0, y = 0, yy = 0, wy = 0, x = 0, xx = 0, wx = 0, xy = 0;
 
-  void add(double weight, double waves, double height) {
+  void add(double waves, const PupilRay& ray) {
+    const double weight = ray.stop_area_mm2, height = ray.stop_y_mm;
     area += weight;
     w += weight * waves;
     ww += weight * waves * waves;
     y += weight * height;
     yy += weight * height * height;
     wy += weight * waves * height;
+    if (ray.mirrored) return;
+    x += weight * ray.stop_x_mm;
+    xx += weight * ray.stop_x_mm * ray.stop_x_mm;
+    wx += weight * waves * ray.stop_x_mm;
+    xy += weight * ray.stop_x_mm * height;
   }
   double variance() const { return std::max(0.0, ww / area - w * w / (area * area)); }
-  /// The part of the variance that a tilt in y explains; there is none in x, by symmetry.
+  /// The part of the variance that the best tilt explains.
   double tilt_variance() const {
     const double covariance = wy / area - w * y / (area * area);
     const double spread = yy / area - y * y / (area * area);
-    return spread > 0 ? covariance * covariance / spread : 0;
+    if (xx == 0) return spread > 0 ? covariance * covariance / spread : 0;
+    const double covariance_x = wx / area - w * x / (area * area);
+    const double spread_x = xx / area - x * x / (area * area), both = xy / area - x * y / (area * area);
+    const double determinant = spread * spread_x - both * both;
+    if (!(determinant > 0)) return 0;
+    return (covariance * covariance * spread_x - 2 * covariance * covariance_x * both +
+            covariance_x * covariance_x * spread) /
+           determinant;
   }
 };
 
@@ -38,7 +51,7 @@ struct StopMoments {
 
 double reference_sphere_radius_mm(const FieldTracer& tracer, const ChiefRay& chief) {
   const double pupil_mm = first_order(tracer.lens()).exit_pupil.position_mm;
-  return std::copysign(std::hypot(pupil_mm, chief.image_height_mm), -pupil_mm);
+  return std::copysign(std::hypot(pupil_mm, std::hypot(chief.image_height_mm, chief.image_x_mm)), -pupil_mm);
 }
 
 double sphere_behind_foot_mm(double x_mm, double y_mm, double alpha, double beta, double radius_mm) {
@@ -77,7 +90,7 @@ std::optional<WavefrontRow> wavefront(const FieldTracer& tracer, const ChiefRay&
   std::complex<double> amplitude = 0;
   double solid_angle = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    moments.add(rays[i].stop_area_mm2, waves[i], rays[i].stop_y_mm);
+    moments.add(waves[i], rays[i]);
     amplitude += std::polar(rays[i].exit_solid_angle_sr, 2 * pi * waves[i]);
     solid_angle += rays[i].exit_solid_angle_sr;
   }

@@ -36,6 +36,7 @@ struct StopSamples {
 
 std::vector<WavefrontZernikeRow> zernike_table(const Lens& lens, const FieldTableRequest& request,
                                                ZernikeOrder order, int terms) {
+  require_centred(lens, "Zernike terms are fitted to centred lenses");
   require_round_stop(lens, "Zernike terms belong to round ones");
   zernike_term(order, terms);  // refuses before the work
   return field_rows<WavefrontZernikeRow>(
@@ -54,6 +55,7 @@ std::vector<WavefrontZernikeRow> zernike_table(const Lens& lens, const FieldTabl
 }
 
 std::vector<WavefrontMap> wavefront_maps(const Lens& lens, const FieldTableRequest& request, int size) {
+  require_centred(lens, "wavefronts are mapped of centred lenses");
   require_round_stop(lens, "wavefronts are mapped over round ones");
   if (size < 3 || size > 1025)
     throw InputError(fmt::format("a wavefront map of {0} x {0} samples; 3 to 1025 would be right", size));

@@ -145,7 +145,27 @@ Material::Material(Kind kind) : kind_(std::move(kind)) {
 double Material::index(double wavelength_nm) const {
   if (!(wavelength_nm > 0) || !std::isfinite(wavelength_nm))
     throw InputError(fmt::format("a wavelength of {} nm; it must be positive", wavelength_nm));
-  return std::visit([&](const auto& known) { return index_in(known, wavelength_nm); }, kind_);
+  const auto catalogued = [&](double nm) {
+    return std::visit([&](const auto& known) { return index_in(known, nm); }, kind_);
+  };
+  if (melt_.is_none()) return catalogued(wavelength_nm);
+  const double nd = catalogued(spectral_line::d_nm), melted_nd = nd + melt_.delta_nd;
+  const double spread = (melted_nd - 1) / (nd - 1) / (1 + melt_.delta_vd_percent / 100);
+  return melted_nd + spread * (catalogued(wavelength_nm) - nd);
+}
+
+Material Material::melted(const Melt& melt) const {
+  if (!std::isfinite(melt.delta_nd) || !std::isfinite(melt.delta_vd_percent) || melt.delta_vd_percent <= -100)
+    throw InputError(
+        fmt::format("a melt that differs by {} in nd and {} % in Vd; finite numbers, and more than "
+                    "-100 % would be right",
+                    melt.delta_nd, melt.delta_vd_percent));
+  if (is_air() && !melt.is_none()) throw InputError("air has no melts; a glass would be right");
+  Material result = *this;
+  result.melt_ = melt;
+  if (!melt.is_none() && !(result.index(spectral_line::d_nm) > 1))
+    throw InputError(fmt::format("a melt whose nd differs by {} has no index above 1", melt.delta_nd));
+  return result;
 }
 
 std::optional<double> Material::extinction(double wavelength_nm) const {

@@ -60,9 +60,21 @@ class Material {
   using Table = std::vector<std::pair<double, double>>;
   using Kind = std::variant<Air, std::shared_ptr<const Glass>, Model, Constant, Table>;
 
+  /// How a melt differs from its catalogue: nd by so much, and Vd by so many per cent of itself. The index
+  /// becomes n'd + (n − nd)·s, with s such that V'd comes out.
+  struct Melt {
+    double delta_nd = 0, delta_vd_percent = 0;
+    bool is_none() const { return delta_nd == 0 && delta_vd_percent == 0; }
+  };
+
   Material() = default;  ///< air
   /// \throws InputError for indices below 1, non-finite numbers, vd ≤ 0, unsorted or empty tables.
   explicit Material(Kind kind);
+
+  /// The same of another melt. \throws InputError for air, for numbers that are not finite and for a change
+  /// of Vd to nothing or less.
+  Material melted(const Melt& melt) const;
+  const Melt& melt() const { return melt_; }
 
   const Kind& kind() const { return kind_; }
   bool is_air() const { return std::holds_alternative<Air>(kind_); }
@@ -76,6 +88,7 @@ class Material {
 
  private:
   Kind kind_ = Air{};
+  Melt melt_ = {};
 };
 
 }  // namespace petzval

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <petzval/glass/material.h>
+#include <petzval/lens/pose.h>
 #include <petzval/lens/stop_blades.h>
+#include <petzval/lens/tolerance.h>
 
 #include <cstddef>
 #include <map>
@@ -32,6 +34,7 @@ struct Surface {
   double conic = 0;                             ///< k
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
+  Pose pose = {};                               ///< where it stands, if not on its place
 
   /// A sphere by its radius (infinite: a plane), the gap behind it, what fills that, and how wide it is
   /// clear.
@@ -77,6 +80,9 @@ struct Lens {
   std::vector<double> wavelengths_nm{587.5618};
   double reference_wavelength_nm = 587.5618;
   std::vector<Surface> surfaces = {};
+  std::vector<SurfaceGroup> groups = {};   ///< later ones move what earlier ones have moved
+  Pose sensor_pose = {};                   ///< of the image surface; image coordinates are the sensor's own
+  std::vector<Tolerance> tolerances = {};  ///< that its maker keeps
 
   /// Index of the stop surface. A valid lens has exactly one.
   std::size_t stop_index() const;

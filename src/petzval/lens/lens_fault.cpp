@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/error.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/lens_fault.h>
 #include <petzval/lens/surface_kind.h>
@@ -39,6 +40,53 @@ Fault shape_fault(const Surface& surface, const std::string& path) {
     for (std::size_t i = 0; i < numbers.size(); ++i)
       if (!std::isfinite(numbers[i]))
         return LensFault{at, fmt::format("must be {}, finite", parameter.meaning)};
+  }
+  return {};
+}
+
+/// The largest tilt: beyond it a surface no longer faces the light.
+constexpr double most_tilt_deg = 60;
+
+Fault pose_fault(const Pose& pose, const std::string& path) {
+  for (const PoseNumber& number : pose_numbers) {
+    const double value = pose.*number.value;
+    const std::string at = fmt::format("{}.{}", path, number.name);
+    if (!std::isfinite(value))
+      return LensFault{at, fmt::format("must be a finite number of {}", number.is_length ? "mm" : "degrees")};
+    if (!number.is_length && number.value != &Pose::tilt_z_deg && std::abs(value) > most_tilt_deg)
+      return LensFault{at, fmt::format("must lie within {:g} degrees", most_tilt_deg)};
+  }
+  return {};
+}
+
+Fault group_fault(const Lens& lens, std::size_t index) {
+  const SurfaceGroup& group = lens.groups[index];
+  const std::string path = fmt::format("groups[{}]", index);
+  if (group.first > group.last || group.first >= lens.surfaces.size() || group.last > lens.surfaces.size())
+    return LensFault{
+        path + ".surfaces",
+        fmt::format("must be the first and the last surface of {}, 0 to {}, or {} for the sensor",
+                    lens.surfaces.size(), lens.surfaces.size() - 1, lens.surfaces.size())};
+  if (!std::isfinite(group.pivot_mm))
+    return LensFault{path + ".pivot_mm", "must be a finite distance in mm behind the group's first vertex"};
+  return pose_fault(group.pose, path + ".pose");
+}
+
+Fault poses_fault(const Lens& lens) {
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (Fault fault = pose_fault(lens.surfaces[i].pose, fmt::format("surfaces[{}].pose", i))) return fault;
+  for (std::size_t i = 0; i < lens.groups.size(); ++i)
+    if (Fault fault = group_fault(lens, i)) return fault;
+  return pose_fault(lens.sensor_pose, "sensor_pose");
+}
+
+Fault tolerances_fault(const Lens& lens) {
+  for (std::size_t i = 0; i < lens.tolerances.size(); ++i) {
+    try {
+      check(lens, lens.tolerances[i]);
+    } catch (const InputError& error) {
+      return LensFault{fmt::format("tolerances[{}]", i), error.what()};
+    }
   }
   return {};
 }
@@ -139,6 +187,8 @@ Fault wavelengths_fault(const Lens& lens) {
 
 std::optional<LensFault> find_fault(const Lens& lens) {
   if (Fault fault = surfaces_fault(lens)) return fault;
+  if (Fault fault = poses_fault(lens)) return fault;
+  if (Fault fault = tolerances_fault(lens)) return fault;
   if (lens.object_distance_mm && !positive(*lens.object_distance_mm))
     return LensFault{"object_distance_mm",
                      "must be positive, in mm from the object to vertex 1, or null for infinity"};

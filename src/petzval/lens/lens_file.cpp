@@ -70,6 +70,16 @@ LensText writer_for(const std::string& path) {
                                      extension));
 }
 
+/// Other programs' files hold lenses as designed. \throws InputError for poses and melts.
+void require_designed(const Lens& lens) {
+  require_centred(lens, "Petzval writes poses into its own .json alone");
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (!lens.surfaces[i].material.melt().is_none())
+      throw InputError(fmt::format(
+          "surfaces[{0}].melt: Petzval writes melts into its own .json alone; set surfaces[{0}].melt=null",
+          i));
+}
+
 }  // namespace
 
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options) {
@@ -85,6 +95,7 @@ std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
   const auto text_of = writer_for(path);
   std::string text;
   try {
+    if (text_of != lens_to_json) require_designed(lens);
     text = text_of(lens);
   } catch (const InputError& error) {
     throw InputError(path, error.what());

@@ -40,8 +40,8 @@ json& follow(json& root, const std::vector<JsonStep>& steps) {
 
 /// Optional entries that null or, for glass, "air" takes away.
 bool removes(const std::string& key, const json& value) {
-  static const std::set<std::string> optional{"glass", "semi_diameter_mm", "conic", "asphere", "shape",
-                                              "stop"};
+  static const std::set<std::string> optional{
+      "glass", "semi_diameter_mm", "conic", "asphere", "shape", "stop", "pose", "melt"};
   const bool air = key == "glass" && value.is_string() && (value == "air" || value == "AIR");
   return (value.is_null() && optional.count(key)) || air;
 }

@@ -12,6 +12,7 @@ namespace petzval {
 
 Lens reversed_lens(const Lens& lens) {
   lens.validate();
+  require_centred(lens, "centred lenses can be turned round");
   if (!lens.surfaces.back().material.is_air())
     throw InputError(
         fmt::format("{}: glass reaches up to the sensor; a lens with air on both sides can be "

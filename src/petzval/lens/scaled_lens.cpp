@@ -11,7 +11,19 @@ namespace petzval {
 Lens scaled_lens(Lens lens, double factor) {
   if (!(factor > 0) || !std::isfinite(factor))
     throw InputError(fmt::format("a scale factor of {}; it must be positive", factor));
-  for (Surface& surface : lens.surfaces) surface = scaled_surface(std::move(surface), factor);
+  const auto scale = [&](Pose& pose) {
+    for (const PoseNumber& number : pose_numbers)
+      if (number.is_length) pose.*number.value *= factor;
+  };
+  for (Surface& surface : lens.surfaces) {
+    surface = scaled_surface(std::move(surface), factor);
+    scale(surface.pose);
+  }
+  for (SurfaceGroup& group : lens.groups) {
+    scale(group.pose);
+    group.pivot_mm *= factor;
+  }
+  scale(lens.sensor_pose);
   if (lens.object_distance_mm) *lens.object_distance_mm *= factor;
   if (lens.aperture.kind == Aperture::Kind::entrance_pupil_diameter_mm ||
       lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm)

@@ -207,6 +207,7 @@ void TableOptions::validate() const {
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
                                     const ProgressCallback& progress) {
   // On a sensor a polygon stands still, while the PSFs of a table turn with the azimuth of the field.
+  require_centred(lens, "a lens data table holds centred lenses");
   require_round_stop(lens,
                      "a table by field height turns with the field, which polygons do not; single PSFs "
                      "(`field_azimuth_deg`) and renderings have blades");

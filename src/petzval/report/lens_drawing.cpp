@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/report/lens_drawing.h>
 #include <petzval/report/surface_profile.h>
@@ -101,9 +102,14 @@ Scene make_scene(const Lens& lens, const std::vector<DrawnRay>& rays, const Lens
   const double largest = *std::max_element(scene.semi_diameter.begin(), scene.semi_diameter.end());
   scene.image_half_height = options.image_half_height_mm.value_or(
       default_image_half_height_mm(rays, scene.vertex_z.back(), 0.5 * largest));
-  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-    scene.profiles.push_back(profile(lens.surfaces[i], scene.vertex_z[i], scene.semi_diameter[i]));
-  scene.profiles.push_back(profile(Surface{}, scene.vertex_z.back(), scene.image_half_height));
+  const std::vector<Frame> frames = frames_of(lens);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool sensor = i == lens.surfaces.size();
+    const double vertex_z = scene.vertex_z[i];
+    const auto designed = sensor ? profile(Surface{}, vertex_z, scene.image_half_height)
+                                 : profile(lens.surfaces[i], vertex_z, scene.semi_diameter[i]);
+    scene.profiles.push_back(placed(designed, frames[i].turned(-radians(options.azimuth_deg)), vertex_z));
+  }
   return scene;
 }
 
@@ -170,20 +176,23 @@ void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
   }
 }
 
-void draw_stop(XmlWriter& xml, const Scene& scene, const View& view) {
+void draw_stop(XmlWriter& xml, const Scene& scene, const View& view, double azimuth_deg) {
   constexpr double foot_px = 5;
   for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
     if (!scene.lens.surfaces[i].stop) continue;
-    const auto [z, y] = scene.profiles[i].back();
+    StopBlades blades = scene.lens.surfaces[i].blades;
+    blades.rotation_deg -= azimuth_deg;
+    const auto& [bottom, top] = std::pair{scene.profiles[i].front(), scene.profiles[i].back()};
+    const double middle = 0.5 * (top[1] + bottom[1]), y = 0.5 * (top[1] - bottom[1]);
     const double neighbour =
         std::max(scene.profiles[i == 0 ? 0 : i - 1].back()[1], scene.profiles[i + 1].back()[1]);
-    const double x = view.x(z), outer = std::max(1.3 * y, neighbour);
     for (const double side : {1.0, -1.0}) {
-      const double inner = y * scene.lens.surfaces[i].blades.reach(0, side);
+      const double x = view.x((side > 0 ? top : bottom)[0]), outer = std::max(1.3 * y, neighbour);
+      const double inner = middle + side * y * blades.reach(0, side);
       xml.leaf("path", {{"class", "pz-line"},
                         {"stroke-width", 2.4},
                         {"d", fmt::format("M{0} {2}V{3}M{1} {3}h{4}", svg_number(x), svg_number(x - foot_px),
-                                          svg_number(view.y(side * outer)), svg_number(view.y(side * inner)),
+                                          svg_number(view.y(side * outer)), svg_number(view.y(inner)),
                                           svg_number(2 * foot_px))}});
     }
   }
@@ -331,7 +340,7 @@ std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
   draw_axis_and_image(xml, scene, view);
   draw_elements(xml, scene, view);
   draw_rays(xml, scene, view);
-  draw_stop(xml, scene, view);
+  draw_stop(xml, scene, view, options.azimuth_deg);
   xml.close();
   draw_scale_bar(xml, view);
   return std::move(xml).finish();

@@ -28,7 +28,7 @@ struct FieldPsf {
 /// PSFs of all fields in frames of one width: that of the widest.
 std::vector<FieldPsf> psfs_in_one_scale(const ReportLens& report) {
   const Lens& lens = report.lens;
-  FieldTracer tracer(lens, lens.reference_wavelength_nm, report.request.clip);
+  FieldTracer tracer(lens, lens.reference_wavelength_nm, report.request.clip, report.request.azimuth_deg);
   PsfOptions options;
   options.size = frame_cells;
   options.wanted_share = frame_share;

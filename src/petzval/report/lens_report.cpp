@@ -114,8 +114,9 @@ Table prescription(const Lens& lens) {
 
 std::string layout_svg(const ReportLens& report) {
   const Lens& lens = report.lens;
-  FieldTracer tracer(lens, lens.reference_wavelength_nm, report.request.clip);
+  FieldTracer tracer(lens, lens.reference_wavelength_nm, report.request.clip, report.request.azimuth_deg);
   LensDrawingOptions drawing;
+  drawing.azimuth_deg = report.request.azimuth_deg;
   std::vector<DrawnRay> rays;
   for (std::size_t i = 0; i < report.request.fields.size(); ++i) {
     const double field = object_field(lens, report.request.field_kind, report.request.fields[i]);

@@ -17,16 +17,26 @@ std::vector<PlanePoint> profile(const Surface& surface, double vertex_z_mm, doub
   return points;
 }
 
+std::vector<PlanePoint> placed(std::vector<PlanePoint> points, const Frame& frame, double vertex_z_mm) {
+  if (frame.is_none()) return points;
+  for (auto& [z, y] : points) {
+    const Frame::Vector at = frame.point_to_lens({0, y, z}, vertex_z_mm);
+    y = at[1], z = at[2];
+  }
+  return points;
+}
+
 std::vector<PlanePoint> element_outline(const std::vector<PlanePoint>& front,
                                         const std::vector<PlanePoint>& back) {
-  const double front_y = front.back()[1], back_y = back.back()[1];
-  const double front_z = front.back()[0], back_z = back.back()[0];
-  const double rim_y = std::max(front_y, back_y);
+  const double top = std::max(front.back()[1], back.back()[1]),
+               bottom = std::min(front.front()[1], back.front()[1]);
   std::vector<PlanePoint> outline(front);
-  const bool cylinder = front_z < back_z;
-  if (cylinder) outline.insert(outline.end(), {{front_z, rim_y}, {back_z, rim_y}});
+  const auto join_at = [&](double y, double from_z, double to_z) {
+    if (front.back()[0] < back.back()[0]) outline.insert(outline.end(), {{from_z, y}, {to_z, y}});
+  };
+  join_at(top, front.back()[0], back.back()[0]);
   outline.insert(outline.end(), back.rbegin(), back.rend());
-  if (cylinder) outline.insert(outline.end(), {{back_z, -rim_y}, {front_z, -rim_y}});
+  join_at(bottom, back.front()[0], front.front()[0]);
   return outline;
 }
 

@@ -385,7 +385,15 @@ AnalysisResult analyse(std::string_view name, const Lens& lens, const AnalysisRe
     lens.validate();
     AnalysisRequest asked = request;
     asked.at = with_own_lists(std::move(asked.at), lens);
-    return result_within(context, [&](const ProgressCallback&) { return each.run(lens, asked, context); });
+    AnalysisResult result =
+        result_within(context, [&](const ProgressCallback&) { return each.run(lens, asked, context); });
+    if (asked.at.azimuth_deg != 0) {
+      result.facts.push_back({"azimuth_deg", std::vector<double>{asked.at.azimuth_deg}});
+      result.remarks.push_back(
+          fmt::format("fields at an azimuth of {:g} deg, anticlockwise from +y as seen from the film",
+                      asked.at.azimuth_deg));
+    }
+    return result;
   }
   throw InputError(fmt::format("there is no analysis \"{}\"; there are {}", name, names));
 }

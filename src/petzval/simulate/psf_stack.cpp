@@ -28,7 +28,7 @@ void for_each_point(const Lens& lens, const FieldTableRequest& at, const AtPoint
   const std::size_t wavelengths = at.wavelengths_nm.size();
   parallel_tasks(at.fields.size() * wavelengths, [&](std::size_t i) {
     const double nm = at.wavelengths_nm[i % wavelengths];
-    FieldTracer tracer(lens, nm, at.clip);
+    FieldTracer tracer(lens, nm, at.clip, at.azimuth_deg);
     tracer.set_losses(at.losses);
     const std::optional<ChiefRay> chief = tracer.chief_ray(object_fields[i / wavelengths]);
     if (!chief) refuse(lens, at.fields[i / wavelengths], nm);

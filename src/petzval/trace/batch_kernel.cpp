@@ -21,9 +21,8 @@ template <class T>
 constexpr std::size_t widest_group = interleaved* HWY_MAX_BYTES / sizeof(T);
 
 template <class T, bool measures>
-HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, measures> (&rays)[interleaved]) {
-  const auto to_vertex = hn::Set(Lanes<T>(), surface.to_vertex_mm);
-  for (RayVector<T, measures>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
+HWY_ATTR HWY_INLINE void step_surface(const KernelSurface<T>& surface,
+                                      RayVector<T, measures> (&rays)[interleaved]) {
   switch (surface.shape.form) {
     case ShapeForm::plane:
       for (RayVector<T, measures>& ray : rays) step_plane(surface, ray);
@@ -43,12 +42,28 @@ HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, meas
   }
 }
 
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, measures> (&rays)[interleaved]) {
+  const auto to_vertex = hn::Set(Lanes<T>(), surface.to_vertex_mm);
+  for (RayVector<T, measures>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
+  if (surface.posed)
+    for (RayVector<T, measures>& ray : rays) into_frame(surface.frame, ray);
+  step_surface(surface, rays);
+  if (surface.posed)
+    for (RayVector<T, measures>& ray : rays) out_of_frame(surface.frame, ray);
+}
+
 /// To the image plane, and NaN is dead.
 template <class T, bool measures>
 HWY_ATTR HWY_INLINE void finish(const KernelPath<T>& path, RayVector<T, measures>& ray) {
   const Lanes<T> d;
   if (path.to_image) {
     const auto gap = hn::Set(d, path.image_z_mm - path.last_vertex_z_mm);
+    if (path.sensor_posed) {
+      ray.z = hn::Sub(ray.z, gap);
+      into_frame(path.sensor, ray);
+      ray.z = hn::Add(ray.z, gap);
+    }
     const auto distance = hn::Div(hn::Sub(gap, ray.z), ray.n);
     ray.x = hn::MulAdd(distance, ray.l, ray.x);
     ray.y = hn::MulAdd(distance, ray.m, ray.y);
@@ -72,6 +87,12 @@ HWY_ATTR HWY_INLINE void load(const KernelPath<T>& path, const RayColumns<T>& ra
   ray.l = hn::LoadU(d, rays.l + at);
   ray.m = hn::LoadU(d, rays.m + at);
   ray.n = hn::Mul(flip, hn::LoadU(d, rays.n + at));
+  if (!path.to_image && path.sensor_posed) {
+    const auto to_first = hn::Set(d, path.sensor_to_first_mm);
+    ray.z = hn::Sub(ray.z, to_first);
+    out_of_frame(path.sensor, ray);
+    ray.z = hn::Add(ray.z, to_first);
+  }
   if constexpr (has_path<T>) {
     if constexpr (!measures) ray.opl = hn::LoadU(d, rays.opl + at);
   } else {

@@ -12,6 +12,13 @@
 
 namespace petzval {
 
+/// A frame in the sense of travel: its own axes turned into those of the lens, and its place.
+template <class T>
+struct KernelFrame {
+  std::array<T, 3> offset_mm{};
+  std::array<std::array<T, 3>, 3> rows{};
+};
+
 /// One surface in the order of travel, with everything that does not depend on the ray worked out.
 template <class T>
 struct KernelSurface {
@@ -27,6 +34,8 @@ struct KernelSurface {
   /// Of a stop that is a polygon besides: unit normals of its edges, and how far they are from its middle.
   std::vector<std::array<T, 2>> edges;
   T edge_distance = 0, per_edge_distance = 0;
+  bool posed = false;
+  KernelFrame<T> frame;  ///< counts where `posed`
 };
 
 /// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.
@@ -37,6 +46,9 @@ struct KernelPath {
   T first_vertex_z_mm = 0, last_vertex_z_mm = 0;  ///< flipped
   bool to_image = true;                           ///< carry on to the image plane
   T image_z_mm = 0, image_index = 1;
+  bool sensor_posed = false;
+  KernelFrame<T> sensor;     ///< counts where `sensor_posed`
+  T sensor_to_first_mm = 0;  ///< from the sensor's vertex to the first one, for a backward trace
 };
 
 /// `count` rays in columns; `opl` only in double. passes[i] becomes 1, or 0 for a ray that fails or is

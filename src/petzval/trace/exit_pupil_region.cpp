@@ -16,6 +16,7 @@ struct ExitPupilRegions::Probe {
   double film_radius_mm = 0;
   std::vector<PassingRegion> wavelengths;  ///< those that let any light through
   double bend_u = 0, bend_v = 0;           ///< by how much the box departs from moving evenly here
+  double wander_u = 0, wander_v = 0;       ///< and by how much more between two azimuths of a lens with poses
 
   bool dark() const { return wavelengths.empty(); }
   LabelBox box() const {
@@ -38,6 +39,30 @@ double sector_width(std::size_t sectors) {
   return 2 * pi / static_cast<double>(sectors);
 }
 
+/// Film azimuths at which a lens with poses is looked at.
+constexpr int film_azimuths = 8;
+
+/// The lens as film points see it that lie on +y after it was turned: once, or at every azimuth as it is and
+/// mirrored, since a passing region shows one half.
+std::vector<Tracer> views_of(std::span<const Tracer> tracers) {
+  std::vector<Tracer> views;
+  for (const Tracer& tracer : tracers) {
+    if (tracer.is_centred()) {
+      views.push_back(tracer);
+      continue;
+    }
+    for (int i = 0; i < film_azimuths; ++i) {
+      views.push_back(tracer.turned(2 * pi * i / film_azimuths));
+      views.push_back(views.back().mirrored());
+    }
+  }
+  return views;
+}
+
+double change(const LabelBox& a, const LabelBox& b) {
+  return std::max(std::abs(a.low_v - b.low_v), std::abs(a.high_v - b.high_v));
+}
+
 }  // namespace
 
 ExitPupilRegions::ExitPupilRegions(std::span<const Tracer> tracers, double film_radius_mm, std::size_t radii)
@@ -49,11 +74,25 @@ ExitPupilRegions::ExitPupilRegions(std::span<const Tracer> tracers, double film_
     throw InputError(fmt::format("{} film radii; 2 to 100000 would be right", radii));
   const double step = film_radius_mm / static_cast<double>(radii - 1);
   std::vector<Probe> probes(radii);
+  const std::vector<Tracer> views = views_of(tracers);
+  const bool centred = views.size() == tracers.size();
   parallel_for(radii, [&](std::size_t i) {
-    probes[i].film_radius_mm = step * static_cast<double>(i);
-    for (const Tracer& tracer : tracers)
-      if (auto passing = find_passing_region(tracer, Pencil::from_image(tracer, probes[i].film_radius_mm)))
-        probes[i].wavelengths.push_back(std::move(*passing));
+    Probe& probe = probes[i];
+    probe.film_radius_mm = step * static_cast<double>(i);
+    std::vector<std::optional<LabelBox>> boxes;
+    for (const Tracer& tracer : views) {
+      auto passing = find_passing_region(tracer, Pencil::from_image(tracer, probe.film_radius_mm));
+      boxes.push_back(passing ? std::optional(passing->box) : std::nullopt);
+      if (passing) probe.wavelengths.push_back(std::move(*passing));
+    }
+    constexpr std::size_t halves = 2;  // the same half at the next azimuth
+    for (std::size_t v = 0; !centred && v < boxes.size(); ++v) {
+      const std::size_t first = v - v % (halves * film_azimuths);
+      const auto& next = boxes[first + (v - first + halves) % (halves * film_azimuths)];
+      if (!boxes[v] || !next) continue;
+      probe.wander_u = std::max(probe.wander_u, std::abs(boxes[v]->high_u - next->high_u));
+      probe.wander_v = std::max(probe.wander_v, change(*boxes[v], *next));
+    }
   });
   find_bends(probes);
   for (std::size_t i = 0; i + 1 < radii; ++i) zones_.push_back(zone_between(probes[i], probes[i + 1], step));
@@ -102,8 +141,10 @@ ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const 
 
   // Where an aperture begins to clip inside the zone, an edge goes a quarter of its bend off the straight
   // way.
-  const double margin_u = 0.5 * std::max(inner.bend_u, outer.bend_u);
-  const double margin_v = 0.5 * std::max(inner.bend_v, outer.bend_v);
+  const double margin_u =
+      0.5 * (std::max(inner.bend_u, outer.bend_u) + std::max(inner.wander_u, outer.wander_u));
+  const double margin_v =
+      0.5 * (std::max(inner.bend_v, outer.bend_v) + std::max(inner.wander_v, outer.wander_v));
   const double width = sector_width(sectors);
   const auto cover = [&](double u, double v) {
     const double x = u / zone.scale_u, y = v / zone.scale_v;

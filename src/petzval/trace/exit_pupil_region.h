@@ -26,7 +26,7 @@ namespace petzval {
 /// Method: float SIMD rays backwards from film points on a grid of directions, zoomed onto those that pass
 /// (bounds of the exit pupil by film radius: M. Pharr, W. Jakob and G. Humphreys, Physically Based Rendering,
 /// 2016, 6.4.5; there boxes on the rear element). Parts of a pupil that lie apart or leave a hole are all
-/// inside the outline.
+/// inside the outline. A lens with poses has regions that hold the light of all film points at one radius.
 class ExitPupilRegions {
  public:
   struct Sample {

@@ -44,6 +44,18 @@ ShapeData<T> kernel_shape(ShapeData<double> from) {
 }
 
 template <class T>
+KernelFrame<T> kernel_frame(const Frame& from, double flip) {
+  const double sign[3] = {1, 1, flip};
+  KernelFrame<T> frame;
+  for (std::size_t i = 0; i < 3; ++i) {
+    frame.offset_mm[i] = static_cast<T>(sign[i] * from.offset_mm[i]);
+    for (std::size_t k = 0; k < 3; ++k)
+      frame.rows[i][k] = static_cast<T>(sign[i] * sign[k] * from.rows[i][k]);
+  }
+  return frame;
+}
+
+template <class T>
 KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backward, double clip_radius_sq) {
   const double flip = backward ? -1 : 1;
   const double before = backward ? from.index_after : from.index_before;
@@ -51,6 +63,8 @@ KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backwa
   KernelSurface<T> surface;
   surface.shape = kernel_shape<T>(from.shape);
   surface.flip = static_cast<T>(flip);
+  surface.posed = from.posed;
+  surface.frame = kernel_frame<T>(from.frame, flip);
   surface.clips = std::isfinite(clip_radius_sq);
   surface.clear_radius_sq = surface.clips ? static_cast<T>(clip_radius_sq) : T(0);
   // Boundaries are sought at the rim itself.
@@ -86,6 +100,9 @@ KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip
   path.image_index = static_cast<T>(tracer.image_index());
   double vertex_z = flip * (backward ? surfaces.back() : surfaces.front()).vertex_z_mm;
   path.first_vertex_z_mm = static_cast<T>(vertex_z);
+  path.sensor_posed = tracer.sensor_posed();
+  path.sensor = kernel_frame<T>(tracer.sensor_frame(), flip);
+  path.sensor_to_first_mm = static_cast<T>(flip * tracer.image_z_mm() - vertex_z);
   for (std::size_t step = 0; step < surfaces.size(); ++step) {
     const std::size_t i = backward ? surfaces.size() - 1 - step : step;
     KernelSurface<T> surface = kernel_surface<T>(surfaces[i], backward, tracer.clip_radius_sq(i, clip));

@@ -40,7 +40,8 @@ struct PassingRegion {
   bool has_hole() const;
 };
 
-/// Traced in float. Nothing where no ray of the pencil passes.
+/// Traced in float. Of a lens with poses what passes at u > 0, and its mirror image; Tracer::mirrored() has
+/// the rest. Nothing where no ray of the pencil passes.
 std::optional<PassingRegion> find_passing_region(const Tracer& tracer, const Pencil& pencil,
                                                  Tracer::Clip clip = Tracer::Clip::apertures);
 

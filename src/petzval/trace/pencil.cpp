@@ -118,13 +118,13 @@ Pencil Pencil::from_object(const Lens& lens, double field) {
   return Pencil(Kind::parallel, std::sin(radians(field)), std::cos(radians(field)));
 }
 
-Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm) {
-  return Pencil(Kind::image_point, image_height_mm, tracer.image_z_mm());
+Pencil Pencil::from_image(const Tracer& tracer, double image_height_mm, double image_x_mm) {
+  return Pencil(Kind::image_point, image_height_mm, tracer.image_z_mm(), image_x_mm);
 }
 
 std::array<double, 3> Pencil::point_mm() const {
   if (kind_ == Kind::parallel) return {0, 0, -std::numeric_limits<double>::infinity()};
-  return {0, y_, z_};
+  return {x_, y_, z_};
 }
 
 double Pencil::entrance_mm(double v) const {
@@ -148,7 +148,7 @@ std::optional<Ray> Pencil::ray(double u, double v) const {
   if (!(cosine_sq > 0)) return {};
   const double cosine = std::sqrt(cosine_sq);
   // A backward ray travels against the light.
-  if (kind_ == Kind::image_point) return Ray{{0, y_, z_}, {-u, -v, -cosine}};
+  if (kind_ == Kind::image_point) return Ray{{x_, y_, z_}, {-u, -v, -cosine}};
   if (-z_ < far_mm) return Ray{{0, y_, z_}, {u, v, cosine}};
   const double way = -(y_ * v + z_ * cosine);
   const double x = way * u, y = y_ + way * v, z = -(x * u + y * v) / cosine;

@@ -16,17 +16,18 @@ namespace petzval {
 /// |---|---|---|---|
 /// | object at infinity, field angle θ | direction (0, sin θ, cos θ) | position on the plane through vertex 1
 /// perpendicular to the ray [mm] | cross-section of the beam dA⊥ [mm²] | | object point (0, h, −distance) |
-/// through the point | direction cosines (L, M) | dα_o dβ_o [sr] | | image point (0, y', image plane) |
+/// through the point | direction cosines (L, M) | dα_o dβ_o [sr] | | image point (x', y', image plane) |
 /// through the point, traced backwards | direction cosines (L, M) of the light, in the sensor frame | dα dβ
 /// [sr] |
 ///
-/// The field lies in the y-z plane, so the pencil is mirror symmetric in u.
+/// The field lies in the y-z plane, so the pencil of a lens without poses is mirror symmetric in u. A field
+/// at another azimuth is that of the lens turned (Tracer::turned).
 class Pencil {
  public:
   /// `field` in degrees for a lens whose object is at infinity, else the object height in mm.
   /// \throws InputError for an angle of 180° or more, or a non-finite field.
   static Pencil from_object(const Lens& lens, double field);
-  static Pencil from_image(const Tracer& tracer, double image_height_mm);
+  static Pencil from_image(const Tracer& tracer, double image_height_mm, double image_x_mm = 0);
 
   /// The ray (u, v), at its object point, on its launch plane, or at its image point; nothing where u² + v² ≥
   /// 1 for direction cosines. From an object point more than 100 m away it starts where it is nearest to
@@ -53,10 +54,10 @@ class Pencil {
 
  private:
   enum class Kind { parallel, object_point, image_point };
-  Pencil(Kind kind, double y, double z) : kind_(kind), y_(y), z_(z) {}
+  Pencil(Kind kind, double y, double z, double x = 0) : kind_(kind), x_(x), y_(y), z_(z) {}
 
   Kind kind_;
-  double y_, z_;  ///< the point [mm], or the sine and cosine of the field angle
+  double x_, y_, z_;  ///< the point [mm], or 0, the sine and the cosine of the field angle
 };
 
 /// Where the labels u and v of a pencil can lie at all: direction cosines, or a launch plane far wider than

@@ -28,30 +28,21 @@ constexpr double widest_stretch = 100;
 
 class PupilSearch {
  public:
-  PupilSearch(const Tracer& tracer, const Pencil& pencil, Tracer::Clip clip)
-      : tracer_(tracer), pencil_(pencil), clip_(clip) {}
+  /// \param u  of the rays that are looked at: the chief ray's.
+  PupilSearch(const Tracer& tracer, const Pencil& pencil, Tracer::Clip clip, double u)
+      : tracer_(tracer), pencil_(pencil), clip_(clip), u_(u) {}
 
-  double worst(double u, double v) const { return pencil_.clearance(tracer_, u, v, clip_).worst; }
-
-  /// How far from the chief ray, in v, the rim of the stop lies to first order.
-  double stop_scale(double chief_v) const {
-    const double nudge = std::min(1e-6 * std::max(1e-3, std::abs(chief_v)), label_nudge(tracer_, pencil_));
-    const auto above = pencil_.clearance(tracer_, 0, chief_v + nudge, Tracer::Clip::none);
-    const auto below = pencil_.clearance(tracer_, 0, chief_v - nudge, Tracer::Clip::none);
-    const double slope = (above.stop_y_mm - below.stop_y_mm) / (2 * nudge);
-    return above.reached_stop && below.reached_stop && slope != 0 ? std::abs(tracer_.stop_radius_mm() / slope)
-                                                                  : nudge;
-  }
+  double worst(double v) const { return pencil_.clearance(tracer_, u_, v, clip_).worst; }
 
   /// The meridional ray that clears the apertures best: the clearance is quasi-convex along v, so a coarse
   /// scan and a golden section find it. Nothing if none passes.
   std::optional<double> best_centre(double chief_v, double scale, ClearanceBatch& clearances) const {
-    double best = chief_v, best_worst = worst(0, chief_v);
+    double best = chief_v, best_worst = worst(chief_v);
     if (best_worst < comfortable_clearance) return chief_v;
     constexpr int steps = 60;
     std::vector<double> v;
     for (int i = -steps; i <= steps; ++i) v.push_back(chief_v + 3.0 * scale * i / steps);
-    const std::vector<double> u(v.size(), 0.0);
+    const std::vector<double> u(v.size(), u_);
     std::vector<double> scanned(v.size());
     clearances.measure(u, v, scanned);
     for (std::size_t i = 0; i < v.size(); ++i)
@@ -63,23 +54,23 @@ class PupilSearch {
     constexpr int section_steps = 40;  // to 1e-8 of the interval: any inner point will do
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
     double a = high - golden * (high - low), b = low + golden * (high - low);
-    double at_a = worst(0, a), at_b = worst(0, b);
+    double at_a = worst(a), at_b = worst(b);
     for (int i = 0; i < section_steps; ++i) {
       if (at_a < at_b) {
         high = std::exchange(b, a);
         at_b = at_a;
         a = high - golden * (high - low);
-        at_a = worst(0, a);
+        at_a = worst(a);
       } else {
         low = std::exchange(a, b);
         at_a = at_b;
         b = low + golden * (high - low);
-        at_b = worst(0, b);
+        at_b = worst(b);
       }
     }
     const double refined = 0.5 * (low + high);
-    if (worst(0, refined) < best_worst) best = refined;
-    if (worst(0, best) < 0) return best;
+    if (worst(refined) < best_worst) best = refined;
+    if (worst(best) < 0) return best;
     return {};
   }
 
@@ -87,6 +78,7 @@ class PupilSearch {
   const Tracer& tracer_;
   const Pencil& pencil_;
   Tracer::Clip clip_;
+  double u_;
 };
 
 /// The boundary along one azimuth, closed in on from both sides.
@@ -137,7 +129,7 @@ struct Bracket {
 };
 
 /// All azimuths in lockstep, so that their rays fill the lanes.
-void close_in(std::vector<Bracket>& brackets, double centre_v, ClearanceBatch& clearances) {
+void close_in(std::vector<Bracket>& brackets, double centre_u, double centre_v, ClearanceBatch& clearances) {
   std::vector<double> u, v, radius, worst;
   std::vector<std::size_t> open;
   for (int round = 0; round < most_rounds; ++round) {
@@ -146,7 +138,7 @@ void close_in(std::vector<Bracket>& brackets, double centre_v, ClearanceBatch& c
       if (brackets[i].done()) continue;
       open.push_back(i);
       radius.push_back(brackets[i].next(round));
-      u.push_back(radius.back() * brackets[i].sine);
+      u.push_back(centre_u + radius.back() * brackets[i].sine);
       v.push_back(centre_v + radius.back() * brackets[i].cosine);
     }
     if (open.empty()) return;
@@ -166,6 +158,11 @@ double PupilBoundary::azimuth(std::size_t i) const {
   const double even = mirrored() ? even_azimuth(i, radius.size()) : turns[i];
   const double azimuth = std::atan2(stretch * std::sin(even), std::cos(even));
   return azimuth < 0 ? azimuth + 2 * pi : azimuth;
+}
+
+std::array<double, 2> PupilBoundary::rim(std::size_t i) const {
+  const double turn = azimuth(i);
+  return {centre_u + radius[i] * std::sin(turn), centre_v + radius[i] * std::cos(turn)};
 }
 
 double PupilBoundary::azimuth_weight(std::size_t i) const {
@@ -192,7 +189,7 @@ void find_radii(std::size_t azimuths, double worst_at_centre, double guess, Clea
     const double azimuth = boundary.azimuth(i);
     brackets[i] = {std::sin(azimuth), std::cos(azimuth), 0, guess, worst_at_centre, 0};
   }
-  close_in(brackets, boundary.centre_v, clearances);
+  close_in(brackets, boundary.centre_u, boundary.centre_v, clearances);
   for (std::size_t i = 0; i < brackets.size(); ++i) {
     boundary.radius[i] = brackets[i].inside;
     if (boundary.mirrored()) boundary.radius[azimuths - 1 - i] = brackets[i].inside;
@@ -201,24 +198,33 @@ void find_radii(std::size_t azimuths, double worst_at_centre, double guess, Clea
 
 /// Width along u over height along v of a boundary.
 double stretch_of(const PupilBoundary& boundary) {
-  double width = 0, high = -1e300, low = 1e300;
+  double right = 0, left = 0, high = -1e300, low = 1e300;
   for (std::size_t i = 0; i < boundary.own(); ++i) {
     const double azimuth = boundary.azimuth(i);
-    width = std::max(width, 2 * boundary.radius[i] * std::sin(azimuth));
+    right = std::max(right, boundary.radius[i] * std::sin(azimuth));
+    left = boundary.mirrored() ? -right : std::min(left, boundary.radius[i] * std::sin(azimuth));
     high = std::max(high, boundary.radius[i] * std::cos(azimuth));
     low = std::min(low, boundary.radius[i] * std::cos(azimuth));
   }
-  const double stretch = width / (high - low);
+  const double stretch = (right - left) / (high - low);
   return std::isfinite(stretch) ? std::clamp(stretch, 1 / widest_stretch, widest_stretch) : 1;
+}
+
+/// Evenly, all round.
+void set_even_turns(int azimuths, PupilBoundary& boundary) {
+  const auto count = static_cast<std::size_t>(azimuths);
+  boundary.turn_weights.assign(count, 2 * pi / azimuths);
+  for (std::size_t i = 0; i < count; ++i) boundary.turns.push_back(even_azimuth(i, count));
 }
 
 /// From corner to corner of the polygon, in Gauss-Legendre nodes. Corners that no ray of the pencil reaches
 /// part nothing.
 void set_turns(const Tracer& tracer, const Pencil& pencil, double scale, int azimuths,
                PupilBoundary& boundary) {
+  if (tracer.stop_blades().count == 0) return set_even_turns(azimuths, boundary);
   std::vector<double> corners;
-  for (const auto& [u, v] : aim_at_corners(tracer, pencil, boundary.chief_v, scale)) {
-    const double turn = std::atan2(u / boundary.stretch, v - boundary.centre_v);
+  for (const auto& [u, v] : aim_at_corners(tracer, pencil, {boundary.chief_u, boundary.chief_v}, scale)) {
+    const double turn = std::atan2((u - boundary.centre_u) / boundary.stretch, v - boundary.centre_v);
     corners.push_back(turn < 0 ? turn + 2 * pi : turn);
   }
   std::sort(corners.begin(), corners.end());
@@ -240,26 +246,27 @@ void set_turns(const Tracer& tracer, const Pencil& pencil, double scale, int azi
 }  // namespace
 
 std::optional<PupilBoundary> find_pupil(const Tracer& tracer, const Pencil& pencil, double chief_v,
-                                        int azimuths, Tracer::Clip clip) {
+                                        int azimuths, Tracer::Clip clip, double chief_u) {
   if (azimuths < 8 || azimuths % 2 != 0)
     throw InputError("a pupil boundary needs an even number of azimuths, 8 or more");
-  const PupilSearch search(tracer, pencil, clip);
-  const double scale = search.stop_scale(chief_v);
+  const PupilSearch search(tracer, pencil, clip, chief_u);
+  const double scale = pupil_scale(tracer, pencil, {chief_u, chief_v});
   ClearanceBatch clearances(tracer, pencil, clip);
   const std::optional<double> centre = search.best_centre(chief_v, scale, clearances);
   if (!centre) return {};
   PupilBoundary boundary;
+  boundary.centre_u = boundary.chief_u = chief_u;
   boundary.centre_v = *centre;
   boundary.chief_v = chief_v;
-  const double worst_at_centre = search.worst(0, *centre);
-  const bool bladed = tracer.stop_blades().count > 0 && clip != Tracer::Clip::none;
-  if (bladed) set_turns(tracer, pencil, scale, first_azimuths, boundary);
-  find_radii(bladed ? boundary.turns.size() : first_azimuths, worst_at_centre, scale, clearances, boundary);
+  const double worst_at_centre = search.worst(*centre);
+  const bool whole = (tracer.stop_blades().count > 0 && clip != Tracer::Clip::none) || !tracer.is_centred();
+  if (whole) set_turns(tracer, pencil, scale, first_azimuths, boundary);
+  find_radii(whole ? boundary.turns.size() : first_azimuths, worst_at_centre, scale, clearances, boundary);
   boundary.stretch = stretch_of(boundary);
   boundary.turns.clear(), boundary.turn_weights.clear();
   const double guess = *std::max_element(boundary.radius.begin(), boundary.radius.end());
-  if (bladed) set_turns(tracer, pencil, scale, azimuths, boundary);
-  find_radii(bladed ? boundary.turns.size() : static_cast<std::size_t>(azimuths), worst_at_centre,
+  if (whole) set_turns(tracer, pencil, scale, azimuths, boundary);
+  find_radii(whole ? boundary.turns.size() : static_cast<std::size_t>(azimuths), worst_at_centre,
              guess > 0 ? guess : scale, clearances, boundary);
   return boundary;
 }
@@ -274,7 +281,7 @@ std::vector<PupilNode> pupil_nodes(const PupilBoundary& boundary, int radial_nod
     const double step = boundary.azimuth_weight(i);
     for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
       const double r = rim * radial.nodes[k];
-      nodes.push_back({r * std::sin(azimuth), boundary.centre_v + r * std::cos(azimuth),
+      nodes.push_back({boundary.centre_u + r * std::sin(azimuth), boundary.centre_v + r * std::cos(azimuth),
                        stands_for * (r * rim * radial.weights[k] * step)});
     }
   }

@@ -61,11 +61,11 @@ Seen seen_from(const Light& light, const ExitPupilRegions& regions, double radiu
 }
 
 /// Of as high a degree as there are rays for; nothing without any.
-std::vector<EvenSurface> fitted(const Seen& seen) {
+std::vector<ChebyshevSurface> fitted(const Seen& seen) {
   const std::vector<std::span<const double>> values(seen.transmittance.begin(), seen.transmittance.end());
   for (int each = seen.u.empty() ? -1 : degree; each >= 0; each -= 2) {
-    if (seen.u.size() < 2 * EvenSurface::unknowns(each)) continue;
-    std::vector<EvenSurface> surfaces = EvenSurface::fit(seen.u, seen.v, values, each);
+    if (seen.u.size() < 2 * ChebyshevSurface::unknowns(each)) continue;
+    std::vector<ChebyshevSurface> surfaces = ChebyshevSurface::fit(seen.u, seen.v, values, each);
     if (!surfaces.empty()) return surfaces;
   }
   return {};

@@ -3,7 +3,7 @@
 // times.
 #pragma once
 
-#include <petzval/numeric/even_surface.h>
+#include <petzval/numeric/chebyshev_surface.h>
 #include <petzval/trace/exit_pupil_region.h>
 #include <petzval/trace/losses.h>
 
@@ -33,7 +33,7 @@ class PupilTransmittance {
   double step_mm_;
   /// [radius][wavelength]; of α across and β along the film point's meridian. Where no light arrives: those
   /// of the next radius inside.
-  std::vector<std::vector<EvenSurface>> fits_;
+  std::vector<std::vector<ChebyshevSurface>> fits_;
 };
 
 }  // namespace petzval

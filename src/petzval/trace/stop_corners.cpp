@@ -24,10 +24,13 @@ std::optional<Point> at_stop(const Tracer& tracer, const Pencil& pencil, const P
   return Point{traced.stop_x_mm, traced.stop_y_mm};
 }
 
-std::optional<Point> aim(const Tracer& tracer, const Pencil& pencil, const Point& wanted, Point label,
-                         double scale) {
+}  // namespace
+
+std::optional<Point> aim_at_stop(const Tracer& tracer, const Pencil& pencil, const Point& wanted, Point label,
+                                 double scale, double tolerance) {
   const double nudge = nudge_per_scale * scale;
-  const double close = std::max(corner_tolerance * tracer.stop_radius_mm(), pencil.rounding_mm());
+  const double size = std::isfinite(tracer.stop_radius_mm()) ? tracer.stop_radius_mm() : 1;
+  const double close = std::max(tolerance * size, pencil.rounding_mm());
   for (int step = 0; step < most_steps; ++step) {
     const auto here = at_stop(tracer, pencil, label);
     const auto right = at_stop(tracer, pencil, {label[0] + nudge, label[1]});
@@ -47,15 +50,25 @@ std::optional<Point> aim(const Tracer& tracer, const Pencil& pencil, const Point
   return {};
 }
 
-}  // namespace
+double pupil_scale(const Tracer& tracer, const Pencil& pencil, const Point& chief) {
+  const auto [u, v] = chief;
+  const double nudge = std::min(1e-6 * std::max(1e-3, std::abs(v)), label_nudge(tracer, pencil));
+  const auto above = pencil.clearance(tracer, u, v + nudge, Tracer::Clip::none);
+  const auto below = pencil.clearance(tracer, u, v - nudge, Tracer::Clip::none);
+  const double slope = (above.stop_y_mm - below.stop_y_mm) / (2 * nudge);
+  return above.reached_stop && below.reached_stop && slope != 0 ? std::abs(tracer.stop_radius_mm() / slope)
+                                                                : nudge;
+}
 
-std::vector<Point> aim_at_corners(const Tracer& tracer, const Pencil& pencil, double chief_v, double scale) {
+std::vector<Point> aim_at_corners(const Tracer& tracer, const Pencil& pencil, const Point& chief,
+                                  double scale) {
   std::vector<Point> labels;
   const StopBlades& blades = tracer.stop_blades();
   for (int i = 0; i < blades.count; ++i) {
     const double turn = radians(90 + blades.rotation_deg) + 2 * pi * i / blades.count;
     const Point corner{tracer.stop_radius_mm() * std::cos(turn), tracer.stop_radius_mm() * std::sin(turn)};
-    if (const auto label = aim(tracer, pencil, corner, {0, chief_v}, scale)) labels.push_back(*label);
+    if (const auto label = aim_at_stop(tracer, pencil, corner, chief, scale, corner_tolerance))
+      labels.push_back(*label);
   }
   return labels;
 }

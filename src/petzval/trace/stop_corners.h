@@ -5,14 +5,24 @@
 #include <petzval/trace/pencil.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace petzval {
 
+/// How far from the chief ray, in v, the rim of the stop lies to first order.
+double pupil_scale(const Tracer& tracer, const Pencil& pencil, const std::array<double, 2>& chief);
+
 /// The labels (u, v) of the rays through the corners of the polygon, by Newton's method on real rays from the
-/// chief ray; corners that no ray reaches are left out. \param scale  how far from the chief ray, in v, the
-/// rim of the stop lies to first order.
-std::vector<std::array<double, 2>> aim_at_corners(const Tracer& tracer, const Pencil& pencil, double chief_v,
-                                                  double scale);
+/// chief ray; corners that no ray reaches are left out. \param scale  as pupil_scale().
+std::vector<std::array<double, 2>> aim_at_corners(const Tracer& tracer, const Pencil& pencil,
+                                                  const std::array<double, 2>& chief, double scale);
+
+/// The label (u, v) of the ray that meets a point of the stop [mm, in the stop's own axes], by Newton from
+/// `label`; nothing where that fails. \param scale  of the pupil, in labels. \param tolerance  of the stop's
+/// radius.
+std::optional<std::array<double, 2>> aim_at_stop(const Tracer& tracer, const Pencil& pencil,
+                                                 const std::array<double, 2>& point,
+                                                 std::array<double, 2> label, double scale, double tolerance);
 
 }  // namespace petzval

@@ -34,7 +34,7 @@ Ray ray_to_pupil_edge(const Lens& lens, const FirstOrder& paraxial) {
 std::optional<double> asked_radius_mm(const Lens& lens, bool must_reach) {
   if (lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm) return lens.aperture.value;
   const FirstOrder paraxial = first_order(lens, lens.reference_wavelength_nm);
-  const Tracer tracer(lens, lens.reference_wavelength_nm, unlimited_mm);
+  const Tracer tracer(as_designed(lens), lens.reference_wavelength_nm, unlimited_mm);
   const Tracer::Clearance traced =
       tracer.clearance(ray_to_pupil_edge(lens, paraxial), false, Tracer::Clip::none);
   if (!traced.reached_stop && !must_reach) return {};

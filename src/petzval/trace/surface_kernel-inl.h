@@ -52,6 +52,38 @@ HWY_ATTR HWY_INLINE void advance(const KernelSurface<T>& surface, Vector<T> dist
     ray.opl = hn::MulAdd(hn::Set(Lanes<T>(), surface.index_before), distance, ray.opl);
 }
 
+/// From lens space into a frame, and back.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void into_frame(const KernelFrame<T>& frame, RayVector<T, measures>& ray) {
+  const Lanes<T> d;
+  const auto along = [&](std::size_t axis, auto x, auto y, auto z) HWY_ATTR {
+    return hn::MulAdd(
+        hn::Set(d, frame.rows[0][axis]), x,
+        hn::MulAdd(hn::Set(d, frame.rows[1][axis]), y, hn::Mul(hn::Set(d, frame.rows[2][axis]), z)));
+  };
+  const auto x = hn::Sub(ray.x, hn::Set(d, frame.offset_mm[0]));
+  const auto y = hn::Sub(ray.y, hn::Set(d, frame.offset_mm[1]));
+  const auto z = hn::Sub(ray.z, hn::Set(d, frame.offset_mm[2]));
+  const auto l = ray.l, m = ray.m, n = ray.n;
+  ray.x = along(0, x, y, z), ray.y = along(1, x, y, z), ray.z = along(2, x, y, z);
+  ray.l = along(0, l, m, n), ray.m = along(1, l, m, n), ray.n = along(2, l, m, n);
+}
+
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void out_of_frame(const KernelFrame<T>& frame, RayVector<T, measures>& ray) {
+  const Lanes<T> d;
+  const auto along = [&](std::size_t axis, auto x, auto y, auto z, auto from) HWY_ATTR {
+    return hn::MulAdd(
+        hn::Set(d, frame.rows[axis][0]), x,
+        hn::MulAdd(hn::Set(d, frame.rows[axis][1]), y, hn::MulAdd(hn::Set(d, frame.rows[axis][2]), z, from)));
+  };
+  const auto x = ray.x, y = ray.y, z = ray.z, l = ray.l, m = ray.m, n = ray.n, zero = hn::Zero(d);
+  ray.x = along(0, x, y, z, hn::Set(d, frame.offset_mm[0]));
+  ray.y = along(1, x, y, z, hn::Set(d, frame.offset_mm[1]));
+  ray.z = along(2, x, y, z, hn::Set(d, frame.offset_mm[2]));
+  ray.l = along(0, l, m, n, zero), ray.m = along(1, l, m, n, zero), ray.n = along(2, l, m, n, zero);
+}
+
 /// The blades of a stop.
 template <class T, bool measures>
 HWY_ATTR HWY_INLINE void clip_by_edges(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {

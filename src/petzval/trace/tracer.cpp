@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
@@ -30,6 +31,20 @@ void come_near(const Tracer::PreparedSurface& first, bool backward, SurfaceRay& 
   ray.opl += distance * (backward ? first.index_after : first.index_before);
 }
 
+void into(const Frame& frame, SurfaceRay& ray) {
+  const auto& [ox, oy, oz] = frame.offset_mm;
+  const Frame::Vector point = frame.from_lens({ray.x - ox, ray.y - oy, ray.z - oz});
+  const Frame::Vector direction = frame.from_lens({ray.l, ray.m, ray.n});
+  ray = {point[0], point[1], point[2], direction[0], direction[1], direction[2], ray.opl};
+}
+
+void out_of(const Frame& frame, SurfaceRay& ray) {
+  const auto& [ox, oy, oz] = frame.offset_mm;
+  const Frame::Vector point = frame.to_lens({ray.x, ray.y, ray.z});
+  const Frame::Vector direction = frame.to_lens({ray.l, ray.m, ray.n});
+  ray = {point[0] + ox, point[1] + oy, point[2] + oz, direction[0], direction[1], direction[2], ray.opl};
+}
+
 void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
   ray.point_mm = {from.x, from.y, from.z + vertex_z};
   ray.direction = {from.l, from.m, from.n};
@@ -37,8 +52,8 @@ void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
 }
 
 /// Walks the surfaces in the sense of travel. `visit(index, ray at the surface, normal)` is called after each
-/// intersection, before refraction, and ends the walk by returning false; `after(index, ray)` after
-/// refraction.
+/// intersection, before refraction, in the surface's own axes, and ends the walk by returning false;
+/// `after(index, ray, normal)` after refraction, in lens space but for the normal.
 template <class Visit, class After>
 void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, Ray& ray, Visit&& visit,
           After&& after) {
@@ -55,6 +70,7 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     const double before = backward ? surface.index_after : surface.index_before;
     const double behind = backward ? surface.index_before : surface.index_after;
     double normal[3];
+    if (surface.posed) into(surface.frame, at);
     if (!intersect(surface, sense, before, at, normal)) {
       ray.status = RayStatus::missed;
     } else if (visit(i, at, normal)) {
@@ -62,6 +78,7 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     } else {
       ray.status = RayStatus::vignetted;
     }
+    if (surface.posed) out_of(surface.frame, at);
     if (ray.status != RayStatus::ok) {
       ray.failed_at = static_cast<int>(i);
       break;
@@ -71,9 +88,14 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
   store(at, vertex_z, ray);
 }
 
-/// Carries a ray that has passed all surfaces to the image plane.
+/// Carries a ray that has passed all surfaces to the image plane, in the axes of the sensor.
 void reach_image(const Tracer& tracer, Ray& ray) {
   if (ray.status != RayStatus::ok) return;
+  if (tracer.sensor_posed()) {
+    SurfaceRay at = relative_to_vertex(ray, tracer.image_z_mm());
+    into(tracer.sensor_frame(), at);
+    store(at, tracer.image_z_mm(), ray);
+  }
   if (!(ray.direction[2] > 0)) {
     ray.status = RayStatus::missed;
     ray.failed_at = static_cast<int>(tracer.surface_count());
@@ -85,6 +107,14 @@ void reach_image(const Tracer& tracer, Ray& ray) {
   ray.opl_mm += tracer.image_index() * distance;
 }
 
+/// From the axes of the sensor into lens space.
+void leave_image(const Tracer& tracer, Ray& ray) {
+  if (!tracer.sensor_posed()) return;
+  SurfaceRay at = relative_to_vertex(ray, tracer.image_z_mm());
+  out_of(tracer.sensor_frame(), at);
+  store(at, tracer.image_z_mm(), ray);
+}
+
 }  // namespace
 
 Tracer::Tracer(const Lens& lens, double wavelength_nm)
@@ -93,8 +123,12 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm)
 Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     : wavelength_nm_(wavelength_nm), stop_index_(lens.stop_index()), stop_radius_mm_(stop_radius_mm) {
   double z = 0, index = 1;
+  const std::vector<Frame> frames = frames_of(lens);
   for (const Surface& surface : lens.surfaces) {
     PreparedSurface prepared;
+    prepared.frame = frames[surfaces_.size()];
+    prepared.posed = !prepared.frame.is_none();
+    centred_ = centred_ && prepared.frame.is_centred();
     prepared.shape = shape_of(surface);
     prepared.vertex_z_mm = z;
     prepared.index_before = index;
@@ -105,6 +139,9 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     z += surface.thickness_mm;
   }
   image_z_mm_ = z;
+  sensor_frame_ = frames.back();
+  sensor_posed_ = !sensor_frame_.is_none();
+  centred_ = centred_ && sensor_frame_.is_centred();
   if (std::isfinite(stop_radius_mm)) {
     blades_ = lens.stop_blades();
     blade_normals_ = blades_.normals();
@@ -138,10 +175,29 @@ Tracer Tracer::with_blades(const StopBlades& blades) const {
   return bladed;
 }
 
+Tracer Tracer::turned(double angle) const {
+  Tracer result = *this;
+  for (PreparedSurface& surface : result.surfaces_) surface.frame = surface.frame.turned(angle);
+  result.sensor_frame_ = sensor_frame_.turned(angle);
+  result.blades_.rotation_deg += degrees(angle);
+  result.blade_normals_ = result.blades_.normals();
+  return result;
+}
+
+Tracer Tracer::mirrored() const {
+  Tracer result = *this;
+  for (PreparedSurface& surface : result.surfaces_) surface.frame = surface.frame.mirrored();
+  result.sensor_frame_ = sensor_frame_.mirrored();
+  result.blades_.rotation_deg = -blades_.rotation_deg;
+  result.blade_normals_ = result.blades_.normals();
+  return result;
+}
+
 namespace {
 
 void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
                std::vector<Intersection>* path) {
+  if (backward) leave_image(tracer, ray);
   walk(
       tracer.surfaces(), backward, ray,
       [&](std::size_t i, const SurfaceRay& at, const double*) {
@@ -151,11 +207,14 @@ void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
         if (path)
           path->push_back({{at.x, at.y, at.z + tracer.vertex_z_mm(i)},
                            {at.l, at.m, at.n},
-                           {normal[0], normal[1], normal[2]}});
+                           tracer.surfaces()[i].frame.to_lens({normal[0], normal[1], normal[2]})});
       });
   if (!backward) {
     reach_image(tracer, ray);
-    if (path && ray.status == RayStatus::ok) path->push_back({ray.point_mm, ray.direction, {0, 0, 1}});
+    if (!path || ray.status != RayStatus::ok) return;
+    Ray in_lens = ray;
+    leave_image(tracer, in_lens);
+    path->push_back({in_lens.point_mm, in_lens.direction, tracer.sensor_frame().to_lens({0, 0, 1})});
   }
 }
 
@@ -209,6 +268,7 @@ Ray Tracer::trace_backward(Ray ray, Clip clip, std::vector<Intersection>* path) 
 Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) const {
   Clearance result;
   result.ray = ray;
+  if (backward) leave_image(*this, result.ray);
   result.worst = -infinity;
   walk(
       surfaces_, backward, result.ray,

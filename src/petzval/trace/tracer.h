@@ -33,9 +33,11 @@ struct Intersection {
 ///
 /// Forward: a ray from anywhere in object space is refracted at all surfaces in turn and carried to the image
 /// surface (a plane). Backward: a ray from image space is refracted at all surfaces in reverse order and left
-/// just in front of surface 0. Optical path is signed, so surfaces that cross beyond their rims are no harm.
-/// Method: closed form for spheres and conics, Newton to 1e-12 mm for other shapes; refraction by vector
-/// Snell (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
+/// just in front of surface 0. Rays in image space are in the axes of the sensor, which stands at
+/// image_z_mm() and differs from lens space only if the sensor has a pose; where a ray crosses the stop is in
+/// the stop's. Optical path is signed, so surfaces that cross beyond their rims are no harm. Method: closed
+/// form for spheres and conics, Newton to 1e-12 mm for other shapes; refraction by vector Snell
+/// (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
 class Tracer {
  public:
   enum class Clip { apertures, stop_only, none };
@@ -51,6 +53,13 @@ class Tracer {
   /// radius.
   Tracer with_blades(const StopBlades& blades) const;
   const StopBlades& stop_blades() const { return blades_; }
+  /// The same lens turned by an angle [rad] about its axis, from +x towards +y, the sensor's axes kept: what
+  /// a field sees at that azimuth from +y towards +x.
+  Tracer turned(double angle) const;
+  /// Its mirror image x → −x.
+  Tracer mirrored() const;
+  /// Whether poses leave the lens round about its axis, but for its blades.
+  bool is_centred() const { return centred_; }
 
   double wavelength_nm() const { return wavelength_nm_; }
   std::size_t surface_count() const { return surfaces_.size(); }
@@ -97,14 +106,20 @@ class Tracer {
     ShapeData<double> shape;
     double vertex_z_mm, index_before, index_after;
     double clear_radius_sq;  ///< infinity when unbounded
+    Frame frame;             ///< against the vertex at vertex_z_mm on the axis
+    bool posed = false;      ///< whether the frame is any
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
+  const Frame& sensor_frame() const { return sensor_frame_; }
+  bool sensor_posed() const { return sensor_posed_; }
 
  private:
   double wavelength_nm_ = 0;
   std::vector<PreparedSurface> surfaces_;
   std::size_t stop_index_ = 0;
   double image_z_mm_ = 0, stop_radius_mm_ = 0;
+  Frame sensor_frame_;
+  bool sensor_posed_ = false, centred_ = true;
   StopBlades blades_;
   std::vector<std::array<double, 2>> blade_normals_;
 };
@@ -112,8 +127,8 @@ class Tracer {
 /// The radius of the aperture stop [mm]: `aperture.value` when the file gives it (stop_semi_diameter_mm),
 /// else the height at the stop surface of the real on-axis ray at the reference wavelength that is launched
 /// at the edge of the paraxial entrance pupil; never more than the stop surface's own clear radius, which
-/// counts alone when that ray does not reach the stop. \throws InputError if neither gives a radius, saying
-/// which surface ends the ray.
+/// counts alone when that ray does not reach the stop. Poses do not count: the stop is as large as designed.
+/// \throws InputError if neither gives a radius, saying which surface ends the ray.
 double stop_radius_mm(const Lens& lens);
 
 }  // namespace petzval

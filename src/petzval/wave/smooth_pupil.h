@@ -2,7 +2,7 @@
 // The light that converges on one image point, as smooth functions of its direction.
 #pragma once
 
-#include <petzval/numeric/even_surface.h>
+#include <petzval/numeric/chebyshev_surface.h>
 
 #include <cstddef>
 #include <vector>
@@ -18,8 +18,8 @@ struct SmoothPupil {
   /// Entries of the outline, rising, where one aperture takes over from another: between two corners it is
   /// smooth.
   std::vector<std::size_t> corners;
-  EvenSurface phase_waves;  ///< φ of PupilWaves
-  EvenSurface amplitude;    ///< a = √(T dq/(dα dβ))
+  ChebyshevSurface phase_waves;  ///< φ of PupilWaves
+  ChebyshevSurface amplitude;    ///< a = √(T dq/(dα dβ))
   double wavelength_nm = 0;
   double image_index = 1;
   double flux = 0;  ///< ∬ T dq over the whole pupil

@@ -118,15 +118,67 @@ StopBlades read_blades(const JsonEntry& entry) {
   return blades;
 }
 
+Material::Melt read_melt(const JsonEntry& entry) {
+  entry.allow_only({"delta_nd", "delta_vd_percent"});
+  Material::Melt melt;
+  if (const auto nd = entry.find("delta_nd")) melt.delta_nd = nd->number("a difference of nd");
+  if (const auto vd = entry.find("delta_vd_percent"))
+    melt.delta_vd_percent = vd->number("a difference of Vd in per cent");
+  return melt;
+}
+
+Pose read_pose(const JsonEntry& entry) {
+  std::vector<const char*> names;
+  for (const PoseNumber& number : pose_numbers) names.push_back(number.name);
+  entry.allow_only(names);
+  Pose pose;
+  for (const PoseNumber& number : pose_numbers)
+    if (const auto value = entry.find(number.name))
+      pose.*number.value = value->number(number.is_length ? "a distance in mm" : "an angle in degrees");
+  return pose;
+}
+
+std::size_t read_index(const JsonEntry& entry) {
+  const double number = entry.number("the index of a surface");
+  if (!(number >= 0 && number < 1e6) || number != std::floor(number))
+    entry.fail("must be the index of a surface, counted from 0");
+  return static_cast<std::size_t>(number);
+}
+
+Tolerance read_tolerance(const JsonEntry& entry) {
+  entry.allow_only({"kind", "surfaces", "limit"});
+  const JsonEntry name = entry.at("kind"), surfaces = entry.at("surfaces");
+  const ToleranceKind* kind = find_tolerance_kind(name.text("a kind of tolerance"));
+  if (!kind) name.fail("is not a kind of tolerance; TOLERANCES.md has them");
+  const std::vector<JsonEntry> ends = surfaces.items("a surface, such as [2], or the first and the last");
+  if (ends.empty() || ends.size() > 2)
+    surfaces.fail("must be a surface, such as [2], or the first and the last");
+  return {kind->name, read_index(ends.front()), read_index(ends.back()),
+          entry.at("limit").number("a positive limit")};
+}
+
+SurfaceGroup read_group(const JsonEntry& entry) {
+  entry.allow_only({"surfaces", "pose", "pivot_mm"});
+  const JsonEntry surfaces = entry.at("surfaces");
+  const std::vector<JsonEntry> ends = surfaces.items("the first and the last surface, such as [2, 3]");
+  if (ends.size() != 2) surfaces.fail("must be the first and the last surface, such as [2, 3]");
+  SurfaceGroup group{read_index(ends[0]), read_index(ends[1]), {}, 0};
+  if (const auto pose = entry.find("pose"); pose && !pose->is_null()) group.pose = read_pose(*pose);
+  if (const auto pivot = entry.find("pivot_mm")) group.pivot_mm = pivot->number("a distance in mm");
+  return group;
+}
+
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "shape",
-                    "stop", "blades"});
+                    "stop", "blades", "pose", "melt"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
     surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
   if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, glasses);
+  if (const auto melt = entry.find("melt"); melt && !melt->is_null())
+    surface.material = located(*melt, [&] { return surface.material.melted(read_melt(*melt)); });
   if (const auto semi = entry.find("semi_diameter_mm"); semi && !semi->is_null())
     surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
   if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
@@ -135,6 +187,7 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   if (const auto stop = entry.find("stop")) surface.stop = stop->truth();
   if (const auto blades = entry.find("blades"); blades && !blades->is_null())
     surface.blades = read_blades(*blades);
+  if (const auto pose = entry.find("pose"); pose && !pose->is_null()) surface.pose = read_pose(*pose);
   return surface;
 }
 
@@ -205,7 +258,7 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const JsonEntry format = top.at("format");
   if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
   top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
-                  "reference_wavelength_nm", "surfaces"});
+                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances"});
   Lens lens;
   if (const auto name = top.find("name")) lens.name = name->text("a text");
   if (const auto source = top.find("source")) lens.source = source->text("a text");
@@ -218,6 +271,14 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const std::vector<JsonEntry> surfaces = top.at("surfaces").items("a list of surfaces, front to back");
   for (const JsonEntry& surface : surfaces)
     lens.surfaces.push_back(read_surface(surface, glasses, &surface == &surfaces.back()));
+  if (const auto groups = top.find("groups"); groups && !groups->is_null())
+    for (const JsonEntry& group : groups->items("a list of groups of surfaces"))
+      lens.groups.push_back(read_group(group));
+  if (const auto tolerances = top.find("tolerances"); tolerances && !tolerances->is_null())
+    for (const JsonEntry& tolerance : tolerances->items("a list of tolerances"))
+      lens.tolerances.push_back(read_tolerance(tolerance));
+  if (const auto pose = top.find("sensor_pose"); pose && !pose->is_null())
+    lens.sensor_pose = read_pose(*pose);
   if (!surfaces.empty() && !surfaces.back().find("thickness_mm")) focus_paraxially(lens, document);
   if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
   try {

@@ -49,6 +49,20 @@ std::string shape_text(const AddedShape& shape) {
   return text + "}";
 }
 
+std::string pose_text(const Pose& pose) {
+  std::vector<std::string> entries;
+  for (const PoseNumber& number : pose_numbers)
+    if (const double value = pose.*number.value; value != 0)
+      entries.push_back(fmt::format("\"{}\": {}", number.name, number_text(value)));
+  return fmt::format("{{{}}}", fmt::join(entries, ", "));
+}
+
+std::string group_text(const SurfaceGroup& group) {
+  return fmt::format("{{\"surfaces\": [{}, {}], \"pose\": {}{}}}", group.first, group.last,
+                     pose_text(group.pose),
+                     group.pivot_mm == 0 ? "" : ", \"pivot_mm\": " + number_text(group.pivot_mm));
+}
+
 std::string surface_text(const Surface& surface) {
   const bool flat = surface.curvature_per_mm == 0;
   std::string text =
@@ -56,6 +70,9 @@ std::string surface_text(const Surface& surface) {
                   flat ? "null" : radius_text(surface.curvature_per_mm), number_text(surface.thickness_mm));
   const std::string glass = std::visit(NativeGlassText{}, surface.material.kind());
   if (!glass.empty()) text += ", \"glass\": " + glass;
+  if (const Material::Melt& melt = surface.material.melt(); !melt.is_none())
+    text += fmt::format(", \"melt\": {{\"delta_nd\": {}, \"delta_vd_percent\": {}}}",
+                        number_text(melt.delta_nd), number_text(melt.delta_vd_percent));
   if (surface.stop) text += ", \"stop\": true";
   if (surface.blades.count != 0)
     text += fmt::format(R"(, "blades": {{"count": {}, "rotation_deg": {}}})", surface.blades.count,
@@ -69,6 +86,7 @@ std::string surface_text(const Surface& surface) {
     text += fmt::format(", \"asphere\": {{{}}}", fmt::join(terms, ", "));
   }
   if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
+  if (!surface.pose.is_none()) text += ", \"pose\": " + pose_text(surface.pose);
   return text + "}";
 }
 
@@ -94,7 +112,23 @@ std::string lens_to_json(const Lens& lens) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
     text +=
         fmt::format("    {}{}\n", surface_text(lens.surfaces[i]), i + 1 < lens.surfaces.size() ? "," : "");
-  return text + "  ]\n}\n";
+  text += "  ]";
+  if (!lens.groups.empty()) {
+    std::vector<std::string> groups;
+    for (const SurfaceGroup& group : lens.groups) groups.push_back("    " + group_text(group));
+    text += fmt::format(",\n  \"groups\": [\n{}\n  ]", fmt::join(groups, ",\n"));
+  }
+  if (!lens.sensor_pose.is_none()) text += ",\n  \"sensor_pose\": " + pose_text(lens.sensor_pose);
+  if (!lens.tolerances.empty()) {
+    std::vector<std::string> lines;
+    for (const Tolerance& each : lens.tolerances)
+      lines.push_back(fmt::format("    {{\"kind\": \"{}\", \"surfaces\": [{}], \"limit\": {}}}", each.kind,
+                                  each.first == each.last ? fmt::format("{}", each.first)
+                                                          : fmt::format("{}, {}", each.first, each.last),
+                                  number_text(each.limit)));
+    text += fmt::format(",\n  \"tolerances\": [\n{}\n  ]", fmt::join(lines, ",\n"));
+  }
+  return text + "\n}\n";
 }
 
 }  // namespace petzval

@@ -61,7 +61,10 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
       diffraction_.emplace_back(tracers_[disperses_ ? i : 0].with_blades(blades), nm[i]);
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
     ExitPupilRegions regions = find_regions(lens);
-    if (options.losses.any()) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
+    if (options.losses.any()) {
+      require_centred(lens, "losses are rendered through centred lenses");
+      transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
+    }
     if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_ = std::move(regions);
     if (regions_ && !options.diffraction && !options.lamps.empty())
       guide_ =

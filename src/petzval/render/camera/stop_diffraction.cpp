@@ -31,6 +31,8 @@ StopDiffraction::StopDiffraction(const Tracer& tracer, double wavelength_nm)
       edges_(tracer.stop_blades().normals()) {
   if (!std::isfinite(radius_mm_))
     throw InputError("diffraction needs a stop with a radius; an aperture of the lens would give one");
+  if (tracer.surfaces()[tracer.stop_index()].posed)
+    throw InputError("diffraction bends rays at a stop on the axis, and this one has a pose");
   apothem_mm_ = radius_mm_ * tracer.stop_blades().apothem();
   // Light travels backwards, and meets the stop as the surface of this number.
   const std::size_t stop = tracer.surface_count() - 1 - tracer.stop_index();
@@ -41,6 +43,7 @@ StopDiffraction::StopDiffraction(const Tracer& tracer, double wavelength_nm)
   to_stop_.last_vertex_z_mm = stop_z;
   to_scene_.surfaces.erase(to_scene_.surfaces.begin(), behind);
   to_scene_.first_vertex_z_mm = stop_z;
+  to_scene_.sensor_posed = false;  // left behind on the way to the stop
   wavelength_mm_ = wavelength_nm * mm_per_nm / tracer.surfaces()[tracer.stop_index()].index_before;
 }
 

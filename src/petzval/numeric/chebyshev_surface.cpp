@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/numeric/even_surface.h>
+#include <petzval/numeric/chebyshev_surface.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr double least_pivot = 1e-13;
 
 /// Room for T_0 … T_highest_degree.
-using Terms = std::array<double, EvenSurface::highest_degree + 1>;
+using Terms = std::array<double, ChebyshevSurface::highest_degree + 1>;
 
 /// T_0 … T_{count−1} at t.
 void chebyshev(double t, std::size_t count, double* values) {
@@ -39,28 +39,29 @@ void require_points(std::span<const double> x, std::span<const double> y,
 
 }  // namespace
 
-std::size_t EvenSurface::unknowns(int degree) {
+std::size_t ChebyshevSurface::unknowns(int degree, Symmetry symmetry) {
   std::size_t count = 0;
   for (int m = 0; 2 * m <= degree; ++m) count += static_cast<std::size_t>(degree - 2 * m + 1);
-  return count;
+  return symmetry == Symmetry::even_in_x ? count : count + unknowns(degree - 1);
 }
 
-std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<const double> y,
-                                          std::span<const std::span<const double>> values, int degree) {
+std::vector<ChebyshevSurface> ChebyshevSurface::fit(std::span<const double> x, std::span<const double> y,
+                                                    std::span<const std::span<const double>> values,
+                                                    int degree, Symmetry symmetry) {
   require_points(x, y, values);
   if (degree > highest_degree)
     throw InputError(fmt::format("a surface of degree {}; at most {} is fitted", degree, highest_degree));
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
-  EvenSurface frame;
+  ChebyshevSurface frame;
   frame.degree_ = std::max(degree, 0);
   frame.y_middle_ = 0.5 * (*low + *high);
   frame.y_scale_ = 0.5 * (*high - *low);
   frame.x_scale_ = 0;
   for (const double value : x) frame.x_scale_ = std::max(frame.x_scale_, std::abs(value));
-  if (!(frame.x_scale_ > 0) || !(frame.y_scale_ > 0) || x.size() < unknowns(degree)) return {};
+  if (!(frame.x_scale_ > 0) || !(frame.y_scale_ > 0) || x.size() < unknowns(degree, symmetry)) return {};
 
   const auto rows = static_cast<Eigen::Index>(x.size()),
-             columns = static_cast<Eigen::Index>(unknowns(degree));
+             columns = static_cast<Eigen::Index>(unknowns(degree, symmetry));
   Eigen::MatrixXd basis(columns, rows);  // a column a point
   std::vector<double> of_u(frame.terms()), of_v(static_cast<std::size_t>(frame.degree_) + 1);
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -70,6 +71,9 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
     double* to = basis.col(i).data();
     for (std::size_t m = 0; m < of_u.size(); ++m)
       for (std::size_t n = 0; n + 2 * m < of_v.size(); ++n) *to++ = of_u[m] * of_v[n];
+    if (symmetry == Symmetry::even_in_x) continue;
+    for (std::size_t m = 0; 2 * m + 1 < of_v.size(); ++m)
+      for (std::size_t n = 0; n + 2 * m + 1 < of_v.size(); ++n) *to++ = ratio * of_u[m] * of_v[n];
   }
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(columns, columns);
   normal.selfadjointView<Eigen::Lower>().rankUpdate(basis);
@@ -85,7 +89,7 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
     if (!(diagonal.minCoeff() > least_pivot * diagonal.maxCoeff())) return {};
   }
 
-  std::vector<EvenSurface> surfaces;
+  std::vector<ChebyshevSurface> surfaces;
   for (const auto& list : values) {
     const Eigen::Map<const Eigen::VectorXd> wanted(list.data(), rows);
     Eigen::VectorXd solution, residual;
@@ -97,8 +101,10 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
       solution += solver.solve(basis * residual);  // gives back what the squared condition number took
     }
     residual = wanted - basis.transpose() * solution;
-    EvenSurface surface = frame;
-    surface.coefficients_.assign(solution.begin(), solution.end());
+    ChebyshevSurface surface = frame;
+    const auto even = solution.begin() + static_cast<std::ptrdiff_t>(unknowns(frame.degree_));
+    surface.coefficients_.assign(solution.begin(), even);
+    surface.odd_.assign(even, solution.end());
     surface.rms_residual_ = residual.norm() / std::sqrt(static_cast<double>(rows));
     surface.max_residual_ = residual.lpNorm<Eigen::Infinity>();
     surfaces.push_back(std::move(surface));
@@ -106,7 +112,7 @@ std::vector<EvenSurface> EvenSurface::fit(std::span<const double> x, std::span<c
   return surfaces;
 }
 
-void EvenSurface::series(double y, std::span<double> series) const {
+void ChebyshevSurface::series(double y, std::span<double> series) const {
   const auto order = static_cast<std::size_t>(degree_) + 1;
   Terms of_v;
   chebyshev((y - y_middle_) / y_scale_, order, of_v.data());
@@ -117,12 +123,23 @@ void EvenSurface::series(double y, std::span<double> series) const {
   }
 }
 
-double EvenSurface::operator()(double x, double y) const {
+double ChebyshevSurface::operator()(double x, double y) const {
   Terms room;
   const std::span<double> of_x(room.data(), terms());
   series(y, of_x);
-  const double ratio = x / x_scale_;
-  return chebyshev_sum(of_x, 2 * ratio * ratio - 1);
+  const double ratio = x / x_scale_, u = 2 * ratio * ratio - 1;
+  const double even = chebyshev_sum(of_x, u);
+  if (odd_.empty()) return even;
+  const auto order = static_cast<std::size_t>(degree_);
+  Terms of_v;
+  chebyshev((y - y_middle_) / y_scale_, order, of_v.data());
+  const double* from = odd_.data();
+  std::size_t count = 0;
+  for (std::size_t m = 0; 2 * m < order; ++m, ++count) {
+    of_x[m] = 0;
+    for (std::size_t n = 0; n + 2 * m < order; ++n) of_x[m] += *from++ * of_v[n];
+  }
+  return even + ratio * chebyshev_sum(of_x.first(count), u);
 }
 
 double chebyshev_sum(std::span<const double> series, double u) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
-#include <petzval/numeric/even_surface.h>
+#include <petzval/numeric/chebyshev_surface.h>
 
 #include <array>
 #include <cmath>
@@ -28,27 +28,27 @@ Points sample(const F& f) {
   return points;
 }
 
-EvenSurface fit_one(const Points& points, int degree) {
+ChebyshevSurface fit_one(const Points& points, int degree) {
   const std::array<std::span<const double>, 1> values{points.value};
-  const std::vector<EvenSurface> surfaces = EvenSurface::fit(points.x, points.y, values, degree);
-  return surfaces.empty() ? EvenSurface() : surfaces.front();
+  const std::vector<ChebyshevSurface> surfaces = ChebyshevSurface::fit(points.x, points.y, values, degree);
+  return surfaces.empty() ? ChebyshevSurface() : surfaces.front();
 }
 
-TEST(EvenSurface, MeetsPolynomialsOfItsDegreeEverywhere) {
+TEST(ChebyshevSurface, MeetsPolynomialsOfItsDegreeEverywhere) {
   const auto f = [](double x, double y) {
     return 2 - y + 0.5 * y * y * x * x + x * x * x * x - std::pow(y, 4);
   };
-  const EvenSurface surface = fit_one(sample(f), 4);
+  const ChebyshevSurface surface = fit_one(sample(f), 4);
   EXPECT_LT(surface.max_residual(), 1e-12);  // rounding of values up to 600
   for (const double x : {-1.3, 0.0, 0.7})
     for (const double y : {1.5, 3.0, 4.4}) EXPECT_NEAR(surface(x, y), f(x, y), 1e-11) << x << " " << y;
 }
 
-TEST(EvenSurface, ConvergesOnSmoothFunctions) {
+TEST(ChebyshevSurface, ConvergesOnSmoothFunctions) {
   const auto f = [](double x, double y) { return std::exp(0.3 * y) * std::cos(0.5 * x); };
   double last = 1;
   for (const int degree : {4, 8, 12}) {
-    const EvenSurface surface = fit_one(sample(f), degree);
+    const ChebyshevSurface surface = fit_one(sample(f), degree);
     EXPECT_LT(surface.rms_residual(), 0.02 * last) << degree;  // each four degrees gain far more than that
     EXPECT_GE(surface.max_residual(), surface.rms_residual());
     last = surface.rms_residual();
@@ -56,8 +56,29 @@ TEST(EvenSurface, ConvergesOnSmoothFunctions) {
   }
 }
 
-TEST(EvenSurface, GivesItsSeriesAlongX) {
-  const EvenSurface surface = fit_one(sample([](double x, double y) { return x * x * y + y * y; }), 6);
+TEST(ChebyshevSurface, MeetsPolynomialsWithoutSymmetry) {
+  const auto f = [](double x, double y) {
+    return 2 - y + 0.5 * x * y * y - x * x * x + 0.3 * x * x * y + std::pow(y, 4);
+  };
+  Points points;
+  for (int i = 0; i <= 12; ++i)
+    for (int j = 0; j <= 12; ++j) {
+      points.x.push_back(-1.5 + 0.2 * i), points.y.push_back(1 + 0.25 * j);
+      points.value.push_back(f(points.x.back(), points.y.back()));
+    }
+  const std::array<std::span<const double>, 1> values{points.value};
+  const auto none = ChebyshevSurface::Symmetry::none;
+  const std::vector<ChebyshevSurface> fitted = ChebyshevSurface::fit(points.x, points.y, values, 4, none);
+  ASSERT_EQ(fitted.size(), 1u);
+  for (const double x : {-1.3, 0.1, 0.8})
+    for (const double y : {1.1, 2.2, 3.9}) EXPECT_NEAR(fitted[0](x, y), f(x, y), 1e-11) << x << " " << y;
+  // A surface that must be even cannot be this one, and a polynomial of two variables has (d+1)(d+2)/2 terms.
+  EXPECT_GT(ChebyshevSurface::fit(points.x, points.y, values, 4)[0].max_residual(), 0.1);
+  EXPECT_EQ(ChebyshevSurface::unknowns(4, none), 15u);
+}
+
+TEST(ChebyshevSurface, GivesItsSeriesAlongX) {
+  const ChebyshevSurface surface = fit_one(sample([](double x, double y) { return x * x * y + y * y; }), 6);
   std::vector<double> series(surface.terms());
   surface.series(3.5, series);
   for (const double x : {0.0, 0.9, -1.6}) {
@@ -66,17 +87,17 @@ TEST(EvenSurface, GivesItsSeriesAlongX) {
   }
 }
 
-TEST(EvenSurface, SaysWhenPointsDoNotDetermineIt) {
+TEST(ChebyshevSurface, SaysWhenPointsDoNotDetermineIt) {
   Points line = sample([](double, double y) { return y; });
   for (double& y : line.y) y = 1;
   const std::array<std::span<const double>, 1> on_line{line.value};
-  EXPECT_TRUE(EvenSurface::fit(line.x, line.y, on_line, 4).empty());
+  EXPECT_TRUE(ChebyshevSurface::fit(line.x, line.y, on_line, 4).empty());
   const Points few{{0.1, 0.2}, {1, 2}, {3, 4}};
   const std::array<std::span<const double>, 1> values{few.value};
-  EXPECT_TRUE(EvenSurface::fit(few.x, few.y, values, 4).empty());
+  EXPECT_TRUE(ChebyshevSurface::fit(few.x, few.y, values, 4).empty());
   Points bad = few;
   bad.x[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(EvenSurface::fit(bad.x, bad.y, values, 1), InputError);
+  EXPECT_THROW(ChebyshevSurface::fit(bad.x, bad.y, values, 1), InputError);
 }
 
 }  // namespace

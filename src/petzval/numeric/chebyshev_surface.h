@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A smooth function of two variables, even in the first, known at scattered points.
+// A smooth function of two variables, known at scattered points.
 #pragma once
 
 #include <span>
@@ -9,25 +9,28 @@ namespace petzval {
 
 /// p(x, y) = Σ C_mn T_m(u) T_n(v) over 2m + n ≤ degree, with Chebyshev polynomials T of u = 2(x/x_scale)² − 1
 /// and v = (y − y_middle)/y_scale: what is mirror symmetric in x, fitted over the bounding box of its points.
-class EvenSurface {
+/// Without that symmetry Σ D_mn (x/x_scale) T_m(u) T_n(v) over 2m + 1 + n ≤ degree stands beside it.
+class ChebyshevSurface {
  public:
   static constexpr int highest_degree = 47;
+  enum class Symmetry { even_in_x, none };
 
-  EvenSurface() = default;
+  ChebyshevSurface() = default;
 
   /// One surface for each list of values at the points (x, y), by least squares. The points share their
   /// normal equations. Empty when the points do not determine the polynomial. \throws InputError if sizes
   /// differ, a number is not finite or the degree is above highest_degree.
-  static std::vector<EvenSurface> fit(std::span<const double> x, std::span<const double> y,
-                                      std::span<const std::span<const double>> values, int degree);
+  static std::vector<ChebyshevSurface> fit(std::span<const double> x, std::span<const double> y,
+                                           std::span<const std::span<const double>> values, int degree,
+                                           Symmetry symmetry = Symmetry::even_in_x);
   /// Coefficients of a polynomial of this degree.
-  static std::size_t unknowns(int degree);
+  static std::size_t unknowns(int degree, Symmetry symmetry = Symmetry::even_in_x);
 
   double operator()(double x, double y) const;
   /// The length of a series().
   std::size_t terms() const { return static_cast<std::size_t>(degree_ / 2 + 1); }
   double x_scale() const { return x_scale_; }
-  /// p(·, y) = Σ series[m] T_m(2(x/x_scale)² − 1). \param series  terms() numbers.
+  /// What is even in x of p(·, y) = Σ series[m] T_m(2(x/x_scale)² − 1). \param series  terms() numbers.
   void series(double y, std::span<double> series) const;
 
   /// Of the values that were fitted.
@@ -38,6 +41,7 @@ class EvenSurface {
   int degree_ = 0;
   double x_scale_ = 1, y_middle_ = 0, y_scale_ = 1;
   std::vector<double> coefficients_{0.0};  ///< m-major, n = 0 … degree − 2m
+  std::vector<double> odd_ = {};           ///< likewise, n = 0 … degree − 1 − 2m; empty: even
   double rms_residual_ = 0, max_residual_ = 0;
 };
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/lens.h>
+#include <petzval/lens/pose.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace petzval {
+
+namespace {
+
+using Vector = Frame::Vector;
+using Rows = std::array<Vector, 3>;
+
+constexpr Rows identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+Rows product(const Rows& a, const Rows& b) {
+  Rows result{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t j = 0; j < 3; ++j) result[i][k] += a[i][j] * b[j][k];
+  return result;
+}
+
+Vector product(const Rows& a, const Vector& v) {
+  Vector result{};
+  for (std::size_t i = 0; i < 3; ++i) result[i] = a[i][0] * v[0] + a[i][1] * v[1] + a[i][2] * v[2];
+  return result;
+}
+
+Rows about_x(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
+}
+Rows about_y(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
+}
+Rows about_z(double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+}
+
+Rows rows_of(const Pose& pose) {
+  return product(about_x(radians(pose.tilt_x_deg)),
+                 product(about_y(radians(pose.tilt_y_deg)), about_z(radians(pose.tilt_z_deg))));
+}
+
+Vector offset_of(const Pose& pose) {
+  return {pose.decentre_x_mm, pose.decentre_y_mm, pose.shift_z_mm};
+}
+
+/// Moves a frame, whose vertex the prescription has `from_pivot_mm` behind the pivot, with its group.
+void move(const Pose& pose, double from_pivot_mm, Frame& frame) {
+  const Rows rows = rows_of(pose);
+  const Vector arm =
+      product(rows, Vector{frame.offset_mm[0], frame.offset_mm[1], frame.offset_mm[2] + from_pivot_mm});
+  const Vector offset = offset_of(pose);
+  for (std::size_t i = 0; i < 3; ++i) frame.offset_mm[i] = arm[i] + offset[i];
+  frame.offset_mm[2] -= from_pivot_mm;
+  frame.rows = product(rows, frame.rows);
+}
+
+}  // namespace
+
+bool Pose::is_none() const {
+  return decentre_x_mm == 0 && decentre_y_mm == 0 && shift_z_mm == 0 && tilt_x_deg == 0 && tilt_y_deg == 0 &&
+         tilt_z_deg == 0;
+}
+
+bool Frame::is_none() const {
+  return offset_mm == Vector{} && rows == identity;
+}
+
+bool Frame::is_centred() const {
+  return offset_mm[0] == 0 && offset_mm[1] == 0 && rows[0][2] == 0 && rows[1][2] == 0;
+}
+
+Frame::Vector Frame::to_lens(const Vector& own) const {
+  return product(rows, own);
+}
+
+Frame::Vector Frame::from_lens(const Vector& lens) const {
+  Vector result{};
+  for (std::size_t i = 0; i < 3; ++i)
+    result[i] = rows[0][i] * lens[0] + rows[1][i] * lens[1] + rows[2][i] * lens[2];
+  return result;
+}
+
+Frame::Vector Frame::point_to_lens(const Vector& own, double vertex_z_mm) const {
+  Vector point = to_lens({own[0], own[1], own[2] - vertex_z_mm});
+  for (std::size_t i = 0; i < 3; ++i) point[i] += offset_mm[i];
+  point[2] += vertex_z_mm;
+  return point;
+}
+
+Frame::Vector Frame::point_from_lens(const Vector& lens, double vertex_z_mm) const {
+  Vector point =
+      from_lens({lens[0] - offset_mm[0], lens[1] - offset_mm[1], lens[2] - vertex_z_mm - offset_mm[2]});
+  point[2] += vertex_z_mm;
+  return point;
+}
+
+Frame Frame::turned(double angle) const {
+  if (is_none()) return *this;
+  return {product(about_z(angle), offset_mm), product(about_z(angle), product(rows, about_z(-angle)))};
+}
+
+Frame Frame::mirrored() const {
+  Frame result = *this;
+  result.offset_mm[0] = -offset_mm[0];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      if ((i == 0) != (k == 0)) result.rows[i][k] = -rows[i][k];
+  return result;
+}
+
+std::vector<Frame> frames_of(const Lens& lens) {
+  const std::size_t sensor = lens.surfaces.size();
+  std::vector<double> vertex_mm(sensor + 1, 0.0);
+  for (std::size_t i = 0; i < sensor; ++i) vertex_mm[i + 1] = vertex_mm[i] + lens.surfaces[i].thickness_mm;
+  std::vector<Frame> frames(sensor + 1);
+  for (std::size_t i = 0; i <= sensor; ++i) {
+    const Pose& pose = i < sensor ? lens.surfaces[i].pose : lens.sensor_pose;
+    if (!pose.is_none()) move(pose, 0, frames[i]);
+  }
+  for (const SurfaceGroup& group : lens.groups)
+    for (std::size_t i = group.first; i <= std::min(group.last, sensor) && !group.pose.is_none(); ++i)
+      move(group.pose, vertex_mm[i] - (vertex_mm[group.first] + group.pivot_mm), frames[i]);
+  return frames;
+}
+
+bool has_poses(const Lens& lens) {
+  const auto surface_has = [](const Surface& surface) { return !surface.pose.is_none(); };
+  const auto group_has = [](const SurfaceGroup& group) { return !group.pose.is_none(); };
+  return !lens.sensor_pose.is_none() || std::ranges::any_of(lens.surfaces, surface_has) ||
+         std::ranges::any_of(lens.groups, group_has);
+}
+
+Lens as_designed(Lens lens) {
+  for (Surface& surface : lens.surfaces) surface.pose = {};
+  lens.groups.clear();
+  lens.sensor_pose = {};
+  return lens;
+}
+
+namespace {
+
+/// The first pose that is set, as `set` names it.
+std::string first_pose(const Lens& lens) {
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (!lens.surfaces[i].pose.is_none()) return fmt::format("surfaces[{}].pose", i);
+  for (std::size_t i = 0; i < lens.groups.size(); ++i)
+    if (!lens.groups[i].pose.is_none()) return fmt::format("groups[{}].pose", i);
+  return "sensor_pose";
+}
+
+}  // namespace
+
+void require_centred(const Lens& lens, const char* what) {
+  if (!has_poses(lens)) return;
+  throw InputError(fmt::format("{}: {} is set, and {}; set {}=null for the lens as designed", lens.name,
+                               first_pose(lens), what, first_pose(lens)));
+}
+
+}  // namespace petzval
