@@ -11,6 +11,7 @@
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/simulate/mounting.h>
+#include <petzval/tolerance/tolerancing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -238,6 +239,17 @@ void LensChoice::add_settings_to(CLI::App& command) {
       ->take_all()
       ->allow_extra_args(false);
   glasses.add_to(command);
+  if (!offers_builds) return;
+  CLI::Option* number = command.add_option(
+      "--build", build,
+      "Take the lens as number N off the line has it, focused: 0, 1, … (see lens tolerance)");
+  command
+      .add_option(
+          "--grade", grade,
+          fmt::format("Of the tolerances of builds: {}; default: precision, unless the lens has its own",
+                      fmt::join(tolerance_grades(), ", ")))
+      ->check(CLI::IsMember(std::vector<std::string>(tolerance_grades().begin(), tolerance_grades().end())))
+      ->needs(number);
 }
 
 Lens LensChoice::read(const Shared& shared) const {
@@ -258,7 +270,10 @@ Lens LensChoice::read(const Shared& shared) const {
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
   if (before.object_distance_mm != file.lens.object_distance_mm)
     note_unfocused_object(before, file.lens, context_of(shared));
-  return std::move(file.lens);
+  if (!build) return std::move(file.lens);
+  ToleranceRequest request;
+  request.grade = grade;
+  return build_off_the_line(file.lens, request, shared.seed, *build);
 }
 
 void note(const Shared& shared, const std::string& message) {

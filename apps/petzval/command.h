@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,12 +62,15 @@ struct LensChoice {
   GlassChoice glasses;
   std::vector<std::string> settings;
   std::vector<std::string> substitutions;
+  bool offers_builds = true;
+  std::optional<std::size_t> build;
+  std::string grade = "precision";
 
-  /// Adds the positional LENS (or `--lens` when `positional` is false), --set and --substitute.
+  /// Adds the positional LENS (or `--lens` when `positional` is false), --set, --substitute and --build.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
-  /// Adds --set and --substitute alone.
+  /// Adds --set, --substitute and --build alone.
   void add_settings_to(CLI::App& command);
-  /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
+  /// Reads the lens, applies the settings and builds it; the reader's notes go to stderr unless quiet.
   Lens read(const Shared& shared) const;
 };
 
