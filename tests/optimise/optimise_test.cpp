@@ -49,8 +49,11 @@ TEST(Optimise, FindsAFlattenedDoubleGaussAgain) {
   OptimiseRequest request = request_for(lens, {"radii", "image"});
   request.efl_mm = first_order(lens).efl_mm;
   const OptimiseResult result = optimise(flat, request);
-  EXPECT_GT(spot_um(flat), 10 * spot_um(lens)) << "nothing was spoiled";
-  EXPECT_LT(spot_um(result.lens), 1.05 * spot_um(lens));
+  // The design stands a little out of its best focus: it is held to what it could be.
+  const Lens best = optimise(lens, request).lens;
+  EXPECT_LT(spot_um(best), spot_um(lens));
+  EXPECT_GT(spot_um(flat), 10 * spot_um(best)) << "nothing was spoiled";
+  EXPECT_LT(spot_um(result.lens), 1.05 * spot_um(best));
   // A thousandth of the focal length costs 5 um of a spot of that size.
   EXPECT_NEAR(result.efl_after_mm / *request.efl_mm, 1, 2e-3);
   EXPECT_EQ(result.lens.surfaces[3].thickness_mm, lens.surfaces[3].thickness_mm);

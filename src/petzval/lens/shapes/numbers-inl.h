@@ -58,8 +58,7 @@ HWY_INLINE V constant(double value) {
 
 /// One that is the same for all rays and has a derivative already.
 template <class V>
-  requires IsDual<V>::value
-HWY_INLINE V constant(const V& value) {
+requires IsDual<V>::value HWY_INLINE V constant(const V& value) {
   return value;
 }
 
