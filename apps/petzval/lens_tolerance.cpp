@@ -140,11 +140,11 @@ void run(ToleranceCommand command, const Shared& shared) {
 
 void add_lens_tolerance(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<ToleranceCommand>();
-  CLI::App* command = add_command(
-      lens, shared, "tolerance",
-      "What a maker's tolerances do to a lens: worst offenders, builds off the line, yield",
-      "petzval lens tolerance cooke-triplet --grade precision --merit mtf@30 --accept 0.3 --plot yield.svg",
-      true, [options, &shared] { run(*options, shared); });
+  CLI::App* command =
+      add_command(lens, shared, "tolerance",
+                  "What a maker's tolerances do to a lens: worst offenders, builds off the line, yield",
+                  "petzval lens tolerance cooke-triplet --grade precision --accept 22 --plot yield.svg", true,
+                  [options, &shared] { run(*options, shared); });
   ToleranceRequest& request = options->request;
   options->lens.offers_builds = false;
   options->lens.add_to(*command);
