@@ -35,11 +35,15 @@ struct EdgeAlignment {
   double significance[most] = {};  ///< over its standard deviation
 };
 
-/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`. \param noise  standard deviation.
+/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`, the profile as it is but for an offset.
 /// \throws InputError for an edge too short to tell its direction.
-EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise);
-/// \returns the largest shift of the line anywhere [pixels].
-double align(EdgeLine& line, const EdgeAlignment& alignment);
+EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px);
+/// The same, with a profile that follows. \param noise  standard deviation of the values.
+EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise);
+/// The largest shift of the line anywhere [pixels].
+double shift_of(const EdgeAlignment& alignment);
+/// Takes the step, or `length` of it. \returns its shift.
+double align(EdgeLine& line, const EdgeAlignment& alignment, double length);
 
 /// A straight bend belongs to the direction, so that distances are exact.
 void turn_by_bend(EdgeLine& line);
