@@ -89,20 +89,19 @@ EdgeAlignment solved(const AlignmentSums& sums, int first, int order, double noi
   for (int k = 0; k < n; ++k) {
     const double variance = ldlt.solve(Eigen::VectorXd::Unit(n, k))[k];
     result.change[first + k] = change[k];
-    result.significance[first + k] =
-        std::abs(change[k]) / std::max(1e-300, noise * std::sqrt(std::max(0.0, variance)));
+    result.deviation[first + k] = noise * std::sqrt(std::max(0.0, variance));
   }
   return result;
 }
 
 }  // namespace
 
-EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px) {
+EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise) {
   AlignmentSums sums;
   for (std::size_t i = 0; i < profile.points.size(); ++i)
     if (std::abs(profile.points[i].distance) <= reach_px) sums.add(profile, i, order);
   sums.normal.diagonal() *= 1 + 1e-12;
-  return solved(sums, 0, order, 1);
+  return solved(sums, 0, order, noise);
 }
 
 EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise) {

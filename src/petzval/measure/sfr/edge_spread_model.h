@@ -83,6 +83,7 @@ class EdgeSpreadModel {
   /// A/step: what the edge still misses at a distance d is this over d [pixels].
   double tail_px() const;
   double core_px() const { return options_.core_px; }
+  const EdgeSpreadOptions& options() const { return options_; }
   /// ∫ E′(d) exp(−2πifd) dd / step.
   std::complex<double> transform(double frequency_cpp) const;
   /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.

@@ -119,33 +119,6 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vecto
   return result;
 }
 
-void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model,
-                 const EdgeSpreadModel::Deviation& deviation, double comb_px) {
-  // A transform of what lies within ±core changes over 1/(2 core).
-  const double step = 1 / (8 * model.core_px());
-  const double highest = std::max(1.0, result.frequencies_cpp.back());
-  std::vector<double> contrast{1};
-  // Until the last level is passed, and no farther.
-  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
-    contrast.push_back(std::abs(model.transform(f)));
-  std::vector<double> passed;
-  for (int percent = 90; percent >= 10; percent -= 10) {
-    result.mtf.push_back(find_level(model, percent / 100.0, contrast, step));
-    if (std::isfinite(result.mtf.back().frequency_cpp)) passed.push_back(result.mtf.back().frequency_cpp);
-  }
-  const std::vector<double> deviations = deviation.of_moduli(passed);
-  auto of_modulus = deviations.begin();
-  for (MtfLevel& level : result.mtf) {
-    if (!std::isfinite(level.frequency_cpp)) continue;
-    constexpr double h = 1e-4;
-    const double slope = (std::abs(model.transform(level.frequency_cpp + h)) -
-                          std::abs(model.transform(level.frequency_cpp - h))) /
-                         (2 * h);
-    level.deviation_cpp = std::hypot(*of_modulus++, alias_deviation(model, comb_px, level.frequency_cpp)) /
-                          std::max(1e-9, std::abs(slope));
-  }
-}
-
 void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const EdgeProfile& profile) {
   constexpr double spacing = 0.125;
   const double low = std::ceil(profile.low / spacing) * spacing;
@@ -201,6 +174,15 @@ class EdgeFit {
       fit_profile();
     }
   }
+
+  /// The same profile by other splines: finer ones, which end nearer.
+  EdgeSpreadModel variant() const {
+    EdgeSpreadOptions options = model_->options();
+    options.core_px *= 0.85, options.knot_px *= 0.8;
+    options.noise = noise_, options.smoothing = 0;
+    return EdgeSpreadModel(profile_.points, options);
+  }
+  double noise() const { return noise_; }
 
   const EdgeLine& line() const { return line_; }
   const EdgeProfile& profile() const { return profile_; }
@@ -286,16 +268,20 @@ class EdgeFit {
     for (const EdgeSample& s : samples_)
       if (std::abs(frame.at(s.x, s.y).distance) < reach + most_bent_px) near.push_back(s);
     constexpr int rounds = 12;
+    EdgeAlignment change;
     for (int round = 0; round < rounds; ++round) {
       EdgeProfile profile = profile_along(near, bent);
       fit_logistic(profile, guess_);
-      const double shift = align(bent, alignment(profile, static_cast<int>(bent.bend.size()), reach), 1);
-      if (shift < 1e-3) break;
+      change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
+      if (align(bent, change, 1) < 1e-3) break;
     }
-    double offset = 0;
-    for (std::size_t k = 1; k < bent.bend.size(); ++k) offset = std::max(offset, std::abs(bent.bend[k]));
     constexpr double plainly_bent_px = 0.1;
-    if (asked > 1 || offset > plainly_bent_px) line_ = bent;
+    bool plainly = asked > 1;
+    for (int k = 2; k <= change.order; ++k) {
+      const double bend = std::abs(bent.bend[static_cast<std::size_t>(k - 1)]);
+      plainly = plainly || (bend > plainly_bent_px && bend > significant * change.deviation[k]);
+    }
+    if (plainly) line_ = bent;
   }
 
   void settle() {
@@ -321,9 +307,9 @@ class EdgeFit {
     // A hundred-thousandth of a pixel changes no SFR by 1e-6. Nor do steps count that are small beside their
     // own uncertainty, as along the pixel grid, where a bend and the profile are hard to tell apart.
     constexpr double at_rest_px = 2e-5, at_rest_deviations = 0.03;
-    const double* const significance = change.significance;
-    return shift_of(change) < at_rest_px ||
-           *std::max_element(significance, significance + EdgeAlignment::most) < at_rest_deviations;
+    double significance = 0;
+    for (int k = 1; k <= change.order; ++k) significance = std::max(significance, change.significance(k));
+    return shift_of(change) < at_rest_px || significance < at_rest_deviations;
   }
 
   /// The part of a step that repeats an earlier one.
@@ -340,7 +326,7 @@ class EdgeFit {
     if (line_.bend.size() > 1) return;  // it is bent already
     const EdgeAlignment bends = alignment_of(3);
     const auto shown = [&](int k) {
-      return bends.significance[k] > significant && std::abs(bends.change[k]) > least_bend_px;
+      return bends.significance(k) > significant && std::abs(bends.change[k]) > least_bend_px;
     };
     if (!shown(2) && !shown(3)) return;
     line_.bend.assign(shown(3) ? 3 : 2, 0);
@@ -373,6 +359,64 @@ class EdgeFit {
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
   bool varying_light_ = false;
 };
+
+/// What |transform| may be off by, for all reasons together.
+class Uncertainty {
+ public:
+  Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise) : fit_(fit), noise_(noise) {
+    // What a model of splines and a tail cannot follow shows where there is next to no noise: in what other
+    // splines make of the same samples, and in how far the tail is extrapolated.
+    constexpr double quiet = 1e-3;
+    if (fit.noise() < quiet * fit.model().step() && fit.comb_px() == 0) variant_.emplace(fit.variant());
+    constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
+    tail_ = extrapolated / std::min(-fit.profile().low, fit.profile().high);
+  }
+  std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp) const {
+    std::vector<double> deviations = noise_.of_moduli(frequencies_cpp);
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      const double f = frequencies_cpp[i];
+      const double other =
+          variant_ ? std::abs(variant_->transform(f)) - std::abs(fit_.model().transform(f)) : 0;
+      constexpr double all_of_it_cpp = 0.02;
+      const double model = std::hypot(other, tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
+      deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
+    }
+    return deviations;
+  }
+
+ private:
+  const EdgeFit& fit_;
+  const EdgeSpreadModel::Deviation& noise_;
+  std::optional<EdgeSpreadModel> variant_;
+  double tail_;
+};
+
+void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Uncertainty& uncertainty) {
+  // A transform of what lies within ±core changes over 1/(2 core).
+  const double step = 1 / (8 * model.core_px());
+  const double highest = std::max(1.0, result.frequencies_cpp.back());
+  std::vector<double> contrast{1};
+  // Until the last level is passed, and no farther.
+  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
+    contrast.push_back(std::abs(model.transform(f)));
+  std::vector<double> passed;
+  for (int percent = 90; percent >= 10; percent -= 10) {
+    result.mtf.push_back(find_level(model, percent / 100.0, contrast, step));
+    if (std::isfinite(result.mtf.back().frequency_cpp)) passed.push_back(result.mtf.back().frequency_cpp);
+  }
+  const std::vector<double> deviations = uncertainty.of_moduli(passed);
+  auto of_modulus = deviations.begin();
+  for (MtfLevel& level : result.mtf) {
+    if (!std::isfinite(level.frequency_cpp)) continue;
+    const double spread = *of_modulus++;
+    // Over as much as the deviation covers: at a point the slope is noisy, too.
+    const double reach = std::clamp(2 * spread, 1e-4, 0.8 * std::min(level.level, 1 - level.level));
+    const double before = find_level(model, level.level + reach, contrast, step).frequency_cpp;
+    const double after = find_level(model, level.level - reach, contrast, step).frequency_cpp;
+    const double run = std::isfinite(after) ? (after - before) / 2 : level.frequency_cpp - before;
+    level.deviation_cpp = spread * run / reach;
+  }
+}
 
 }  // namespace
 
@@ -413,7 +457,8 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   const QuantisationNoise rounding(options.code_levels, unrounded, variance);
   const EdgeSpreadModel::Deviation deviation(model, variance, rounding);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
-  result.sfr_deviation = deviation.of_moduli(result.frequencies_cpp);
+  const Uncertainty uncertainty(fit, deviation);
+  result.sfr_deviation = uncertainty.of_moduli(result.frequencies_cpp);
   for (std::size_t i = 0; i < result.frequencies_cpp.size(); ++i) {
     const double f = result.frequencies_cpp[i];
     const std::complex<double> value = model.transform(f);
@@ -429,7 +474,7 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
                     "every {:.2f} pixels; a tilt "
                     "by half a degree is enough to tell what lies between",
                     fit.comb_px()));
-  fill_levels(result, model, deviation, fit.comb_px());
+  fill_levels(result, model, uncertainty);
   fill_curves(result, model, profile);
   return result;
 }
