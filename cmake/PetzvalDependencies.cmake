@@ -50,4 +50,5 @@ petzval_import(petzval_polyclipping::polyclipping polyclipping/clipper.hpp polyc
 petzval_import(petzval_tinygltf::tinygltf tiny_gltf.h tinygltf)
 petzval_import(petzval_yaml::yaml yaml.h yaml)
 petzval_import(petzval_zint::zint zint.h zint)
+petzval_import(petzval_zip::zip zip.h zip)
 petzval_import(petzval_hdf5::hdf5 hdf5.h hdf5_serial PATHS /usr/include/hdf5/serial)

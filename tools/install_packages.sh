@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build
   # libraries
   gemmi-dev libboost-dev libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev libhwy-dev libjpeg-dev liblcms2-dev libmatio-dev
-  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev libzint-dev nlohmann-json3-dev
+  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev libzint-dev libzip-dev nlohmann-json3-dev
   zlib1g-dev
 )
 test_packages=(clang clang-format doxygen furo libbenchmark-dev libgtest-dev libimage-exiftool-perl libraw-dev librsvg2-bin libzxing-dev python3

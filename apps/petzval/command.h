@@ -9,6 +9,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -61,9 +63,15 @@ struct LensChoice {
   GlassChoice glasses;
   std::vector<std::string> settings;
   std::vector<std::string> substitutions;
+  /// Of several lenses that are read by turns: what has been substituted in any of them.
+  std::shared_ptr<std::set<std::string>> substituted = {};
 
   /// Adds the positional LENS (or `--lens` when `positional` is false), --set and --substitute.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
+  /// Reads one of several lenses.
+  LensChoice for_lens(const std::string& name) const;
+  /// \throws InputError if none of them had a glass that was to be substituted.
+  void require_all_substituted() const;
   /// Adds --set and --substitute alone.
   void add_settings_to(CLI::App& command);
   /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
