@@ -252,6 +252,18 @@ void LensChoice::add_settings_to(CLI::App& command) {
       ->needs(number);
 }
 
+LensChoice LensChoice::for_lens(const std::string& name) const {
+  LensChoice choice = *this;
+  choice.path_or_name = name;
+  return choice;
+}
+
+void LensChoice::require_all_substituted() const {
+  for (const std::string& text : substitutions)
+    if (const std::string from = text.substr(0, text.find('=')); !substituted->contains(from))
+      throw InputError(fmt::format("--substitute {}: none of the lenses has the glass {}", text, from));
+}
+
 Lens LensChoice::read(const Shared& shared) const {
   LensReadOptions options;
   for (const std::string& text : substitutions) {
@@ -264,6 +276,7 @@ Lens LensChoice::read(const Shared& shared) const {
     options.substitutions[text.substr(0, equals)] = text.substr(equals + 1);
   }
   options.glasses = glasses.read(shared);
+  options.substituted = substituted;
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
   const Lens before = file.lens;

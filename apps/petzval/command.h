@@ -9,7 +9,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,9 +67,15 @@ struct LensChoice {
   bool offers_builds = true;
   std::optional<std::size_t> build;
   std::string grade = "precision";
+  /// Of several lenses that are read by turns: what has been substituted in any of them.
+  std::shared_ptr<std::set<std::string>> substituted = {};
 
   /// Adds the positional LENS (or `--lens` when `positional` is false), --set, --substitute and --build.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
+  /// Reads one of several lenses.
+  LensChoice for_lens(const std::string& name) const;
+  /// \throws InputError if none of them had a glass that was to be substituted.
+  void require_all_substituted() const;
   /// Adds --set, --substitute and --build alone.
   void add_settings_to(CLI::App& command);
   /// Reads the lens, applies the settings and builds it; the reader's notes go to stderr unless quiet.
