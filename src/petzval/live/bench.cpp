@@ -228,8 +228,10 @@ void Bench::Impl::show(const BenchState& state) {
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
   show_plots(state);
-  if (state.picture && picture("preview", PictureQuality::preview) && ask->rests())
+  if (state.picture && picture("preview", PictureQuality::preview)) {
+    if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);
+  }
   tell({{"kind", "idle"}, {"id", state.id}});
 }
 
