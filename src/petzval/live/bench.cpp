@@ -232,7 +232,6 @@ void Bench::Impl::show(const BenchState& state) {
     if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);
   }
-  tell({{"kind", "idle"}, {"id", state.id}});
 }
 
 Bench::Bench(const LiveStart& start, SendReply send) : impl_(std::make_unique<Impl>()) {
@@ -274,6 +273,7 @@ void Bench::show(const BenchState& state, int threads, const BenchQuestions& ask
   impl_->ask = &ask;
   impl_->threads = threads;
   impl_->show(state);
+  impl_->tell({{"kind", "idle"}, {"id", state.id}});
 }
 
 void Bench::send_lens(const LensWish& wish) {
