@@ -485,7 +485,7 @@ class Page {
   private took(message: Incoming): void {
     this.times.set(message.stage, message.ms);
     this.showProblem(message.stage, message.stage === "layout" ? this.problems.get("layout") ?? "" : "");
-    const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], [`plot:${this.session.plot}`, "plot"], ["preview", "preview"], ["picture", "full"]];
+    const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], ["preview", "preview"], [`plot:${this.session.plot}`, "plot"], ["picture", "full"]];
     this.timing.replaceChildren(...names.filter(([stage]) => this.times.has(stage)).map(([stage, name]) =>
       h("span", {}, h("i", {}, name), `${shown(this.times.get(stage)!, 3)} ms`)));
   }

@@ -177,6 +177,7 @@ void Bench::Impl::show_plots(const BenchState& state) {
   AnalysisRequest request;
   request.plots = true;
   request.polychromatic_mtf = true;
+  request.mtf.frequencies_cpmm = {0, 10, 20, 40, 60, 80, 100};
   for (const std::string& name : state.plots) {
     stage(state.id, "plot:" + name, use.key, [&](const Context& context) {
       const AnalysisResult result = analyse(name, use.lens, request, context);
@@ -216,7 +217,7 @@ void Bench::Impl::show(const BenchState& state) {
     const auto sensor = sensor_paths.find(state.sensor);
     // The picture knows itself whether it is new.
     const auto work = [&](const Context& context) {
-      pictures.show(state, use.camera, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
+      pictures.show(state, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
                     sensor == sensor_paths.end() ? state.sensor : sensor->second, quality, context, send);
     };
     return stage(state.id, name,
@@ -227,8 +228,9 @@ void Bench::Impl::show(const BenchState& state) {
   };
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
+  const bool previewed = state.picture && picture("preview", PictureQuality::preview);
   show_plots(state);
-  if (state.picture && picture("preview", PictureQuality::preview)) {
+  if (previewed) {
     if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);
   }

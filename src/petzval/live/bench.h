@@ -40,7 +40,7 @@ struct BenchQuestions {
   std::function<bool()> rests;  ///< waits until the hand has rested; false if something came first
 };
 
-/// Stages: layout → psf → plots → preview (few pixels, three bands) → picture. What has been shown already
+/// Stages: layout → psf → preview (few pixels, three bands) → plots → picture. What has been shown already
 /// and has not changed is left out. While a hand moves, a stage that was shown a moment ago gives way to what
 /// is newer; one that was not is finished first, so that all of them follow the hand. A Bench is for one
 /// thread at a time.

@@ -19,14 +19,16 @@ struct QualityCost {
   std::vector<double> wavelengths_nm;
   const char* wavelengths;  ///< the same, as they are typed
   double tolerance;
+  int fields, largest_psf_size;
 };
 
 const QualityCost& cost_of(PictureQuality quality) {
-  static const QualityCost preview{"preview", 160, 320, {460, 540, 610}, "460,540,610", 5e-2};
+  static const QualityCost preview{"preview", 160, 320, {460, 540, 610}, "460,540,610", 5e-2, 6, 48};
   static const QualityCost full{
       "full",       640,
       960,          {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
-      "400:20:700", 1e-2};
+      "400:20:700", 1e-2,
+      16,           128};
   return quality == PictureQuality::preview ? preview : full;
 }
 
@@ -60,15 +62,29 @@ OutputOptions output_options(const BenchState& state) {
   return options;
 }
 
-/// For a preview a table of a few fields: real rays all the same, but fewer of them.
-Optics preview_optics(const Lens& used, const Sensor& sensor, const std::vector<double>& wavelengths_nm,
-                      const Context& context) {
+/// How far light spreads about its chief ray [um], the most of a table.
+double spread_um(const LensDataTable& table) {
+  double spread = 0;
+  for (const Psf& psf : table.psf) spread = std::max(spread, psf.half_width_um());
+  return spread;
+}
+
+/// A picture without fine detail needs no fine pixels: PSFs of hundreds of pixels would take minutes.
+int columns_for(double spread_um, double frame_width_mm, int least, int most) {
+  constexpr double pixels = 16, um_per_mm = 1000;  // from the middle of a PSF to its edge
+  if (spread_um == 0) return most;
+  return std::clamp(static_cast<int>(pixels * frame_width_mm * um_per_mm / spread_um), least, most);
+}
+
+/// A table of fewer fields than a single picture takes: real rays all the same, with more between them.
+TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCost& cost,
+                         const Context& context) {
   TableOptions options;
-  options.wavelengths_nm = wavelengths_nm;
+  options.wavelengths_nm = cost.wavelengths_nm;
   constexpr double rim = 1.1;  // light comes in from beyond the corner, too
   options.max_image_height_mm = rim * sensor.geometry.half_diagonal_mm();
-  options.field_count = 9;
-  options.largest_psf_size = 64;
+  options.field_count = cost.fields;
+  options.largest_psf_size = cost.largest_psf_size;
   return TableCamera{result_within(context,
                                    [&](const ProgressCallback& progress) {
                                      return build_lens_data_table(used, options, progress);
@@ -103,21 +119,22 @@ std::vector<std::uint8_t> pixels_of(const PngImage& picture) {
 
 }  // namespace
 
-void BenchPicture::show(const BenchState& state, const Camera& camera, const Lens& used,
-                        const std::string& scene_path, const std::string& sensor_path, PictureQuality quality,
-                        const Context& context, const SendReply& send) {
+void BenchPicture::show(const BenchState& state, const Lens& used, const std::string& scene_path,
+                        const std::string& sensor_path, PictureQuality quality, const Context& context,
+                        const SendReply& send) {
   Shot& shot = shots_[quality == PictureQuality::full ? 1 : 0];
   const std::string light_key = light_key_of(state), shown_key = shown_key_of(state);
   if (shot.shown_key == shown_key) return;
   const QualityCost& cost = cost_of(quality);
   if (shot.light_key != light_key || !shot.light) {
     shot.light_key.clear();
-    BinnedSensor binned = binned_sensor(sensor_path, cost.most_columns);
-    Camera with_sensor = camera;
-    with_sensor.sensor = binned.sensor;
-    const Optics optics = quality == PictureQuality::preview
-                              ? preview_optics(used, binned.sensor, cost.wavelengths_nm, context)
-                              : Optics(std::move(with_sensor));
+    int most_columns = cost.most_columns;
+    if (quality == PictureQuality::full && shots_[0].light_key == light_key)
+      most_columns = columns_for(shots_[0].spread_um, shots_[0].sensor->geometry.width_mm(),
+                                 cost_of(PictureQuality::preview).most_columns, cost.most_columns);
+    BinnedSensor binned = binned_sensor(sensor_path, most_columns);
+    TableCamera optics = bench_optics(used, binned.sensor, cost, context);
+    shot.spread_um = spread_um(optics.table);
     SceneRequest request;
     request.name = scene_path;
     request.options.wavelengths_nm = cost.wavelengths_nm;
@@ -126,12 +143,10 @@ void BenchPicture::show(const BenchState& state, const Camera& camera, const Len
       request.options.columns = cost.scene_columns;
       request.options.rows = cost.scene_columns * 3 / 4;
     }
-    // A table is what it is; with a lens the scene stands where it was put, or where the lens expects it.
-    if (state.distance_m && quality == PictureQuality::full) request.options.distance_m = *state.distance_m;
     ImageOptions options;
     options.imaging.product.tolerance = cost.tolerance;
     ImageReport report;
-    shot.light = image(request, optics, options, context, &report);
+    shot.light = image(request, std::move(optics), options, context, &report);
     shot.sensor = std::move(binned.sensor);
     shot.sensor_settings = std::move(binned.settings);
     shot.pixels_added = binned.pixels_added;

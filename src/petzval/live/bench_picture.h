@@ -17,16 +17,15 @@ namespace petzval {
 /// How much a picture is to tell.
 enum class PictureQuality {
   preview,  ///< at most 160 pixels across, three bands, blur to a twentieth
-  full      ///< at most 640 pixels across, 16 bands, blur to a hundredth
+  full      ///< at most 640 pixels across, fewer of a blur that is wide, 16 bands, blur to a hundredth
 };
 
 /// The pictures of one bench.
 class BenchPicture {
  public:
-  /// \param camera  lens, focus and stop; its sensor is chosen here. \param used  the lens as that has it,
-  /// before the scene. \param scene_path  what read_scene() takes. \param sensor_path  what read_sensor()
-  /// takes. \returns whether there was anything new to send.
-  void show(const BenchState& state, const Camera& camera, const Lens& used, const std::string& scene_path,
+  /// \param used  the lens, stopped down and focused, before the scene. \param scene_path  what read_scene()
+  /// takes. \param sensor_path  what read_sensor() takes. \returns whether there was anything new to send.
+  void show(const BenchState& state, const Lens& used, const std::string& scene_path,
             const std::string& sensor_path, PictureQuality quality, const Context& context,
             const SendReply& send);
 
@@ -40,6 +39,7 @@ class BenchPicture {
     std::optional<Sensor> sensor = {};
     std::vector<std::string> sensor_settings = {};
     int pixels_added = 1;
+    double spread_um = 0;  ///< how far light spreads about its chief ray
     OutputOptions outputs = {};
     std::string method = {};
   };
