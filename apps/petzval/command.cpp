@@ -113,6 +113,8 @@ std::string advice_on(const std::string& way, const std::string& option) {
       {"petzval image", "--lux", "--illuminance 500 would be right"},
       {"petzval image", "--iso",
        "--analog-gain would be right; the output tells the ISO speed of the sensor"},
+      {"petzval image", "--gain", "--analog-gain would be right"},
+      {"petzval lens", "--lp-per-mm", "--frequencies 100 (cycles/mm) would be right"},
       {"petzval image", "--aperture", "--f-number would be right"},
       {"petzval lens", "--aperture", "--f-number would be right"}};
   for (const Advice& each : known)

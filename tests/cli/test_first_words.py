@@ -66,6 +66,39 @@ class FirstWords(ProgramTest):
         self.assert_refused("lens", "steps", "dgauss-50mm", "--wavelength", "blue", words=["blue"])
         self.assert_refused("lens", "steps", "dgauss-50mm", "--field", "40", words=["smaller field"])
 
+    def test_the_light_that_glasses_are_known_for(self):
+        """Within the range of the list the index is known, beyond its ends it is not."""
+        rows = {row["name"]: row for row in self.json_of("lens", "list")["rows"]}
+        self.assertIsNone(rows["tessar"]["longest_nm"], "one index a glass: any light")
+        for name in ("cooke-triplet", "edmund-54852", "infrared-50mm"):
+            shortest, longest = rows[name]["shortest_nm"], rows[name]["longest_nm"]
+            for nm in (shortest, longest):
+                self.assert_succeeds("lens", "info", name, "--wavelength", nm)
+            for nm in (shortest - 1, longest + 1):
+                self.assert_refused("lens", "info", name, "--wavelength", nm, words=["valid from"])
+
+    def test_light_that_a_sensor_is_blind_to(self):
+        shot = ["image", "wall", "--lens", "double-gauss", "--sensor", "icx625-mono", "--sensor-set", "columns=8", "--sensor-set",
+                "rows=6", "--method", "none", "--exposure", "1ms", "-o", "shot.dng"]
+        self.assertIn("does not see the light at 850 nm", self.petzval(*shot, "--wavelengths", "850", "--illuminant", "LED-850").stderr)
+        self.assertNotIn("does not see", self.petzval(*shot, "--wavelengths", "660", "--illuminant", "660nm/20").stderr)
+
+    def test_the_report_has_the_table_of_for_sensor(self):
+        common = ["--sensor", "320x240@5", "--wavelengths", "550"]
+        self.assert_succeeds("lens", "report", "double-gauss", "--distance", "1m", "--fields", "0", *common, "-o", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("Which lens for", page)
+        row, = self.json_of("lens", "for-sensor", "double-gauss", "--distance", "1m", "--sensor", "320x240@5")["rows"]
+        self.assertIn(f"{row['width_mm']:.4g} x {row['height_mm']:.4g}", page)
+        self.assertIn(f"{row['per_pixel'] if 'per_pixel' in row else row['mm_per_pixel']:.4g}", page)
+        self.assert_refused("lens", "report", "double-gauss", "--distance", "1m", "-o", "r.html", words=["--sensor"])
+
+    def test_glasses_are_substituted_in_the_lens_that_has_them(self):
+        two = ["lens", "for-sensor", "double-gauss", "cooke-triplet", "--sensor", "64x48@50", "--distance", "2m", "--wavelengths", "850"]
+        self.assert_refused(*two, words=["--substitute HIKARI:SK16="])
+        self.assert_succeeds(*two, "--substitute", "HIKARI:SK16=SUMITA:K-SK16RH")
+        self.assert_refused(*two[:-2], "--substitute", "FOO=SCHOTT:N-BK7", words=["none of the lenses", "FOO"])
+
     def test_an_object_that_moves_alone_is_noted(self):
         done = self.petzval("lens", "info", "cooke-triplet", "--set", "object_distance_mm=400")
         self.assertIn("--focus", done.stderr)

@@ -5,6 +5,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/base/version.h>
 #include <petzval/colour/illuminants.h>
+#include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/expose.h>
 
@@ -65,6 +66,27 @@ std::vector<double> neutral(const ExposeOptions& options, const SpectralImage& l
   return means;
 }
 
+/// Light that the sensor is blind to because nobody measured how it sees it: silence would look like
+/// darkness.
+void note_unmeasured_light(const SpectralImage& light, const Sensor& sensor, const Context& context) {
+  double shortest_nm = INFINITY, longest_nm = 0;
+  for (const SensorChannel& channel : sensor.electronics->channels) {
+    shortest_nm = std::min(shortest_nm, channel.quantum_efficiency.front_nm());
+    longest_nm = std::max(longest_nm, channel.quantum_efficiency.back_nm());
+  }
+  const std::string beyond = runs_of_bands(light.wavelengths_nm(), [&](double nm) {
+    if (nm >= shortest_nm && nm <= longest_nm) return false;
+    const auto at = std::ranges::find(light.wavelengths_nm(), nm) - light.wavelengths_nm().begin();
+    return std::ranges::any_of(light.band(static_cast<int>(at)), [](float value) { return value > 0; });
+  });
+  if (!beyond.empty())
+    send_note(
+        context,
+        fmt::format("the quantum efficiency of sensor {} is known from {:g} to {:g} nm and taken to be 0 "
+                    "beyond: it does not see the light at {} nm",
+                    sensor.name, shortest_nm, longest_nm, beyond));
+}
+
 RawImage captured(const ExposeOptions& options, const Sensor& sensor, const PhotoCurrent& current,
                   double seconds, std::uint64_t seed) {
   CaptureOptions capturing{options.gain_mode, options.analog_gain, options.temperature_c, seed,
@@ -82,6 +104,7 @@ RawImage exposed(const SpectralImage& light, Sensor sensor, const ExposeOptions&
                  const Context& context) {
   const auto counts = [&](NoiseSource source) { return !options.without.contains(source); };
   SensorElectronics& electronics = *sensor.electronics;
+  note_unmeasured_light(light, sensor, context);
   // White balance and colours are then those of a sensor without it.
   if (!counts(NoiseSource::crosstalk)) electronics.crosstalk = SensorElectronics().crosstalk;
   const GainMode& mode = electronics.gain_mode(options.gain_mode);
