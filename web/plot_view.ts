@@ -65,11 +65,11 @@ export function drawPlot(plot: PlotData, width: number, height: number, small = 
   }
   const px = (v: number) => left + (v - x0) / (x1 - x0) * w, py = (v: number) => top + (y1 - v) / (y1 - y0) * t;
   const svg = s("svg", {class: "plot", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": plot.title});
-  for (const v of ticksOf(x0, x1, small ? 2 : w / 70)) {
+  for (const v of ticksOf(x0, x1, small ? 3.5 : w / 70)) {
     svg.append(s("path", {class: "grid", d: `M${px(v)} ${top}v${t}`}),
         s("text", {x: px(v), y: top + t + 13, "text-anchor": "middle"}, shown(v, 6)));
   }
-  for (const v of ticksOf(y0, y1, small ? 2 : t / 40)) {
+  for (const v of ticksOf(y0, y1, small ? 3.5 : t / 40)) {
     svg.append(s("path", {class: "grid", d: `M${left} ${py(v)}h${w}`}),
         s("text", {x: left - 5, y: py(v) + 3.5, "text-anchor": "end"}, shown(v, 6)));
   }

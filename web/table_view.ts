@@ -47,7 +47,7 @@ interface Column {
 const columns: Column[] = [
   {key: "radius_mm", title: "radius", term: "radius", empty: "∞"},
   {key: "thickness_mm", title: "thickness", term: "thickness", empty: ""},
-  {key: "semi_diameter_mm", title: "semi-⌀", term: "semi-diameter", empty: "–"},
+  {key: "semi_diameter_mm", title: "semi-⌀\u200a", term: "semi-diameter", empty: "–"},
   {key: "conic", title: "conic", term: "conic", empty: "0"},
 ];
 

@@ -50,7 +50,8 @@ class Browser:
             options.add_argument(word)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         if downloads:
-            options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
+            options.add_experimental_option("prefs", {"download.default_directory": str(downloads),
+                                                      "profile.default_content_setting_values.automatic_downloads": 1})
         self.driver = webdriver.Chrome(service=Service(driver), options=options)
         self.resize(width, height)
 

@@ -107,9 +107,11 @@ struct Bench::Impl {
     tell({{"kind", "problem"}, {"id", id}, {"stage", stage}, {"text", text}});
   }
 
-  /// Whether a stage was shown so short a time ago that it may wait for the next state.
+  /// Whether a stage was shown so short a time ago that it may wait for the next state; the longer it takes,
+  /// the longer it may.
   bool is_fresh(const std::string& name) const {
-    constexpr std::chrono::milliseconds moment{150};
+    using std::chrono::milliseconds;
+    const milliseconds moment(name.starts_with("plot:") ? 1000 : name == "preview" ? 300 : 150);
     const auto found = shown_at.find(name);
     return found != shown_at.end() && Clock::now() - found->second < moment;
   }
