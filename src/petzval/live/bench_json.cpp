@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ray_fan.h>
-#include <petzval/base/error.h>
+#include <petzval/glass/catalogue.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/live/bench_json.h>
 #include <petzval/report/colours.h>
@@ -11,7 +12,11 @@
 #include <petzval/report/surface_profile.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 namespace petzval {
 
