@@ -111,9 +111,7 @@ std::string advice_on(const std::string& way, const std::string& option) {
       {"petzval image", "--focus-distance", "--focus 1.5m (a distance with its unit) would be right"},
       {"petzval image", "--distance", "--scene-distance 400mm would be right"},
       {"petzval image", "--lux", "--illuminance 500 would be right"},
-      {"petzval image", "--iso",
-       "--analog-gain would be right; the output tells the ISO speed of the sensor"},
-      {"petzval image", "--gain", "--analog-gain would be right"},
+      {"petzval image", "--iso", "--gain would be right; the output tells the ISO speed of the sensor"},
       {"petzval lens", "--lp-per-mm", "--frequencies 100 (cycles/mm) would be right"},
       {"petzval image", "--aperture", "--f-number would be right"},
       {"petzval lens", "--aperture", "--f-number would be right"}};
