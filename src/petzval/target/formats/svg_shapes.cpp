@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/target/crossings.h>
 #include <petzval/target/formats/svg_path.h>
@@ -86,7 +87,7 @@ std::optional<double> pixel_length(const pugi::xml_node& node, const char* name)
                                       {"pc", inch / 6}})
     if (error == std::errc() && unit == known && value > 0 && std::isfinite(value)) return value * pixels;
   throw InputError(
-      fmt::format("{}=\"{}\": a positive length in px, mm, cm, in, pt or pc is right", name, text));
+      fmt::format("{}=\"{}\": a positive length in px, mm, cm, in, pt or pc is right", name, quotable(text)));
 }
 
 /// What makes pixels of the drawing's units: the viewBox fills width and height, in the middle and as large
@@ -101,7 +102,8 @@ SvgTransform pixels_of(const pugi::xml_node& root) {
   char end = 0;
   if (std::sscanf(plain.c_str(), "%lf %lf %lf %lf %c", &x, &y, &w, &h, &end) != 4 || !(w > 0 && h > 0) ||
       !std::isfinite(x + y + w + h))
-    throw InputError(fmt::format("viewBox=\"{}\": four numbers, the last two positive, are right", box));
+    throw InputError(
+        fmt::format("viewBox=\"{}\": four numbers, the last two positive, are right", quotable(box)));
   const double across = width ? *width / w : HUGE_VAL, down = height ? *height / h : HUGE_VAL;
   const double scale = std::min(across, down);
   SvgTransform transform;

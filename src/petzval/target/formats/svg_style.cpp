@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/target/formats/svg_style.h>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ void SvgStyleSheet::add(std::string_view css) {
           (mark != std::string_view::npos && !is_word(name)))
         throw InputError(
             fmt::format("<style>: selector '{}': an element's name, .class, #id or both are right",
-                        std::string(selector.substr(0, 40))));
+                        quotable(selector.substr(0, 40))));
       if (element != "*") rule.element = element;
       if (!name.empty()) (selector[mark] == '.' ? rule.group : rule.id) = name;
       rule.weight =
