@@ -158,7 +158,11 @@ std::vector<std::vector<Contour>> simple_parts(const std::vector<Contour>& conto
         throw InputError(
             fmt::format("corner ({}, {}) is not a number within {:g} pixels", v.x, v.y, target_reach_px));
   ClipperLib::Clipper clipper;
-  clipper.StrictlySimple(true);  // parts that touch at a corner are parts
+  // Parts that touch at a corner are parts; to look for such corners takes the square of their number.
+  constexpr std::size_t most_corners = 4096;
+  std::size_t corners = 0;
+  for (const Contour& contour : contours) corners += contour.size();
+  clipper.StrictlySimple(corners <= most_corners);
   clipper.AddPaths(to_clipper(contours), ClipperLib::ptSubject, true);
   const ClipperLib::PolyFillType type =
       rule == FillRule::nonzero ? ClipperLib::pftNonZero : ClipperLib::pftEvenOdd;
