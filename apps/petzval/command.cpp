@@ -114,6 +114,7 @@ std::string advice_on(const std::string& way, const std::string& option) {
       {"petzval image", "--iso", "--gain would be right; the output tells the ISO speed of the sensor"},
       {"petzval lens", "--lp-per-mm", "--frequencies 100 (cycles/mm) would be right"},
       {"petzval image", "--aperture", "--f-number would be right"},
+      {"petzval target", "--aperture", "--f-number would be right"},
       {"petzval lens", "--aperture", "--f-number would be right"}};
   for (const Advice& each : known)
     if (way.starts_with(each.way) && option == each.option) return each.words;

@@ -13,6 +13,7 @@
 #include <petzval/target/formats/svg_shapes.h>
 #include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
+#include <petzval/target/visible_regions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -207,6 +208,11 @@ void run(const TargetCommand& command, const Shared& shared) {
     write_drawing(files.stage(command.plot), target_plot_svg(*otf, options, plot_title(command, options)),
                   command.plot);
   files.commit();
+  if (!meets_frame(request.scene, options.columns, options.rows))
+    note(shared,
+         fmt::format("no part of the target lies within the {} x {} pixels of the picture; --size or --at "
+                     "brings it in",
+                     options.columns, options.rows));
   print_target_summary(request, command.optics.psf, *otf, image, shared);
 }
 

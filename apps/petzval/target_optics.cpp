@@ -39,7 +39,13 @@ void TargetOptics::add_to(CLI::App& command) {
   command.add_option("--weights", weights, "Light of each wavelength; default: equal")->delimiter(',');
   command.add_option("--pixel-pitch", pitch_um, "Pixel pitch [um]")->capture_default_str();
   pupil.add_to(command);
-  command.add_option("--sigma", sigma_um, "Standard deviation of a Gaussian PSF along each axis [um]");
+  command.add_option("--sigma", sigma_um, "Standard deviation of a Gaussian PSF along x [um]");
+  command.add_option("--mtf50", mtf50_cpp,
+                     "Instead of --sigma: MTF50 of upright edges, photosites included [cycles/pixel]");
+  command
+      .add_option("--psf-ratio", psf_ratio, "Standard deviation of a Gaussian PSF along y over that along x")
+      ->check(positive_number())
+      ->capture_default_str();
   command
       .add_option(
           "--photosite", photosite,
@@ -57,8 +63,12 @@ void TargetOptics::validate(bool has_sensor) const {
   if (psf != "wavefront" && pupil.is_aberrated())
     throw InputError(fmt::format(
         "--psf {} has no aberrations; --psf wavefront takes --w020, --w040, --w060, --w080, --zernike", psf));
-  if ((psf == "gaussian") != (sigma_um != 0))
-    throw InputError("--psf gaussian and --sigma [um] belong together; give both or neither");
+  if (sigma_um != 0 && mtf50_cpp != 0)
+    throw InputError("--sigma and --mtf50 both say how wide a Gaussian PSF is; give one");
+  if ((psf == "gaussian") != (sigma_um != 0 || mtf50_cpp != 0))
+    throw InputError(
+        "--psf gaussian and --sigma [um] or --mtf50 [cycles/pixel] belong together; give both or neither");
+  if (psf != "gaussian" && psf_ratio != 1) throw InputError("--psf-ratio belongs to --psf gaussian");
   if ((psf == "gaussian" || psf == "lens") && pupil.is_shaped())
     throw InputError(fmt::format(
         "--psf {} brings its own pupil; --blades and --obstruction belong to airy and wavefront", psf));
@@ -75,11 +85,19 @@ void TargetOptics::fill(TargetRequest& request, const Shared& shared) const {
   request.pitch_um = pitch_um;
   request.photosite = site();
   if (psf == "gaussian")
-    request.blur = GaussianBlur{sigma_um};
+    request.blur = gaussian(request);
   else if (psf == "lens")
     request.blur = LensBlur{lens.read(shared), field.value_or(0)};
   else
     request.blur = PupilBlur{pupil.at(wavelengths_nm.empty() ? 0 : wavelengths_nm.front()), f_number};
+}
+
+GaussianBlur TargetOptics::gaussian(const TargetRequest& request) const {
+  if (mtf50_cpp == 0) return {sigma_um, psf_ratio};
+  const TargetOptions seen = target_options(request);
+  GaussianBlur blur = gaussian_of_mtf50(mtf50_cpp, seen.pitch_um, seen.photosite);
+  blur.ratio = psf_ratio;
+  return blur;
 }
 
 Photosite TargetOptics::site() const {

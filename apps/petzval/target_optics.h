@@ -17,7 +17,7 @@ namespace petzval::app {
 /// --psf, --f-number, --wavelength, --weights, the pupil, --sigma, --pixel-pitch and the photosite.
 struct TargetOptics {
   std::string psf = "airy", photosite = "square", low_pass;
-  double f_number = 8, pitch_um = 4.73, sigma_um = 0, fill_factor = 1;
+  double f_number = 8, pitch_um = 4.73, sigma_um = 0, mtf50_cpp = 0, psf_ratio = 1, fill_factor = 1;
   std::vector<double> wavelengths_nm{550}, weights;
   std::optional<double> field;
   PupilChoice pupil;
@@ -31,6 +31,7 @@ struct TargetOptics {
  private:
   void validate(bool has_sensor) const;
   Photosite site() const;
+  GaussianBlur gaussian(const TargetRequest& request) const;
 };
 
 /// "3.5x2" → two numbers. \throws InputError naming the option.

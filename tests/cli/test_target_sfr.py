@@ -125,6 +125,33 @@ class Target(ProgramTest):
         self.assertEqual(files["a.png"], files["b.png"])
         self.assertNotEqual(files["a.png"], files["levels.png"])
 
+    def test_a_gaussian_has_the_mtf50_that_was_asked_for(self):
+        """Truth is the closed form that --exact-sfr writes; at exactly 0.25 c/p it must be one half, along y at 0.25/1.5 without photosites."""
+        common = ["target", "--rectangle", "60x60", "--psf", "gaussian", "--mtf50", 0.25, "--pixel-pitch", 3]
+        self.assert_succeeds(*common, "-o", "a.npy", "--exact-sfr", "a.csv")
+        rows = [row for row in csv.DictReader((self.folder / "a.csv").open()) if float(row["frequency_cpp"]) == 0.25]
+        for row in rows:
+            self.assertAlmostEqual(float(row["sfr"]), 0.5, delta=1e-7)
+        self.assert_succeeds(*common, "--photosite", "none", "--psf-ratio", 1.5, "-o", "b.npy", "--exact-sfr", "b.csv")
+        at = {}
+        for row in csv.DictReader((self.folder / "b.csv").open()):
+            at.setdefault(row["frequency_cpp"], set()).add(round(float(row["sfr"]), 6))
+        upright, level = 0.5, 0.5 ** (1.5 ** 2)
+        self.assertEqual(at["0.25"], {round(upright, 6), round(level, 6)})
+        out = ["-o", "t.png"]
+        self.assert_refused(*common, "--sigma", 2, *out, words=["--sigma and --mtf50"])
+        self.assert_refused("target", "--rectangle", "9x9", "--mtf50", 0.2, *out, words=["--psf gaussian"])
+        self.assert_refused("target", "--rectangle", "9x9", "--psf-ratio", 2, *out, words=["--psf-ratio"])
+        self.assert_refused("target", "--rectangle", "9x9", "--psf", "gaussian", "--mtf50", 0.7, *out, words=["--mtf50 0.7", "photosites"])
+
+    def test_hints_and_notes(self):
+        self.assert_refused("target", "--rectangle", "9x9", "--aperture", 8, "-o", "t.png", words=["--f-number"])
+        done = self.petzval("target", "--rectangle", "9x9", "--size", "60x60", "--at", "300,300", *OPTICS, "-o", "t.png")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("no part of the target", done.stderr)
+        done = self.petzval("target", "--rectangle", "9x9", "--size", "60x60", "--at", "61,30", *OPTICS, "-o", "t.png")
+        self.assertNotIn("no part", done.stderr)
+
     def test_writing(self):
         self.assert_succeeds("target", "--text", "Petzval 1840", "--text-height", "20@10", *OPTICS, "-o", "t.png", "--plot", "p.svg")
         self.assertIn(b"PSF", (self.folder / "p.svg").read_bytes())

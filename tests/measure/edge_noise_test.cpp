@@ -4,7 +4,6 @@
 #include <petzval/base/parallel.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/target/render_target.h>
-#include <petzval/wave/pupil_otf.h>
 
 #include <cmath>
 #include <random>

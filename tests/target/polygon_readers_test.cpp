@@ -6,7 +6,9 @@
 #include <petzval/target/formats/polygon_file.h>
 #include <petzval/target/formats/svg_path.h>
 #include <petzval/target/formats/svg_shapes.h>
+#include <petzval/target/polygon.h>
 #include <petzval/target/test_charts.h>
+#include <petzval/target/visible_regions.h>
 
 #include <cmath>
 #include <functional>
@@ -106,6 +108,83 @@ TEST(SvgShapes, LevelsGroupsAndRules) {
   EXPECT_EQ(scene.polygons[2].contours.size(), 1u)
       << "both wind the same way: no hole under the non-zero rule";
   EXPECT_EQ(scene.polygons[3].contours.size(), 2u);
+}
+
+double area_of(const TargetScene& scene) {
+  double area = 0;
+  for (const Region& region : visible_regions(scene))
+    for (const Contour& contour : region.contours) area += signed_area(contour);
+  return area;
+}
+
+TEST(PolygonFile, ARuleSaysWhatACrossedOutlineEncloses) {
+  // A pentagram about a circle of radius 50: its points alone, or with the pentagon that they stand on.
+  std::string star = "5";
+  for (int i = 0; i < 5; ++i)
+    star += " " + std::to_string(100 + 50 * std::sin(2 * M_PI * 2 * i / 5)) + " " +
+            std::to_string(100 - 50 * std::cos(2 * M_PI * 2 * i / 5));
+  // The pentagon within has the radius 50 cos 72°/cos 36°; a star is the ten triangles between the circles.
+  const double inner = 50 * std::cos(72 * M_PI / 180) / std::cos(36 * M_PI / 180);
+  const double pentagon = 2.5 * inner * inner * std::sin(72 * M_PI / 180);
+  const double whole = 5 * 50 * inner * std::sin(36 * M_PI / 180);
+  // Corners are written to 1e-6 and cut to 2^-24 pixels.
+  const auto scene = [&](const char* rule) { return parse_polygons(rule + star, "star"); };
+  EXPECT_NEAR(area_of(scene("rule nonzero ")), whole, 1e-3);
+  EXPECT_NEAR(area_of(scene("rule evenodd ")), whole - pentagon, 1e-3);
+  EXPECT_NO_THROW(validate(scene("rule nonzero ")));
+  EXPECT_NO_THROW(validate(scene("rule evenodd ")));
+  EXPECT_THROW(validate(scene("")), InputError);
+  EXPECT_THROW(validate(scene("rule nonzero rule simple ")), InputError);
+  EXPECT_THROW(scene("rule odd "), InputError);
+  // A bow tie is two triangles that touch.
+  const TargetScene tie = parse_polygons("rule evenodd 4 0 0 10 10 10 0 0 10", "tie");
+  EXPECT_EQ(tie.polygons.size(), 2u);
+  EXPECT_NO_THROW(validate(tie));
+  EXPECT_NEAR(area_of(tie), 50, 1e-6);
+  // An outline that does not cross itself keeps its corners.
+  EXPECT_EQ(parse_polygons("rule nonzero 3 0.1 0 10 10 10.7 0", "plain").polygons[0].contours[0][0].x, 0.1);
+}
+
+TEST(SvgShapes, StyleSheets) {
+  const auto level = [](const std::string& css, const std::string& attributes) {
+    return parse_svg_shapes(
+               "<svg><style>" + css + "</style><rect width='9' height='9' " + attributes + "/></svg>", "s")
+        .polygons[0]
+        .level;
+  };
+  EXPECT_EQ(level(".a{fill:#fff}", "class='b a'"), 1);
+  EXPECT_EQ(level("rect{fill:white}", "fill='black'"), 1);
+  EXPECT_EQ(level("rect{fill:white}", "style='fill:black'"), 0);
+  EXPECT_EQ(level(".a{fill:white} rect{fill:black}", "class='a'"), 1);
+  EXPECT_EQ(level("#x{fill:white} .a{fill:black}", "class='a' id='x'"), 1);
+  EXPECT_EQ(level(".a{fill:black} /* } */ .b, rect.a{fill:white}", "class='a'"), 1);
+  EXPECT_EQ(level(".a{fill:white}", "class='ab'"), 0);
+  EXPECT_EQ(level("circle{fill:white} *{stroke:none}", "fill='black'"), 0);
+  EXPECT_THROW(level("g > rect{fill:white}", ""), InputError);
+  EXPECT_THROW(level(".a{fill:white", ""), InputError);
+}
+
+TEST(SvgShapes, SizesAndRoundedCorners) {
+  const auto area = [](const std::string& root, const std::string& rectangle) {
+    return area_of(parse_svg_shapes("<svg " + root + "><rect fill='black' " + rectangle + "/></svg>", "s"));
+  };
+  // Corners of radii a and b take (4 − π) a b; chords stay within 1e-4 pixels.
+  EXPECT_NEAR(area("", "width='60' height='40' rx='10'"), 2400 - (4 - M_PI) * 100, 0.01);
+  EXPECT_NEAR(area("", "width='60' height='40' rx='10' ry='5'"), 2400 - (4 - M_PI) * 50, 0.01);
+  EXPECT_NEAR(area("", "width='60' height='40' rx='100'"), 2400 - (4 - M_PI) * 30 * 20, 0.01);
+  // 96 pixels to the inch, the viewBox fitted in.
+  const double per_mm = 96 / 25.4;
+  EXPECT_NEAR(area("width='100mm' viewBox='0 0 100 50'", "width='10' height='10'"), 100 * per_mm * per_mm,
+              1e-6);
+  EXPECT_NEAR(area("width='200' height='300' viewBox='0,0,100,100'", "width='10' height='10'"), 400, 1e-6);
+  const TargetScene middle = parse_svg_shapes(
+      "<svg width='200' height='300' viewBox='5 5 100 100'><rect x='5' y='5' width='10' height='10'/></svg>",
+      "s");
+  EXPECT_EQ(middle.polygons[0].contours[0][0], (Vertex{0, 50}));
+  EXPECT_NEAR(area("width='100%' viewBox='0 0 7 7'", "width='10' height='10'"), 100, 1e-6);
+  for (const char* root : {"width='10furlongs'", "width='-3' viewBox='0 0 1 1'", "width='9' viewBox='0 0 1'",
+                           "width='9' viewBox='0 0 0 1'"})
+    EXPECT_THROW(area(root, "width='10' height='10'"), InputError) << root;
 }
 
 TEST(SvgShapes, RefusesWhatItWouldGetWrong) {

@@ -4,12 +4,14 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/base/version.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/sensor/photo_current.h>
 #include <petzval/simulate/target.h>
+#include <petzval/wave/gaussian_otf.h>
 #include <petzval/wave/sampled_otf.h>
 
 #include <algorithm>
@@ -56,7 +58,8 @@ std::shared_ptr<const Otf> otf_of(const PupilBlur& blur, const TargetRequest& re
 }
 
 std::shared_ptr<const Otf> otf_of(const GaussianBlur& blur, const TargetRequest&, double) {
-  return gaussian_otf(blur.sigma_um);
+  if (blur.ratio == 1) return gaussian_otf(blur.sigma_um);
+  return elliptical_gaussian_otf(blur.sigma_um, blur.ratio * blur.sigma_um);
 }
 
 std::shared_ptr<const Otf> otf_of(const LensBlur& blur, const TargetRequest&, double nm) {
@@ -82,7 +85,8 @@ TargetImage levels(const TargetRequest& request, const Otf& otf) {
 }
 
 std::string blur_text(const GaussianBlur& blur) {
-  return fmt::format("a Gaussian of {:g} um", blur.sigma_um);
+  if (blur.ratio == 1) return fmt::format("a Gaussian of {:g} um", blur.sigma_um);
+  return fmt::format("a Gaussian of {:g} x {:g} um", blur.sigma_um, blur.ratio * blur.sigma_um);
 }
 std::string blur_text(const PupilBlur& blur) {
   return fmt::format("a pupil at f/{:g}", blur.f_number);
@@ -148,6 +152,19 @@ TargetOptions target_options(const TargetRequest& request) {
   options.photosite = request.sensor ? request.sensor->photosite : request.photosite;
   if (request.sensor) require_room(request.columns, request.rows, *request.sensor);
   return options;
+}
+
+GaussianBlur gaussian_of_mtf50(double mtf50_cpp, double pitch_um, const Photosite& photosite) {
+  if (!(mtf50_cpp > 0) || !std::isfinite(mtf50_cpp))
+    throw InputError(fmt::format("`mtf50` {}: a positive number [cycles/pixel] is right", mtf50_cpp));
+  const double site = std::abs(photosite.transform(mtf50_cpp, 0));
+  if (!(site > 0.5))
+    throw InputError(
+        fmt::format("`mtf50` {:g} cycles/pixel: there the photosites alone leave {:.3f}; a lower "
+                    "frequency, or smaller photosites, are right",
+                    mtf50_cpp, site));
+  // exp(−2π²σ²f²) · site = ½.
+  return {std::sqrt(std::log(2 * site) / 2) / (pi * mtf50_cpp) * pitch_um, 1};
 }
 
 std::shared_ptr<const Otf> target_otf(const TargetRequest& request, double wavelength_nm) {

@@ -28,7 +28,8 @@ struct PupilBlur {
 
 /// The same Gaussian at every wavelength.
 struct GaussianBlur {
-  double sigma_um = 0;  ///< along each axis
+  double sigma_um = 0;  ///< along the picture's x axis
+  double ratio = 1;     ///< of the standard deviation along y to that along x
 };
 
 /// A lens at a field, as its file defines fields; the image lies below the middle.
@@ -62,6 +63,10 @@ struct TargetRequest {
 
 /// Frame, pitch and photosite, the sensor's where there is one.
 TargetOptions target_options(const TargetRequest& request);
+
+/// The Gaussian with which edges upright in the picture have this MTF50, photosites included.
+/// \throws InputError for a frequency at which the photosites alone leave less than half.
+GaussianBlur gaussian_of_mtf50(double mtf50_cpp, double pitch_um, const Photosite& photosite);
 
 /// Of one wavelength. \throws InputError for optics that are none, or a field that no ray reaches.
 std::shared_ptr<const Otf> target_otf(const TargetRequest& request, double wavelength_nm);

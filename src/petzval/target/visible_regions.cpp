@@ -151,17 +151,39 @@ std::vector<Region> visible_regions(const TargetScene& scene) {
   return regions;
 }
 
-std::vector<Contour> wound_outline(const std::vector<Contour>& contours) {
+std::vector<std::vector<Contour>> simple_parts(const std::vector<Contour>& contours, FillRule rule) {
   for (const Contour& contour : contours)
     for (const Vertex& v : contour)
       if (!(std::abs(v.x) <= target_reach_px && std::abs(v.y) <= target_reach_px))
         throw InputError(
             fmt::format("corner ({}, {}) is not a number within {:g} pixels", v.x, v.y, target_reach_px));
   ClipperLib::Clipper clipper;
+  // Parts that touch at a corner are parts; to look for such corners takes the square of their number.
+  constexpr std::size_t most_corners = 4096;
+  std::size_t corners = 0;
+  for (const Contour& contour : contours) corners += contour.size();
+  clipper.StrictlySimple(corners <= most_corners);
   clipper.AddPaths(to_clipper(contours), ClipperLib::ptSubject, true);
-  ClipperLib::Paths outline;
-  clipper.Execute(ClipperLib::ctUnion, outline, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-  return from_clipper(outline);
+  const ClipperLib::PolyFillType type =
+      rule == FillRule::nonzero ? ClipperLib::pftNonZero : ClipperLib::pftEvenOdd;
+  ClipperLib::PolyTree tree;
+  clipper.Execute(ClipperLib::ctUnion, tree, type, type);
+  std::vector<std::vector<Contour>> parts;
+  for (const ClipperLib::PolyNode* node = tree.GetFirst(); node != nullptr; node = node->GetNext()) {
+    if (node->IsHole()) continue;
+    ClipperLib::Paths paths{node->Contour};
+    for (const ClipperLib::PolyNode* hole : node->Childs) paths.push_back(hole->Contour);
+    parts.push_back(from_clipper(paths));
+  }
+  return parts;
+}
+
+bool meets_frame(const TargetScene& scene, int columns, int rows) {
+  for (const Polygon& polygon : scene.polygons)
+    for (const Contour& contour : polygon.contours)
+      if (!clip_to_box(contour, {0, 0}, {static_cast<double>(columns), static_cast<double>(rows)}).empty())
+        return true;
+  return false;
 }
 
 Contour clip_to_box(const Contour& contour, Vertex low, Vertex high) {

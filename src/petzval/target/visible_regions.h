@@ -20,10 +20,16 @@ struct Region {
 /// which rounds corners to 2^-24 of a pixel.
 std::vector<Region> visible_regions(const TargetScene& scene);
 
-/// The same area as contours that do not cross, for the even-odd rule, of contours under the non-zero rule: a
-/// place is inside if they wind about it at all. Corners are rounded as by visible_regions. \throws
-/// InputError for corners that are not finite or out of reach.
-std::vector<Contour> wound_outline(const std::vector<Contour>& contours);
+/// What is inside contours that cross: where they wind about a place at all, or an odd number of times.
+enum class FillRule { nonzero, evenodd };
+
+/// The same area, of contours that may cross, as parts whose contours do not, each an outline and its holes.
+/// Corners are rounded as by visible_regions. \throws InputError for corners that are not finite or out of
+/// reach.
+std::vector<std::vector<Contour>> simple_parts(const std::vector<Contour>& contours, FillRule rule);
+
+/// Whether anything of the polygons lies within a picture of this size.
+bool meets_frame(const TargetScene& scene, int columns, int rows);
 
 /// The part of a contour inside a box, as one contour; where the box is left it runs along its border
 /// (Sutherland & Hodgman, Commun. ACM 17 (1974) 32). Empty if nothing is inside.

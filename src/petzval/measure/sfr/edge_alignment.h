@@ -33,7 +33,7 @@ void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess);
 struct EdgeAlignment {
   static constexpr int most = 6;
   int order = 1;
-  double change[most] = {};  ///< of bend[k − 1] for k = 1 … order; 0 is an offset, left to the profile
+  double change[most] = {};     ///< of bend[k − 1] for k = 1 … order; 0 is an offset, left to the profile
   double deviation[most] = {};  ///< standard deviation of each
   double significance(int k) const { return std::abs(change[k]) / std::max(1e-300, deviation[k]); }
 };

@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/target/crossings.h>
 #include <petzval/target/formats/polygon_file.h>
+#include <petzval/target/visible_regions.h>
 
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 namespace petzval {
@@ -51,7 +54,7 @@ class Words {
     long long count = 0;
     const auto [end, error] = std::from_chars(word_.data(), word_.data() + word_.size(), count);
     if (error != std::errc() || end != word_.data() + word_.size())
-      fail(fmt::format("'{}' where the number of corners, 'level', 'ground' or 'hole' should stand",
+      fail(fmt::format("'{}' where the number of corners, 'level', 'ground', 'rule' or 'hole' should stand",
                        printable()));
     if (count < 3) fail(fmt::format("a polygon of {} corners; at least three are right", count));
     if (static_cast<unsigned long long>(count) > most_corners)
@@ -85,6 +88,14 @@ Contour read_corners(Words& words, std::size_t count) {
   return contour;
 }
 
+std::optional<FillRule> read_rule(Words& words) {
+  if (!words.next()) words.fail("the file ends where nonzero, evenodd or simple should stand");
+  if (words.word() == "nonzero") return FillRule::nonzero;
+  if (words.word() == "evenodd") return FillRule::evenodd;
+  if (words.word() != "simple") words.fail("a rule other than nonzero, evenodd and simple");
+  return std::nullopt;
+}
+
 }  // namespace
 
 TargetScene parse_polygons(const std::string& text, const std::string& name) {
@@ -92,6 +103,16 @@ TargetScene parse_polygons(const std::string& text, const std::string& name) {
   scene.source = name;
   Words words(text, scene.source);
   double level = 0;
+  std::optional<FillRule> rule;
+  // A polygon is complete when something else begins.
+  const auto resolve = [&] {
+    if (!rule || scene.polygons.empty() || scene.polygons.back().contours.empty()) return;
+    const Polygon polygon = scene.polygons.back();
+    if (!find_crossing(polygon)) return;
+    scene.polygons.pop_back();
+    for (std::vector<Contour>& part : simple_parts(polygon.contours, *rule))
+      scene.polygons.push_back({std::move(part), polygon.level, polygon.line});
+  };
   std::size_t corners = 0;
   while (words.next()) {
     const int line = words.line();
@@ -100,7 +121,11 @@ TargetScene parse_polygons(const std::string& text, const std::string& name) {
       level = words.number("a level");
     } else if (words.word() == "ground") {
       scene.ground = words.number("the level of the ground");
+    } else if (words.word() == "rule") {
+      resolve();
+      rule = read_rule(words);
     } else {
+      if (!hole) resolve();
       if (hole && scene.polygons.empty()) words.fail("a hole before any polygon");
       if (hole && !words.next())
         words.fail("the file ends where the number of a hole's corners should stand");
@@ -113,6 +138,7 @@ TargetScene parse_polygons(const std::string& text, const std::string& name) {
         scene.polygons.push_back({{std::move(contour)}, level, line});
     }
   }
+  resolve();
   if (scene.polygons.empty())
     throw InputError(name,
                      "no polygon: a file of polygons holds numbers of corners, each followed by its corners");

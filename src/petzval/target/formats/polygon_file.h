@@ -16,6 +16,8 @@ namespace petzval {
 ///     level 0.25          of the polygons that follow (else 0)
 ///     4  10 10  50 10  50 50  10 50
 ///     hole 3  20 20  40 20  30 40      one more contour of the polygon before it
+///     rule nonzero        outlines that follow may cross themselves: what they wind about is inside;
+///                         evenodd: what they wind about an odd number of times; simple (else): they may not
 ///
 /// A corner that repeats the one before it is dropped, as MTF Mapper drops it. \throws InputError with the
 /// line for anything else, and for a file without polygons or with more than 10 million corners.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/target/crossings.h>
 #include <petzval/target/formats/svg_path.h>
 #include <petzval/target/formats/svg_shapes.h>
+#include <petzval/target/formats/svg_style.h>
 #include <petzval/target/visible_regions.h>
 
 #include <algorithm>
@@ -55,24 +58,6 @@ struct Style {
   SvgTransform transform;
 };
 
-/// An attribute, or the property of the same name in style="…", which counts more.
-std::string property(const pugi::xml_node& node, const char* name) {
-  const std::string_view style = node.attribute("style").value();
-  for (std::size_t at = 0; at < style.size();) {
-    const std::size_t end = std::min(style.find(';', at), style.size());
-    const std::string_view part = style.substr(at, end - at);
-    const std::size_t colon = part.find(':');
-    const auto trimmed = [](std::string_view text) {
-      const std::size_t from = text.find_first_not_of(" \t\n\r"), to = text.find_last_not_of(" \t\n\r");
-      return from == std::string_view::npos ? std::string_view() : text.substr(from, to - from + 1);
-    };
-    if (colon != std::string_view::npos && trimmed(part.substr(0, colon)) == name)
-      return std::string(trimmed(part.substr(colon + 1)));
-    at = end + 1;
-  }
-  return node.attribute(name).value();
-}
-
 double number(const pugi::xml_node& node, const char* name, double otherwise) {
   const pugi::xml_attribute attribute = node.attribute(name);
   if (!attribute) return otherwise;
@@ -85,15 +70,65 @@ double number(const pugi::xml_node& node, const char* name, double otherwise) {
   return value;
 }
 
+/// A length in pixels, 96 to the inch as CSS has it; nothing for shares of the page or where there is none.
+std::optional<double> pixel_length(const pugi::xml_node& node, const char* name) {
+  const std::string_view text = node.attribute(name).value();
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (text.empty() || unit == "%") return std::nullopt;
+  constexpr double inch = 96;
+  for (const auto& [known, pixels] : {std::pair<std::string_view, double>{"", 1},
+                                      {"px", 1},
+                                      {"mm", inch / 25.4},
+                                      {"cm", inch / 2.54},
+                                      {"in", inch},
+                                      {"pt", inch / 72},
+                                      {"pc", inch / 6}})
+    if (error == std::errc() && unit == known && value > 0 && std::isfinite(value)) return value * pixels;
+  throw InputError(
+      fmt::format("{}=\"{}\": a positive length in px, mm, cm, in, pt or pc is right", name, quotable(text)));
+}
+
+/// What makes pixels of the drawing's units: the viewBox fills width and height, in the middle and as large
+/// as both allow (SVG 1.1, section 7.8). Without these a unit is a pixel.
+SvgTransform pixels_of(const pugi::xml_node& root) {
+  const std::optional<double> width = pixel_length(root, "width"), height = pixel_length(root, "height");
+  const std::string box = root.attribute("viewBox").value();
+  if (box.empty() || (!width && !height)) return {};
+  double x = 0, y = 0, w = 0, h = 0;
+  std::string plain = box;
+  std::replace(plain.begin(), plain.end(), ',', ' ');
+  char end = 0;
+  if (std::sscanf(plain.c_str(), "%lf %lf %lf %lf %c", &x, &y, &w, &h, &end) != 4 || !(w > 0 && h > 0) ||
+      !std::isfinite(x + y + w + h))
+    throw InputError(
+        fmt::format("viewBox=\"{}\": four numbers, the last two positive, are right", quotable(box)));
+  const double across = width ? *width / w : HUGE_VAL, down = height ? *height / h : HUGE_VAL;
+  const double scale = std::min(across, down);
+  SvgTransform transform;
+  transform.a = transform.d = scale;
+  transform.e = -x * scale + (width ? 0.5 * (*width - w * scale) : 0);
+  transform.f = -y * scale + (height ? 0.5 * (*height - h * scale) : 0);
+  return transform;
+}
+
 /// The path data that says the same as a basic shape; empty for what is no shape.
 std::string path_data(const pugi::xml_node& node) {
   const std::string_view name = node.name();
   if (name == "path") return node.attribute("d").value();
   if (name == "polygon") return fmt::format("M {} Z", node.attribute("points").value());
   if (name == "rect") {
-    if (number(node, "rx", 0) != 0 || number(node, "ry", 0) != 0)
-      throw InputError("rounded corners; draw them as a path");
     const double w = number(node, "width", 0), h = number(node, "height", 0);
+    // A radius that is not given is the other one; neither is more than half a side (SVG 1.1, section 9.2).
+    double rx = number(node, "rx", number(node, "ry", 0)), ry = number(node, "ry", rx);
+    rx = std::min(rx, w / 2), ry = std::min(ry, h / 2);
+    if (rx > 0 && ry > 0) {
+      const std::string arc = fmt::format("a {} {} 0 0 1", rx, ry);
+      return fmt::format("M {} {} h {} {} {} {} v {} {} {} {} h {} {} {} {} v {} {} {} {} Z",
+                         number(node, "x", 0) + rx, number(node, "y", 0), w - 2 * rx, arc, rx, ry, h - 2 * ry,
+                         arc, -rx, ry, 2 * rx - w, arc, -rx, -ry, 2 * ry - h, arc, rx, -ry);
+    }
     return fmt::format("M {} {} h {} v {} h {} Z", number(node, "x", 0), number(node, "y", 0), w, h, -w);
   }
   if (name == "circle" || name == "ellipse") {
@@ -107,22 +142,21 @@ std::string path_data(const pugi::xml_node& node) {
 
 class Drawing {
  public:
-  explicit Drawing(TargetScene& scene) : scene_(scene) {}
+  Drawing(TargetScene& scene, SvgStyleSheet sheet) : scene_(scene), sheet_(std::move(sheet)) {}
 
   void walk(const pugi::xml_node& node, Style style, int depth) {
     constexpr int deepest = 200;
     const std::string name = node.name();
     try {
       if (depth > deepest) throw InputError("groups nested too deeply");
-      if (const std::string fill = property(node, "fill"); !fill.empty()) style.fill = fill;
-      if (const std::string rule = property(node, "fill-rule"); !rule.empty()) style.fill_rule = rule;
+      if (const std::string fill = styled(node, "fill"); !fill.empty()) style.fill = fill;
+      if (const std::string rule = styled(node, "fill-rule"); !rule.empty()) style.fill_rule = rule;
       if (node.attribute("transform"))
         style.transform = style.transform * parse_svg_transform(node.attribute("transform").value());
-      if (name == "text" || name == "image" || name == "use" || name == "style" || name == "line" ||
-          name == "polyline")
+      if (name == "text" || name == "image" || name == "use" || name == "line" || name == "polyline")
         throw InputError(
             "only filled shapes are read: path, polygon, rect, circle, ellipse; convert it to a path");
-      const std::string stroke = property(node, "stroke");
+      const std::string stroke = styled(node, "stroke");
       if (!stroke.empty() && stroke != "none")
         throw InputError("strokes are not read; convert them to paths");
       add(path_data(node), style);
@@ -139,7 +173,7 @@ class Drawing {
     return id.empty() ? "" : " '" + id.substr(0, 40) + "'";
   }
   static bool is_silent(std::string_view name) {
-    return name == "defs" || name == "title" || name == "desc" || name == "metadata" ||
+    return name == "defs" || name == "style" || name == "title" || name == "desc" || name == "metadata" ||
            name.find(':') != std::string_view::npos;
   }
 
@@ -148,12 +182,26 @@ class Drawing {
     if (!level) return;
     Polygon polygon{parse_svg_path(data, style.transform), *level, 0};
     if (polygon.contours.empty()) throw InputError("it encloses nothing");
-    if (style.fill_rule != "evenodd" && polygon.contours.size() > 1)
-      polygon.contours = wound_outline(polygon.contours);
-    scene_.polygons.push_back(std::move(polygon));
+    const FillRule rule = style.fill_rule == "evenodd" ? FillRule::evenodd : FillRule::nonzero;
+    const bool resolved =
+        (rule == FillRule::nonzero && polygon.contours.size() > 1) || find_crossing(polygon);
+    if (!resolved) return scene_.polygons.push_back(std::move(polygon));
+    for (std::vector<Contour>& part : simple_parts(polygon.contours, rule))
+      scene_.polygons.push_back({std::move(part), *level, 0});
+  }
+
+  /// style="…" counts more than the style sheet, and that more than attributes.
+  std::string styled(const pugi::xml_node& node, const char* name) const {
+    if (const std::string own = declared(node.attribute("style").value(), name); !own.empty()) return own;
+    if (const std::string rule =
+            sheet_.property(node.name(), node.attribute("id").value(), node.attribute("class").value(), name);
+        !rule.empty())
+      return rule;
+    return node.attribute(name).value();
   }
 
   TargetScene& scene_;
+  SvgStyleSheet sheet_;
 };
 
 }  // namespace
@@ -167,7 +215,16 @@ TargetScene parse_svg_shapes(const std::string& text, const std::string& name) {
     throw InputError(name, fmt::format("no sound XML: {} at byte {}", result.description(), result.offset));
   const pugi::xml_node root = document.document_element();
   if (std::string_view(root.name()) != "svg") throw InputError(name, "no SVG drawing: its root is not <svg>");
-  Drawing(scene).walk(root, {}, 0);
+  Style style;
+  SvgStyleSheet sheet;
+  try {
+    style.transform = pixels_of(root);
+    for (const pugi::xpath_node& each : root.select_nodes("//*[local-name()='style']"))
+      sheet.add(each.node().text().get());
+  } catch (const InputError& error) {
+    throw InputError(name, error.what());
+  }
+  Drawing(scene, std::move(sheet)).walk(root, style, 0);
   if (scene.polygons.empty()) throw InputError(name, "no filled shape in it");
   return scene;
 }
