@@ -32,6 +32,8 @@ struct PsfOptions {
   double wanted_share = 0.99;  ///< of the light, inside a chosen window
   double widest_wave_window_lambda_n = 500;
   int radial_nodes = 0, azimuths = 0;
+  /// Of a spot of rays, where waves would take too long: as many as fill 256 × 256 cells by a dozen each.
+  int spot_radial_nodes = 384;
 };
 
 /// \returns nothing when no ray of the field passes.
