@@ -206,20 +206,27 @@ TEST(FrameTable, SeesWhereTheFieldLies) {
 
 TEST(FrameTable, RowsOfCellsAreTheirPlaces) {
   const LensDataTable table = frame_table();
-  Scene scene(400, 300, {550}, 18, std::nullopt);
-  for (int row = 0; row < 300; ++row)
-    for (int column = 0; column < 400; ++column)
-      scene.band(0)[static_cast<std::size_t>(row * 400 + column)] = static_cast<float>(1 + 0.01 * column + 0.02 * row);
-  const SensorGeometry grid{150, 110, cell_um};
-  const SceneMap map(table, {}, {}, 550, scene, 1);
-  const CellPlane plane = ideal_irradiance(scene, 0, map, grid, 4, Surround::error);
-  for (int row = 0; row < grid.rows; row += 13)
-    for (int column = 0; column < grid.columns; column += 17) {
-      const SceneMap::Place at = map.place(grid.x_mm(column + 0.5), grid.y_mm(row + 0.5));
-      // Of a slope the mean over a rectangle is the value in its middle.
-      const double radiance = 1 + 0.01 * (at.column - 0.5) + 0.02 * (at.row - 0.5);
-      EXPECT_NEAR(double(plane.row(static_cast<std::size_t>(row))[column]) / (at.g_source_sr * radiance), 1, 2e-6);
-    }
+  // Cells that see half a sample, several at a time, and two samples, in parts.
+  for (const int columns : {100, 400}) {
+    const int rows = columns * 3 / 4;
+    Scene scene(columns, rows, {550}, 18, std::nullopt);
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column)
+        scene.band(0)[static_cast<std::size_t>(row * columns + column)] =
+            static_cast<float>(1 + 0.01 * column + 0.02 * row);
+    const SensorGeometry grid{150, 110, cell_um};
+    const SceneMap map(table, {}, {}, 550, scene, 1);
+    const CellPlane plane = ideal_irradiance(scene, 0, map, grid, 4, Surround::error);
+    for (int row = 0; row < grid.rows; row += 13)
+      for (int column = 0; column < grid.columns; column += 17) {
+        const SceneMap::Place at = map.place(grid.x_mm(column + 0.5), grid.y_mm(row + 0.5));
+        // Of a slope the mean over a rectangle is the value in its middle; g_source changes by a thousandth
+        // of itself across a cell, radiance by 4 %: a twelfth of the product of both.
+        const double radiance = 1 + 0.01 * (at.column - 0.5) + 0.02 * (at.row - 0.5);
+        EXPECT_NEAR(double(plane.row(static_cast<std::size_t>(row))[column]) / (at.g_source_sr * radiance), 1,
+                    4e-6);
+      }
+  }
 }
 
 /// The whole way, for a star: its flux, and where its light has its centre.

@@ -53,6 +53,27 @@ MtfRow mtf_of(const Lens& lens, double field, double azimuth_deg = 0, bool geome
   return mtf_table(lens, at_field(field, azimuth_deg), options).front();
 }
 
+/// The difference of two PSFs of one grid against the first, root mean square.
+double difference_of(const Psf& a, const Psf& b) {
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    difference += std::pow(double(a.values[i]) * a.captured - double(b.values[i]) * b.captured, 2);
+    size += std::pow(double(a.values[i]) * a.captured, 2);
+  }
+  return std::sqrt(difference / size);
+}
+
+/// Samples that say everything, about all of a spot of the double Gauss.
+PsfOptions sampled_window() {
+  PsfOptions options;
+  options.size = 240;
+  options.spacing_um = 0.5;
+  return options;
+}
+
+/// The PSF of a pupil by fits against that of traced nodes: by Parseval as good as the MTF.
+constexpr double psf_tolerance = 1e-3;
+
 /// What the same light does to two lenses must be the same but for how the two are computed: outlines by
 /// evenly spread azimuths, waves by fits, each good to 1e-4 of an MTF (CONVENTIONS).
 constexpr double mtf_tolerance = 2e-4;
@@ -81,8 +102,10 @@ TEST(PosedLens, TurnedAsAWholeSeesTheFieldMoved) {
     EXPECT_GT(std::abs(mtf_of(turned, 16 - field, 0, geometric).tangential - here.tangential), 0.005)
         << "8 degrees on the other side must differ";
   }
-  const Psf there = *point_spread(seen, chief), here = *point_spread(own, designed);
-  EXPECT_NEAR(there.strehl / here.strehl, 1, 1e-3);
+  // The turned sensor's own t runs along the same line, from the same light.
+  const Psf there = *point_spread(seen, chief, sampled_window()),
+            here = *point_spread(own, designed, sampled_window());
+  EXPECT_LT(difference_of(here, there), psf_tolerance);
 }
 
 TEST(PosedLens, DecentredAsAWholeMovesTheImage) {
@@ -112,7 +135,9 @@ TEST(PosedLens, APoseTooSmallToMatterChangesNothing) {
     EXPECT_NEAR(mtf_of(posed, field).tangential, mtf_of(lens, field).tangential, mtf_tolerance) << field;
     EXPECT_NEAR(mtf_of(posed, field).sagittal, mtf_of(lens, field).sagittal, mtf_tolerance) << field;
     EXPECT_NEAR(mtf_of(posed, field, 0, true).sagittal, mtf_of(lens, field, 0, true).sagittal, 1e-3) << field;
-    EXPECT_NEAR(point_spread(seen, chief)->strehl / point_spread(own, designed)->strehl, 1, 1e-3) << field;
+    const Psf there = *point_spread(seen, chief, sampled_window()),
+              here = *point_spread(own, designed, sampled_window());
+    EXPECT_LT(difference_of(here, there), psf_tolerance) << field;
   }
 }
 
@@ -128,7 +153,8 @@ TEST(PosedLens, AzimuthsGoAroundTheAxis) {
     EXPECT_NEAR(x.tangential, y.tangential, 1e-6) << azimuth;
     EXPECT_NEAR(x.sagittal, y.sagittal, 1e-6) << azimuth;
   }
-  EXPECT_GT(std::abs(mtf_of(about_x, 10, 0).tangential - mtf_of(about_x, 10, 180).tangential), 0.02);
+  EXPECT_GT(std::abs(mtf_of(about_x, 10, 0).sagittal - mtf_of(about_x, 10, 180).sagittal),
+            50 * mtf_tolerance);
   // And a field at an azimuth of 180° is the negative field.
   EXPECT_NEAR(mtf_of(about_x, 10, 180).tangential, mtf_of(about_x, -10).tangential, mtf_tolerance);
 }
@@ -138,7 +164,9 @@ TEST(PosedLens, MtfIsTheTransformOfThePsf) {
   const PupilModel as_psf{PupilModel::Amplitude::light, PupilModel::Phase::plane_waves};
   FieldTracer tracer(lens, 550, Tracer::Clip::apertures, 30);
   const ChiefRay chief = *tracer.chief_ray(9);
-  const Psf psf = *point_spread(tracer, chief);
+  PsfOptions window = sampled_window();
+  window.size = 400;  // beyond the spot on every side
+  const Psf psf = *point_spread(tracer, chief, window);
   const ExitPupil pupil = *ExitPupil::of(tracer, chief);
   for (const double frequency : {20.0, 60.0, 120.0}) {
     std::complex<double> tangential = 0, sagittal = 0;
