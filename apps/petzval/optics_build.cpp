@@ -118,8 +118,9 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
       ->excludes(sensor);
   command->add_option("--fields", options->field_count, "Number of fields, the axis included")
       ->capture_default_str();
-  command->add_option("--places", options->frame_places,
-                      "Places along the longer side, of a table over the frame: for lenses with poses or blades")
+  command
+      ->add_option("--places", options->frame_places,
+                   "Places along the longer side, of a table over the frame: for lenses with poses or blades")
       ->capture_default_str();
   command->add_flag("--over-frame", options->over_frame, "Places over the frame for a centred lens too");
   options->camera.add_stop_and_focus(*command, Focus::design());

@@ -229,16 +229,17 @@ void print_frame(const LensDataTable& table) {
              frame.y_mm.back());
   fmt::print("{:>10} {:>10} {:>15} {:>13} {:>13} {:>13} {:>13} {:>11} {:>13} {:>9}\n", "x' [mm]", "y' [mm]",
              "wavelength [nm]", fmt::format("object x [{}]", table.field_unit()),
-             fmt::format("object y [{}]", table.field_unit()), "g_source [sr]", "g_sensor [sr]", "PSF samples",
-             "spacing [um]", "captured");
+             fmt::format("object y [{}]", table.field_unit()), "g_source [sr]", "g_sensor [sr]",
+             "PSF samples", "spacing [um]", "captured");
   for (std::size_t place = 0; place < table.places(); ++place)
     for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
       const std::size_t i = table.index(place, w);
       const Psf& psf = table.psf[i];
-      fmt::print("{:>10.4g} {:>10.4g} {:>15g} {:>13.5f} {:>13.5f} {:>13.6f} {:>13.6f} {:>11} {:>13.4f} {:>9.4f}\n",
-                 frame.x_mm[place % frame.x_mm.size()], frame.y_mm[place / frame.x_mm.size()],
-                 table.wavelengths_nm[w], frame.object_x[i], frame.object_y[i], table.g_source_sr[i],
-                 table.g_sensor_sr[i], fmt::format("{0}x{0}", psf.size), psf.spacing_um, psf.captured);
+      fmt::print(
+          "{:>10.4g} {:>10.4g} {:>15g} {:>13.5f} {:>13.5f} {:>13.6f} {:>13.6f} {:>11} {:>13.4f} {:>9.4f}\n",
+          frame.x_mm[place % frame.x_mm.size()], frame.y_mm[place / frame.x_mm.size()],
+          table.wavelengths_nm[w], frame.object_x[i], frame.object_y[i], table.g_source_sr[i],
+          table.g_sensor_sr[i], fmt::format("{0}x{0}", psf.size), psf.spacing_um, psf.captured);
     }
 }
 

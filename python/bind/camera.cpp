@@ -242,10 +242,12 @@ void bind_plan(nb::module_& module) {
           "Whether places lie over the frame in two dimensions; then fields and heights are empty, and "
           "what is by field is by place, row by row.")
       .def_prop_ro(
-          "image_x_mm", [](const LensDataTable& t) { return array_of(t.frame ? t.frame->x_mm : std::vector<double>()); },
+          "image_x_mm",
+          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->x_mm : std::vector<double>()); },
           "Places along x', of a table over the frame.")
       .def_prop_ro(
-          "image_y_mm", [](const LensDataTable& t) { return array_of(t.frame ? t.frame->y_mm : std::vector<double>()); },
+          "image_y_mm",
+          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->y_mm : std::vector<double>()); },
           "Places along y', of a table over the frame.")
       .def("__repr__", [](const LensDataTable& t) {
         return fmt::format("<LensDataTable of '{}': {} {}, {} wavelengths>", t.lens_name, t.places(),

@@ -111,14 +111,17 @@ TEST(FrameTable, KernelsAreTheFormulasAtAndBetweenPlaces) {
     const PsfField psfs(table, 550, cell_um);
     EXPECT_EQ(psfs.symmetry(), KernelSymmetry::none);
     // At places the window's spline (5e-5) and what refinement does to samples count; between them a cubic
-    // mixture of PSFs that turn by 0.18 rad from place to place: (0.18)^3 / 10 of what is not in their moments.
+    // mixture of PSFs that turn by 0.18 rad from place to place: (0.18)^3 / 10 of what is not in their
+    // moments.
     for (const double x : {-0.48, 0.0, 0.32})
       for (const double y : {-0.45, 0.15})
-        EXPECT_LT(relative_difference(psfs.kernel_at(x, y), formula_kernel(x, y, cell_um, psfs.radius())), 1e-3)
+        EXPECT_LT(relative_difference(psfs.kernel_at(x, y), formula_kernel(x, y, cell_um, psfs.radius())),
+                  1e-3)
             << x << " " << y << " " << turned;
     for (const double x : {-0.56, -0.03, 0.41})
       for (const double y : {-0.38, 0.02, 0.5})
-        EXPECT_LT(relative_difference(psfs.kernel_at(x, y), formula_kernel(x, y, cell_um, psfs.radius())), 3e-3)
+        EXPECT_LT(relative_difference(psfs.kernel_at(x, y), formula_kernel(x, y, cell_um, psfs.radius())),
+                  3e-3)
             << x << " " << y << " " << turned;
   }
 }

@@ -19,7 +19,9 @@ LatticeSpline spline_of(const std::vector<double>& x, const std::vector<double>&
 
 TEST(LatticeSpline, MeetsBicubicsEverywhere) {
   // A spline without knots where four points end is the cubic through them.
-  const auto f = [](double x, double y) { return (1 + x - 2 * x * x * x) * (3 - y + y * y + 0.5 * y * y * y); };
+  const auto f = [](double x, double y) {
+    return (1 + x - 2 * x * x * x) * (3 - y + y * y + 0.5 * y * y * y);
+  };
   const LatticeSpline spline = spline_of({-1, -0.3, 0.2, 0.9, 1.4}, {-2, -1, 0.5, 1, 2.5}, f);
   constexpr double h = 1e-6;
   for (const double x : {-1.0, -0.7, 0.0, 0.21, 1.3})
@@ -72,7 +74,8 @@ TEST(LatticeSpline, RowsAreTheSurface) {
       const double at_x = 0.3 * x[i] + 0.7 * x[i + 1];
       EXPECT_NEAR(values[i](at_x), spline(at_x, at_y), 1e-12);
       EXPECT_NEAR(along_y[i](at_x), spline.at(at_x, at_y).along_y, 1e-12);
-      EXPECT_NEAR(values[i].derivative(at_x), spline.at(at_x, at_y).along_x, at_y < -1 || at_y > 2 ? 3 : 1e-12);
+      EXPECT_NEAR(values[i].derivative(at_x), spline.at(at_x, at_y).along_x,
+                  at_y < -1 || at_y > 2 ? 3 : 1e-12);
     }
   }
   EXPECT_NEAR(spline(1.25, 1.5), (f(1, 1) + f(1.5, 1) + f(1, 2) + f(1.5, 2)) / 4, 1e-12) << "the flat patch";

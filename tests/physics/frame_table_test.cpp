@@ -39,7 +39,8 @@ Scene checkerboard(double angle_deg) {
   Scene scene(900, 600, {nm}, angle_deg, std::nullopt);
   for (int row = 0; row < 600; ++row)
     for (int column = 0; column < 900; ++column)
-      scene.band(0)[static_cast<std::size_t>(row * 900 + column)] = (row / 30 + column / 30) % 2 == 0 ? 1.0F : 0.05F;
+      scene.band(0)[static_cast<std::size_t>(row * 900 + column)] =
+          (row / 30 + column / 30) % 2 == 0 ? 1.0F : 0.05F;
   return scene;
 }
 
@@ -59,8 +60,10 @@ TEST(TableOverFrame, OfACentredLensIsThatByHeight) {
   const SensorGeometry sensor{180, 120, 200};
   const Scene scene = checkerboard(48);
   ImagingOptions options;
-  const SpectralImage by_height = form_image(scene, table_of(lens, sensor, Places::by_height), sensor, options);
-  const SpectralImage over_frame = form_image(scene, table_of(lens, sensor, Places::over_frame), sensor, options);
+  const SpectralImage by_height =
+      form_image(scene, table_of(lens, sensor, Places::by_height), sensor, options);
+  const SpectralImage over_frame =
+      form_image(scene, table_of(lens, sensor, Places::over_frame), sensor, options);
   const double off = difference(over_frame, by_height);
   std::printf("over the frame against by height: %.2e\n", off);
   EXPECT_LT(off, options.product.tolerance);
@@ -149,8 +152,9 @@ TEST(TableOverFrame, KernelsLieAsTracedSpotsDo) {
   const LensDataTable table = table_of(lens, sensor);
   constexpr double cell_um = 8;
   const PsfField psfs(table, nm, cell_um);
-  for (const auto& [field, azimuth] : {std::pair{8.0, 0.0}, std::pair{8.0, 90.0}, std::pair{8.0, 180.0},
-                                       std::pair{8.0, 270.0}, std::pair{13.0, 35.0}, std::pair{13.0, 215.0}}) {
+  for (const auto& [field, azimuth] :
+       {std::pair{8.0, 0.0}, std::pair{8.0, 90.0}, std::pair{8.0, 180.0}, std::pair{8.0, 270.0},
+        std::pair{13.0, 35.0}, std::pair{13.0, 215.0}}) {
     FieldTracer tracer(lens, nm, Tracer::Clip::apertures, azimuth);
     const ChiefRay chief = *tracer.chief_ray(field);
     const double c = std::cos(radians(azimuth)), n = std::sin(radians(azimuth));
@@ -175,13 +179,14 @@ TEST(TableOverFrame, KernelsLieAsTracedSpotsDo) {
     const double window = 0.65 * 0.65;  // smooth_psf.h
     const double kernel_difference = variance(kernel.uu, kernel.mean[0], kernel.mean[0]) -
                                      variance(kernel.vv, kernel.mean[1], kernel.mean[1]),
-                 traced_difference = variance(xx / light, x / light, x / light) -
-                                     variance(yy / light, y / light, y / light);
-    const double size = variance(xx / light, x / light, x / light) + variance(yy / light, y / light, y / light) + window;
+                 traced_difference =
+                     variance(xx / light, x / light, x / light) - variance(yy / light, y / light, y / light);
+    const double size =
+        variance(xx / light, x / light, x / light) + variance(yy / light, y / light, y / light) + window;
     // A twentieth of the spread: diffraction and the window's corners.
     EXPECT_NEAR(kernel_difference, traced_difference, 0.05 * size) << field << " " << azimuth;
-    EXPECT_NEAR(-variance(kernel.uv, kernel.mean[0], kernel.mean[1]), variance(xy / light, x / light, y / light),
-                0.05 * size)
+    EXPECT_NEAR(-variance(kernel.uv, kernel.mean[0], kernel.mean[1]),
+                variance(xy / light, x / light, y / light), 0.05 * size)
         << field << " " << azimuth;
   }
 }

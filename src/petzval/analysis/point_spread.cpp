@@ -216,7 +216,7 @@ std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief
   return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
     const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();
     const double widest = bladed ? options.widest_bladed_window_lambda_n : widest_node_window_lambda_n;
-    if (width_mm > 2 * widest * extent->lambda_n_mm()) 
+    if (width_mm > 2 * widest * extent->lambda_n_mm())
       return traced_spot(tracer, chief, plan.grid(), options.spot_radial_nodes);
     const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths);
     if (!waves) return {};

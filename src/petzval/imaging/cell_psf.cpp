@@ -25,7 +25,8 @@ PsfExtent extent_of(const Psf& psf, double origin_t_um, double origin_s_um) {
     const auto last = std::find_if(row.rbegin(), row.rend(), has_light);
     const double from = double(first - row.begin()) - middle,
                  to = double(size - 1) - double(last - row.rbegin()) - middle;
-    const double s = std::max(std::abs(from - origin_s), std::abs(to - origin_s)), t = std::abs(double(i) - middle - origin);
+    const double s = std::max(std::abs(from - origin_s), std::abs(to - origin_s)),
+                 t = std::abs(double(i) - middle - origin);
     farthest_squared = std::max(farthest_squared, t * t + s * s);
     half_side = std::max({half_side, s, t});
   }

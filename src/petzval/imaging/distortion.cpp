@@ -17,7 +17,8 @@ std::shared_ptr<const SceneLook> look_of(const LensDataTable& table, const Light
                                          double largest_height_mm) {
   if (table.frame) {
     if (fit.polynomial_order != 0)
-      throw InputError("polynomials over field height do not fit a table over the frame; `fit` monotone does");
+      throw InputError(
+          "polynomials over field height do not fit a table over the frame; `fit` monotone does");
     return std::make_shared<FrameLook>(table, centres, wavelength_nm, scene);
   }
   const LightProfile lens(RadialProfiles(table, fit).at_wavelength(wavelength_nm), table, centres,

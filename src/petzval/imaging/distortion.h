@@ -31,9 +31,9 @@ class SceneMap {
   /// Of a centred lens: HeightLook.
   SceneMap(const LightProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
            double largest_height_mm);
-  /// At a wavelength of a table, as its kind has it. \param largest_height_mm  the farthest from the axis that
-  /// place() will be asked for. \throws InputError for a wavelength that the table does not cover, and for a
-  /// polynomial fit of a table over the frame.
+  /// At a wavelength of a table, as its kind has it. \param largest_height_mm  the farthest from the axis
+  /// that place() will be asked for. \throws InputError for a wavelength that the table does not cover, and
+  /// for a polynomial fit of a table over the frame.
   SceneMap(const LensDataTable& table, const LightCentres& centres, RadialFit fit, double wavelength_nm,
            const Scene& scene, double largest_height_mm);
 

@@ -90,10 +90,11 @@ void FrameKernels::find_spreads(const LightCentres& centres, Layer& layer) const
                  tt = mean(light.sums.vv) - t * t;
     const double c = layer.cosines[place], n = layer.sines[place], square = cell_um_ * cell_um_;
     const std::array<double, 2> at_um = PsfAxes{c, n}.to_frame(s, t), offset = centres.frame_offset_mm(entry);
-    spreads[place] = {{(at_um[0] - offset[0] * um_per_mm) / cell_um_, (at_um[1] - offset[1] * um_per_mm) / cell_um_},
-                      (c * c * ss - 2 * c * n * st + n * n * tt) / square,
-                      (c * n * (ss - tt) + (c * c - n * n) * st) / square,
-                      (n * n * ss + 2 * c * n * st + c * c * tt) / square};
+    spreads[place] = {
+        {(at_um[0] - offset[0] * um_per_mm) / cell_um_, (at_um[1] - offset[1] * um_per_mm) / cell_um_},
+        (c * c * ss - 2 * c * n * st + n * n * tt) / square,
+        (c * n * (ss - tt) + (c * c - n * n) * st) / square,
+        (n * n * ss + 2 * c * n * st + c * c * tt) / square};
   });
   const auto spline = [&](const auto& of) {
     std::vector<double> values;

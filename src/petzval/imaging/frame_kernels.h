@@ -20,10 +20,10 @@ namespace petzval {
 PsfReach frame_reach(const LensDataTable& table, double wavelength_nm, double cell_um,
                      const LightCentres& centres);
 
-/// The PSFs of the sixteen places about a place, at the bracketing wavelengths, are each seen through the round
-/// window of a kernel (SmoothPsf), turned as they lie in the table, moved and stretched along their own axes to
-/// the centre and the spread that light has at the place, and mixed: by cubics through four places along x' and
-/// along y' (field_shares()). Centres and spreads over the frame are bicubic splines.
+/// The PSFs of the sixteen places about a place, at the bracketing wavelengths, are each seen through the
+/// round window of a kernel (SmoothPsf), turned as they lie in the table, moved and stretched along their own
+/// axes to the centre and the spread that light has at the place, and mixed: by cubics through four places
+/// along x' and along y' (field_shares()). Centres and spreads over the frame are bicubic splines.
 class FrameKernels : public KernelMaker {
  public:
   /// \throws InputError if the wavelength lies outside the table, or a PSF spans more than 4000 cells.
@@ -51,8 +51,8 @@ class FrameKernels : public KernelMaker {
   struct Layer {
     std::size_t wavelength = 0;
     double weight = 1;
-    std::unique_ptr<Entry[]> entries;      ///< [place]
-    std::vector<double> cosines, sines;    ///< of the azimuths of PSFs
+    std::unique_ptr<Entry[]> entries;          ///< [place]
+    std::vector<double> cosines, sines;        ///< of the azimuths of PSFs
     LatticeSpline mean_x, mean_y, xx, xy, yy;  ///< [cells]
     Spread spread_at(double x_mm, double y_mm) const;
   };

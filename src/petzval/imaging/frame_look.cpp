@@ -68,7 +68,8 @@ double FrameLook::samples_per_mm_at(double x_mm, double y_mm) const {
   return std::max(std::hypot(right.along_x, right.along_y), std::hypot(down.along_x, down.along_y));
 }
 
-void FrameLook::cut(double x_mm, double y_mm, double pitch_mm, int most, std::vector<ScenePart>& parts) const {
+void FrameLook::cut(double x_mm, double y_mm, double pitch_mm, int most,
+                    std::vector<ScenePart>& parts) const {
   constexpr double rounding = 1e-6;
   const double samples = samples_per_mm_at(x_mm, y_mm) * pitch_mm;
   const int count = static_cast<int>(std::clamp(std::ceil(samples - rounding), 1.0, double(most)));
@@ -78,10 +79,10 @@ void FrameLook::cut(double x_mm, double y_mm, double pitch_mm, int most, std::ve
     for (int j = 0; j < count; ++j) {
       const double x = x_mm + (j - (count - 1) / 2.0) * part_mm, y = y_mm + (i - (count - 1) / 2.0) * part_mm;
       const LatticeSpline::Tangent right = right_.at(x, y), down = down_.at(x, y);
-      parts.push_back({{middle_column_ + right.value, middle_row_ + down.value,
-                        std::max(0.0, g_source_sr_(x, y))},
-                       std::abs(right.along_x) * part_mm,
-                       std::abs(down.along_y) * part_mm});
+      parts.push_back(
+          {{middle_column_ + right.value, middle_row_ + down.value, std::max(0.0, g_source_sr_(x, y))},
+           std::abs(right.along_x) * part_mm,
+           std::abs(down.along_y) * part_mm});
     }
 }
 

@@ -5,8 +5,8 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/cell_psf.h>
 #include <petzval/imaging/field_mixture.h>
-#include <petzval/imaging/otf_interpolation.h>
 #include <petzval/imaging/height_kernels.h>
+#include <petzval/imaging/otf_interpolation.h>
 #include <petzval/numeric/interpolation.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ Psf with_partner(const Psf& psf) {
 /// The PSFs of one wavelength of a table: how far they extend, field by field, and what that makes of
 /// `reach`.
 std::vector<PsfExtent> extents_of(const LensDataTable& table, std::size_t wavelength, double cell_um,
-                               const LightCentres& centres, PsfReach& reach) {
+                                  const LightCentres& centres, PsfReach& reach) {
   if (table.fields.empty()) throw InputError("the lens data table has no fields");
   std::vector<std::optional<PsfExtent>> extents(table.fields.size());
   parallel_for(extents.size(), [&](std::size_t field) {
@@ -119,7 +119,7 @@ PsfReach height_reach(const LensDataTable& table, double wavelength_nm, double c
 }
 
 HeightKernels::HeightKernels(const LensDataTable& table, double wavelength_nm, double cell_um,
-                   PsfInterpolation interpolation, const LightCentres& centres)
+                             PsfInterpolation interpolation, const LightCentres& centres)
     : cell_um_(cell_um), interpolation_(interpolation) {
   for (const auto& part : bracketing_wavelengths(table, wavelength_nm)) {
     const std::size_t wavelength = part.first, fields = table.fields.size();
@@ -172,7 +172,7 @@ int HeightKernels::half_of(std::size_t interval) const {
 }
 
 Kernel HeightKernels::mixture_at(double height_mm, std::size_t interval,
-                            const std::array<double, 2>& beyond) const {
+                                 const std::array<double, 2>& beyond) const {
   Kernel lattice(half_of(interval));
   for (const Layer& layer : layers_)
     for (const FieldShare& share : field_shares(layer.height_mm, height_mm))
@@ -214,7 +214,7 @@ Kernel HeightKernels::kernel_at(double x_mm, double y_mm) const {
 }
 
 HeightKernels::MomentCurves::MomentCurves(const std::vector<double>& height_mm,
-                                     const std::vector<MergedPsf>& psfs) {
+                                          const std::vector<MergedPsf>& psfs) {
   using Start = MonotoneCubic::Start;
   const auto curve = [&](Start start, const auto& of) {
     std::vector<double> values;
@@ -250,7 +250,7 @@ HeightKernels::Pair HeightKernels::pair_at(const Layer& layer, double height_mm)
 }
 
 void HeightKernels::add(const Layer& layer, const MergedPsf& psf, const FieldShare& share, double height_mm,
-                   const std::array<double, 2>& beyond, Kernel& lattice) const {
+                        const std::array<double, 2>& beyond, Kernel& lattice) const {
   if (share.weight == 0) return;
   constexpr double least = 0.5, most = 2;
   const Moments own = psf.moments(), wanted = layer.moments.at(height_mm);

@@ -8,8 +8,8 @@
 
 namespace petzval {
 
-HeightLook::HeightLook(const LightProfile& lens, std::optional<double> object_to_sensor_mm, const Scene& scene,
-                       double largest_height_mm)
+HeightLook::HeightLook(const LightProfile& lens, std::optional<double> object_to_sensor_mm,
+                       const Scene& scene, double largest_height_mm)
     : middle_column_(scene.columns() / 2.0),
       middle_row_(scene.rows() / 2.0),
       last_height_mm_(std::min(lens.max_height_mm(), largest_height_mm)),

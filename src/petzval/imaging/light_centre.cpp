@@ -52,7 +52,8 @@ void LightCentres::find_over_frame(const LensDataTable& table) {
   parallel_for(frame_offsets_mm_.size(), [&](std::size_t entry) {
     const LightMoments light = light_moments(table.psf[entry], 0);
     if (!(light.sum > 0)) return;
-    const double s = light.sums.mean[0] / light.sum * mm_per_um, t = light.sums.mean[1] / light.sum * mm_per_um;
+    const double s = light.sums.mean[0] / light.sum * mm_per_um,
+                 t = light.sums.mean[1] / light.sum * mm_per_um;
     const double a = radians(frame.psf_azimuth_deg[entry]);
     frame_offsets_mm_[entry] = {s * std::cos(a) - t * std::sin(a), s * std::sin(a) + t * std::cos(a)};
   });
@@ -69,7 +70,8 @@ void LightCentres::find_over_frame(const LensDataTable& table) {
         if (j > 0) compare(frame.place(i, j - 1), frame.place(i, j), frame.y_mm[j] - frame.y_mm[j - 1]);
       }
     if (!tame)
-      for (std::size_t place = 0; place < frame.count(); ++place) frame_offsets_mm_[table.index(place, w)] = {};
+      for (std::size_t place = 0; place < frame.count(); ++place)
+        frame_offsets_mm_[table.index(place, w)] = {};
   }
 }
 

@@ -9,9 +9,12 @@ namespace petzval {
 
 std::size_t kernel_set_count(KernelSymmetry symmetry) {
   switch (symmetry) {
-    case KernelSymmetry::mirrored: return 1;
-    case KernelSymmetry::turned: return 2;
-    case KernelSymmetry::none: break;
+    case KernelSymmetry::mirrored:
+      return 1;
+    case KernelSymmetry::turned:
+      return 2;
+    case KernelSymmetry::none:
+      break;
   }
   return 4;
 }
@@ -24,8 +27,8 @@ std::size_t kernel_set(const Quadrant& quadrant, std::size_t set_count) {
 
 std::vector<Quadrant> quadrants_of_set(std::size_t set, std::size_t set_count) {
   std::vector<Quadrant> quadrants;
-  for (const Quadrant quadrant : {Quadrant{true, true}, Quadrant{false, true}, Quadrant{true, false},
-                                  Quadrant{false, false}})
+  for (const Quadrant quadrant :
+       {Quadrant{true, true}, Quadrant{false, true}, Quadrant{true, false}, Quadrant{false, false}})
     if (kernel_set(quadrant, set_count) == set) quadrants.push_back(quadrant);
   return quadrants;
 }

@@ -14,7 +14,8 @@ std::unique_ptr<const KernelMaker> kernels_of(const LensDataTable& table, double
   if (!table.frame)
     return std::make_unique<HeightKernels>(table, wavelength_nm, cell_um, interpolation, centres);
   if (interpolation == PsfInterpolation::otf)
-    throw InputError("OTFs are interpolated between field heights, not over the frame; `interpolation` psf does");
+    throw InputError(
+        "OTFs are interpolated between field heights, not over the frame; `interpolation` psf does");
   return std::make_unique<FrameKernels>(table, wavelength_nm, cell_um, centres);
 }
 

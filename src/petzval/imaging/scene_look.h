@@ -37,9 +37,10 @@ class SceneLook {
   virtual ~SceneLook() = default;
 
   virtual ScenePlace place(double x_mm, double y_mm) const = 0;
-  /// What a cell sees about a place, cut into as many parts a side, at most `most`, as make none of them wider
-  /// than a sample.
-  virtual void cut(double x_mm, double y_mm, double pitch_mm, int most, std::vector<ScenePart>& parts) const = 0;
+  /// What a cell sees about a place, cut into as many parts a side, at most `most`, as make none of them
+  /// wider than a sample.
+  virtual void cut(double x_mm, double y_mm, double pitch_mm, int most,
+                   std::vector<ScenePart>& parts) const = 0;
   /// What the cells of a row see of a plane scene.
   virtual void look(const CellRow& cells, RowView& view) const = 0;
 

@@ -13,7 +13,8 @@ namespace {
 
 void require_lattice_axis(const std::vector<double>& axis, const char* name) {
   if (axis.size() < 2)
-    throw InputError(fmt::format("a lattice with {} places along {}: two or more are right", axis.size(), name));
+    throw InputError(
+        fmt::format("a lattice with {} places along {}: two or more are right", axis.size(), name));
   for (std::size_t i = 1; i < axis.size(); ++i)
     if (!(axis[i] > axis[i - 1]))
       throw InputError(
@@ -120,7 +121,8 @@ void LatticeSpline::flatten(std::size_t i, std::size_t j) {
 }
 
 LatticeSpline::Tangent LatticeSpline::at(double x, double y) const {
-  const double inside_x = std::clamp(x, x_.front(), x_.back()), inside_y = std::clamp(y, y_.front(), y_.back());
+  const double inside_x = std::clamp(x, x_.front(), x_.back()),
+               inside_y = std::clamp(y, y_.front(), y_.back());
   const std::size_t i = bracket(x_, inside_x), j = bracket(y_, inside_y);
   const Patch& patch = patches_[patch_index(i, j)];
   const double u = inside_x - x_[i], v = inside_y - y_[j];
@@ -139,7 +141,8 @@ LatticeSpline::Tangent LatticeSpline::at(double x, double y) const {
   return tangent;
 }
 
-void LatticeSpline::row(double y, std::vector<CubicStretch>& values, std::vector<CubicStretch>& along_y) const {
+void LatticeSpline::row(double y, std::vector<CubicStretch>& values,
+                        std::vector<CubicStretch>& along_y) const {
   const double inside_y = std::clamp(y, y_.front(), y_.back()), beyond = y - inside_y;
   const std::size_t j = bracket(y_, inside_y);
   const double v = inside_y - y_[j];
@@ -149,11 +152,10 @@ void LatticeSpline::row(double y, std::vector<CubicStretch>& values, std::vector
     const Patch& patch = patches_[patch_index(i, j)];
     CubicStretch value{x_[i], {}}, slope{x_[i], {}};
     for (std::size_t power = 0; power < 4; ++power) {
-      slope.coefficients[power] =
-          patch[1][power] + v * (2 * patch[2][power] + v * 3 * patch[3][power]);
-      value.coefficients[power] =
-          patch[0][power] + v * (patch[1][power] + v * (patch[2][power] + v * patch[3][power])) +
-          beyond * slope.coefficients[power];
+      slope.coefficients[power] = patch[1][power] + v * (2 * patch[2][power] + v * 3 * patch[3][power]);
+      value.coefficients[power] = patch[0][power] +
+                                  v * (patch[1][power] + v * (patch[2][power] + v * patch[3][power])) +
+                                  beyond * slope.coefficients[power];
     }
     values[i] = value;
     along_y[i] = slope;

@@ -25,9 +25,10 @@ struct CubicStretch {
 };
 
 /// The bicubic spline through values at the knots of a lattice: two continuous derivatives, no knot at the
-/// second and the last but one value of a line ("not a knot"; de Boor, A Practical Guide to Splines, 1978, ch.
-/// IV and XVII), so that cubics along either axis are met everywhere. With three knots along an axis it is a
-/// parabola there, with two a straight line. Outside the lattice it goes on as the outermost patch's tangent.
+/// second and the last but one value of a line ("not a knot"; de Boor, A Practical Guide to Splines, 1978,
+/// ch. IV and XVII), so that cubics along either axis are met everywhere. With three knots along an axis it
+/// is a parabola there, with two a straight line. Outside the lattice it goes on as the outermost patch's
+/// tangent.
 class LatticeSpline {
  public:
   LatticeSpline() = default;  ///< only to be assigned to

@@ -245,9 +245,10 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
     return table;
   }
   require_centred(lens, "a table by field height holds centred lenses; one over the frame has poses");
-  require_round_stop(lens,
-                     "a table by field height turns with the field, which polygons do not; one over the frame "
-                     "has blades");
+  require_round_stop(
+      lens,
+      "a table by field height turns with the field, which polygons do not; one over the frame "
+      "has blades");
   table.fields = choose_fields(lens, options);
   const std::size_t fields = table.fields.size(), entries = fields * table.wavelengths_nm.size();
   table.real_image_height_mm.resize(entries);

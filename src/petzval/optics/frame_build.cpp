@@ -51,8 +51,8 @@ class ChiefAim {
     const Vector2 x{((*right)[0] - (*middle)[0]) / step, ((*right)[1] - (*middle)[1]) / step},
         y{((*above)[0] - (*middle)[0]) / step, ((*above)[1] - (*middle)[1]) / step};
     const double determinant = x[0] * y[1] - x[1] * y[0];
-    start_.object_per_mm = {
-        Vector2{y[1] / determinant, -x[1] / determinant}, Vector2{-y[0] / determinant, x[0] / determinant}};
+    start_.object_per_mm = {Vector2{y[1] / determinant, -x[1] / determinant},
+                            Vector2{-y[0] / determinant, x[0] / determinant}};
     middle_mm_ = *middle;
   }
 
@@ -150,9 +150,8 @@ std::vector<double> even_places(double half_mm, int count) {
 FramePlaces lay_frame(const Lens& lens, const TableOptions& options) {
   const Vector2 frame =
       options.half_frame_mm.value_or(Vector2{options.max_image_height_mm, options.max_image_height_mm});
-  const double reach_mm =
-      std::max(frame_reach_mm(lens, options, options.wavelengths_nm.front(), frame),
-               frame_reach_mm(lens, options, options.wavelengths_nm.back(), frame));
+  const double reach_mm = std::max(frame_reach_mm(lens, options, options.wavelengths_nm.front(), frame),
+                                   frame_reach_mm(lens, options, options.wavelengths_nm.back(), frame));
   const Vector2 half{frame[0] + reach_mm, frame[1] + reach_mm};
   // An odd number, so that the axis has a place.
   constexpr int fewest = 5;
@@ -180,7 +179,8 @@ class OutwardOrder {
   std::size_t inner(std::size_t place) const {
     const auto [i, j] = offset(place);
     const auto step = [](int of) { return of == 0 ? 0 : of / std::abs(of); };
-    const int column = static_cast<int>(place) % across_ - step(i), row = static_cast<int>(place) / across_ - step(j);
+    const int column = static_cast<int>(place) % across_ - step(i),
+              row = static_cast<int>(place) / across_ - step(j);
     return static_cast<std::size_t>(row * across_ + column);
   }
 
@@ -257,9 +257,10 @@ void extend_into_darkness(std::size_t wavelength, const std::vector<char>& lit, 
                       further = table.index(second, wavelength);
     light_of[place] = light_of[inner];
     if (inner == place)
-      throw InputError(fmt::format("{}: no ray passes the stop in the middle of the frame at {:g} nm; check stop "
-                                   "and clear apertures",
-                                   table.lens_name, table.wavelengths_nm[wavelength]));
+      throw InputError(
+          fmt::format("{}: no ray passes the stop in the middle of the frame at {:g} nm; check stop "
+                      "and clear apertures",
+                      table.lens_name, table.wavelengths_nm[wavelength]));
     frame.object_x[here] = 2 * frame.object_x[next] - frame.object_x[further];
     frame.object_y[here] = 2 * frame.object_y[next] - frame.object_y[further];
     const std::size_t light = table.index(light_of[place], wavelength);
@@ -277,8 +278,8 @@ void fill_frame(const Lens& lens, const TableOptions& options, LensDataTable& ta
   FramePlaces& frame = *table.frame;
   const std::size_t places = frame.count(), wavelengths = table.wavelengths_nm.size(),
                     entries = places * wavelengths;
-  for (std::vector<double>* values : {&frame.object_x, &frame.object_y, &frame.psf_azimuth_deg,
-                                      &table.g_source_sr, &table.g_sensor_sr})
+  for (std::vector<double>* values :
+       {&frame.object_x, &frame.object_y, &frame.psf_azimuth_deg, &table.g_source_sr, &table.g_sensor_sr})
     values->resize(entries);
   table.psf.resize(entries);
 

@@ -72,9 +72,10 @@ void require_possible_light(const LensDataTable& table) {
   const auto require = [&](const std::vector<double>& values, double limit, const char* name) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i] > limit)
-        refuse(fmt::format("{} of {} is {:.4g} sr; the most that a lens in air gives is π, light from the "
-                           "whole hemisphere",
-                           name, entry_name(table, i), values[i]));
+        refuse(
+            fmt::format("{} of {} is {:.4g} sr; the most that a lens in air gives is π, light from the "
+                        "whole hemisphere",
+                        name, entry_name(table, i), values[i]));
   };
   require(table.g_sensor_sr, most, "g_sensor_sr");
   require(table.g_source_sr, widest_spread * most, "g_source_sr");
@@ -127,8 +128,7 @@ void require_psfs(const LensDataTable& table) {
   std::vector<std::string> faults(expected);
   parallel_for(expected, [&](std::size_t i) { faults[i] = psf_fault(table.psf[i]); });
   for (std::size_t i = 0; i < expected; ++i)
-    if (!faults[i].empty())
-      refuse(fmt::format("the PSF of {} {}", entry_name(table, i), faults[i]));
+    if (!faults[i].empty()) refuse(fmt::format("the PSF of {} {}", entry_name(table, i), faults[i]));
 }
 
 /// Chief rays keep their order: what the corners of each mesh of the lattice see goes round the same way.
@@ -149,10 +149,10 @@ void require_ordered_frame(const LensDataTable& table) {
           lit = lit && table.g_source_sr[a] > 0;
         }
         if (lit && !(area > 0))
-          refuse(fmt::format("what is seen at {} nm turns over between {} and {}; x' and y' of object and "
-                             "image must increase together",
-                             table.wavelengths_nm[w], frame.name(frame.place(i, j)),
-                             frame.name(frame.place(i + 1, j + 1))));
+          refuse(fmt::format(
+              "what is seen at {} nm turns over between {} and {}; x' and y' of object and "
+              "image must increase together",
+              table.wavelengths_nm[w], frame.name(frame.place(i, j)), frame.name(frame.place(i + 1, j + 1))));
       }
 }
 
@@ -199,8 +199,10 @@ void LensDataTable::validate() const {
   if (!frame && fields.front() != 0)
     refuse(fmt::format("the first field is {}; it must be 0, the axis", fields.front()));
   if (wavelengths_nm.front() <= 0) refuse(fmt::format("{} nm is no wavelength", wavelengths_nm.front()));
-  if (frame) require_frame(*this);
-  else require_values(*this, real_image_height_mm, "real_image_height_mm");
+  if (frame)
+    require_frame(*this);
+  else
+    require_values(*this, real_image_height_mm, "real_image_height_mm");
   require_values(*this, g_source_sr, "g_source_sr");
   require_values(*this, g_sensor_sr, "g_sensor_sr");
   frame ? require_light_over_frame(*this) : require_light_on_axis(*this);
@@ -219,9 +221,10 @@ std::string LensDataTable::place_name(std::size_t place) const {
 
 void require_by_height(const LensDataTable& table, const char* what) {
   if (table.frame)
-    throw InputError(fmt::format("{}: the places of the table lie over the frame in two dimensions, and {}; "
-                                 "a table of the centred lens with a round stop would do",
-                                 table.lens_name, what));
+    throw InputError(
+        fmt::format("{}: the places of the table lie over the frame in two dimensions, and {}; "
+                    "a table of the centred lens with a round stop would do",
+                    table.lens_name, what));
 }
 
 }  // namespace petzval

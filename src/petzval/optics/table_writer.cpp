@@ -214,10 +214,11 @@ void write_datasets(hid_t file, const LensDataTable& table) {
   const bool finite = table.finite_object();
   const char* const place = table.frame ? table_layout::place : table_layout::field;
   const Hdf5Handle field =
-      table.frame ? write_dataset(file, place, numbered(places[0]), places, "1",
-                                  "number of the place: row of image_y times places along image_x, and column")
-                  : write_dataset(file, place, table.fields, places, table.field_unit(),
-                                  finite ? "object height" : "object angle from the axis");
+      table.frame
+          ? write_dataset(file, place, numbered(places[0]), places, "1",
+                          "number of the place: row of image_y times places along image_x, and column")
+          : write_dataset(file, place, table.fields, places, table.field_unit(),
+                          finite ? "object height" : "object angle from the axis");
   const Hdf5Handle wavelength = write_dataset(file, table_layout::wavelength, table.wavelengths_nm,
                                               wavelengths, "nm", "wavelength in air");
   if (table.frame) {
@@ -257,8 +258,7 @@ void write_datasets(hid_t file, const LensDataTable& table) {
   write(table_layout::psf_size, size, "1", "samples a side of the PSF, in the middle of its square");
   write(table_layout::psf_spacing, spacing, "um", "spacing of the PSF's samples");
   write(table_layout::psf_captured, captured, "1", "share of the light inside the PSF's window");
-  scales.attach(write_psfs(file, table),
-                {place, table_layout::wavelength, "tangential", "sagittal"});
+  scales.attach(write_psfs(file, table), {place, table_layout::wavelength, "tangential", "sagittal"});
   scales.finish();
 }
 
