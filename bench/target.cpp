@@ -5,6 +5,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/measure/sfr/find_edges.h>
 #include <petzval/measure/sfr/measure_edge.h>
+#include <petzval/measure/sfr/missing_target.h>
 #include <petzval/target/render_target.h>
 #include <petzval/target/test_charts.h>
 #include <petzval/wave/pupil_otf.h>
@@ -100,7 +101,7 @@ void find_and_measure_36_edges(benchmark::State& state) {
     const FoundEdges found = find_edges(plane);
     for (const FoundEdge& edge : found.edges) {
       SfrOptions options;
-      options.missing_target = [&](double x, double y) { return missing_target_at(edge, x, y); };
+      options.missing_target = MissingTarget::where_sampled(edge);
       benchmark::DoNotOptimize(measure_edge(samples_about(plane, edge), 1, options));
     }
     state.counters["edges"] = static_cast<double>(found.edges.size());

@@ -10,6 +10,7 @@
 #include "cube_formats.h"
 #include "glass_formats.h"
 #include "lens_formats.h"
+#include "live_format.h"
 #include "raw_formats.h"
 #include "require.h"
 #include "scene_format.h"
@@ -218,6 +219,10 @@ const std::vector<Format>& formats() {
        try_photograph,
        {std::string("II*\0", 4), std::string("MM\0*", 4), std::string("\x03\1\3\0\1\0\0\0\5\0\0\0", 12),
         std::string("\x12\1\3\0\1\0\0\0\6\0\0\0", 12), std::string(4, '\xFF'), std::string(4, '\0')}},
+      {"live",
+       try_live,
+       {"\"kind\":\"state\",", "\"kind\":\"lens\",", "\"id\":1,", "null", "[]", "{}", "\"../../etc/passwd\"",
+        "\"1.2m\"", "\"ev:12\"", "1e999", "\\u0000", std::string(4, '\xFF'), std::string(4, '\0')}},
       {"packed",
        try_packed,
        {"PZGLASS1", std::string(4, '\xFF'), std::string(4, '\0'), "\x80\x80\x80\x80\x80"}},

@@ -20,7 +20,7 @@ struct Format {
 };
 
 /// native, zmx, seq, pbrt, iset, agf, yaml, packed, sensor, dng, polygons, svg, isetmat, isetparms, listing,
-/// measured, kept, scene, gltf, ply, envi, npy, scenemat, sceneexr, png, jpeg, tiff.
+/// measured, kept, scene, gltf, ply, envi, npy, scenemat, sceneexr, png, jpeg, tiff, live.
 const std::vector<Format>& formats();
 /// Null if there is none of that name.
 const Format* find_format(std::string_view name);

@@ -7,12 +7,15 @@ set -euo pipefail
 packages=(
   # compiler and build
   g++ cmake ninja-build
+  # the page of petzval live
+  esbuild
   # libraries
   gemmi-dev libboost-dev libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev libhwy-dev libjpeg-dev liblcms2-dev libmatio-dev
-  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev nlohmann-json3-dev zlib1g-dev
+  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev libzint-dev libzip-dev nlohmann-json3-dev
+  zlib1g-dev
 )
-test_packages=(clang clang-format doxygen furo libbenchmark-dev libgtest-dev libimage-exiftool-perl libraw-dev librsvg2-bin python3 python3-h5py
-  python3-myst-parser python3-numpy python3-sphinx)
+test_packages=(chromium chromium-driver clang clang-format doxygen furo libbenchmark-dev libgtest-dev libimage-exiftool-perl libraw-dev librsvg2-bin
+  libzxing-dev node-typescript python3 python3-h5py python3-myst-parser python3-numpy python3-selenium python3-sphinx)
 
 case "${1-}" in
   '') ;;

@@ -89,6 +89,7 @@ std::vector<std::string> CameraChoice::given_lens_options() const {
   add(defocus_mm != 0, "--defocus");
   add(!lens.settings.empty(), "--set");
   add(!lens.substitutions.empty(), "--substitute");
+  add(lens.build.has_value(), "--build");
   add(!lens.glasses.paths.empty(), "--glass-catalogue");
   add(apertures == Camera::Apertures::from_fields, "--apertures");
   add(apertures == Camera::Apertures::ignored, "--ignore-apertures");

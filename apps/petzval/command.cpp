@@ -11,6 +11,7 @@
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/simulate/mounting.h>
+#include <petzval/tolerance/tolerancing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -238,6 +239,29 @@ void LensChoice::add_settings_to(CLI::App& command) {
       ->take_all()
       ->allow_extra_args(false);
   glasses.add_to(command);
+  if (!offers_builds) return;
+  CLI::Option* number = command.add_option(
+      "--build", build,
+      "Take the lens as number N off the line has it, focused: 0, 1, … (see lens tolerance)");
+  command
+      .add_option(
+          "--grade", grade,
+          fmt::format("Of the tolerances of builds: {}; default: precision, unless the lens has its own",
+                      fmt::join(tolerance_grades(), ", ")))
+      ->check(CLI::IsMember(std::vector<std::string>(tolerance_grades().begin(), tolerance_grades().end())))
+      ->needs(number);
+}
+
+LensChoice LensChoice::for_lens(const std::string& name) const {
+  LensChoice choice = *this;
+  choice.path_or_name = name;
+  return choice;
+}
+
+void LensChoice::require_all_substituted() const {
+  for (const std::string& text : substitutions)
+    if (const std::string from = text.substr(0, text.find('=')); !substituted->contains(from))
+      throw InputError(fmt::format("--substitute {}: none of the lenses has the glass {}", text, from));
 }
 
 Lens LensChoice::read(const Shared& shared) const {
@@ -252,13 +276,17 @@ Lens LensChoice::read(const Shared& shared) const {
     options.substitutions[text.substr(0, equals)] = text.substr(equals + 1);
   }
   options.glasses = glasses.read(shared);
+  options.substituted = substituted;
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
   const Lens before = file.lens;
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
   if (before.object_distance_mm != file.lens.object_distance_mm)
     note_unfocused_object(before, file.lens, context_of(shared));
-  return std::move(file.lens);
+  if (!build) return std::move(file.lens);
+  ToleranceRequest request;
+  request.grade = grade;
+  return build_off_the_line(file.lens, request, shared.seed, *build);
 }
 
 void note(const Shared& shared, const std::string& message) {

@@ -9,6 +9,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -61,12 +64,21 @@ struct LensChoice {
   GlassChoice glasses;
   std::vector<std::string> settings;
   std::vector<std::string> substitutions;
+  bool offers_builds = true;
+  std::optional<std::size_t> build;
+  std::string grade = "precision";
+  /// Of several lenses that are read by turns: what has been substituted in any of them.
+  std::shared_ptr<std::set<std::string>> substituted = {};
 
-  /// Adds the positional LENS (or `--lens` when `positional` is false), --set and --substitute.
+  /// Adds the positional LENS (or `--lens` when `positional` is false), --set, --substitute and --build.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
-  /// Adds --set and --substitute alone.
+  /// Reads one of several lenses.
+  LensChoice for_lens(const std::string& name) const;
+  /// \throws InputError if none of them had a glass that was to be substituted.
+  void require_all_substituted() const;
+  /// Adds --set, --substitute and --build alone.
   void add_settings_to(CLI::App& command);
-  /// Reads the lens and applies the settings; the reader's notes go to stderr unless quiet.
+  /// Reads the lens, applies the settings and builds it; the reader's notes go to stderr unless quiet.
   Lens read(const Shared& shared) const;
 };
 
@@ -101,5 +113,6 @@ void add_measure_command(CLI::App& app, Shared& shared);
 void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
 void add_handout_command(CLI::App& app, Shared& shared);
+void add_live_command(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

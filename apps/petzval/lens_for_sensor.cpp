@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/quantities.h>
-#include <petzval/report/table.h>
 #include <petzval/simulate/lens_on_sensor.h>
 
 #include <cmath>
-#include <functional>
 #include <memory>
 
 #include "camera_option.h"
@@ -69,68 +67,13 @@ ordered_json to_json(const LensOnSensor& lens) {
   return json;
 }
 
-std::string number(double value, int digits = 4) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits)
-         : std::isnan(value)  ? "none"
-                              : "infinity";
-}
-
-std::string depth_text(const std::optional<DepthOfField>& depth) {
-  if (!depth) return "none";
-  return fmt::format("{} to {}", number(depth->near_m, 5), number(depth->far_m, 5));
-}
-
-/// "0.75 / 0.61": tangential and sagittal.
-std::string both(double tangential, double sagittal) {
-  if (!std::isfinite(tangential)) return "no light";
-  return fmt::format("{:.3f} / {:.3f}", tangential, sagittal);
-}
-
-/// A row a quantity, a column a lens.
-void print_beside(const std::vector<LensOnSensor>& lenses) {
-  Table table{{{"lens"}}, {}};
-  for (const LensOnSensor& lens : lenses) table.columns.push_back({lens.lens});
-  const auto row = [&](const std::string& name, const std::function<std::string(const LensOnSensor&)>& text) {
-    std::vector<TableCell> cells{name};
-    for (const LensOnSensor& lens : lenses) cells.emplace_back(text(lens));
-    table.rows.push_back(std::move(cells));
-  };
-  const bool far = lenses.front().view.at_infinity;
-  const char* unit = far ? "deg" : "mm";
-  row("focal length [mm]", [](const auto& lens) { return number(lens.efl_mm, 5); });
-  row("f-number, working", [](const auto& lens) {
-    return fmt::format("{}, {}", number(lens.f_number, 3), number(lens.working_f_number, 3));
-  });
-  row(fmt::format("seen [{}]", unit), [](const auto& lens) {
-    return fmt::format("{} x {}", number(lens.view.width), number(lens.view.height));
-  });
-  row(fmt::format("a pixel [{}]", unit), [](const auto& lens) { return number(lens.per_pixel); });
-  if (!far) row("magnification", [](const auto& lens) { return number(lens.magnification); });
-  row("image circle, diagonal [mm]", [](const auto& lens) {
-    return fmt::format("{}, {}", number(lens.image_circle_mm), number(lens.sensor_diagonal_mm));
-  });
-  row("sharp to a pixel [m]", [](const auto& lens) { return depth_text(lens.geometric); });
-  row("sharp by MTF [m]", [](const auto& lens) { return depth_text(lens.by_mtf); });
-  row("hyperfocal distance [m]", [](const auto& lens) { return number(lens.hyperfocal_m); });
-  const char* const names[] = {"middle", "half way", "corner"};
-  for (std::size_t i = 0; i < 3; ++i)
-    row(fmt::format("light, {}", names[i]),
-        [i](const auto& lens) { return number(lens.places[i].relative_illumination, 3); });
-  for (std::size_t i = 0; i < 3; ++i) {
-    row(fmt::format("MTF Nyquist/2, {}", names[i]), [i](const auto& lens) {
-      return both(lens.places[i].half_nyquist_tangential, lens.places[i].half_nyquist_sagittal);
-    });
-    row(fmt::format("MTF Nyquist, {}", names[i]), [i](const auto& lens) {
-      return both(lens.places[i].nyquist_tangential, lens.places[i].nyquist_sagittal);
-    });
-  }
-  fmt::print("{}", to_text(table));
-  fmt::print("MTF tangential / sagittal, Nyquist {} cycles/mm; distances from the sensor plane\n",
-             number(lenses.front().nyquist_cpmm));
-}
-
 void print_rows(const std::vector<LensOnSensor>& lenses, const Shared& shared) {
-  if (!shared.json) return print_beside(lenses);
+  if (!shared.json) {
+    fmt::print("{}", to_text(lens_on_sensor_table(lenses)));
+    return fmt::print(
+        "MTF tangential / sagittal, Nyquist {:.4g} cycles/mm; distances from the sensor plane\n",
+        lenses.front().nyquist_cpmm);
+  }
   ordered_json rows = ordered_json::array();
   for (const LensOnSensor& lens : lenses) rows.push_back(to_json(lens));
   print_json({{"rows", rows}});
@@ -140,6 +83,7 @@ void compare(ForSensorCommand& command, const Shared& shared) {
   Context context = context_of(shared);
   context.progress = {};
   std::vector<LensOnSensor> rows;
+  if (command.lenses.size() > 1) command.camera.lens.substituted = std::make_shared<std::set<std::string>>();
   for (const std::string& name : command.lenses) {
     command.camera.lens.path_or_name = name;
     Camera camera = command.camera.camera(shared);
@@ -147,6 +91,7 @@ void compare(ForSensorCommand& command, const Shared& shared) {
     rows.push_back(lens_on_sensor(camera, distance_of(command), wavelengths_of(command), context));
     rows.back().lens = name;
   }
+  if (command.lenses.size() > 1) command.camera.lens.require_all_substituted();
   print_rows(rows, shared);
 }
 

@@ -9,8 +9,10 @@
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npz.h>
 #include <petzval/report/heat_map.h>
 #include <petzval/report/psf_drawing.h>
+#include <petzval/simulate/psf_stack.h>
 
 #include <algorithm>
 #include <cmath>
@@ -129,8 +131,9 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
                             psf_strip_svg(drawn, wavelengths > 1 ? static_cast<int>(wavelengths) : a_few));
   }
   if (rows.size() > 1)
-    throw InputError(fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, or an .svg",
-                                 path, rows.size()));
+    throw InputError(
+        fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, an .npz or an .svg", path,
+                    rows.size()));
   const auto size = static_cast<std::size_t>(first.size);
   if (extension == ".npy") {
     const std::size_t shape[] = {size, size};
@@ -139,6 +142,26 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
   HeatMapOptions map;
   map.first_row_on_top = false;
   write_whole_file(path, heat_map_png(first.values, first.size, first.size, map));
+}
+
+/// All fields and wavelengths on one grid, as arrays with their axes.
+void write_stack(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request,
+                 const Context& context) {
+  if (options.method == "fft")
+    throw InputError("--method fft: an .npz holds PSFs of real rays; --method rays would be right");
+  const PsfStack stack = psf_stack(lens, request, options.psf, context);
+  const std::size_t fields = stack.fields.size(), wavelengths = stack.wavelengths_nm.size(),
+                    size = static_cast<std::size_t>(stack.size);
+  std::vector<double> places(size);
+  for (std::size_t i = 0; i < size; ++i)
+    places[i] = (static_cast<double>(i) - static_cast<double>(size / 2)) * stack.spacing_um;
+  write_npz(options.output, {{"psf", {{fields, wavelengths, size, size}, stack.values}},
+                             {to_string(stack.field_kind), {{fields}, stack.fields}},
+                             {"wavelengths_nm", {{wavelengths}, stack.wavelengths_nm}},
+                             {"tangential_um", {{size}, places}},
+                             {"sagittal_um", {{size}, places}},
+                             {"captured", {{fields, wavelengths}, stack.captured}},
+                             {"real_image_height_mm", {{fields, wavelengths}, stack.image_height_mm}}});
 }
 
 /// Stars over the frame of the lens's fields, each wavelength about the chief ray of the reference.
@@ -168,14 +191,16 @@ void write_map(const PsfCommand& options, const Lens& lens, const FieldTableRequ
 
 void psf(const PsfCommand& options, const Shared& shared) {
   if (!options.map.empty()) require_drawing(options.map, "a map of PSFs");
-  if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy"}, "a PSF");
+  if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy", ".npz"}, "a PSF");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   FieldTableRequest request = options.fields.request(lens);
   request.azimuth_deg = options.camera.field_azimuth_deg;
   request.losses = options.losses.losses(lens, shared);
   const std::vector<PsfRow> rows = psf_rows(options, lens, request);
-  if (!options.output.empty()) write_psfs(options.output, rows, request.field_kind);
+  const bool as_stack = std::filesystem::path(options.output).extension() == ".npz";
+  if (as_stack) write_stack(options, lens, request, context_of(shared));
+  if (!options.output.empty() && !as_stack) write_psfs(options.output, rows, request.field_kind);
   if (!options.map.empty()) write_map(options, lens, request);
   if (shared.json) {
     nlohmann::ordered_json json = {{"lens", lens.name},
@@ -243,7 +268,9 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
   options->losses.add_to(*command);
-  command->add_option("-o,--output", options->output, "Picture or data to write: .svg, .png, .npy")
+  command
+      ->add_option("-o,--output", options->output,
+                   "Picture or data to write: .svg, .png, .npy of one PSF, .npz of all with their axes")
       ->check(output_file());
   command
       ->add_option(

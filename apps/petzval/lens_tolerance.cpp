@@ -58,14 +58,11 @@ std::string lens_path(const std::string& folder, std::size_t build) {
 }
 
 /// Every build as a lens of its own, focused.
-void write_lenses(const ToleranceCommand& command, const Lens& lens, const ToleranceReport& report) {
+void write_lenses(const ToleranceCommand& command, const Lens& lens, std::uint64_t seed) {
   std::filesystem::create_directories(command.lenses);
-  for (std::size_t i = 0; i < report.builds.size(); ++i) {
-    Lens built = built_lens(lens, report.tolerances, report.builds[i]);
-    built.surfaces.back().thickness_mm += report.builds[i].judgement.refocus_mm;
-    built.name += fmt::format(", build {}", i);
-    built.tolerances.clear();
-    write_lens(built, lens_path(command.lenses, i));
+  for (int i = 0; i < command.request.builds; ++i) {
+    const auto build = static_cast<std::size_t>(i);
+    write_lens(build_off_the_line(lens, command.request, seed, build), lens_path(command.lenses, build));
   }
 }
 
@@ -132,9 +129,10 @@ void run(ToleranceCommand command, const Shared& shared) {
     throw InputError("--builds 0: a plot, a table of builds and their lenses need some; 200 would be right");
   const ToleranceReport report = tolerance_lens(lens, request, context_of(shared));
   const Merit& merit = request.judge.merit;
-  if (!command.plot.empty()) write_drawing(command.plot, yield_plot(lens.name, report, merit, request.accept).svg());
+  if (!command.plot.empty())
+    write_drawing(command.plot, yield_plot(lens.name, report, merit, request.accept).svg());
   if (!command.csv.empty()) write_whole_file(command.csv, to_csv(all_builds(report, merit)));
-  if (!command.lenses.empty()) write_lenses(command, lens, report);
+  if (!command.lenses.empty()) write_lenses(command, lens, shared.seed);
   shared.json ? print_as_json(lens, command, report) : print_as_text(lens, command, report);
 }
 
@@ -142,12 +140,13 @@ void run(ToleranceCommand command, const Shared& shared) {
 
 void add_lens_tolerance(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<ToleranceCommand>();
-  CLI::App* command = add_command(
-      lens, shared, "tolerance",
-      "What a maker's tolerances do to a lens: worst offenders, builds off the line, yield",
-      "petzval lens tolerance cooke-triplet --grade precision --merit mtf@30 --accept 0.3 --plot yield.svg",
-      true, [options, &shared] { run(*options, shared); });
+  CLI::App* command =
+      add_command(lens, shared, "tolerance",
+                  "What a maker's tolerances do to a lens: worst offenders, builds off the line, yield",
+                  "petzval lens tolerance cooke-triplet --grade precision --accept 22 --plot yield.svg", true,
+                  [options, &shared] { run(*options, shared); });
   ToleranceRequest& request = options->request;
+  options->lens.offers_builds = false;
   options->lens.add_to(*command);
   std::string grades = fmt::format("{}", fmt::join(tolerance_grades(), ", "));
   command->add_option(

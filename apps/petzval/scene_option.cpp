@@ -39,6 +39,10 @@ void SceneChoice::add_to(CLI::App& command, bool positional, bool required) {
       "(petzval scene list)");
   if (required) option->required();
   command.add_option("--scene-angle", angle, "Full horizontal angle of the scene [degrees]");
+  command.add_option("--scene-width", width,
+                     "Width of the scene at its distance, in place of an angle: 200mm");
+  command.add_option("--scene-tilt", tilt,
+                     "Turns a plane scene about its upright middle line, its right side away [degrees]");
   command.add_option("--scene-distance", distance, "Distance from the sensor plane: 1.2m, 250mm or infinity");
   command.add_option("--scene-luminance", luminance,
                      "Mean luminance [cd/m2], of the whole spectrum whatever --wavelengths takes from it");
@@ -98,6 +102,15 @@ SceneOptions SceneChoice::options(SceneOptions defaults) const {
   SceneOptions options = std::move(defaults);
   if (!angle.empty())
     options.horizontal_angle_deg = positive("--scene-angle", angle, "degrees above 0 and below 180");
+  if (!width.empty()) {
+    options.width_m = parse_distance_m(width, "scene.width_m");
+    if (std::isinf(*options.width_m))
+      throw InputError("--scene-width infinity: a length such as 200mm would be right");
+  }
+  if (!tilt.empty()) {
+    options.tilt_deg = whole_text<double>(tilt);
+    if (!options.tilt_deg) throw InputError(fmt::format("--scene-tilt {}: degrees would be right", tilt));
+  }
   if (!distance.empty()) options.distance_m = parse_distance_m(distance, "scene.distance_m");
   if (!luminance.empty())
     options.mean_luminance_cd_m2 = positive("--scene-luminance", luminance, "a positive number of cd/m2");

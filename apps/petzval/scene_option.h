@@ -17,7 +17,7 @@ struct SceneChoice {
   std::string path_or_name;
   /// As typed; empty: not given.
   std::string angle, distance, luminance, size, wavelengths, illuminant, illuminance, band_width, encoding;
-  std::string projection, yaw, pitch;
+  std::string projection, yaw, pitch, width, tilt;
   std::string depth, depth_scale, depth_from;
   std::string quantity, unit, scale, file_bands, temperature, emissivity, background;
   bool negative_is_zero = false;

@@ -2,8 +2,10 @@
 // petzval sense: irradiance onto a sensor, a raw image out.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/image/formats/irradiance.h>
+#include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/formats/dng.h>
 #include <petzval/sensor/raw_file.h>
 #include <petzval/simulate/outputs.h>
@@ -23,7 +25,7 @@ namespace petzval::app {
 namespace {
 
 struct SenseCommand {
-  std::string irradiance, sensor;
+  std::string irradiance, sensor, wavelengths;
   std::vector<std::string> sensor_settings;
   SenseChoice choice;
   std::vector<std::string> outputs;
@@ -54,6 +56,24 @@ void print_summary(const RawImage& raw) {
   print_levels(raw);
 }
 
+/// Of bare numbers: pixels are those of the sensor. \throws InputError for wavelengths of a file that says
+/// its own.
+BareIrradiance bare_irradiance(const SenseCommand& command, const Sensor& sensor) {
+  const bool bare = extension_of(command.irradiance) == ".npy";
+  if (!bare && !command.wavelengths.empty())
+    throw InputError(command.irradiance, "says its wavelengths; --wavelengths is for .npy");
+  if (bare && command.wavelengths.empty())
+    throw InputError(
+        command.irradiance,
+        "a .npy file does not say its wavelengths; --wavelengths 400:10:700 would be right with it");
+  BareIrradiance numbers;
+  if (bare) numbers.wavelengths_nm = parse_wavelengths_nm(command.wavelengths);
+  numbers.pitch_um = sensor.geometry.pitch_um;
+  numbers.aperture = sensor.photosite.is_plain() ? PixelAperture::box : PixelAperture::photosite;
+  numbers.photosite = sensor.photosite.text();
+  return numbers;
+}
+
 void sense(const SenseCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs) require_extension(path, raw_extensions(), "a raw image");
   StagedFiles files;
@@ -61,8 +81,8 @@ void sense(const SenseCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
   const Sensor sensor = read_sensor(command.sensor, command.sensor_settings);
   sensor.require_electronics();
-  const RawImage raw =
-      expose(read_irradiance(command.irradiance), sensor, command.choice.options(), context_of(shared));
+  const RawImage raw = expose(read_irradiance(command.irradiance, bare_irradiance(command, sensor)), sensor,
+                              command.choice.options(), context_of(shared));
   for (const std::string& path : staged) write_raw(path, raw);
   if (const std::string note = mosaic_note(raw);
       !note.empty() && std::ranges::any_of(command.outputs, is_raw_name))
@@ -80,8 +100,11 @@ void add_sense_command(CLI::App& app, Shared& shared) {
                                   "petzval sense light.exr --sensor third-inch-1280x960 -o raw.dng", true,
                                   [options, &shared] { sense(*options, shared); });
   command
-      ->add_option("irradiance", options->irradiance, "Spectral irradiance, .exr, as petzval image writes it")
+      ->add_option("irradiance", options->irradiance,
+                   "Spectral irradiance as petzval image writes it: .exr, .npz, or .npy with --wavelengths")
       ->required();
+  command->add_option("--wavelengths", options->wavelengths,
+                      "Of the bands of a .npy [nm]: 400:10:700, or a list; its pixels are the sensor's");
   command->add_option("--sensor", options->sensor, "A sensor file or the name of a bundled one")->required();
   add_sensor_settings(*command, options->sensor_settings);
   options->choice.add_to(*command);

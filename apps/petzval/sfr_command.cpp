@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/staged_files.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/measure/sfr/measure_picture.h>
+#include <petzval/report/sfr_page.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "output_option.h"
@@ -23,7 +26,7 @@ struct SfrCommand {
   std::vector<std::string> pictures;
   bool demosaic = false;
   std::string chart, channel = "luminance", bayer, transfer = "stated", method = "exact";
-  std::string csv, plot, profile, annotate;
+  std::string csv, plot, profile, annotate, map, over_height, report;
   std::vector<std::string> rois, against;
   std::optional<double> pitch_um;
   int edge_order = 0;
@@ -51,10 +54,17 @@ void check_outputs(const SfrCommand& command, bool single) {
     if (!path.empty()) require_extension(path, extensions, what);
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   if (!command.profile.empty()) require_drawing(command.profile, "a profile", {".csv"});
+  if (!command.map.empty()) require_drawing(command.map, "a map");
+  if (!command.over_height.empty()) require_drawing(command.over_height, "a plot");
+  if (!command.report.empty()) require_extension(command.report, {".html", ".htm"}, "a report");
   if (!command.against.empty() && command.plot.empty())
     throw InputError("--against draws into --plot; give both");
-  if (!command.annotate.empty() && !single)
-    throw InputError("--annotate draws one picture; name one file, not several or a folder");
+  for (const auto& [path, option] : {std::pair{command.annotate, "--annotate"},
+                                     {command.map, "--map"},
+                                     {command.over_height, "--over-height"},
+                                     {command.report, "--report"}})
+    if (!path.empty() && !single)
+      throw InputError(fmt::format("{} shows one picture; name one file, not several or a folder", option));
 }
 
 PictureTransfer transfer_of(const SfrCommand& command) {
@@ -92,7 +102,23 @@ MeasuredPicture measured(const SfrCommand& command, const SfrRequest& request, c
                              "--transfer linear is right if they are linear in light, --transfer srgb says "
                              "that they are not",
                              path));
-  return {std::move(report), command.annotate.empty() ? Plane{} : picture.luminance()};
+  return {std::move(report),
+          command.annotate.empty() && command.report.empty() ? Plane{} : picture.luminance()};
+}
+
+/// Map, profile and report of one picture.
+void write_frame(const SfrCommand& command, const SfrReport& report, const Plane& seen, StagedFiles& files) {
+  if (command.map.empty() && command.over_height.empty() && command.report.empty()) return;
+  const SfrPage page{std::filesystem::path(report.image).filename().string(),
+                     report.columns,
+                     report.rows,
+                     report.pitch_um,
+                     report.edges,
+                     command.report.empty() ? std::string() : annotated_svg(report, seen)};
+  if (!command.map.empty()) write_drawing(files.stage(command.map), sharpness_map_svg(page), command.map);
+  if (!command.over_height.empty())
+    write_drawing(files.stage(command.over_height), sharpness_profile_svg(page), command.over_height);
+  if (!command.report.empty()) write_whole_file(files.stage(command.report), sfr_page_html(page));
 }
 
 void run(const SfrCommand& command, const Shared& shared) {
@@ -127,7 +153,8 @@ void run(const SfrCommand& command, const Shared& shared) {
     write_drawing(files.stage(command.profile), profile_plot_svg(reports), command.profile);
   if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), reports);
   if (!command.annotate.empty())
-    write_annotated(files.stage(command.annotate), reports.pictures.front(), seen);
+    write_whole_file(files.stage(command.annotate), annotated_svg(reports.pictures.front(), seen));
+  write_frame(command, reports.pictures.front(), seen, files);
   files.commit();
   print_sfr(reports, shared);
 }
@@ -189,6 +216,18 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
   command
       ->add_option("--profile", options->profile,
                    "Write edge and line spread: .csv, or draw the edge spread: .svg")
+      ->check(output_file());
+  command
+      ->add_option("--map", options->map,
+                   "Draw MTF50 over the frame, meridional and sagittal: .svg, .png or .pdf")
+      ->check(output_file());
+  command
+      ->add_option("--over-height", options->over_height,
+                   "Draw MTF50 over the image height, meridional and sagittal: .svg, .png or .pdf")
+      ->check(output_file());
+  command
+      ->add_option("--report", options->report,
+                   "Write a page with map, profile, lateral colour and all edges: .html")
       ->check(output_file());
   command
       ->add_option("--annotate", options->annotate, "Draw the picture with its edges and their MTF50: .svg")

@@ -255,7 +255,7 @@ std::string profile_plot_svg(const SfrReports& reports) {
   return plot.svg();
 }
 
-void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane) {
+std::string annotated_svg(const SfrReport& report, const Plane& plane) {
   std::vector<float> levels;
   for (const double value : plane.values) levels.push_back(static_cast<float>(srgb_encoded(value)));
   const std::string png = heat_map_png(levels, plane.columns, plane.rows, {});
@@ -282,7 +282,7 @@ void write_annotated(const std::string& path, const SfrReport& report, const Pla
               {"font-family", "sans-serif"}},
              fmt::format("{:.3f}", edge.mtf50()));
   }
-  write_whole_file(path, std::move(xml).finish());
+  return std::move(xml).finish();
 }
 
 }  // namespace petzval::app

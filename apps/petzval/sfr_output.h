@@ -47,6 +47,6 @@ NamedCurve read_sfr_table(const std::string& path);
 std::string sfr_plot_svg(const SfrReports& reports, const std::vector<NamedCurve>& others);
 std::string profile_plot_svg(const SfrReports& reports);
 /// The picture with its edges and their MTF50.
-void write_annotated(const std::string& path, const SfrReport& report, const Plane& plane);
+std::string annotated_svg(const SfrReport& report, const Plane& plane);
 
 }  // namespace petzval::app

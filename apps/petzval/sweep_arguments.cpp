@@ -116,6 +116,7 @@ std::vector<std::string> arguments_of(const CLI::App& app, const SweepCommand& o
   arguments.insert(arguments.end(), options.words.begin(), options.words.end());
   bool seed = false;
   for (const auto& [key, value] : point) {
+    if (key == label_key) continue;
     const CLI::Option* option = app.get_option_no_throw("--" + key);
     seed = seed || key == "seed";
     if (is_positional(options, key)) {

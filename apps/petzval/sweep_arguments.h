@@ -5,6 +5,8 @@
 #include "command.h"
 #include "sweep_points.h"
 
+#include <algorithm>
+
 namespace petzval::app {
 
 struct SweepCommand {
@@ -12,13 +14,23 @@ struct SweepCommand {
   std::vector<std::string> words;  ///< what goes to it
   std::vector<std::string> vary;
   std::string folder;
+  std::string points;                ///< a table of points, or nothing
   std::string irradiance;            ///< exr, npy or nothing
-  std::string scene_width = "same";  ///< of all points, or each as its frame needs
+  std::vector<std::string> kept;     ///< extensions of what else is written at each point
+  std::string scene_width = "same";  ///< of all points, each as its frame needs, or a length
   std::string clip;                  ///< a film of the pictures, or nothing
   double frames_per_second = 12;
   std::optional<int> frames;  ///< of ranges that have no step
 
   bool makes_pictures() const { return command != "lens"; }
+  /// What each point writes besides its picture.
+  std::vector<std::string> other_files() const {
+    std::vector<std::string> extensions = kept;
+    if (!irradiance.empty()) extensions.push_back(irradiance);
+    std::sort(extensions.begin(), extensions.end());
+    extensions.erase(std::unique(extensions.begin(), extensions.end()), extensions.end());
+    return extensions;
+  }
 };
 
 /// The command of this program that is swept, with its options. \throws InputError if there is none.

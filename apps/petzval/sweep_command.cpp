@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "clip.h"
 #include "field_option.h"
@@ -28,6 +29,8 @@ using Json = nlohmann::ordered_json;
 
 std::string label_of(const SweepPoint& point) {
   std::string label;
+  for (const auto& [key, value] : point)
+    if (key == label_key && !value.empty()) return value;
   for (const auto& [key, value] : point) label += (label.empty() ? "" : "  ") + key + " " + value;
   return label;
 }
@@ -44,10 +47,36 @@ void write_page(const SweepCommand& options, const std::vector<PointResult>& res
   write_whole_file(options.folder + "/index.html", page.html());
 }
 
-int pictures_per_row(const std::vector<SweptParameter>& parameters) {
-  constexpr std::size_t most = 6;
-  // Two or more parameters: a row for each value of the others, if the last one fits.
-  return static_cast<int>(std::min(most, parameters.back().values.size()));
+/// How many pictures make a unit of the sheet that rows should not break: the values of the last parameter,
+/// where there are several.
+int pictures_in_unit(const SweepCommand& options, const std::vector<SweptParameter>& parameters) {
+  return options.points.empty() && parameters.size() > 1 ? static_cast<int>(parameters.back().values.size())
+                                                         : 1;
+}
+
+/// The points of the table, of --vary, or each of the former with each of the latter.
+std::vector<SweepPoint> points_of(const SweepCommand& options, std::vector<SweptParameter>& parameters) {
+  const std::vector<SweepPoint> varied = sweep_points(parameters);
+  if (options.points.empty()) return varied;
+  constexpr std::size_t most_points = 10000;
+  const std::vector<SweepPoint> table = read_sweep_points(options.points);
+  if (table.size() > most_points / varied.size())
+    throw InputError(options.points, fmt::format("the sweep has more than {} points", most_points));
+  std::vector<SweptParameter> all = parameters_of(table);
+  for (const SweptParameter& parameter : parameters)
+    for (const SweptParameter& of_table : all)
+      if (parameter.key == of_table.key)
+        throw InputError(fmt::format("--vary {}: {} gives it too; one of the two would be right",
+                                     parameter.key, options.points));
+  std::vector<SweepPoint> points;
+  for (const SweepPoint& row : table)
+    for (const SweepPoint& point : varied) {
+      points.push_back(row);
+      points.back().insert(points.back().end(), point.begin(), point.end());
+    }
+  all.insert(all.end(), parameters.begin(), parameters.end());
+  parameters = std::move(all);
+  return points;
 }
 
 /// Names of the files that a sweep may write.
@@ -57,7 +86,7 @@ std::set<std::string> planned_files(const SweepCommand& options, std::size_t poi
   if (options.makes_pictures()) {
     names.insert("contact-sheet.png");
     extensions.push_back(".png");
-    if (!options.irradiance.empty()) extensions.push_back("." + options.irradiance);
+    for (const std::string& extension : options.other_files()) extensions.push_back("." + extension);
   }
   for (std::size_t i = 0; i < points; ++i)
     for (const std::string& extension : extensions) names.insert(name_of_point(i) + extension);
@@ -98,7 +127,7 @@ void refuse_if_all_are_refused(const std::vector<PointResult>& results) {
 
 /// Tables, the sheet and the page. \returns their names.
 std::set<std::string> write_summary(const SweepCommand& options, const std::vector<PointResult>& results,
-                                    const Json& rows, int per_row) {
+                                    const Json& rows, int unit, const Shared& shared) {
   std::set<std::string> names{"sweep.csv", "index.html"};
   const Table table = table_of(rows);
   write_whole_file(options.folder + "/sweep.csv", to_csv(table));
@@ -109,7 +138,10 @@ std::set<std::string> write_summary(const SweepCommand& options, const std::vect
     pictures = pictures || !result.picture.empty();
   }
   if (pictures) {
-    write_contact_sheet(options.folder + "/contact-sheet.png", sheet, per_row);
+    const double brightening = write_contact_sheet(options.folder + "/contact-sheet.png", sheet, unit);
+    if (brightening > 1)
+      note(shared, fmt::format("contact-sheet.png shows the pictures {:.3g} times as bright as they are",
+                               brightening));
     names.insert("contact-sheet.png");
   }
   write_page(options, results, table, pictures);
@@ -122,7 +154,9 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   std::vector<std::string> notes;
   for (const std::string& text : options.vary) parameters.push_back(parse_swept(text, notes, options.frames));
   if (!options.clip.empty()) require_clip_maker(options.clip);
-  const std::vector<SweepPoint> points = sweep_points(parameters);
+  if (parameters.empty() && options.points.empty())
+    throw InputError("what is varied? --vary f-number=2,4,8 or --points FILE.csv would be right");
+  const std::vector<SweepPoint> points = points_of(options, parameters);
   check_command_lines(app, options, parameters, shared);
   for (const std::string& text : notes) note(shared, text);
   SweepFolder folder(options.folder, planned_files(options, points.size()));
@@ -158,7 +192,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   }
   refuse_if_all_are_refused(results);
   const Json rows = rows_of(results);
-  written.merge(write_summary(options, results, rows, pictures_per_row(parameters)));
+  written.merge(write_summary(options, results, rows, pictures_in_unit(options, parameters), shared));
   folder.finish(rows, written);
   if (!options.clip.empty() && failed == 0)
     write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
@@ -178,6 +212,9 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   command = add_command(sweeps, shared, name, description, example, true, [options, &program, &shared, name] {
     CLI::App* self = program.get_subcommand("sweep")->get_subcommand(name);
     options->words = self->remaining();
+    if (options->scene_width != "same" && options->scene_width != "each")
+      options->words.insert(options->words.end(),
+                            {"--scene-width", std::exchange(options->scene_width, "same")});
     sweep(program, *options, shared);
   });
   command->allow_extras();
@@ -187,9 +224,12 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
           "KEY=START:STEP:STOP or KEY=A,B,…: an option of the command (f-number, focus, sensor, lens), "
           "a parameter of the lens (surfaces[4].thickness_mm) or of the sensor (sensor.pitch_um); "
           "repeatable: all combinations")
-      ->required()
       ->take_all()
       ->allow_extra_args(false);
+  command->add_option(
+      "--points", options->points,
+      "A table of points (.csv): a line of such keys, then a line of values a point; a column label "
+      "names them. With --vary: each of both");
   command->add_option("-o,--output", options->folder, "Folder for pictures, tables and index.html")
       ->check(output_folder())
       ->required();
@@ -210,10 +250,14 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
       ->add_option("--irradiance", options->irradiance, "Keep the irradiance of every point too: exr or npy")
       ->check(CLI::IsMember({"exr", "npy"}));
   command
+      ->add_option("--keep", options->kept,
+                   "Write these at every point too, as petzval image writes them: dng,exr")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"dng", "tif", "exr", "npy"}));
+  command
       ->add_option("--scene-width", options->scene_width,
                    "A chart or a photograph without --scene-angle is as wide at all points as the widest "
-                   "frame needs (same), or fills each frame (each)")
-      ->check(CLI::IsMember({"same", "each"}))
+                   "frame needs (same), fills each frame (each), or has a width at its distance (200mm)")
       ->capture_default_str();
 }
 

@@ -29,4 +29,14 @@ using SweepPoint = std::vector<std::pair<std::string, std::string>>;
 /// 10,000 points.
 std::vector<SweepPoint> sweep_points(const std::vector<SweptParameter>& parameters);
 
+/// The column of a table of points that names them and is no parameter.
+inline constexpr const char* label_key = "label";
+
+/// The points of a CSV file: a line of keys, then a line a point, with as many values. \throws InputError
+/// with the line.
+std::vector<SweepPoint> read_sweep_points(const std::string& path);
+
+/// All values of each key of such points.
+std::vector<SweptParameter> parameters_of(const std::vector<SweepPoint>& points);
+
 }  // namespace petzval::app

@@ -111,7 +111,8 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   const std::string name = name_of_point(index), stem = options.folder + "/" + name;
   if (options.makes_pictures()) {
     result.outputs = {result.picture = stem + ".png"};
-    if (!options.irradiance.empty()) result.outputs.push_back(stem + "." + options.irradiance);
+    for (const std::string& extension : options.other_files())
+      result.outputs.push_back(stem + "." + extension);
   }
   for (const std::string& path : result.outputs)
     result.arguments.insert(result.arguments.end(), {"-o", path});

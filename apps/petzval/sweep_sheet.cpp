@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep_sheet.h"
 
+#include <petzval/colour/display.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/scene/lettering.h>
 
@@ -89,9 +90,51 @@ void draw_failure(Canvas& canvas, int left, int top, int rows) {
   write_label(canvas, "failed", left + gap, top + std::max(0, inset));
 }
 
+/// How many thumbnails stand in a row, so that the sheet is about as wide as tall.
+int squarest_row(int count, int unit, int cell_columns, int cell_rows) {
+  constexpr double shape = 4.0 / 3;  // rather a little wide than tall
+  const auto skew = [&](int per_row) {
+    const int rows = (count + per_row - 1) / per_row;
+    return std::abs(std::log(double(per_row * cell_columns) / double(rows * cell_rows) / shape));
+  };
+  constexpr double strip = 1.4;  // a sheet of more than four times its other side
+  int best = 1, best_of_units = unit;
+  for (int per_row = 1; per_row <= count; ++per_row) {
+    if (skew(per_row) < skew(best)) best = per_row;
+    if (per_row % unit == 0 && skew(per_row) < skew(best_of_units)) best_of_units = per_row;
+  }
+  return skew(best_of_units) <= strip ? best_of_units : best;
+}
+
+/// The value of which one in two hundred of all pixels' brightest colours is above, 0 to 1.
+double bright_value(const std::vector<PngImage>& pictures) {
+  std::vector<std::size_t> counts(256);
+  std::size_t pixels = 0;
+  for (const PngImage& picture : pictures) {
+    const int colours = std::min(picture.channels, 3), shift = picture.bits == 16 ? 8 : 0;
+    for (std::size_t at = 0; at < picture.samples.size(); at += static_cast<std::size_t>(picture.channels)) {
+      const auto first = picture.samples.begin() + static_cast<std::ptrdiff_t>(at);
+      ++counts[static_cast<std::size_t>(*std::max_element(first, first + colours) >> shift)];
+      ++pixels;
+    }
+  }
+  std::size_t above = 0;
+  for (std::size_t value = counts.size(); value-- > 1;)
+    if ((above += counts[value]) * 200 >= pixels) return static_cast<double>(value) / 255;
+  return 1;  // nothing to be seen at any brightness
+}
+
+/// The canvas's values that show `factor` times the light of pictures' values.
+void brighten(PngImage& picture, double factor) {
+  const double most = picture.bits == 16 ? 65535 : 255;
+  for (std::uint16_t& sample : picture.samples)
+    sample = static_cast<std::uint16_t>(
+        std::lround(most * srgb_encoded(std::min(1.0, factor * srgb_decoded(sample / most)))));
+}
+
 }  // namespace
 
-void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>& entries, int per_row) {
+double write_contact_sheet(const std::string& path, const std::vector<SheetEntry>& entries, int unit) {
   std::vector<PngImage> pictures(entries.size());
   int tallest = label_height;
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -99,12 +142,17 @@ void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>&
     pictures[i] = read_png(entries[i].picture);
     tallest = std::max(tallest, static_cast<int>(std::lround(pictures[i].rows * fitting_scale(pictures[i]))));
   }
-  const int columns = std::min(per_row, static_cast<int>(entries.size()));
-  const int rows = (static_cast<int>(entries.size()) + per_row - 1) / per_row;
+  constexpr double dark = 0.5;  // a value of sRGB
+  const double bright = bright_value(pictures);
+  const double factor = bright < dark ? srgb_decoded(0.95) / srgb_decoded(bright) : 1;
+  const int count = static_cast<int>(entries.size());
+  const int per_row = squarest_row(count, unit, thumbnail + gap, tallest + label_room + gap);
+  const int columns = std::min(per_row, count), rows = (count + per_row - 1) / per_row;
   Canvas canvas(gap + columns * (thumbnail + gap), gap + rows * (tallest + label_room + gap));
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const int left = gap + static_cast<int>(i) % per_row * (thumbnail + gap),
               top = gap + static_cast<int>(i) / per_row * (tallest + label_room + gap);
+    if (factor > 1) brighten(pictures[i], factor);
     if (entries[i].picture.empty())
       draw_failure(canvas, left, top, tallest);
     else
@@ -112,6 +160,7 @@ void write_contact_sheet(const std::string& path, const std::vector<SheetEntry>&
     write_label(canvas, entries[i].label, left, top + tallest + 6);
   }
   write_png(path, canvas.image);
+  return factor;
 }
 
 }  // namespace petzval::app

@@ -7,6 +7,7 @@
 #include <petzval/report/lens_drawing.h>
 #include <petzval/trace/tracer.h>
 
+#include "analysis.h"
 #include "call.h"
 #include "camera.h"
 #include "lens.h"
@@ -17,20 +18,6 @@ namespace {
 
 template <typename Number>
 using Maybe = std::optional<Number>;
-
-FieldTableRequest request_of(const Lens& lens, const Numbers& fields, const Maybe<std::string>& field_type,
-                             const Numbers& wavelengths_nm, bool ignore_apertures,
-                             const Losses& losses = {}) {
-  FieldTableRequest at = FieldTableRequest::of(lens);
-  if (field_type) at.field_kind = field_kind_of(*field_type);
-  if (!fields.empty()) at.fields = fields;
-  if (field_type && fields.empty() && at.field_kind != lens.fields.kind)
-    throw InputError("`field_type` without `fields`; fields of that type would be right");
-  if (!wavelengths_nm.empty()) at.wavelengths_nm = wavelengths_nm;
-  if (ignore_apertures) at.clip = Tracer::Clip::stop_only;
-  at.losses = losses;
-  return at;
-}
 
 Losses losses_of(const nb::object& lens_or_camera) {
   return nb::isinstance<CameraInPython>(lens_or_camera)
@@ -74,6 +61,8 @@ nb::object table_of(const AnalysisTable& each) {
   return call_python("petzval._tables", "Table", columns, units, each.heading, to_text(each.table));
 }
 
+}  // namespace
+
 nb::object python_of(const std::string& name, const AnalysisResult& result) {
   nb::dict tables, facts;
   for (const AnalysisTable& each : result.tables) tables[each.key.c_str()] = table_of(each);
@@ -86,6 +75,22 @@ nb::object python_of(const std::string& name, const AnalysisResult& result) {
   return call_python("petzval._tables", "Analysis", name, result.lens, to_string(result.field_kind),
                      result.reference_wavelength_nm, tables, facts, result.remarks, svg);
 }
+
+FieldTableRequest request_of(const Lens& lens, const Numbers& fields,
+                             const std::optional<std::string>& field_type, const Numbers& wavelengths_nm,
+                             bool ignore_apertures, const Losses& losses) {
+  FieldTableRequest at = FieldTableRequest::of(lens);
+  if (field_type) at.field_kind = field_kind_of(*field_type);
+  if (!fields.empty()) at.fields = fields;
+  if (field_type && fields.empty() && at.field_kind != lens.fields.kind)
+    throw InputError("`field_type` without `fields`; fields of that type would be right");
+  if (!wavelengths_nm.empty()) at.wavelengths_nm = wavelengths_nm;
+  if (ignore_apertures) at.clip = Tracer::Clip::stop_only;
+  at.losses = losses;
+  return at;
+}
+
+namespace {
 
 nb::object run_analysis(const nb::object& self, const std::string& name, const Numbers& fields,
                         const Maybe<std::string>& field_type, const Numbers& wavelengths_nm,

@@ -13,6 +13,7 @@ NB_MODULE(_petzval, module) {
   bind_light(module);
   bind_camera(module);
   bind_analysis(module);
+  bind_design(module);
   bind_raw(module);
   bind_target(module);
   bind_measure(module);

@@ -21,6 +21,10 @@
 #include <petzval/simulate/render.h>
 #include <petzval/simulate/target.h>
 
+// The lens as it is built, and a better one.
+#include <petzval/optimise/optimise.h>
+#include <petzval/tolerance/tolerancing.h>
+
 // How work is done, and what goes wrong.
 #include <petzval/base/context.h>
 #include <petzval/base/data_directory.h>

@@ -47,7 +47,9 @@ class FirstWords(ProgramTest):
     def test_what_would_be_right_is_named(self):
         for words, right in ((["lens", "mtf", "double-gauss", "--object-distance", "400"], "--focus 400mm"),
                              (["render", "spheres", "--scale", "2", "-o", "x.png"], "--size"),
-                             (["image", "siemens", "--lens", "double-gauss", "-o", "x.png"], "studio"),
+                             (["image", "simens", "--lens", "double-gauss", "-o", "x.png"], "siemens"),
+                             (["image", "usaf1951", "--lens", "double-gauss", "--scene-width", "24mm", "-o", "x.png"],
+                              "--scene-distance"),
                              (["image", "wall", "--lens", "double-gauss", "--sensor", "64x48@4", "--exposure", "1ms",
                                "-o", "x.exr"], "third-inch-1280x960"),
                              (["lens", "scale", "double-gauss", "-o", "x.json"], "--efl")):

@@ -335,6 +335,43 @@ class SweepFolders(ProgramTest):
         self.assert_refused("sweep", "image", "out/point-0000.png", *IMAGE[3:], "--vary", "f-number=2,4", "-o", "out",
                             words=["would overwrite", "point-0000.png"])
 
+    SHOT = ["sweep", "image", "--lens", "double-gauss", "--sensor", "icx625-mono", "--sensor-set", "columns=60", "--sensor-set",
+            "rows=48", "--scene-distance", "1m", "--wavelengths", "660", "--illuminant", "660nm/20", "--method", "none"]
+
+    def test_points_of_a_table_with_the_raw_files_of_the_command(self):
+        self.write("points.csv", "label,scene,exposure,seed\nbright one,qr:A,5ms,7\n\"dark, other\",qr:B,1ms,8\n")
+        said = self.json_of(*self.SHOT, "--points", "points.csv", "--keep", "dng,exr", "-o", "out")
+        self.assertEqual([(row["label"], row["exposure"], row["seed"]) for row in said["rows"]],
+                         [("bright one", "5ms", 7), ("dark, other", "1ms", 8)])
+        angle = said["rows"][0]["scene_angle_deg"]
+        for index, (scene, exposure, seed) in enumerate((("qr:A", "5ms", "7"), ("qr:B", "1ms", "8"))):
+            self.assert_succeeds("image", scene, *self.SHOT[2:], "--exposure", exposure, "--seed", seed, "--scene-angle",
+                                 repr(angle), "-o", "alone.dng", "-o", "alone.npy", "--quiet")
+            alone = (self.folder / "alone.dng").read_bytes()
+            self.assertEqual((self.folder / "out" / f"point-000{index}.dng").read_bytes(), alone, scene)
+        # With --vary: each of the one with each of the other.
+        said = self.json_of(*self.SHOT, "--points", "points.csv", "--vary", "f-number=8,11", "-o", "more")
+        self.assertEqual([(row["label"], row["f-number"]) for row in said["rows"]],
+                         [("bright one", 8), ("bright one", 11), ("dark, other", 8), ("dark, other", 11)])
+
+    def test_tables_of_points_that_are_none(self):
+        for text, word in (("", "no points"), ("seed\n", "no points"), ("seed,seed\n1,2\n", "each once"),
+                           ("seed,exposure\n1\n", "points.csv:2"), ("foo\n1\n", "foo")):
+            self.write("points.csv", text)
+            self.assert_refused(*self.SHOT[:2], "wall", *self.SHOT[2:], "--points", "points.csv", "-o", "out", words=[word])
+        self.write("points.csv", "seed\n1\n")
+        self.assert_refused(*self.SHOT[:2], "wall", *self.SHOT[2:], "--points", "points.csv", "--vary", "seed=1,2", "-o", "out",
+                            words=["one of the two"])
+        self.assert_refused(*self.SHOT[:2], "wall", *self.SHOT[2:], "-o", "out", words=["--vary", "--points"])
+
+    def test_sheets_are_about_as_wide_as_tall_and_bright_enough_to_see(self):
+        done = self.petzval(*self.SHOT[:2], "checkerboard", *self.SHOT[2:], "--vary", "exposure=1us:1us:20us", "-o", "out")
+        self.assertIn("times as bright", done.stderr)
+        sheet = picture_files.read_png(self.folder / "out" / "contact-sheet.png")
+        self.assertTrue(0.5 < len(sheet[0]) / len(sheet) < 2, (len(sheet[0]), len(sheet)))
+        brightest = max(max(pixel) for row in picture_files.read_png(self.folder / "out" / "point-0019.png") for pixel in row)
+        self.assertLess(brightest, 100, "the pictures themselves stay as dark as they are")
+
 
 if __name__ == "__main__":
     unittest.main()

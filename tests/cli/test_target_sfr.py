@@ -226,6 +226,18 @@ class Sfr(ProgramTest):
         self.assertEqual({row["edge"] for row in rows}, {str(i) for i in range(1, 37)})
         self.assertIn(b"<svg", (self.folder / "a.svg").read_bytes())
 
+    def test_draws_the_frame(self):
+        self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "480x480", *OPTICS, "-o", "t.npy")
+        self.assert_succeeds("sfr", "t.npy", "--map", "map.svg", "--over-height", "height.svg", "--report", "r.html", "--pixel-pitch", 4.73)
+        self.assertIn(b"meridional", (self.folder / "map.svg").read_bytes())
+        self.assertIn(b"image height [mm]", (self.folder / "height.svg").read_bytes())
+        page = (self.folder / "r.html").read_text()
+        for words in ("Over the frame", "sagittal", "edges.csv", "0.337"):
+            self.assertIn(words, page)
+        self.assertNotIn("http", page.replace("http://www.w3.org", ""), "a page needs no network")
+        self.assert_refused("sfr", "t.npy", "t.npy", "--report", "x.html", words=["--report", "one file"])
+        self.assert_refused("sfr", "t.npy", "--report", "x.txt", words=["x.txt", ".html"])
+
     def test_draws_other_tables_beside(self):
         self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")
         self.assert_succeeds("sfr", "t.npy", "--against", "exact.csv", "--plot", "s.svg")

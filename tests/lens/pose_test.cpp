@@ -12,16 +12,16 @@ namespace {
 
 using namespace testing;
 
-Lens triplet() {
+Lens triplet_of_poses() {
   return read_lens("cooke-triplet").lens;
 }
 
-Lens set(const std::string& assignment) {
-  return with_setting(triplet(), assignment);
+Lens triplet_set(const std::string& assignment) {
+  return with_setting(triplet_of_poses(), assignment);
 }
 
 std::string complaint(const std::string& assignment) {
-  return error_of([&] { set(assignment); });
+  return error_of([&] { triplet_set(assignment); });
 }
 
 void expect_vector(const Frame::Vector& value, const Frame::Vector& expected) {
@@ -29,7 +29,7 @@ void expect_vector(const Frame::Vector& value, const Frame::Vector& expected) {
 }
 
 TEST(Pose, TiltsAreRightHanded) {
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.surfaces[1].pose.tilt_x_deg = 30;
   expect_vector(frames_of(lens)[1].to_lens({0, 1, 0}), {0, std::sqrt(0.75), 0.5});
   lens.surfaces[1].pose = {0, 0, 0, 0, 30, 0};
@@ -41,7 +41,7 @@ TEST(Pose, TiltsAreRightHanded) {
 TEST(Pose, LaterTurnsAreAboutAxesThatHaveTurnedAlong) {
   // Tilted by 30° about x, then by 45° about the y axis that this has tilted: the normal is first (0, −s, c)
   // of 30°, then turned towards x, which has stayed.
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.surfaces[2].pose = {0, 0, 0, 30, 45, 0};
   const double half = std::sqrt(0.5);
   expect_vector(frames_of(lens)[2].to_lens({0, 0, 1}), {half, -0.5 * half, std::sqrt(0.75) * half});
@@ -49,7 +49,7 @@ TEST(Pose, LaterTurnsAreAboutAxesThatHaveTurnedAlong) {
 
 TEST(Pose, AGroupTurnsAboutItsPivot) {
   // A barrel of two surfaces 3 mm apart, tilted about a point 1 mm behind the first vertex.
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.surfaces[2].thickness_mm = 3;
   lens.groups = {{2, 3, {0.1, 0, 0, 30, 0, 0}, 1}};
   const std::vector<Frame> frames = frames_of(lens);
@@ -62,7 +62,7 @@ TEST(Pose, AGroupTurnsAboutItsPivot) {
 TEST(Pose, LaterGroupsCarryEarlierOnes) {
   // An element decentred in a barrel that is turned by 90° about its axis: it comes out decentred the other
   // way.
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.groups = {{2, 3, {0.1, 0, 0, 0, 0, 0}, 0}, {0, 5, {0, 0, 0, 0, 0, 90}, 0}};
   expect_vector(frames_of(lens)[2].offset_mm, {0, 0.1, 0});
   std::swap(lens.groups[0], lens.groups[1]);
@@ -70,13 +70,13 @@ TEST(Pose, LaterGroupsCarryEarlierOnes) {
 }
 
 TEST(Pose, GroupsMayTakeTheSensorAlong) {
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.groups = {{5, lens.surfaces.size(), {0, 0.2, 0, 0, 0, 0}, 0}};
   EXPECT_EQ(frames_of(lens).back().offset_mm[1], 0.2);
 }
 
 TEST(Pose, TurnsBackWhatItTurned) {
-  Lens lens = triplet();
+  Lens lens = triplet_of_poses();
   lens.surfaces[0].pose = {0.1, 0.2, 0.3, 10, -20, 30};
   const Frame frame = frames_of(lens)[0];
   const Frame::Vector v{0.3, -0.5, 0.8};
@@ -86,13 +86,13 @@ TEST(Pose, TurnsBackWhatItTurned) {
 }
 
 TEST(Pose, IsReachedBySettings) {
-  const Lens lens = set("surfaces[3].pose.tilt_x_deg=0.2");
+  const Lens lens = triplet_set("surfaces[3].pose.tilt_x_deg=0.2");
   EXPECT_EQ(lens.surfaces[3].pose.tilt_x_deg, 0.2);
   EXPECT_TRUE(has_poses(lens));
   EXPECT_FALSE(has_poses(with_setting(lens, "surfaces[3].pose=null")));
-  EXPECT_EQ(set("sensor_pose.tilt_y_deg=-1").sensor_pose.tilt_y_deg, -1);
+  EXPECT_EQ(triplet_set("sensor_pose.tilt_y_deg=-1").sensor_pose.tilt_y_deg, -1);
   const Lens grouped =
-      set(R"(groups=[{"surfaces": [2, 3], "pose": {"decentre_y_mm": 0.1}, "pivot_mm": 0.5}])");
+      triplet_set(R"(groups=[{"surfaces": [2, 3], "pose": {"decentre_y_mm": 0.1}, "pivot_mm": 0.5}])");
   ASSERT_EQ(grouped.groups.size(), 1u);
   EXPECT_EQ(grouped.groups[0].pose.decentre_y_mm, 0.1);
   EXPECT_EQ(with_setting(grouped, "groups[0].pose.tilt_x_deg=1").groups[0].pose.tilt_x_deg, 1);
@@ -114,14 +114,13 @@ TEST(Pose, SaysWhatWouldBeRight) {
 }
 
 TEST(Pose, OtherFormatsAndReversedLensesAreRefused) {
-  const Lens lens = set("surfaces[3].pose.tilt_x_deg=0.2");
+  const Lens lens = triplet_set("surfaces[3].pose.tilt_x_deg=0.2");
   expect_mentions(error_of([&] { reversed_lens(lens); }), {"surfaces[3].pose", "as designed"});
-  const std::string path = ::testing::TempDir() + "/posed.zmx";
-  expect_mentions(error_of([&] { write_lens(lens, path); }), {"surfaces[3].pose", ".json"});
+  expect_mentions(error_of([&] { write_lens(lens, "posed.zmx"); }), {"surfaces[3].pose", ".json"});
 }
 
 TEST(Pose, ScalesWithTheLens) {
-  Lens lens = set("surfaces[3].pose.decentre_x_mm=0.2");
+  Lens lens = triplet_set("surfaces[3].pose.decentre_x_mm=0.2");
   lens.surfaces[3].pose.tilt_x_deg = 0.5;
   const Lens twice = scaled_lens(lens, 2);
   EXPECT_EQ(twice.surfaces[3].pose.decentre_x_mm, 0.4);

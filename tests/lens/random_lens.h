@@ -39,6 +39,13 @@ class RandomLens {
     return lens;
   }
 
+  /// One without poses and melts, which other programs' files do not hold.
+  Lens designed() {
+    Lens lens = as_designed((*this)());
+    for (Surface& surface : lens.surfaces) surface.material = surface.material.melted({});
+    return lens;
+  }
+
   double uniform() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
   bool chance(double probability) { return uniform() < probability; }
   std::size_t below(std::size_t count) { return bits_() % count; }

@@ -13,12 +13,12 @@ namespace {
 
 using namespace testing;
 
-Lens triplet() {
+Lens triplet_of_tolerances() {
   return read_lens("cooke-triplet").lens;
 }
 
 Lens off(const std::string& tolerance, double x, double y = 0) {
-  return with_error(triplet(), parse_tolerance(tolerance), x, y);
+  return with_error(triplet_of_tolerances(), parse_tolerance(tolerance), x, y);
 }
 
 double radius(const Lens& lens, std::size_t surface) {
@@ -26,7 +26,7 @@ double radius(const Lens& lens, std::size_t surface) {
 }
 
 TEST(Tolerance, RadiusByPercentAndMillimetre) {
-  const double r = radius(triplet(), 2);
+  const double r = radius(triplet_of_tolerances(), 2);
   EXPECT_NEAR(radius(off("radius_percent@2=0.1", 0.1), 2), r * 1.001, 1e-12);
   EXPECT_NEAR(radius(off("radius_mm@2=0.1", -0.05), 2), r - 0.05, 1e-12);
 }
@@ -34,7 +34,7 @@ TEST(Tolerance, RadiusByPercentAndMillimetre) {
 TEST(Tolerance, FringesAreCountedAtTheRim) {
   // Two fringes of power in reflection are one wavelength of sag between test plate and surface at the rim.
   // The spheres' own sags differ from the parabolas' by (h/r)² of it, here 6 %.
-  const Lens designed = triplet(), built = off("radius_fringes@0=3", 2);
+  const Lens designed = triplet_of_tolerances(), built = off("radius_fringes@0=3", 2);
   const double h = *designed.surfaces[0].semi_diameter_mm;
   const auto sag = [&](const Lens& lens) {
     const double r = radius(lens, 0);
@@ -47,11 +47,11 @@ TEST(Tolerance, FringesAreCountedAtTheRim) {
 
 TEST(Tolerance, ThicknessMovesWhatLiesBehind) {
   EXPECT_DOUBLE_EQ(off("thickness_mm@1=0.1", 0.07).surfaces[1].thickness_mm,
-                   triplet().surfaces[1].thickness_mm + 0.07);
+                   triplet_of_tolerances().surfaces[1].thickness_mm + 0.07);
 }
 
 TEST(Tolerance, GlassComesOutAsItsMelt) {
-  const Material before = triplet().surfaces[0].material;
+  const Material before = triplet_of_tolerances().surfaces[0].material;
   const auto vd = [](const Material& m) {
     return (m.index(587.5618) - 1) / (m.index(486.1327) - m.index(656.2725));
   };
@@ -111,7 +111,7 @@ TEST(Tolerance, KnowsTheNamesOfOtherPrograms) {
 TEST(Tolerance, GradesCoverTheWholeLens) {
   // Three single lenses: each two radii, two wedges, a thickness, nd, Vd, decentre, tilt; two gaps of air
   // (the gap before the stop is no lens's); tighter from grade to grade.
-  const Lens lens = triplet();
+  const Lens lens = triplet_of_tolerances();
   const auto total = [&](const char* grade) {
     double sum = 0;
     for (const Tolerance& tolerance : graded_tolerances(lens, grade)) sum += tolerance.limit;
@@ -138,7 +138,7 @@ TEST(Tolerance, CementedLensesAreOneElement) {
 
 TEST(Tolerance, SaysWhatWouldBeRight) {
   const auto complaint = [](const std::string& text) {
-    return error_of([&] { check(triplet(), parse_tolerance(text)); });
+    return error_of([&] { check(triplet_of_tolerances(), parse_tolerance(text)); });
   };
   for (const char* text : {"", "radius_percent", "radius_percent@2", "radius_percent@=1", "=@",
                            "@=", "radius_percent=1@2", "radius_percent@2=x", "radius_percent@-1=1",
@@ -150,19 +150,20 @@ TEST(Tolerance, SaysWhatWouldBeRight) {
   expect_mentions(complaint("radius_percent@0=0"), {"positive number of %"});
   expect_mentions(complaint("radius_percent@0=-1"), {"positive number of %"});
   expect_mentions(complaint("index@1=0.001"), {"surfaces[1]", "air"});
-  Lens lens = triplet();
+  Lens lens = triplet_of_tolerances();
   lens.surfaces[0].semi_diameter_mm.reset();
   expect_mentions(error_of([&] { check(lens, parse_tolerance("runout_mm@0=1")); }), {"semi_diameter_mm"});
 }
 
 TEST(Tolerance, FilesNameTheirMistakes) {
   const auto complaint = [](const std::string& json) {
-    return error_of([&] { with_setting(triplet(), "tolerances=" + json); });
+    return error_of([&] { with_setting(triplet_of_tolerances(), "tolerances=" + json); });
   };
-  EXPECT_EQ(with_setting(triplet(), R"(tolerances=[{"kind": "TTHI", "surfaces": [1], "limit": 0.1}])")
-                .tolerances[0]
-                .kind,
-            "thickness_mm");
+  EXPECT_EQ(
+      with_setting(triplet_of_tolerances(), R"(tolerances=[{"kind": "TTHI", "surfaces": [1], "limit": 0.1}])")
+          .tolerances[0]
+          .kind,
+      "thickness_mm");
   expect_mentions(complaint(R"([{"kind": "wobble", "surfaces": [1], "limit": 0.1}])"),
                   {"tolerances[0].kind", "wobble"});
   expect_mentions(complaint(R"([{"kind": "index", "surfaces": [1], "limit": 0.1}])"),

@@ -326,7 +326,7 @@ TEST(ZmxWriter, ReadsBackRandomLenses) {
   RandomLens random(5);
   int written = 0;
   for (int i = 0; i < 200; ++i) {
-    Lens lens = random();
+    Lens lens = random.designed();
     if (lens.aperture.kind == Aperture::Kind::image_na) lens.aperture.kind = Aperture::Kind::f_number;
     for (Surface& surface : lens.surfaces) {
       if (std::holds_alternative<Material::Table>(surface.material.kind())) surface.material = Material();

@@ -60,7 +60,9 @@ void expect_exact(const Case& c) {
                     << c.angle_deg << " deg f/" << c.f_number << " W " << c.w020 << " " << c.w040;
   EXPECT_LT(worst, 1e-3) << name;
   EXPECT_LT(std::abs(m.mtf50().frequency_cpp / shot.true_mtf50() - 1), 1e-3) << name;
-  EXPECT_NEAR(m.line.angle_deg(), c.angle_deg, 1e-3) << name;
+  // Close to the pixel grid a tilt and what the profile cannot follow are hard to tell apart: 2e-3 px at the
+  // ends.
+  EXPECT_NEAR(m.line.angle_deg(), c.angle_deg, c.angle_deg < 1 ? 2.5e-3 : 1e-3) << name;
 }
 
 // 1e-3 in SFR and 0.1 % in MTF50 are what the ruler promises. A blur of 30 pixels radius needs as much room:

@@ -95,7 +95,8 @@ TEST(Judge, MtfIsThatOfTheMtfTable) {
   options.weights = {1, 1, 1};
   options.sensor_shifts_mm = {judgement.refocus_mm};
   const MtfRow row = mtf_table(lens, at, options).front();
-  EXPECT_NEAR(judgement.overall, 0.5 * (row.tangential + row.sagittal), 1e-12);
+  // Quick pupils against those of the table (PupilDetail).
+  EXPECT_NEAR(judgement.overall, 0.5 * (row.tangential + row.sagittal), 2e-3);
 }
 
 /// What one build does to the wave of a point: defocus [mm of sensor], and Zernike's coma and astigmatism

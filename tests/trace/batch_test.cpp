@@ -78,6 +78,10 @@ void expect_batch_equals_scalar(const Lens& lens, const Launch& launch) {
 }
 
 void expect_float_agrees(const Lens& lens, const Launch& launch) {
+  // Places of up to 16 mm have a rounding of 5e-7 mm in float; refraction at a dozen surfaces adds up to
+  // 1e-5. A pose turns the ray into the surface's axes and back, and into the sensor's: three sums of three
+  // products, each rounded.
+  const double tolerance_mm = 1e-5 + (has_poses(lens) ? 9 * 5e-7 : 0);
   const Tracer tracer(lens, 550);
   RadianceRays rays(launch.rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -95,8 +99,8 @@ void expect_float_agrees(const Lens& lens, const Launch& launch) {
     differ += (exact.status == RayStatus::ok) != (rays.passes[i] != 0);
     if (exact.status != RayStatus::ok || !rays.passes[i]) continue;
     ++passed;
-    EXPECT_NEAR(rays.x_mm[i], exact.point_mm[0], 1e-5);
-    EXPECT_NEAR(rays.y_mm[i], exact.point_mm[1], 1e-5);
+    EXPECT_NEAR(rays.x_mm[i], exact.point_mm[0], tolerance_mm);
+    EXPECT_NEAR(rays.y_mm[i], exact.point_mm[1], tolerance_mm);
     EXPECT_NEAR(rays.m[i], exact.direction[1], 2e-6);
   }
   EXPECT_GT(passed, rays.size() / 20);

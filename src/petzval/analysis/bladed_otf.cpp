@@ -10,7 +10,7 @@ namespace petzval {
 namespace {
 
 /// Panels across the chords, of so many nodes each: a kink inside a panel costs the square of its width.
-constexpr int panels = 48, panel_nodes = 8;
+constexpr int panel_nodes = 8;
 
 struct Chord {
   double low = 0, high = 0;
@@ -74,7 +74,7 @@ class Chords {
 using Wave = std::function<std::complex<double>(double, double)>;
 
 std::complex<double> overlap(const Chords& chords, const Wave& wave, bool tangential, double shift,
-                             const QuadratureRule& along) {
+                             int panels, const QuadratureRule& along) {
   const Chord range = chords.longer_than(shift);
   const auto value = [&](double across, double at) {
     return tangential ? wave(across, at) : wave(at, across);
@@ -103,12 +103,12 @@ std::complex<double> overlap(const Chords& chords, const Wave& wave, bool tangen
 }  // namespace
 
 std::complex<double> bladed_otf(const std::vector<std::array<double, 2>>& outline, const Wave& wave,
-                                MtfDirection direction, double shift, int nodes) {
+                                MtfDirection direction, double shift, int nodes, int panels) {
   const bool tangential = direction == MtfDirection::tangential;
   const Chords chords(outline, tangential ? 1 : 0);
   const QuadratureRule along = gauss_legendre(nodes);
-  return overlap(chords, wave, tangential, shift, along) /
-         overlap(chords, wave, tangential, 0, gauss_legendre(24)).real();
+  return overlap(chords, wave, tangential, shift, panels, along) /
+         overlap(chords, wave, tangential, 0, panels, gauss_legendre(24)).real();
 }
 
 }  // namespace petzval

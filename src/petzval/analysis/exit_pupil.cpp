@@ -12,11 +12,8 @@ namespace petzval {
 
 namespace {
 
-/// Corners of the outline: a polygon of 512 is too small by a share of (2π/512)²/6 = 2.5e-5.
-constexpr int outline_azimuths = 512;
-/// Rays of samples(): every fourth azimuth of the outline, and nodes in radius.
+/// Rays of samples() stand at every so-many-th azimuth of the outline.
 constexpr std::size_t azimuth_stride = 4;
-constexpr int sample_radii = 24;
 /// Distance to neighbouring rays per pupil radius, for the Jacobian.
 constexpr double nudge_per_radius = 1e-4;
 /// The aim is good when the direction is met to this share of the pupil: what is left is put right by the
@@ -26,9 +23,10 @@ constexpr int aim_steps = 12;
 
 }  // namespace
 
-ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief)
+ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief, const PupilDetail& detail)
     : tracer_(&tracer),
       chief_(chief),
+      detail_(detail),
       pencil_(Pencil::from_object(tracer.lens(), chief.object_field)),
       sphere_radius_mm_(reference_sphere_radius_mm(tracer, chief)),
       pupil_position_mm_(first_order(tracer.lens()).exit_pupil.position_mm) {}
@@ -47,13 +45,14 @@ std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
   return probe;
 }
 
-std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay& chief) {
-  const std::optional<PupilBoundary> pupil = tracer.round_object_pupil(chief, outline_azimuths);
+std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay& chief,
+                                       const PupilDetail& detail) {
+  const std::optional<PupilBoundary> pupil = tracer.round_object_pupil(chief, detail.outline_azimuths);
   if (!pupil) return {};
-  ExitPupil exit(tracer, chief);
+  ExitPupil exit(tracer, chief, detail);
   if (!exit.find_outline(*pupil)) return {};
   if (tracer.tracer().stop_blades().count > 0) {
-    const std::optional<PupilBoundary> bladed = tracer.object_pupil(chief, outline_azimuths);
+    const std::optional<PupilBoundary> bladed = tracer.object_pupil(chief, detail.outline_azimuths);
     if (!bladed) return {};
     exit.take_whole_outline(*bladed);
   }
@@ -102,7 +101,7 @@ std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, doubl
     sample.phase_waves += index * more_mm / lambda_mm;
     samples.push_back(sample);
   };
-  for (const PupilNode& node : pupil_nodes(boundary_, sample_radii)) add(node.u, node.v);
+  for (const PupilNode& node : pupil_nodes(boundary_, detail_.sample_radii)) add(node.u, node.v);
   for (std::size_t i = 0; i < boundary_.own(); ++i) add(boundary_.rim(i)[0], boundary_.rim(i)[1]);
   return samples;
 }

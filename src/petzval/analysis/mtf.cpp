@@ -154,7 +154,7 @@ std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pup
     return bladed_otf(
         pupil.whole_outline(),
         [&](double alpha, double beta) { return wave(pupil.mirrored() ? std::abs(alpha) : alpha, beta); },
-        direction, shift, nodes_for(2 * frequency_cpmm * transverse_mm));
+        direction, shift, nodes_for(2 * frequency_cpmm * transverse_mm), pupil.detail().overlap_panels);
   const Autocorrelation<Wave> pairs(pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm));
   // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
   const Autocorrelation<Wave> whole(pupil, wave, fewest_nodes);
@@ -251,7 +251,7 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
     if (row.sensors.empty()) return {};
     return row;
   }
-  const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief);
+  const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief, options.detail);
   if (!pupil) return {};
   for (const double shift : shifts) {
     check_stop();

@@ -39,6 +39,7 @@ struct MtfOptions {
   std::vector<double> frequencies_cpmm = {};
   bool geometric = false;  ///< by as many rays as change no OTF by 1e-5
   PupilModel model = {};
+  PupilDetail detail = {};
   /// One a wavelength of the request: over all wavelengths together, each PSF of unit light times its weight,
   /// at its own place (lateral colour included). Empty: every wavelength for itself.
   std::vector<double> weights = {};

@@ -5,6 +5,10 @@
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/lens.h>
 
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +18,9 @@ struct LensReadOptions {
   /// Explicit glass substitutions, "LAK10C" → "CDGM:H-LAK10", or "SK1" → "1.61025/56.71", nd and Vd of a
   /// glass that no catalogue has. Nothing is substituted without one.
   std::map<std::string, std::string> substitutions = {};
+  /// If given: gains the substitutions of glasses that the lens has; one that it has not is then no error. So
+  /// several lenses can be read with the same.
+  std::shared_ptr<std::set<std::string>> substituted = {};
   /// Where glasses are looked for; absent: the bundled catalogue alone.
   std::optional<GlassCatalogue> glasses = {};
 };

@@ -31,7 +31,7 @@ PsfOptions psf_options_of(const TableOptions& options) {
   psf.largest_size = options.largest_psf_size;
   // Kernels add up many samples: a picture of dgauss-50mm with poses changes by less than 1e-4 with more.
   psf.spot_radial_nodes = 128;
-  psf.widest_bladed_window_lambda_n = 40;  // a table has hundreds of PSFs
+  psf.widest_node_window_lambda_n = 64;  // a table has hundreds of PSFs
   return psf;
 }
 

@@ -33,7 +33,7 @@ struct LensDrawingOptions {
   /// drawn_semi_diameters_mm.
   std::vector<double> semi_diameters_mm;
   std::optional<double> image_half_height_mm;  ///< absent: where the rays end
-  double azimuth_deg = 0;         ///< of the y-z plane that is drawn, as FieldTracer has it
+  double azimuth_deg = 0;                      ///< of the y-z plane that is drawn, as FieldTracer has it
   std::optional<double> lead_mm;  ///< object space shown in front of the lens; absent: a fifth of it
 };
 

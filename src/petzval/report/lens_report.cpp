@@ -424,6 +424,8 @@ std::string lens_report_html(const std::vector<ReportLens>& lenses, const LensRe
   html::Page page(alone ? lenses[0].lens.name : fmt::format("{} lenses compared", lenses.size()),
                   alone ? "Lens report" : "Lens reports");
   if (!alone) add_comparison(page, lenses, options);
+  for (const ReportChapter& chapter : options.chapters)
+    page.section(chapter.title).add(html::paragraph(chapter.text)).add(html::table(chapter.table));
   for (const ReportLens& each : lenses) LensSections(page, each, options, alone).add_all();
   page.footer(options.footer);
   return page.html();

@@ -5,6 +5,7 @@
 
 #include <petzval/analysis/field_tables.h>
 #include <petzval/lens/lens.h>
+#include <petzval/report/table.h>
 #include <petzval/wave/photosite.h>
 
 #include <optional>
@@ -27,10 +28,17 @@ struct ReportLens {
   FieldTableRequest request;
 };
 
+/// A section that the caller computed.
+struct ReportChapter {
+  std::string title, text;
+  Table table;
+};
+
 struct LensReportOptions {
   std::vector<double> frequencies_cpmm{10, 20, 40};  ///< of MTF tables and of curves over field and focus
   double highest_frequency_cpmm = 100;               ///< of MTF curves
   std::optional<ReportSensor> sensor;
+  std::vector<ReportChapter> chapters = {};  ///< before the sections about each lens
   std::string footer;
 };
 

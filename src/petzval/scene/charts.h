@@ -4,6 +4,8 @@
 
 #include <petzval/scene/chart_canvas.h>
 
+#include <cstdint>
+
 namespace petzval {
 
 /// Squares of reflectance 1 and 0, `squares_across` from edge to edge; the middle of the picture is a corner
@@ -43,6 +45,12 @@ Scene cards_chart(const ChartOptions& options);
 /// A checkerboard on a plane that recedes from 2/3 of the chart's distance (1 m unless given) on the left to
 /// twice that on the right, in perspective. It has depth.
 Scene slanted_plane_chart(const ChartOptions& options);
+
+/// Grey discs that cover each other as fallen leaves do, with radii from 1.5 samples to a quarter of the
+/// shorter side in the density r^-3 and reflectances evenly from 0.1 to 0.9: texture whose statistics are
+/// those of natural pictures and the same at every scale (Lee, Mumford & Huang 2001; ISO/TS 19567-2). A seed,
+/// a picture.
+Scene dead_leaves_chart(const ChartOptions& options, std::uint64_t seed = 1);
 
 /// Paints a ColorChecker into a rectangle [pixels] whose width is 1.45 times its height
 /// (colorchecker_aspect).

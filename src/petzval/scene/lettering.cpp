@@ -101,20 +101,27 @@ std::string_view strokes_of(char letter) {
 }
 
 /// A straight stroke with square ends, as a rectangle around the line.
-void add_stroke(Shape& shape, Point from, Point to, double width) {
+std::vector<Point> stroke_outline(Point from, Point to, double width) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   const Point along = length > 0 ? Point{(to.x - from.x) / length, (to.y - from.y) / length} : Point{1, 0};
   const double half = width / 2;
   const Point end{half * along.x, half * along.y}, side{-half * along.y, half * along.x};
-  shape.add_polygon(std::array<Point, 4>{{{from.x - end.x - side.x, from.y - end.y - side.y},
-                                          {to.x + end.x - side.x, to.y + end.y - side.y},
-                                          {to.x + end.x + side.x, to.y + end.y + side.y},
-                                          {from.x - end.x + side.x, from.y - end.y + side.y}}});
+  return {{from.x - end.x - side.x, from.y - end.y - side.y},
+          {to.x + end.x - side.x, to.y + end.y - side.y},
+          {to.x + end.x + side.x, to.y + end.y + side.y},
+          {from.x - end.x + side.x, from.y - end.y + side.y}};
 }
 
 }  // namespace
 
 void add_text(Shape& shape, std::string_view text, double left, double top, double height) {
+  std::vector<std::vector<Point>> strokes;
+  add_text(strokes, text, left, top, height);
+  for (const std::vector<Point>& outline : strokes) shape.add_polygon(outline);
+}
+
+void add_text(std::vector<std::vector<Point>>& outlines, std::string_view text, double left, double top,
+              double height) {
   const double step = height / box_height;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const double x0 = left + step * (advance * static_cast<double>(i) + stroke / 2),
@@ -124,7 +131,7 @@ void add_text(Shape& shape, std::string_view text, double left, double top, doub
       return Point{x0 + step * (strokes[at] - '0'), y0 + step * (strokes[at + 1] - '0')};
     };
     for (std::size_t at = 0; at + 5 <= strokes.size(); at += 3)
-      if (strokes[at + 2] == ' ') add_stroke(shape, point(at), point(at + 3), step * stroke);
+      if (strokes[at + 2] == ' ') outlines.push_back(stroke_outline(point(at), point(at + 3), step * stroke));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/scene/formats/envi.h>
@@ -15,6 +16,7 @@
 #include <petzval/scene/photograph_scene.h>
 #include <petzval/scene/scene_file.h>
 #include <petzval/scene/scene_light.h>
+#include <petzval/scene/tilted_plane.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,12 +100,38 @@ void set_level(Scene& scene, const SceneOptions& options) {
   if (options.irradiance_w_m2) set_irradiance_w_m2(scene, *options.irradiance_w_m2);
 }
 
+/// Stars have a light of their own and stand where they stand.
+void refuse_light_on_stars(const std::string& text, const SceneOptions& options) {
+  if (!options.illuminant.empty() || options.illuminance_lx || options.irradiance_w_m2)
+    throw InputError(fmt::format(
+        "scene {}: stars shine by themselves; `scene.illuminant` and `scene.illuminance_lx` are for charts "
+        "that reflect",
+        text));
+  if ((options.distance_m && std::isfinite(*options.distance_m)) || options.tilt_deg)
+    throw InputError(fmt::format(
+        "scene {}: stars stand at infinity; `scene.distance_m` and `scene.tilt_deg` are for other charts",
+        text));
+}
+
+Scene read_sky(const std::string& text, const NamedChart& chart, const SceneOptions& options) {
+  refuse_light_on_stars(text, options);
+  Scene scene = make_chart(text, chart, chart_options(options));
+  if (options.mean_luminance_cd_m2) scene.set_mean_luminance_cd_m2(*options.mean_luminance_cd_m2);
+  if (options.band_width_nm) {
+    widen_bands(scene, {}, options.band_width_nm);
+  } else {
+    note_unknown_width(scene, {});
+  }
+  return scene;
+}
+
 Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOptions& options) {
   if (options.encoding)
     throw InputError(
         fmt::format("scene {}: a chart has no encoding; `scene.encoding` is for photographs", text));
   refuse_cube_options("scene " + text, options);
   refuse_thermal_options("scene " + text, options);
+  if (chart.is_sky) return read_sky(text, chart, options);
   if (chart.deep && options.distance_m && std::isinf(*options.distance_m))
     throw InputError(fmt::format(
         "scene {}: its depths are multiples of a finite `scene.distance_m` (1 m unless given)", text));
@@ -220,9 +248,6 @@ std::string find_scene_file(const std::string& name) {
       known.push_back(bundled);
     }
   for (const NamedChart& chart : named_charts()) known.push_back(chart.name);
-  if (name == "siemens" || name == "star" || name == "grid")
-    throw InputError(name,
-                     "no such file, and no scene of that name; studio has Siemens stars and a line grid");
   throw InputError(name, fmt::format("no such file, and no scene of that name; the nearest are {}",
                                      fmt::join(nearest_names(name, known), ", ")));
 }
@@ -256,9 +281,42 @@ Scene with_depth(Scene scene, const SceneOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// What a width says at a distance. \throws InputError for a width without one.
+double angle_of_width_deg(double width_m, std::optional<double> distance_m) {
+  if (!distance_m || !std::isfinite(*distance_m))
+    throw InputError(
+        "`scene.width_m` is a width at a distance; a finite `scene.distance_m` would be right with it");
+  return 2 * degrees(std::atan(width_m / 2 / *distance_m));
+}
+
+/// A flat scene, as wide as its width or its angle says, and turned.
+Scene read_turned_plane(const std::string& path_or_name, SceneOptions options) {
+  constexpr double usual_m = 1;
+  const bool open = is_open_scene(path_or_name);
+  if (open && !options.distance_m && (options.tilt_deg || is_deep_chart(path_or_name)))
+    options.distance_m = usual_m;
+  if (options.width_m && options.horizontal_angle_deg)
+    throw InputError(
+        "`scene.width_m` and `scene.horizontal_angle_deg` both say how wide the scene is; one of "
+        "them would be right");
+  if (options.width_m && (open || options.distance_m))
+    options.horizontal_angle_deg = angle_of_width_deg(*options.width_m, options.distance_m);
+  Scene scene = read_plane(path_or_name, options);
+  if (options.width_m && !options.horizontal_angle_deg)
+    scene.set_horizontal_angle_deg(angle_of_width_deg(*options.width_m, scene.distance_m()));
+  return options.tilt_deg ? tilted(scene, *options.tilt_deg) : scene;
+}
+
+}  // namespace
+
 Scene read_scene(const std::string& path_or_name, const SceneOptions& options) {
   if (path_or_name.empty()) throw InputError("an empty name for a scene");
-  if (!options.panorama) return with_depth(read_plane(path_or_name, options), options);
+  if (!options.panorama) return with_depth(read_turned_plane(path_or_name, options), options);
+  if (options.width_m || options.tilt_deg)
+    throw InputError(path_or_name,
+                     "is a panorama; `scene.width_m` and `scene.tilt_deg` are for plane scenes");
   if (options.horizontal_angle_deg)
     throw InputError(path_or_name,
                      "is a panorama, 360 degrees wide; `scene.horizontal_angle_deg` is for plane scenes");
@@ -286,6 +344,10 @@ bool is_open_scene(const std::string& path_or_name) {
 
 bool is_deep_chart(const std::string& path_or_name) {
   return is_builtin_scene(path_or_name) && find_chart(path_or_name)->deep;
+}
+
+bool is_drawn_to_angle(const std::string& path_or_name, const SceneOptions& options) {
+  return options.tilt_deg || (is_builtin_scene(path_or_name) && find_chart(path_or_name)->is_sky);
 }
 
 std::vector<BuiltinScene> builtin_scenes() {

@@ -17,7 +17,9 @@ struct SceneOptions {
   std::optional<int> columns = {}, rows = {};  ///< charts only (768 × 576); a file has its size
   std::vector<double> wavelengths_nm = {};  ///< empty: the file's bands; default_bands_nm() where it has none
   std::optional<double> horizontal_angle_deg = {};  ///< replaces the file's; 40 for charts and photographs
+  std::optional<double> width_m = {};               ///< of the scene at its distance, in place of its angle
   std::optional<double> distance_m = {};  ///< replaces the file's; they stand at infinity. inf: at infinity
+  std::optional<double> tilt_deg = {};    ///< turns a plane about its upright middle line: tilted()
   std::string illuminant = {};  ///< of charts, photographs (D65) and reflectances; swapped for that of a
                                 ///< scene whose light is known
   std::optional<double> mean_luminance_cd_m2 =
@@ -72,6 +74,9 @@ std::vector<BuiltinScene> builtin_scenes();
 bool is_open_scene(const std::string& path_or_name);
 /// Whether it is a chart that has depth.
 bool is_deep_chart(const std::string& path_or_name);
+/// Whether a scene is another one at another angle, not the same one smaller or larger: stars, a tilted
+/// plane.
+bool is_drawn_to_angle(const std::string& path_or_name, const SceneOptions& options);
 /// Whether read_scene makes a chart of this name: it is one's name, and no file is called so.
 bool is_builtin_scene(const std::string& path_or_name);
 

@@ -37,11 +37,17 @@ bool is_open(const SceneRequest& scene) {
   return !scene.options.panorama && is_open_scene(scene.name);
 }
 
+/// Whether somebody says how wide it is.
+bool has_width(const SceneRequest& scene) {
+  return scene.options.horizontal_angle_deg || scene.options.width_m;
+}
+
 Scene read(const SceneRequest& request, std::optional<double> expected_m, bool expected,
            const Context& context) {
   SceneOptions options = request.options;
   // Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
-  if (expected && !options.distance_m && is_open(request) && !is_deep_chart(request.name))
+  const bool placed = is_deep_chart(request.name) || is_drawn_to_angle(request.name, {});
+  if (expected && !options.distance_m && is_open(request) && !placed && (expected_m || !options.tilt_deg))
     options.distance_m = expected_m.value_or(INFINITY);
   Scene scene = read_scene(request.name, options);
   scene.validate();
@@ -54,7 +60,7 @@ Scene read(const SceneRequest& request, std::optional<double> expected_m, bool e
 SceneRequest as_wide_as_fields(SceneRequest request, const Camera& camera) {
   constexpr double across = 0.8;  // of the diagonal
   const double view_deg = first_order(camera.lens).field_of_view_deg;
-  if (camera.sensor || !is_open(request) || request.options.horizontal_angle_deg) return request;
+  if (camera.sensor || !is_open(request) || has_width(request)) return request;
   if (view_deg > 0 && view_deg < 170)
     request.options.horizontal_angle_deg = 2 * degrees(std::atan(across * std::tan(radians(view_deg) / 2)));
   return request;
@@ -248,7 +254,12 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
   plan.frame = sensor->geometry;
   if (!request || !fills_frame(*request, optics, plan.options)) return;
   const double fills_deg = filling_angle_deg(plan, plan.frame);
-  plan.scene.set_horizontal_angle_deg(std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0)));
+  const double angle_deg = std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0));
+  if (!is_drawn_to_angle(request->name, request->options))
+    return plan.scene.set_horizontal_angle_deg(angle_deg);
+  SceneRequest drawn = *request;
+  drawn.options.horizontal_angle_deg = angle_deg;
+  plan.scene = read(drawn, plan.scene.distance_m(), true, context);
 }
 
 ImageOptions with_photosite(ImageOptions options, const Optics& optics) {
@@ -288,7 +299,7 @@ ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options, co
 }
 
 bool fills_frame(const SceneRequest& scene, const Optics& optics, const ImageOptions& options) {
-  return sensor_of(optics) && is_open(scene) && !scene.options.horizontal_angle_deg &&
+  return sensor_of(optics) && is_open(scene) && !has_width(scene) &&
          options.imaging.surround == Surround::error;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/context.h>
+#include <petzval/report/table.h>
 #include <petzval/simulate/camera.h>
 #include <petzval/simulate/depth_of_field.h>
 #include <petzval/simulate/frame_view.h>
@@ -47,6 +48,9 @@ struct LensOnSensor {
 /// lens's. \throws InputError for a camera without sensor, and as focusing and mtf_table().
 LensOnSensor lens_on_sensor(const Camera& camera, std::optional<double> distance_m,
                             const std::vector<double>& wavelengths_nm = {}, const Context& context = {});
+
+/// For people: a row a quantity, a column a lens.
+Table lens_on_sensor_table(const std::vector<LensOnSensor>& lenses);
 
 struct LensMatchRequest {
   Sensor sensor;

@@ -18,7 +18,7 @@ namespace {
 
 bool is_irradiance_name(const std::string& path) {
   const std::string extension = extension_of(path);
-  return extension == ".exr" || extension == ".npy";
+  return extension == ".exr" || extension == ".npy" || extension == ".npz";
 }
 
 /// A few pixels of light that every channel sees, as image() would make it.
@@ -169,7 +169,7 @@ void check_outputs(const std::vector<std::string>& paths, const std::optional<Se
   for (const std::string& path : paths) {
     if (!is_raw_name(path) && !is_picture_name(path) && !is_irradiance_name(path))
       throw InputError(
-          path, "irradiance is written as .exr or .npy, a raw file as .dng, a picture as .png or .tif");
+          path, "irradiance is written as .exr, .npy or .npz, a raw file as .dng, a picture as .png or .tif");
     raw = raw || is_raw_name(path);
     pictures = pictures || is_picture_name(path);
     if (!develop_pictures && is_picture_name(path) && extension_of(path) != ".png")

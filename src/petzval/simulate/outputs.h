@@ -55,7 +55,7 @@ void check_outputs(const std::vector<std::string>& paths, const std::optional<Se
 ///
 ///     write_outputs(light, {"light.exr", "shot.dng", "shot.png"}, camera.sensor);
 ///
-/// By their names: irradiance as .exr or .npy, the raw image as .dng, pictures as .png or .tif.
+/// By their names: irradiance as .exr, .npy or .npz, the raw image as .dng, pictures as .png or .tif.
 /// \throws InputError as check_outputs(); Failure; Cancelled.
 Outputs write_outputs(SpectralImage light, const std::vector<std::string>& paths,
                       const std::optional<Sensor>& sensor, const OutputOptions& options = {},

@@ -4,6 +4,7 @@
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/scene/named_chart.h>
 #include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
 
@@ -169,9 +170,30 @@ TargetScene zone_plate(const Frame& frame) {
 
 }  // namespace
 
+namespace {
+
+/// The polygons of a chart that scenes have too.
+TargetScene of_figures(const FigureChart& chart) {
+  TargetScene scene;
+  scene.ground = chart.ground;
+  for (const ChartFigure& figure : chart.figures)
+    for (const std::vector<Point>& outline : figure.outlines) {
+      Contour contour;
+      for (const Point& corner : outline) contour.push_back({corner.x, corner.y});
+      scene.polygons.push_back({{std::move(contour)}, figure.level, 0});
+    }
+  return scene;
+}
+
+}  // namespace
+
 std::vector<std::string> test_chart_names() {
-  return {"checkerboard", "pinch", "siemens", "slanted-edges",
-          "slanted-star", "text",  "trumpet", "zone-plate"};
+  std::vector<std::string> names = {"checkerboard", "pinch",   "slanted-edges", "slanted-star",
+                                    "text",         "trumpet", "zone-plate"};
+  for (const NamedChart& chart : named_charts())
+    if (chart.figures) names.emplace_back(chart.name);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 TargetScene test_chart(const std::string& name, int columns, int rows) {
@@ -182,12 +204,13 @@ TargetScene test_chart(const std::string& name, int columns, int rows) {
   const Frame frame{static_cast<double>(columns), static_cast<double>(rows)};
   if (name == "slanted-edges") return slanted_edges(frame);
   if (name == "slanted-star") return sectors(frame, 12, 3);
-  if (name == "siemens") return sectors(frame, 36, 0);
   if (name == "checkerboard") return checkerboard(frame);
   if (name == "pinch") return pinch(frame);
   if (name == "trumpet") return trumpet(frame);
   if (name == "text") return text_lines_chart(frame);
   if (name == "zone-plate") return zone_plate(frame);
+  if (const NamedChart* chart = find_chart(name); chart && chart->figures)
+    return of_figures(chart->figures({frame.width, frame.height}, chart_parameter(name, *chart)));
   throw InputError(fmt::format("no chart '{}'; the nearest are {}", name,
                                fmt::join(nearest_names(name, test_chart_names()), ", ")));
 }

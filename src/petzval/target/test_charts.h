@@ -17,7 +17,6 @@ std::vector<std::string> test_chart_names();
 /// slanted-edges   squares turned by 5°, a third of the shorter side apart, as the low-contrast edges of an
 ///                 ISO 12233 e-SFR chart stand
 /// slanted-star    twelve dark sectors whose edges run in 24 directions
-/// siemens         a star of 36 dark sectors
 /// checkerboard    8 by 8 fields turned by 5°
 /// pinch           nine straight-sided bars that close up from a width of 8 pixels to 0.9 pixels each, 0.06
 /// to 0.56
@@ -26,6 +25,9 @@ std::vector<std::string> test_chart_names();
 /// height trumpet         nine bars whose frequency grows evenly on the way down, 0.05 to 0.55 cycles/pixel
 /// zone-plate      rings whose frequency grows with the distance from the centre, to 0.5 cycles/pixel at the
 /// rim
+///
+/// and the charts of scenes that are figures alone, with their parameters: "siemens:72", "usaf1951",
+/// "qr:TEXT" and others (scene/chart_figures.h).
 ///
 /// Curves are chords within 1e-4 pixels. \throws InputError for another name, naming the nearest, or a
 /// picture below 64 pixels a side.

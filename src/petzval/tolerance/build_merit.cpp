@@ -71,6 +71,7 @@ std::vector<double> mtf_at_points(const Lens& lens, const JudgeRequest& request,
   options.frequencies_cpmm = {request.merit.frequency_cpmm};
   options.weights.assign(request.at.wavelengths_nm.size(), 1);
   options.sensor_shifts_mm = {shift_mm};
+  options.detail = PupilDetail::quick();
   std::vector<double> values(points);
   for (const AzimuthFields& group : groups) {
     const std::vector<MtfRow> rows = mtf_table(lens, request_of(request, group), options);

@@ -213,6 +213,19 @@ std::vector<Tolerance> tolerances_of(const Lens& lens, const ToleranceRequest& r
   return tolerances;
 }
 
+Lens build_off_the_line(const Lens& lens, const ToleranceRequest& request, std::uint64_t seed,
+                        std::size_t index) {
+  lens.validate();
+  const std::vector<Tolerance> tolerances = tolerances_of(lens, request);
+  Lens built = built_lens(lens, tolerances, draw_build(tolerances, request.distribution, seed, index));
+  JudgeRequest spots = request.judge;
+  spots.merit = {};
+  built.surfaces.back().thickness_mm += judge(built, spots).refocus_mm;
+  built.name += fmt::format(", build {}", index);
+  built.tolerances.clear();
+  return built;
+}
+
 ToleranceReport tolerance_lens(const Lens& lens, const ToleranceRequest& request, const Context& context) {
   lens.validate();
   check(request);

@@ -64,6 +64,12 @@ Lens built_lens(const Lens& lens, const std::vector<Tolerance>& tolerances, cons
 Build draw_build(const std::vector<Tolerance>& tolerances, ErrorDistribution distribution, std::uint64_t seed,
                  std::size_t index);
 
+/// Build number `index` of a lens as it leaves the line: with its errors, and its sensor focused as judge()
+/// does (unless `request.judge` leaves it). What tolerance_lens() judges under that number, as a lens of its
+/// own. \throws InputError as tolerance_lens().
+Lens build_off_the_line(const Lens& lens, const ToleranceRequest& request, std::uint64_t seed,
+                        std::size_t index);
+
 /// The tolerances that a request stands for on a lens. \throws InputError as check() and graded_tolerances().
 std::vector<Tolerance> tolerances_of(const Lens& lens, const ToleranceRequest& request);
 

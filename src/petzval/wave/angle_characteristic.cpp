@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/numeric/nonuniform_fft.h>
 #include <petzval/wave/angle_characteristic.h>
 
-#include <petzval/wave/plane_wave_kernel.h>
-
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdlib>
@@ -13,46 +13,58 @@ namespace petzval {
 
 namespace {
 
-/// Every node as a wave at the first row and its turns from sample to sample.
-WaveTurns turns_of(const PupilWaves& waves, int size, double spacing_mm) {
-  const double k = 2 * pi * waves.image_index / (waves.wavelength_nm * mm_per_nm);
-  WaveTurns turns;
-  turns.resize(waves.size());
-  for (std::size_t j = 0; j < waves.size(); ++j) {
-    const double row_turn = k * waves.beta[j] * spacing_mm, column_turn = k * waves.alpha[j] * spacing_mm;
-    const double first = 2 * pi * std::remainder(waves.phase_waves[j], 1.0) - (size / 2) * row_turn;
-    turns.start_re[j] = waves.amplitude[j] * std::cos(first);
-    turns.start_im[j] = waves.amplitude[j] * std::sin(first);
-    turns.row_re[j] = std::cos(row_turn);
-    turns.row_im[j] = std::sin(row_turn);
-    turns.column_re[j] = std::cos(column_turn);
-    turns.column_im[j] = std::sin(column_turn);
-  }
-  return turns;
-}
+/// What a sum of waves may hold at once [bytes]; more passes take the same time.
+constexpr std::size_t most_bytes = std::size_t{1} << 28;
 
-/// |U|² on the grid. Node by node e^{ikαs} = cos + i sin, and the kernel sums real columns: the mirrored half
-/// folds the cosines in two, and columns s ≥ 0 are enough; a whole pupil adds the sines, which change their
-/// sign with s.
+/// Nodes as masses at −α and −β in units of a turn from one sample to the next; real parts and imaginary
+/// ones.
+struct WaveMasses {
+  PointMasses real, imaginary;
+
+  WaveMasses(const PupilWaves& waves, double spacing_mm) {
+    const double turns = spacing_mm * waves.image_index / (waves.wavelength_nm * mm_per_nm);
+    const std::size_t count = waves.size() * (waves.mirrored ? 2 : 1);
+    real.reserve(count), imaginary.reserve(count);
+    for (std::size_t j = 0; j < waves.size(); ++j) {
+      const double phase = 2 * pi * std::remainder(waves.phase_waves[j], 1.0);
+      add(-turns * waves.alpha[j], -turns * waves.beta[j], std::polar(waves.amplitude[j], phase));
+      if (waves.mirrored)
+        add(turns * waves.alpha[j], -turns * waves.beta[j], std::polar(waves.amplitude[j], phase));
+    }
+  }
+
+ private:
+  void add(double x, double y, std::complex<double> amplitude) {
+    real.add(x, y, amplitude.real());
+    imaginary.add(x, y, amplitude.imag());
+  }
+};
+
+/// |U|² on the grid. Both transforms have one half of the plane, and the other by conjugation.
 std::vector<double> intensities(const PupilWaves& waves, int size, double spacing_mm) {
-  const int columns = size / 2 + 1;
-  const WaveTurns turns = turns_of(waves, size, spacing_mm);
-  std::vector<double> even_re, even_im, odd_re, odd_im;
-  sum_wave_turns(turns, WaveColumns::cosines, size, columns, even_re, even_im);
-  if (!waves.mirrored) sum_wave_turns(turns, WaveColumns::sines, size, columns, odd_re, odd_im);
+  const int half = size / 2, rows = 2 * half + 1;
+  const WaveMasses masses(waves, spacing_mm);
+  const NonuniformFft2 fft(half, half);
+  const auto place = [&](int k, std::size_t l) {
+    return static_cast<std::size_t>(k) * static_cast<std::size_t>(rows) + l;
+  };
+  std::vector<std::complex<double>> real(place(half + 1, 0)), imaginary(real.size());
+  const auto keep = [&](std::vector<std::complex<double>>& into) {
+    return [&](int k, std::span<const std::complex<double>> values) {
+      std::ranges::copy(values, into.begin() + static_cast<std::ptrdiff_t>(place(k, 0)));
+    };
+  };
+  fft.transform(masses.real, rows, most_bytes, keep(real));
+  fft.transform(masses.imaginary, rows, most_bytes, keep(imaginary));
   std::vector<double> result(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i)
     for (int j = 0; j < size; ++j) {
-      const int s = j - size / 2;
-      const auto at = static_cast<std::size_t>(i) * static_cast<std::size_t>(columns) +
-                      static_cast<std::size_t>(std::abs(s));
-      double re = even_re[at], im = even_im[at];
-      if (!waves.mirrored) {  // U = (E ± i O)/2
-        re = 0.5 * (re - (s < 0 ? -1 : 1) * odd_im[at]);
-        im = 0.5 * (im + (s < 0 ? -1 : 1) * odd_re[at]);
-      }
+      const int s = j - half, t = i - half;
+      const std::size_t at = place(std::abs(s), static_cast<std::size_t>((s < 0 ? -t : t) + half));
+      const std::complex<double> a = s < 0 ? std::conj(real[at]) : real[at],
+                                 b = s < 0 ? std::conj(imaginary[at]) : imaginary[at];
       result[static_cast<std::size_t>(i) * static_cast<std::size_t>(size) + static_cast<std::size_t>(j)] =
-          re * re + im * im;
+          std::norm(a + std::complex<double>(0, 1) * b);
     }
   return result;
 }

@@ -25,11 +25,11 @@ struct PupilWaves {
   std::size_t size() const { return alpha.size(); }
 };
 
-/// U(s, t) = Σ_j amplitude_j exp(2πi φ_j) exp(i k (α_j s + β_j t)), k = 2π n'/λ, on a size × size grid, as a
-/// product of two thin matrices; the PSF is |U|² normalised to unit sum. No reference sphere and no
-/// projection step: it holds on the flat sensor at any field angle (docs/CONVENTIONS.md, "Point-spread
-/// function"). `captured` is the window's share of the flux. \throws InputError for a size below 1 or a
-/// spacing that is not positive.
+/// U(s, t) = Σ_j amplitude_j exp(2πi φ_j) exp(i k (α_j s + β_j t)), k = 2π n'/λ, on a size × size grid, by
+/// one non-uniform transform; the PSF is |U|² normalised to unit sum. No reference sphere and no projection
+/// step: it holds on the flat sensor at any field angle (docs/CONVENTIONS.md, "Point-spread function").
+/// `captured` is the window's share of the flux. \throws InputError for a size below 1 or a spacing that is
+/// not positive.
 Psf sum_plane_waves(const PupilWaves& waves, int size, double spacing_um);
 
 }  // namespace petzval

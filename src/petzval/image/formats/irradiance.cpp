@@ -7,6 +7,7 @@
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/formats/npy.h>
+#include <petzval/image/formats/npz.h>
 #include <petzval/image/formats/spectral_exr.h>
 
 #include <algorithm>
@@ -115,7 +116,69 @@ std::optional<Spectrum> illuminant_of(const SpectralExr& exr, const std::string&
   }
 }
 
+/// The values with the bands of a pixel side by side, and what they are of.
+void write_irradiance_npz(const std::string& path, const SpectralImage& image) {
+  const auto bands = static_cast<std::size_t>(image.bands());
+  NpyArray light{{static_cast<std::size_t>(image.rows()), static_cast<std::size_t>(image.columns()), bands},
+                 {}};
+  std::vector<float> values(image.band_size() * bands);
+  for (std::size_t band = 0; band < bands; ++band) {
+    const std::span<const float> plane = image.band(static_cast<int>(band));
+    for (std::size_t i = 0; i < plane.size(); ++i) values[i * bands + band] = plane[i];
+  }
+  light.values = std::move(values);
+  write_npz(path, {{"irradiance", std::move(light)},
+                   {"wavelengths_nm", {{bands}, image.wavelengths_nm()}},
+                   {"pitch_um", {{}, std::vector<double>{image.pitch_um()}}}});
+}
+
+/// An array as an image. \param wavelengths  where they come from, for messages.
+SpectralImage image_of(const NpyArray& array, const std::vector<double>& wavelengths_nm,
+                       const BareIrradiance& bare, double pitch_um, const std::string& path,
+                       const char* wavelengths) {
+  const std::vector<std::size_t>& shape = array.shape;
+  constexpr std::size_t longest = 1 << 20;
+  if (shape.size() < 2 || shape.size() > 3 || shape[0] > longest || shape[1] > longest)
+    throw InputError(
+        path, "holds no picture; an array of (rows, columns, bands) or (rows, columns) would be right");
+  const std::size_t bands = shape.size() == 3 ? shape[2] : 1;
+  if (wavelengths_nm.size() != bands)
+    throw InputError(path, fmt::format("has {} bands and {} wavelengths; as many {} would be right", bands,
+                                       wavelengths_nm.size(), wavelengths));
+  SpectralImage image(static_cast<int>(shape[1]), static_cast<int>(shape[0]), wavelengths_nm, pitch_um,
+                      bare.aperture);
+  image.photosite = bare.photosite;
+  std::visit(
+      [&](const auto& values) {
+        for (std::size_t band = 0; band < bands; ++band) {
+          const std::span<float> plane = image.band(static_cast<int>(band));
+          for (std::size_t i = 0; i < plane.size(); ++i)
+            plane[i] = static_cast<float>(values[i * bands + band]);
+        }
+      },
+      array.values);
+  image.validate();
+  return image;
+}
+
 }  // namespace
+
+SpectralImage read_irradiance(const std::string& path, const BareIrradiance& bare) {
+  if (extension_of(path) == ".npy")
+    return image_of(read_npy(path), bare.wavelengths_nm, bare, bare.pitch_um, path, "`wavelengths_nm`");
+  if (extension_of(path) != ".npz") return read_irradiance(path);
+  const std::vector<NamedArray> arrays = read_npz(path);
+  double pitch_um = bare.pitch_um;
+  for (const NamedArray& each : arrays)
+    if (each.name == "pitch_um") {
+      const std::vector<double> values = double_values(each.array);
+      if (values.size() != 1) throw InputError(path, "pitch_um is one number");
+      pitch_um = values[0];
+    }
+  const NpyArray& light = find_array(arrays, "irradiance", path);
+  return image_of(light, double_values(find_array(arrays, "wavelengths_nm", path)), bare, pitch_um, path,
+                  "in `wavelengths_nm`");
+}
 
 void write_irradiance(const std::string& path, const SpectralImage& image,
                       const std::vector<ExrPlane>& layers) {
@@ -124,7 +187,8 @@ void write_irradiance(const std::string& path, const SpectralImage& image,
     return write_spectral_exr(path, description_of(image, layers), image.values(),
                               [&] { image.release_memory(); });
   if (extension == ".npy") return write_npy(path, image);
-  throw InputError(path, "irradiance is written as .exr or .npy");
+  if (extension == ".npz") return write_irradiance_npz(path, image);
+  throw InputError(path, "irradiance is written as .exr, .npy or .npz");
 }
 
 void write_irradiance(const std::string& path, SpectralImage&& image, const std::vector<ExrPlane>& layers) {

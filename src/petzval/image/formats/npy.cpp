@@ -166,7 +166,10 @@ void write_npy(const std::string& path, SpectralImage&& image) {
 }
 
 NpyArray read_npy(const std::string& path) {
-  const NpyFile file(path);
+  return array_of(NpyFile(path));
+}
+
+NpyArray array_of(const NpyFile& file) {
   NpyArray array{file.shape(), {}};
   const auto read = [&](auto values) {
     values.resize(file.size());

@@ -35,5 +35,8 @@ void write_npy(const std::string& path, SpectralImage&& image);
 /// \throws InputError for another type, a damaged header, or a file shorter or longer than its shape
 /// says.
 NpyArray read_npy(const std::string& path);
+class NpyFile;
+/// The same of an open file.
+NpyArray array_of(const NpyFile& file);
 
 }  // namespace petzval

@@ -12,8 +12,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
+#include <sstream>
+#include <utility>
 
 namespace petzval {
 
@@ -103,7 +106,7 @@ class HeaderParser {
 };
 
 /// The header's text, leaving the file at the data.
-std::string read_header(std::ifstream& file, const std::string& path) {
+std::string read_header(std::istream& file, const std::string& path) {
   std::array<unsigned char, 12> start{};
   const auto fill = [&](std::size_t from, std::size_t count) {
     file.read(reinterpret_cast<char*>(start.data()) + from, static_cast<std::streamsize>(count));
@@ -181,28 +184,39 @@ void decode(std::string_view kind, const char* bytes, bool big_endian, std::span
 
 }  // namespace
 
-NpyFile::NpyFile(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+NpyFile::NpyFile(const std::string& path)
+    : path_(path), file_(std::make_unique<std::ifstream>(path, std::ios::binary)) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw InputError(path, "is a folder, not a file");
-  if (!file_) throw InputError(path, "cannot be read; is it there?");
+  if (!*file_) throw InputError(path, "cannot be read; is it there?");
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error || bytes > max_bytes) throw InputError(path, "is no file, or larger than 16 GiB");
-  const std::string text = read_header(file_, path);
-  HeaderParser header(text, path);
+  open(static_cast<std::size_t>(bytes));
+}
+
+NpyFile::NpyFile(std::string bytes, const std::string& name) : path_(name) {
+  const std::size_t size = bytes.size();
+  file_ = std::make_unique<std::istringstream>(std::move(bytes), std::ios::binary);
+  open(size);
+}
+
+void NpyFile::open(std::size_t bytes) {
+  const std::string text = read_header(*file_, path_);
+  HeaderParser header(text, path_);
   header.parse();
   // "<f4": byte order ('|' where there is none), kind, size.
   const std::string& type = header.type;
   kind_ = type.size() == 3 ? type.substr(1) : std::string();
   const bool known = std::find(known_kinds.begin(), known_kinds.end(), kind_) != known_kinds.end();
   if (!known || (type[0] != '<' && type[0] != '>' && type[0] != '|'))
-    throw InputError(path,
+    throw InputError(path_,
                      fmt::format("has values of type '{}'; save it as float32 or float64", quotable(type)));
   fortran_order_ = *header.fortran_order && header.shape->size() > 1;
   shape_ = std::move(*header.shape);
   value_bytes_ = static_cast<std::size_t>(kind_[1] - '0');
   big_endian_ = type[0] == '>';
-  start_ = static_cast<std::size_t>(file_.tellg());
-  size_ = checked_count(shape_, value_bytes_, static_cast<std::size_t>(bytes) - start_, path);
+  start_ = static_cast<std::size_t>(file_->tellg());
+  size_ = checked_count(shape_, value_bytes_, bytes - start_, path_);
 }
 
 bool NpyFile::needs_double() const {
@@ -211,13 +225,13 @@ bool NpyFile::needs_double() const {
 
 template <class Value>
 void NpyFile::read_values(std::size_t first, std::span<Value> values) const {
-  file_.clear();
-  file_.seekg(static_cast<std::streamoff>(start_ + first * value_bytes_));
+  file_->clear();
+  file_->seekg(static_cast<std::streamoff>(start_ + first * value_bytes_));
   for (std::size_t done = 0; done < values.size();) {
     const std::span<Value> block = values.subspan(done, std::min(block_values, values.size() - done));
     buffer_.resize(block.size() * value_bytes_);
-    file_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    if (file_.gcount() != static_cast<std::streamsize>(buffer_.size()))
+    file_->read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    if (file_->gcount() != static_cast<std::streamsize>(buffer_.size()))
       throw InputError(path_, "became shorter while it was read");
     decode(kind_, buffer_.data(), big_endian_, block);
     done += block.size();

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <fstream>
+#include <istream>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@ class NpyFile {
  public:
   /// \throws InputError as read_npy().
   explicit NpyFile(const std::string& path);
+  /// The same bytes out of something else. \param name  for messages.
+  NpyFile(std::string bytes, const std::string& name);
 
   const std::vector<std::size_t>& shape() const { return shape_; }
   /// Of all values.
@@ -35,11 +38,12 @@ class NpyFile {
   void read(std::size_t first, std::span<double> values) const;
 
  private:
+  void open(std::size_t bytes);
   template <class Value>
   void read_values(std::size_t first, std::span<Value> values) const;
 
   std::string path_;
-  mutable std::ifstream file_;
+  std::unique_ptr<std::istream> file_;
   mutable std::vector<char> buffer_;
   std::vector<std::size_t> shape_;
   std::string kind_;  ///< "f4", "u2" ...

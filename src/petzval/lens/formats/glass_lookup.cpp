@@ -86,7 +86,8 @@ void GlassLookup::require_all_used() const {
     const bool used = std::any_of(asked_.begin(), asked_.end(), [&, &from = from](const std::string& name) {
       return upper_case(name) == upper_case(from);
     });
-    if (used) continue;
+    if (used && options_.substituted) options_.substituted->insert(from);
+    if (used || options_.substituted) continue;
     if (asked_.empty())
       throw InputError(fmt::format("`substitute` {}={}: the lens names no glasses", quotable(from), to));
     throw InputError(fmt::format("`substitute` {}={}: the lens has no such glass; its glasses are {}",

@@ -18,10 +18,12 @@ namespace petzval::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A number and its derivative; of Dual numbers again for higher ones.
-template <class T>
+/// A number and its derivative; of Dual numbers again for higher ones, with several slopes for derivatives by
+/// several things at once.
+template <class T, class S = T>
 struct Dual {
-  T value, slope;
+  T value;
+  S slope;
 
   friend Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
   friend Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
@@ -36,8 +38,8 @@ struct Dual {
 
 template <class V>
 struct IsDual : std::false_type {};
-template <class T>
-struct IsDual<Dual<T>> : std::true_type {};
+template <class T, class S>
+struct IsDual<Dual<T, S>> : std::true_type {};
 
 /// One number, as against a vector of them.
 template <class V>
@@ -49,9 +51,15 @@ HWY_INLINE V constant(double value) {
   if constexpr (std::is_floating_point_v<V>)
     return static_cast<V>(value);
   else if constexpr (IsDual<V>::value)
-    return {constant<decltype(V::value)>(value), constant<decltype(V::value)>(0)};
+    return {constant<decltype(V::value)>(value), {}};
   else
     return hn::Set(hn::DFromV<V>(), static_cast<hn::TFromV<V>>(value));
+}
+
+/// One that is the same for all rays and has a derivative already.
+template <class V>
+requires IsDual<V>::value HWY_INLINE V constant(const V& value) {
+  return value;
 }
 
 template <class V>

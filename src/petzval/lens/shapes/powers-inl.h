@@ -45,7 +45,7 @@ struct Powers {
       rise = mul_add(rise, t, value);
       value = mul_add(value, t, constant<V>(shape.terms[p]));
     }
-    rise = rise * constant<V>(even ? 2 * shape.per_unit : shape.per_unit);
+    rise = rise * constant<V>(even ? shape.per_unit + shape.per_unit : shape.per_unit);
     // A cone's tip has no slope over r; its x and y are zero there, and so is what comes of them.
     if (!even) rise = rise / at_least(r, constant<V>(1e-30));
     return on_conic(shape, x, y, r_sq, value, rise);

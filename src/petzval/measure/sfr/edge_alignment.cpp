@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace petzval {
@@ -50,44 +51,82 @@ void fit_logistic(EdgeProfile& profile, const EdgeGuess& guess) {
   }
 }
 
-EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise) {
-  using Matrix =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, EdgeAlignment::most, EdgeAlignment::most>;
-  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, EdgeAlignment::most, 1>;
-  const Eigen::Index n = order + 1;
-  Matrix normal = Matrix::Zero(n, n);
-  Vector right = Vector::Zero(n), row(n);
-  for (std::size_t i = 0; i < profile.points.size(); ++i) {
+namespace {
+
+constexpr std::size_t alignment_terms = BorderedBand::lanes;
+
+/// Normal equations of offset, direction and bends.
+struct AlignmentSums {
+  Eigen::Matrix<double, alignment_terms, alignment_terms> normal = decltype(normal)::Zero();
+  Eigen::Matrix<double, alignment_terms, 1> right = decltype(right)::Zero();
+
+  /// \returns derivatives of the value at a point.
+  std::array<double, alignment_terms> add(const EdgeProfile& profile, std::size_t i, int order) {
     const EdgePoint& point = profile.points[i];
-    if (std::abs(point.distance) > reach_px) continue;
     const EdgeSpreadModel::ValueAndSlope& at = profile.fitted[i];
+    const double residual = point.value - profile.variation[i] - at.value;
+    std::array<double, alignment_terms> row{};
     double power = -at.slope;
-    for (Eigen::Index k = 0; k < n; ++k, power *= point.along) row[k] = power;
-    normal.noalias() += row * row.transpose();
-    right += row * (point.value - profile.variation[i] - at.value);
+    for (int k = 0; k <= order; ++k, power *= point.along) {
+      row[static_cast<std::size_t>(k)] = power;
+      right[k] += power * residual;
+      for (int j = 0; j <= k; ++j) normal(k, j) += power * row[static_cast<std::size_t>(j)];
+    }
+    return row;
   }
-  normal.diagonal() *= 1 + 1e-12;
-  const Eigen::LDLT<Matrix> ldlt(normal);
-  const Vector change = ldlt.solve(right);
+};
+
+/// \param first  of the terms that are free.
+EdgeAlignment solved(const AlignmentSums& sums, int first, int order, double noise) {
+  const int n = order + 1 - first;
+  Eigen::MatrixXd normal = sums.normal.block(first, first, n, n).selfadjointView<Eigen::Lower>();
+  const Eigen::VectorXd right = sums.right.segment(first, n);
+  const Eigen::LDLT<Eigen::MatrixXd> ldlt(normal);
+  const Eigen::VectorXd change = ldlt.solve(right);
   if (!change.allFinite()) throw InputError("the edge is too short to tell its direction");
   EdgeAlignment result;
   result.order = order;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Vector unit = ldlt.solve(Vector::Unit(n, k));
-    result.change[k] = change[k];
-    result.significance[k] =
-        std::abs(change[k]) / std::max(1e-300, noise * std::sqrt(std::max(0.0, unit[k])));
+  for (int k = 0; k < n; ++k) {
+    const double variance = ldlt.solve(Eigen::VectorXd::Unit(n, k))[k];
+    result.change[first + k] = change[k];
+    result.deviation[first + k] = noise * std::sqrt(std::max(0.0, variance));
   }
   return result;
 }
 
-double align(EdgeLine& line, const EdgeAlignment& alignment) {
+}  // namespace
+
+EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise) {
+  AlignmentSums sums;
+  for (std::size_t i = 0; i < profile.points.size(); ++i)
+    if (std::abs(profile.points[i].distance) <= reach_px) sums.add(profile, i, order);
+  sums.normal.diagonal() *= 1 + 1e-12;
+  return solved(sums, 0, order, noise);
+}
+
+EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise) {
+  AlignmentSums sums;
+  EdgeSpreadModel::Projection projection(model);
+  for (std::size_t i = 0; i < profile.points.size(); ++i)
+    if (std::abs(profile.points[i].distance) <= model.core_px())
+      projection.add(i, sums.add(profile, i, order));
+  // What little is left along the pixel grid must not be lost to rounding.
+  const Eigen::VectorXd alone = sums.normal.diagonal();
+  sums.normal -= projection.taken();
+  sums.normal.diagonal() += 1e-9 * alone;
+  return solved(sums, 1, order, noise);
+}
+
+double shift_of(const EdgeAlignment& alignment) {
   double shift = 0;
-  for (int k = 1; k <= alignment.order; ++k) {
-    line.bend[static_cast<std::size_t>(k - 1)] += alignment.change[k];
-    shift += std::abs(alignment.change[k]);
-  }
+  for (int k = 1; k <= alignment.order; ++k) shift += std::abs(alignment.change[k]);
   return shift;
+}
+
+double align(EdgeLine& line, const EdgeAlignment& alignment, double length) {
+  for (int k = 1; k <= alignment.order; ++k)
+    line.bend[static_cast<std::size_t>(k - 1)] += length * alignment.change[k];
+  return length * shift_of(alignment);
 }
 
 void turn_by_bend(EdgeLine& line) {

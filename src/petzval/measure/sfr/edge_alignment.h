@@ -5,6 +5,8 @@
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -32,14 +34,20 @@ struct EdgeAlignment {
   static constexpr int most = 6;
   int order = 1;
   double change[most] = {};  ///< of bend[k − 1] for k = 1 … order; 0 is an offset, left to the profile
-  double significance[most] = {};  ///< over its standard deviation
+  double deviation[most] = {};  ///< standard deviation of each
+  double significance(int k) const { return std::abs(change[k]) / std::max(1e-300, deviation[k]); }
 };
 
-/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`. \param noise  standard deviation.
+/// Residual ≈ −E′(d) ∂d/∂p δp over points no farther than `reach_px`, the profile as it is but for an offset.
+/// \param noise  standard deviation of the values.
 /// \throws InputError for an edge too short to tell its direction.
 EdgeAlignment alignment(const EdgeProfile& profile, int order, double reach_px, double noise);
-/// \returns the largest shift of the line anywhere [pixels].
-double align(EdgeLine& line, const EdgeAlignment& alignment);
+/// The same, with a profile that follows.
+EdgeAlignment alignment(const EdgeProfile& profile, const EdgeSpreadModel& model, int order, double noise);
+/// The largest shift of the line anywhere [pixels].
+double shift_of(const EdgeAlignment& alignment);
+/// Takes the step, or `length` of it. \returns its shift.
+double align(EdgeLine& line, const EdgeAlignment& alignment, double length);
 
 /// A straight bend belongs to the direction, so that distances are exact.
 void turn_by_bend(EdgeLine& line);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace petzval {
 
@@ -67,12 +68,12 @@ class LogisticFit {
 
   double cost(const Vector5& p) const { return accumulate(p, nullptr, nullptr); }
 
-  Vector5 run(Vector5 p) const {
-    double damping = 1e-3, best = cost(p);
+  /// \param least_gain  of a step, as a share of the cost; with less it ends.
+  Vector5 run(Vector5 p, double least_gain) const {
+    Matrix5 normal, next_normal;
+    Vector5 gradient, next_gradient;
+    double damping = 1e-3, best = accumulate(p, &normal, &gradient);
     for (int step = 0; step < 80; ++step) {
-      Matrix5 normal = Matrix5::Zero();
-      Vector5 gradient = Vector5::Zero();
-      accumulate(p, &normal, &gradient);
       bool improved = false;
       double gain = 0;
       for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
@@ -80,36 +81,44 @@ class LogisticFit {
         damped.diagonal() *= 1 + damping;
         damped.diagonal().array() += 1e-300;
         const Vector5 next = p + damped.ldlt().solve(gradient);
-        const double value = next.allFinite() && std::abs(next[2]) < 12 ? cost(next) : HUGE_VAL;
+        const double value = next.allFinite() && std::abs(next[2]) < 12
+                                 ? accumulate(next, &next_normal, &next_gradient)
+                                 : HUGE_VAL;
         if (value < best) {
           gain = best - value;
           p = next, best = value, damping *= 0.2, improved = true;
+          normal = next_normal, gradient = next_gradient;
         } else {
           damping *= 6;
         }
       }
-      if (!improved || gain < 1e-12 * best) break;
+      if (!improved || gain < least_gain * best) break;
     }
     return p;
   }
 
  private:
   double accumulate(const Vector5& p, Matrix5* normal, Vector5* gradient) const {
-    const double c = std::cos(p[1]), s = std::sin(p[1]), scale = std::exp(p[2]);
-    double sum = 0;
+    const double c = std::cos(p[1]), s = std::sin(p[1]), per_scale = std::exp(-p[2]), step = p[4] - p[3];
+    double sum = 0, products[5][5] = {}, right[5] = {};
     for (const EdgeSample& sample : samples_) {
       const double x = sample.x - o_.x, y = sample.y - o_.y;
-      const double z = (x * c + y * s - p[0]) / scale, profile = 1 / (1 + std::exp(-z));
-      const double residual = sample.value - p[3] - (p[4] - p[3]) * profile;
+      const double z = (x * c + y * s - p[0]) * per_scale, profile = 1 / (1 + std::exp(-z));
+      const double residual = sample.value - p[3] - step * profile;
       sum += residual * residual;
       if (normal == nullptr) continue;
-      const double slope = (p[4] - p[3]) * profile * (1 - profile);
-      Vector5 j;
-      j << -slope / scale, slope * (y * c - x * s) / scale, -slope * z, 1 - profile, profile;
-      normal->selfadjointView<Eigen::Lower>().rankUpdate(j);
-      *gradient += residual * j;
+      const double slope = step * profile * (1 - profile);
+      const double j[5] = {-slope * per_scale, slope * (y * c - x * s) * per_scale, -slope * z, 1 - profile,
+                           profile};
+      for (int r = 0; r < 5; ++r) {
+        for (int k = 0; k <= r; ++k) products[r][k] += j[r] * j[k];
+        right[r] += residual * j[r];
+      }
     }
-    if (normal != nullptr) *normal = normal->selfadjointView<Eigen::Lower>();
+    for (int r = 0; r < 5 && normal != nullptr; ++r) {
+      for (int k = 0; k <= r; ++k) (*normal)(r, k) = (*normal)(k, r) = products[r][k];
+      (*gradient)[r] = right[r];
+    }
     return sum;
   }
 
@@ -117,12 +126,30 @@ class LogisticFit {
   const Overview& o_;
 };
 
-/// Enough samples for a guess, evenly taken.
-std::vector<EdgeSample> thinned(std::span<const EdgeSample> samples) {
-  constexpr std::size_t enough = 20000;
-  const std::size_t stride = 1 + samples.size() / enough;
+/// Enough samples for a guess, evenly taken but not in step with the rows.
+std::vector<EdgeSample> thinned(std::span<const EdgeSample> samples, std::size_t enough) {
+  if (samples.size() <= enough) return {samples.begin(), samples.end()};
   std::vector<EdgeSample> few;
-  for (std::size_t i = 0; i < samples.size(); i += stride) few.push_back(samples[i]);
+  few.reserve(enough + enough / 8);
+  const double share = static_cast<double>(enough) / static_cast<double>(samples.size());
+  constexpr std::uint32_t spread = 2654435761;  // 2³² over the golden ratio (Knuth, TAOCP 3, section 6.4)
+  const auto limit = static_cast<std::uint32_t>(share * 4294967295.0);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (static_cast<std::uint32_t>(i) * spread < limit) few.push_back(samples[i]);
+  return few;
+}
+
+/// Most of them from where an edge is expected; the rest tell the levels.
+std::vector<EdgeSample> thinned_about(std::span<const EdgeSample> samples, const EdgeLine& line) {
+  constexpr double near_px = 8;
+  constexpr std::size_t most_near = 500, most_far = 250;
+  const EdgeFrame frame(line);
+  std::vector<EdgeSample> near, far;
+  for (const EdgeSample& s : samples)
+    (std::abs(frame.at(s.x, s.y).distance) < near_px ? near : far).push_back(s);
+  std::vector<EdgeSample> few = thinned(near, most_near);
+  far = thinned(far, most_far);
+  few.insert(few.end(), far.begin(), far.end());
   return few;
 }
 
@@ -133,10 +160,16 @@ struct Levels {
 
 Levels levels_of(const std::vector<EdgeSample>& samples) {
   std::vector<double> values;
+  values.reserve(samples.size());
   for (const EdgeSample& s : samples) values.push_back(s.value);
-  std::sort(values.begin(), values.end());
-  if (!(values.back() > values.front())) throw InputError("all values are equal: there is no edge");
-  return {values[values.size() / 20], values[values.size() - 1 - values.size() / 20]};
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (!(*most > *least)) throw InputError("all values are equal: there is no edge");
+  const auto rank = [&](std::size_t place) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  return {rank(values.size() / 20), rank(values.size() - 1 - values.size() / 20)};
 }
 
 /// The guess that a fit has come to. \throws InputError as guess_edge().
@@ -174,15 +207,16 @@ EdgeGuess guess_of(Vector5 fitted, double cost, std::size_t fitted_samples, cons
 }  // namespace
 
 EdgeFrame::EdgeFrame(const EdgeLine& line)
-    : line_(line), cos_(std::cos(line.normal_rad)), sin_(std::sin(line.normal_rad)) {}
+    : line_(line),
+      cos_(std::cos(line.normal_rad)),
+      sin_(std::sin(line.normal_rad)),
+      per_half_length_(1 / line.half_length),
+      bent_(std::any_of(line.bend.begin(), line.bend.end(), [](double b) { return b != 0; })) {}
 
-EdgeFrame::Place EdgeFrame::at(double x, double y) const {
-  const double dx = x - line_.centre_x, dy = y - line_.centre_y;
-  Place place{(dy * cos_ - dx * sin_) / line_.half_length, dx * cos_ + dy * sin_};
-  if (line_.bend.empty()) return place;
+EdgeFrame::Place EdgeFrame::unbent(Place place) const {
   double offset = 0, slope = 0, power = 1;
   for (std::size_t k = 0; k < line_.bend.size(); ++k) {
-    slope += static_cast<double>(k + 1) * line_.bend[k] * power / line_.half_length;
+    slope += static_cast<double>(k + 1) * line_.bend[k] * power * per_half_length_;
     offset += line_.bend[k] * (power *= place.along);
   }
   place.distance = (place.distance - offset) / std::sqrt(1 + slope * slope);
@@ -206,7 +240,7 @@ double EdgeLine::angle_deg() const {
 
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
   const Overview o = overview_of(samples);
-  const std::vector<EdgeSample> few = thinned(samples);
+  const std::vector<EdgeSample> few = thinned(samples, 20000);
   const Levels levels = levels_of(few);
   const LogisticFit fit(few, o);
   Vector5 best = Vector5::Zero();
@@ -215,7 +249,7 @@ EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
     for (const double scale : {0.5, 4.0}) {
       Vector5 start;
       start << 0, direction, std::log(scale * spacing), levels.dark, levels.bright;
-      const Vector5 end = fit.run(start);
+      const Vector5 end = fit.run(start, 1e-12);
       const double cost = fit.cost(end);
       if (cost < best_cost) best_cost = cost, best = end;
     }
@@ -224,12 +258,13 @@ EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
 
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, const EdgeLine& start) {
   const Overview o = overview_of(samples);
-  const std::vector<EdgeSample> few = thinned(samples);
+  const std::vector<EdgeSample> few = thinned_about(samples, start);
   const Levels levels = levels_of(few);
   const LogisticFit fit(few, o);
   Vector5 at;
   at << -start.distance(o.x, o.y), start.normal_rad, 0, levels.dark, levels.bright;
-  const Vector5 end = fit.run(at);
+  // The start is near, and what follows starts from here in turn.
+  const Vector5 end = fit.run(at, 1e-5);
   return guess_of(end, fit.cost(end), few.size(), o, samples, 1);
 }
 

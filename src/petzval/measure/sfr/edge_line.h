@@ -34,11 +34,18 @@ class EdgeFrame {
     double along = 0, distance = 0;
   };
   /// EdgeLine::along() and EdgeLine::distance().
-  Place at(double x, double y) const;
+  Place at(double x, double y) const {
+    const double dx = x - line_.centre_x, dy = y - line_.centre_y;
+    const Place place{(dy * cos_ - dx * sin_) * per_half_length_, dx * cos_ + dy * sin_};
+    return bent_ ? unbent(place) : place;
+  }
 
  private:
+  Place unbent(Place place) const;
+
   const EdgeLine& line_;
-  double cos_, sin_;
+  double cos_, sin_, per_half_length_;
+  bool bent_;
 };
 
 /// A first guess: line, width and levels of the straight edge with a logistic profile that fits the samples

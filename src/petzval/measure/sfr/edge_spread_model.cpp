@@ -3,7 +3,6 @@
 #include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -50,83 +49,90 @@ double knot_sinc(double x) {
   return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
 }
 
-/// What the samples leave of the normal equations once a smoothing is chosen.
+/// One choice of the smoothing.
 struct Solved {
   double criterion = HUGE_VAL;  ///< −2 log of the restricted likelihood, but for a constant
-  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> llt;
+  BorderedCholesky factor;
   Eigen::VectorXd solution;
 };
 
 }  // namespace
 
-EdgeSpreadModel::Row EdgeSpreadModel::row_of(const EdgePoint& point) const {
-  Row row;
-  const double d = point.distance, q = 1 / (d * d + b * b);
-  row.values[0] = 1;
-  row.values[1] = 0.5 + std::atan(d / b) / pi + 0.5 * b / pi * point.missing;
-  row.values[2] = -d * q + 0.5 * point.missing;
-  row.values[3] = -d * q * q;
-  row.fixed = fixed();
-  if (options_.varying_light) {
-    row.values[4] = point.light * point.along;
-    row.values[5] = point.light * d / options_.core_px;
+template <int fixed>
+void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand& normal,
+                                 Eigen::VectorXd& right) {
+  double corner[fixed][fixed] = {}, corner_right[fixed] = {};
+  const double cells = splines_ + support - 1;
+  for (const EdgePoint& point : points) {
+    Row& row = rows_.emplace_back();
+    const double d = point.distance, q = 1 / (d * d + b * b);
+    auto& f = row.fixed;
+    f[0] = 1;
+    f[1] = 0.5 + std::atan(d / b) / pi + 0.5 * b / pi * point.missing;
+    f[2] = -d * q + 0.5 * point.missing;
+    f[3] = -d * q * q;
+    if constexpr (fixed > closed_forms) {
+      f[4] = point.light * point.along;
+      f[5] = point.light * d / options_.core_px;
+    }
+    for (int r = 0; r < fixed; ++r) {
+      for (int s = 0; s <= r; ++s) corner[r][s] += f[r] * f[s];
+      corner_right[r] += f[r] * point.value;
+    }
+    // Knots lie at −core + i·knot; an interval between them is covered by six splines.
+    const double at = (d + options_.core_px) / options_.knot_px, cell = std::floor(at);
+    if (!(cell >= 0 && cell < cells)) continue;
+    row.first = static_cast<int>(cell);
+    quintic(at - cell, row.splines.data(), row.slopes.data());
+    for (int p = 0; p < support; ++p) {
+      double* const column = normal.column(row.first + p);
+      const double value = row.splines[p];
+      for (int i = p; i < support; ++i) column[i - p] += value * row.splines[i];
+      for (int r = 0; r < fixed; ++r) column[support + r] += value * f[r];
+      right[row.first + p] += value * point.value;
+    }
   }
-  // Knots lie at −core + i·knot; spline j covers the six intervals from knot j on.
-  const double at = (d + options_.core_px) / options_.knot_px, cell = std::floor(at);
-  if (!(cell >= 0) || cell >= splines_ + support - 1) return row;
-  double all[support], slopes[support];
-  quintic(at - cell, all, slopes);
-  const int first = static_cast<int>(cell) - (support - 1);
-  const int from = std::max(0, -first), to = std::min(support, splines_ - first);
-  row.first = row.fixed + first + from;
-  for (int i = from; i < to; ++i) row.values[row.fixed + row.splines++] = all[i];
-  return row;
+  for (int r = 0; r < fixed; ++r) {
+    for (int s = 0; s <= r; ++s) normal.at(padded() + r, padded() + s) += corner[r][s];
+    right[padded() + r] += corner_right[r];
+  }
 }
 
-EdgeSpreadModel::ValueAndSlope EdgeSpreadModel::evaluate(double d) const {
-  const double q = 1 / (d * d + b * b), dq = d * q;
-  ValueAndSlope at;
-  at.value = coefficients_[0] + coefficients_[1] * (0.5 + std::atan(d / b) / pi) - coefficients_[2] * dq -
-             coefficients_[3] * dq * q;
-  at.slope = coefficients_[1] * b * q / pi - coefficients_[2] * (q - 2 * dq * dq) -
-             coefficients_[3] * q * (q - 4 * dq * dq);
-  const double place = (d + options_.core_px) / options_.knot_px, cell = std::floor(place);
-  if (!(cell >= 0) || cell >= splines_ + support - 1) return at;
-  double values[support], slopes[support];
-  quintic(place - cell, values, slopes);
-  const int first = static_cast<int>(cell) - (support - 1);
-  for (int i = std::max(0, -first); i < std::min(support, splines_ - first); ++i) {
-    const double coefficient = coefficients_[fixed() + first + i];
-    at.value += coefficient * values[i];
-    at.slope += coefficient * slopes[i] / options_.knot_px;
+BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
+  BorderedBand result(splines_, fixed());
+  for (int j = 0; j < splines_; ++j) {
+    for (int i = j; i < std::min(splines_, j + support); ++i)
+      result.at(i, j) = all.at(margin + i, margin + j);
+    for (int r = 0; r < fixed(); ++r) result.at(splines_ + r, j) = all.at(padded() + r, margin + j);
   }
-  return at;
+  for (int r = 0; r < fixed(); ++r)
+    for (int s = 0; s <= r; ++s) result.at(splines_ + r, splines_ + s) = all.at(padded() + r, padded() + s);
+  return result;
 }
 
-void EdgeSpreadModel::add_priors(Eigen::MatrixXd& normal, double step_guess) const {
+void EdgeSpreadModel::add_priors(BorderedBand& normal, double step_guess) const {
   // In units of the noise: the first tail is about the usual one, the second below it at twice the blur.
   const double noise = std::max(options_.noise, 1e-7 * step_guess);
   const double weight1 = noise / (usual_tail_spread_px * step_guess);
   const double offset = b / pi - usual_tail_px;
-  normal(1, 1) += weight1 * weight1 * offset * offset;
-  normal(2, 1) += weight1 * weight1 * offset;
-  normal(2, 2) += weight1 * weight1;
+  const int step = splines_ + 1, tail1 = splines_ + 2, tail3 = splines_ + 3;
+  normal.at(step, step) += weight1 * weight1 * offset * offset;
+  normal.at(tail1, step) += weight1 * weight1 * offset;
+  normal.at(tail1, tail1) += weight1 * weight1;
   const double weight3 =
       noise / (usual_tail_spread_px * step_guess * 4 * options_.blur_px * options_.blur_px);
-  normal(3, 3) += weight3 * weight3;
+  normal.at(tail3, tail3) += weight3 * weight3;
 }
 
-Eigen::MatrixXd EdgeSpreadModel::roughness() const {
-  const int n = fixed() + splines_;
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+BorderedBand EdgeSpreadModel::roughness() const {
+  BorderedBand matrix(splines_, fixed());
   for (int j = 0; j + 3 < splines_; ++j) {
     // A line spread that falls as 1/d² has curvature that falls as 1/d⁴.
     const double d = (j + 1.5 - 0.5 * (splines_ - 1)) * options_.knot_px / options_.blur_px;
-    const double weight = std::min(std::pow(1 + d * d, 4), most_weight);
+    const double square = (1 + d * d) * (1 + d * d), weight = std::min(square * square, most_weight);
     constexpr double difference[4] = {-1, 3, -3, 1};
     for (int p = 0; p < 4; ++p)
-      for (int q = 0; q <= p; ++q)
-        matrix(fixed() + j + p, fixed() + j + q) += weight * difference[p] * difference[q];
+      for (int q = 0; q <= p; ++q) matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
   }
   return matrix;
 }
@@ -135,36 +141,49 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
     : options_(options) {
   splines_ = std::max(0, static_cast<int>(2 * options.core_px / options.knot_px) - (support - 1));
   options_.core_px = 0.5 * options.knot_px * (splines_ + support - 1);
-  const int n = fixed() + splines_;
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  rows_.reserve(points.size());
+  BorderedBand normal(padded(), fixed());
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(normal.size());
+  if (options_.varying_light)
+    add_points<closed_forms + light_terms>(points, normal, right);
+  else
+    add_points<closed_forms>(points, normal, right);
+  data_normal_ = trimmed(normal);
+  right_.resize(splines_ + fixed());
+  right_ << right.segment(margin, splines_), right.tail(fixed());
+  fit(points);
+}
+
+void EdgeSpreadModel::take_light_for_even(std::span<const EdgePoint> points) {
+  if (!options_.varying_light) return;
+  options_.varying_light = false;
+  data_normal_.drop_border(light_terms);
+  right_.conservativeResize(splines_ + fixed());
+  fit(points);
+}
+
+void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   double low = points.empty() ? 0 : points[0].value, high = low, square = 0;
   for (const EdgePoint& point : points) {
     low = std::min(low, point.value), high = std::max(high, point.value);
     square += point.value * point.value;
-    const Row row = row_of(point);
-    // Column by column below the diagonal: the unknowns rise.
-    for (int j = 0; j < row.size(); ++j) {
-      const double value = row.values[j];
-      double* column = normal.data() + static_cast<std::ptrdiff_t>(row.unknown(j)) * n;
-      right[row.unknown(j)] += value * point.value;
-      for (int i = j; i < row.size(); ++i) column[row.unknown(i)] += value * row.values[i];
-    }
   }
-  data_normal_ = normal;
+  BorderedBand normal = data_normal_;
   add_priors(normal, high - low);
-  const double unit = static_cast<double>(points.size()) * options.knot_px / (2 * options_.core_px);
-  const Eigen::MatrixXd penalty = unit * roughness();
-  const double rank = std::max(0, splines_ - 3), unpenalised = n - rank;
+  const double count = static_cast<double>(points.size());
+  const double unit = count * options_.knot_px / (2 * options_.core_px);
+  const BorderedBand rough = roughness();
+  const double rank = std::max(0, splines_ - 3), unpenalised = normal.size() - rank;
   const auto solve = [&](double smoothing) {
-    Solved solved{HUGE_VAL, Eigen::LLT<Eigen::MatrixXd, Eigen::Lower>(normal + smoothing * penalty), {}};
-    if (solved.llt.info() != Eigen::Success || !right.allFinite())
+    BorderedBand whole = normal;
+    whole.add(smoothing * unit, rough);
+    Solved solved{HUGE_VAL, BorderedCholesky(std::move(whole)), {}};
+    if (!solved.factor.good() || !right_.allFinite())
       throw InputError("the pixels do not determine the edge's profile; a larger ROI is needed");
-    solved.solution = solved.llt.solve(right);
-    const double rest = std::max(square - right.dot(solved.solution), 1e-14 * square);
-    const double log_determinant = 2 * solved.llt.matrixLLT().diagonal().array().log().sum();
-    solved.criterion = (static_cast<double>(points.size()) - unpenalised) * std::log(rest) + log_determinant -
-                       rank * std::log(smoothing);
+    solved.solution = solved.factor.solve(right_);
+    const double rest = std::max(square - right_.dot(solved.solution), 1e-14 * square);
+    solved.criterion =
+        (count - unpenalised) * std::log(rest) + solved.factor.log_determinant() - rank * std::log(smoothing);
     return solved;
   };
   Solved best;
@@ -184,102 +203,237 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
     options_.smoothing = std::max(options_.smoothing, least_smoothing);
     best = solve(options_.smoothing);
   }
-  priors_ = normal - data_normal_ + options_.smoothing * penalty;
+  priors_ = std::move(normal);
+  priors_.add(-1, data_normal_);
+  priors_.add(options_.smoothing * unit, rough);
   coefficients_ = best.solution;
-  factor_ = best.llt.matrixL();
-  dark_ = coefficients_[0];
-  step_ = coefficients_[1];
+  factor_ = std::move(best.factor);
+  dark_ = coefficients_[splines_];
+  step_ = coefficients_[splines_ + 1];
+  evaluate_points(points);
+}
+
+void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
+  fitted_.clear(), variation_.clear();
+  fitted_.reserve(points.size());
+  variation_.reserve(points.size());
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(padded() + fixed());
+  c.segment(margin, splines_) = coefficients_.head(splines_);
+  const double* const closed = coefficients_.data() + splines_;
+  const double half_tail = 0.5 * (b / pi * closed[1] + closed[2]), per_px = 1 / options_.knot_px;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Row& row = rows_[i];
+    const double d = points[i].distance, q = 1 / (d * d + b * b), dq = d * q;
+    ValueAndSlope at;
+    double variation = half_tail * points[i].missing;
+    at.value = closed[0] + closed[1] * row.fixed[1] + closed[2] * row.fixed[2] + closed[3] * row.fixed[3] -
+               variation;
+    at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
+    if (options_.varying_light) variation += closed[4] * row.fixed[4] + closed[5] * row.fixed[5];
+    if (row.first >= 0) {
+      double slope = 0;
+      for (int p = 0; p < support; ++p) {
+        at.value += c[row.first + p] * row.splines[p];
+        slope += c[row.first + p] * row.slopes[p];
+      }
+      at.slope += slope * per_px;
+    }
+    fitted_.push_back(at);
+    variation_.push_back(variation);
+  }
+}
+
+EdgeSpreadModel::ValueAndSlope EdgeSpreadModel::evaluate(double d) const {
+  const double q = 1 / (d * d + b * b), dq = d * q;
+  const double* const closed = coefficients_.data() + splines_;
+  ValueAndSlope at;
+  at.value = closed[0] + closed[1] * (0.5 + std::atan(d / b) / pi) - closed[2] * dq - closed[3] * dq * q;
+  at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
+  const double place = (d + options_.core_px) / options_.knot_px, cell = std::floor(place);
+  if (!(cell >= 0) || cell >= splines_ + support - 1) return at;
+  double values[support], slopes[support];
+  quintic(place - cell, values, slopes);
+  const int first = static_cast<int>(cell) - margin;
+  for (int i = std::max(0, -first); i < std::min(support, splines_ - first); ++i) {
+    at.value += coefficients_[first + i] * values[i];
+    at.slope += coefficients_[first + i] * slopes[i] / options_.knot_px;
+  }
+  return at;
 }
 
 double EdgeSpreadModel::tail_px() const {
-  return b / pi + coefficients_[2] / step_;
-}
-
-double EdgeSpreadModel::variation(const EdgePoint& point) const {
-  const double missing = 0.5 * (b / pi * coefficients_[1] + coefficients_[2]) * point.missing;
-  if (!options_.varying_light) return missing;
-  return missing + point.light * (coefficients_[4] * point.along +
-                                  coefficients_[5] * point.distance / options_.core_px);
+  return b / pi + coefficients_[splines_ + 2] / step_;
 }
 
 EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, double noise) const {
   Variation result;
   if (!options_.varying_light) return result;
   for (int k = 0; k < light_terms; ++k) {
-    Eigen::VectorXd unit = Eigen::VectorXd::Zero(coefficients_.size());
-    unit[closed_forms + k] = 1;
-    factor_.triangularView<Eigen::Lower>().solveInPlace(unit);
-    const double coefficient = std::abs(coefficients_[closed_forms + k]);
+    const Eigen::Index at = splines_ + closed_forms + k;
+    const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
+    const double coefficient = std::abs(coefficients_[at]);
     const double reach = k % 2 == 0 ? 1 : reach_px / options_.core_px;
-    result.significance = std::max(result.significance, coefficient / std::max(1e-300, noise * unit.norm()));
+    result.significance = std::max(result.significance,
+                                   coefficient / std::max(1e-300, noise * std::sqrt(std::max(0.0, spread))));
     result.share = std::max(result.share, coefficient * reach / std::abs(step_));
   }
   return result;
 }
 
 double EdgeSpreadModel::unknowns() const {
-  // tr(N⁻¹ N_data) = ‖L⁻¹ L_data‖², by N_data = Σ row rowᵀ without its roots: the trace of L⁻¹ N_data L⁻ᵀ.
-  Eigen::MatrixXd share = data_normal_.selfadjointView<Eigen::Lower>();
-  factor_.triangularView<Eigen::Lower>().solveInPlace(share);
-  share.transposeInPlace();
-  factor_.triangularView<Eigen::Lower>().solveInPlace(share);
-  return share.trace();
+  return trace_of_product(factor_.inverse(), data_normal_);
 }
 
-Eigen::VectorXcd EdgeSpreadModel::transform_row(double f) const {
-  const double fade = std::exp(-2 * pi * b * std::abs(f));
-  Eigen::VectorXcd row = Eigen::VectorXcd::Zero(coefficients_.size());
-  row[1] = fade;
-  row[2] = -2 * pi * pi * std::abs(f) * fade;
-  row[3] = -2 * pi * pi * pi / b * f * f * fade;
-  const double window = std::pow(knot_sinc(f * options_.knot_px), support) * options_.knot_px;
-  const std::complex<double> turn = std::polar(1.0, -2 * pi * f * options_.knot_px);
-  std::complex<double> phase = std::complex<double>(0, 2 * pi * f) * window *
-                               std::polar(1.0, pi * f * (splines_ - 1) * options_.knot_px);
-  for (int j = 0; j < splines_; ++j, phase *= turn) row[fixed() + j] = phase;
-  return row;
+EdgeSpreadModel::Projection::Projection(const EdgeSpreadModel& model)
+    : model_(model), sums_(BorderedBand::Block::Zero(model.padded() + model.fixed(), BorderedBand::lanes)) {}
+
+void EdgeSpreadModel::Projection::add(std::size_t point,
+                                      const std::array<double, BorderedBand::lanes>& values) {
+  const Row& row = model_.rows_[point];
+  const auto add_to = [&](int unknown, double weight) {
+    double* const sum = sums_.data() + static_cast<std::ptrdiff_t>(unknown) * BorderedBand::lanes;
+    for (std::size_t k = 0; k < values.size(); ++k) sum[k] += weight * values[k];
+  };
+  for (int p = 0; p < support && row.first >= 0; ++p)
+    add_to(row.first + p, row.splines[static_cast<std::size_t>(p)]);
+  for (int r = 0; r < model_.fixed(); ++r)
+    add_to(model_.padded() + r, row.fixed[static_cast<std::size_t>(r)]);
 }
+
+EdgeSpreadModel::Projection::Matrix EdgeSpreadModel::Projection::taken() const {
+  BorderedBand::Block sums(model_.splines_ + model_.fixed(), BorderedBand::lanes);
+  sums << sums_.middleRows(margin, model_.splines_), sums_.bottomRows(model_.fixed());
+  BorderedBand::Block solved = sums;
+  model_.factor_.solve_in_place(solved);
+  return sums.transpose() * solved;
+}
+
+namespace {
+
+/// Transforms of the closed forms and of the middle spline, at a frequency.
+struct FormTransforms {
+  double step, tail1, tail3;
+  double spline;  ///< over i
+  FormTransforms(double f, double knot_px) {
+    const double fade = std::exp(-2 * pi * b * std::abs(f));
+    step = fade;
+    tail1 = -2 * pi * pi * std::abs(f) * fade;
+    tail3 = -2 * pi * pi * pi / b * f * f * fade;
+    const double sinc = knot_sinc(f * knot_px), cube = sinc * sinc * sinc;
+    spline = 2 * pi * f * cube * cube * knot_px;
+  }
+};
+
+/// Calls `use` with cosine and sine of 2πf times the place of the first half of the splines, from the outside
+/// in; the place of the others is the same with the opposite sign, and in the middle of an odd number there
+/// is 0.
+template <typename Use>
+void for_spline_phases(double f, double knot_px, int splines, const Use& use) {
+  const double turn = 2 * pi * f * knot_px, start = -0.5 * (splines - 1) * turn;
+  const double turn_cos = std::cos(turn), turn_sin = std::sin(turn);
+  double cosine = std::cos(start), sine = std::sin(start);
+  for (int j = 0; j < (splines + 1) / 2; ++j) {
+    use(j, cosine, sine);
+    const double next = cosine * turn_cos - sine * turn_sin;
+    sine = sine * turn_cos + cosine * turn_sin;
+    cosine = next;
+  }
+}
+
+}  // namespace
 
 std::complex<double> EdgeSpreadModel::transform(double f) const {
-  return (transform_row(f).array() * coefficients_.array()).sum() / step_;
+  const FormTransforms forms(f, options_.knot_px);
+  const double* const c = coefficients_.data();
+  const double* const closed = c + splines_;
+  double even = 0, odd = 0;
+  for_spline_phases(f, options_.knot_px, splines_, [&](int j, double cosine, double sine) {
+    const int other = splines_ - 1 - j;
+    const double partner = other > j ? c[other] : 0;
+    even += (c[j] + partner) * cosine;
+    odd += (c[j] - partner) * sine;
+  });
+  // Σ c (cos − i sin) times i·spline.
+  return std::complex<double>(
+             closed[1] * forms.step + closed[2] * forms.tail1 + closed[3] * forms.tail3 + forms.spline * odd,
+             forms.spline * even) /
+         step_;
 }
 
-EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const EdgePoint> points,
-                                      std::span<const double> variance, const QuantisationNoise& rounding)
-    : model_(model) {
-  const Eigen::Index n = model.coefficients_.size();
-  spread_ = Eigen::MatrixXd::Zero(n, n);
+EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
+                                      const QuantisationNoise& rounding)
+    : model_(model), spread_(model.splines_, model.fixed()) {
+  const int splines = model.splines_, fixed = model.fixed();
+  BorderedBand all(model.padded(), fixed);
   double mean = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Row row = model.row_of(points[i]);
-    mean += variance[i] / static_cast<double>(points.size());
-    for (int j = 0; j < row.size(); ++j) {
-      const double value = variance[i] * row.values[j];
-      double* column = spread_.data() + static_cast<std::ptrdiff_t>(row.unknown(j)) * n;
-      for (int k = j; k < row.size(); ++k) column[row.unknown(k)] += value * row.values[k];
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const Row& row = model.rows_[i];
+    mean += variance[i] / static_cast<double>(variance.size());
+    for (int r = 0; r < fixed; ++r)
+      for (int s = 0; s <= r; ++s)
+        all.at(model.padded() + r, model.padded() + s) += variance[i] * row.fixed[r] * row.fixed[s];
+    for (int p = 0; p < support && row.first >= 0; ++p) {
+      double* const column = all.column(row.first + p);
+      const double value = variance[i] * row.splines[p];
+      for (int k = p; k < support; ++k) column[k - p] += value * row.splines[k];
+      for (int r = 0; r < fixed; ++r) column[support + r] += value * row.fixed[r];
     }
   }
+  spread_ = model.trimmed(all);
   // What the priors say of the profile is as uncertain as they are weak.
-  spread_.triangularView<Eigen::Lower>() += mean * model.priors_;
+  spread_.add(mean, model.priors_);
+  if (rounding.none()) return;
+  rounding_ = Eigen::MatrixXd::Zero(spread_.size(), spread_.size());
   rounding.add_spread(
       [&](std::size_t i, const std::function<void(int, double)>& entry) {
-        const Row row = model.row_of(points[i]);
-        for (int j = 0; j < row.size(); ++j) entry(row.unknown(j), row.values[j]);
+        const Row& row = model.rows_[i];
+        for (int p = 0; p < support && row.first >= 0; ++p)
+          if (const int j = row.first + p - margin; j >= 0 && j < splines) entry(j, row.splines[p]);
+        for (int r = 0; r < fixed; ++r) entry(splines + r, row.fixed[r]);
       },
-      spread_);
-  spread_ = spread_.selfadjointView<Eigen::Lower>();
+      rounding_);
 }
 
-double EdgeSpreadModel::Deviation::of_modulus(double f) const {
-  const Eigen::VectorXcd row = model_.transform_row(f);
-  const std::complex<double> value = (row.array() * model_.coefficients_.array()).sum() / model_.step_;
+void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient, int stride) const {
+  const int splines = model_.splines_;
+  const std::complex<double> value = model_.transform(f);
   const double modulus = std::abs(value);
-  const std::complex<double> turn = modulus > 0 ? std::conj(value) / modulus : 1;
-  Eigen::VectorXd gradient = (turn * row).real() / model_.step_;
-  gradient[1] -= modulus / model_.step_;
-  model_.factor_.triangularView<Eigen::Lower>().solveInPlace(gradient);
-  model_.factor_.transpose().triangularView<Eigen::Upper>().solveInPlace(gradient);
-  return std::sqrt(std::max(0.0, gradient.dot(spread_ * gradient)));
+  const double real = modulus > 0 ? value.real() / modulus : 1,
+               imaginary = modulus > 0 ? value.imag() / modulus : 0;
+  const FormTransforms forms(f, model_.options_.knot_px);
+  const double per_step = 1 / model_.step_;
+  const auto set = [&](int unknown, double derivative) {
+    gradient[unknown * stride] = derivative * per_step;
+  };
+  set(splines + 1, real * forms.step - modulus);
+  set(splines + 2, real * forms.tail1);
+  set(splines + 3, real * forms.tail3);
+  for_spline_phases(f, model_.options_.knot_px, splines, [&](int j, double cosine, double sine) {
+    const int other = splines - 1 - j;
+    set(j, forms.spline * (imaginary * cosine + real * sine));
+    set(other, forms.spline * (imaginary * cosine - (other > j ? real * sine : 0)));
+  });
+}
+
+std::vector<double> EdgeSpreadModel::Deviation::of_moduli(std::span<const double> frequencies_cpp) const {
+  constexpr std::size_t lanes = BorderedBand::lanes;
+  std::vector<double> deviations;
+  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
+    BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
+    const std::size_t count = std::min(lanes, frequencies_cpp.size() - first);
+    for (std::size_t k = 0; k < count; ++k)
+      gradient_of_modulus(frequencies_cpp[first + k], x.data() + k, BorderedBand::lanes);
+    model_.factor_.solve_in_place(x);
+    std::array<double, lanes> variance = spread_.quadratic(x);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (rounding_.size() > 0) {
+        const Eigen::VectorXd one = x.col(static_cast<Eigen::Index>(k));
+        variance[k] += one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
+      }
+      deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
+    }
+  }
+  return deviations;
 }
 
 }  // namespace petzval

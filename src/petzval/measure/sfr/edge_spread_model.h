@@ -2,9 +2,11 @@
 // The edge-spread function as a sum of functions whose transforms are known.
 #pragma once
 
+#include <petzval/measure/sfr/bordered_band.h>
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <complex>
 #include <span>
 #include <vector>
@@ -55,6 +57,8 @@ class EdgeSpreadModel {
  public:
   /// \throws InputError when the points do not determine the model.
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
+  /// The same, of the same points, with even light.
+  void take_light_for_even(std::span<const EdgePoint> points);
 
   /// The profile at a distance, in the middle of the edge and without what varies.
   double value(double distance) const { return evaluate(distance).value; }
@@ -63,8 +67,10 @@ class EdgeSpreadModel {
     double value = 0, slope = 0;
   };
   ValueAndSlope evaluate(double distance) const;
-  /// What light that varies, and a target that is no half-plane, add at a point.
-  double variation(const EdgePoint& point) const;
+  /// At each of the points that the model was made from: the profile and its slope, and what light that
+  /// varies, and a target that is no half-plane, add there.
+  const std::vector<ValueAndSlope>& fitted() const { return fitted_; }
+  const std::vector<double>& variation() const { return variation_; }
   /// Coefficients of that over their standard deviations, and the largest share of the step that they make
   /// within `reach_px` of the edge.
   struct Variation {
@@ -77,51 +83,81 @@ class EdgeSpreadModel {
   /// A/step: what the edge still misses at a distance d is this over d [pixels].
   double tail_px() const;
   double core_px() const { return options_.core_px; }
+  const EdgeSpreadOptions& options() const { return options_; }
   /// ∫ E′(d) exp(−2πifd) dd / step.
   std::complex<double> transform(double frequency_cpp) const;
   /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.
   double unknowns() const;
   double smoothing() const { return options_.smoothing; }
 
+  /// What the profile can take of other functions of the points, so that these and it can be fitted together
+  /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
+  class Projection {
+   public:
+    using Matrix = Eigen::Matrix<double, BorderedBand::lanes, BorderedBand::lanes>;
+    explicit Projection(const EdgeSpreadModel& model);
+    /// The values that the functions have at a point that the model was made from; 0 at those not named.
+    void add(std::size_t point, const std::array<double, BorderedBand::lanes>& values);
+    /// Sums over the points of the products of what the profile takes.
+    Matrix taken() const;
+
+   private:
+    const EdgeSpreadModel& model_;
+    BorderedBand::Block sums_;
+  };
+
   /// Standard deviations of |transform|: of noise of the given variances at the points, of their rounding,
   /// and of what smoothing may have taken away (the spread of the posterior, which holds on average for
   /// profiles as rough as this one). `variance[i]` belongs to the i-th point that the model was made from.
   class Deviation {
    public:
-    Deviation(const EdgeSpreadModel& model, std::span<const EdgePoint> points,
-              std::span<const double> variance, const QuantisationNoise& rounding);
-    double of_modulus(double frequency_cpp) const;
+    Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
+              const QuantisationNoise& rounding);
+    std::vector<double> of_moduli(std::span<const double> frequencies_cpp) const;
 
    private:
+    /// d|transform|/d(right side), into every `stride`-th place.
+    void gradient_of_modulus(double frequency_cpp, double* gradient, int stride) const;
+
     const EdgeSpreadModel& model_;
-    Eigen::MatrixXd spread_;  ///< covariance of the right side of the normal equations
+    BorderedBand spread_;       ///< covariance of the right side of the normal equations
+    Eigen::MatrixXd rounding_;  ///< and what rounding adds to it, its lower half; empty without
   };
 
  private:
   static constexpr int closed_forms = 4;  ///< dark, step, tail1, tail3
   static constexpr int light_terms = 2;
   static constexpr int support = 6;
+  /// What the unknowns do to the value at a point. The splines come first, then the closed forms.
   struct Row {
-    double values[closed_forms + light_terms + support];
-    int fixed = 0;    ///< of them before the splines
-    int first = 0;    ///< unknown of the first spline
-    int splines = 0;  ///< that are not zero
-    int unknown(int i) const { return i < fixed ? i : first + i - fixed; }
-    int size() const { return fixed + splines; }
+    int first =
+        -1;  ///< of the splines that are not zero, counted from `margin` before the first unknown; −1: none
+    std::array<double, support> splines, slopes;  ///< slopes [1/knot]
+    std::array<double, closed_forms + light_terms> fixed;
   };
+  /// Splines that reach beyond the core have no unknown; rows count them all the same, so that all are alike.
+  static constexpr int margin = support - 1;
   int fixed() const { return closed_forms + (options_.varying_light ? light_terms : 0); }
-  Row row_of(const EdgePoint& point) const;
-  Eigen::VectorXcd transform_row(double frequency_cpp) const;
-  void add_priors(Eigen::MatrixXd& normal, double step_guess) const;
-  Eigen::MatrixXd roughness() const;
+  int padded() const { return splines_ + 2 * margin; }
+  template <int fixed>
+  void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);
+  BorderedBand trimmed(const BorderedBand& padded) const;
+  void fit(std::span<const EdgePoint> points);
+  void evaluate_points(std::span<const EdgePoint> points);
+  void add_priors(BorderedBand& normal, double step_guess) const;
+  BorderedBand roughness() const;
 
   EdgeSpreadOptions options_;
   int splines_ = 0;
   double dark_ = 0, step_ = 1;
   Eigen::VectorXd coefficients_;
-  Eigen::MatrixXd data_normal_;  ///< of the data alone
-  Eigen::MatrixXd priors_;       ///< of the priors and the roughness
-  Eigen::MatrixXd factor_;       ///< lower Cholesky factor of the whole normal matrix
+  std::vector<Row> rows_;  ///< of the points
+  std::vector<ValueAndSlope> fitted_;
+  std::vector<double> variation_;
+  BorderedBand data_normal_;  ///< of the data alone
+  Eigen::VectorXd right_;     ///< side of the normal equations
+  BorderedBand priors_;       ///< of the priors and the roughness
+  BorderedCholesky factor_;   ///< of the whole normal matrix
 };
 
 }  // namespace petzval

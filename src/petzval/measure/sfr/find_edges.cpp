@@ -122,23 +122,6 @@ class SideGrid {
   std::map<std::pair<int, int>, std::vector<std::pair<std::size_t, std::size_t>>> cells_;
 };
 
-/// ∫ (x·n)/r³ ds along a straight line seen from p, n to the left of its way in the picture (the dark side).
-double flux_through(const ContourPoint& p, const ContourPoint& a, const ContourPoint& b) {
-  const double ex = b.x - a.x, ey = b.y - a.y, length = std::hypot(ex, ey);
-  if (length == 0) return 0;
-  const double ax = a.x - p.x, ay = a.y - p.y;
-  const double d = (ax * ey - ay * ex) / length;
-  const double s1 = (ax * ex + ay * ey) / length, s2 = s1 + length;
-  // s/(d ρ) = sign(s) (1/d − d/(ρ(ρ + |s|))), so that nothing cancels on the line's extension.
-  const auto rest = [&](double s) {
-    const double rho = std::hypot(d, s);
-    return (s < 0 ? -d : d) / (rho * (rho + std::abs(s)));
-  };
-  double sum = rest(s1) - rest(s2);
-  if ((s1 < 0) != (s2 < 0)) sum += std::abs(d) > 1e-9 ? 2 / d : 0;
-  return sum;
-}
-
 }  // namespace
 
 double FoundEdge::length_px() const {
@@ -226,22 +209,6 @@ const FoundEdge* edge_along(const FoundEdges& found, const EdgeLine& line) {
     best = &edge, best_distance = off;
   }
   return best;
-}
-
-double missing_target_at(const FoundEdge& edge, double x, double y) {
-  const ContourPoint p{x, y};
-  double sum = 0;
-  // ∬ r⁻³ dA = −∮ (x·n)/r³ ds, n outward: the outlines of what is bright …
-  for (const OutlineSide& side : edge.neighbours) sum -= flux_through(p, side.from, side.to);
-  // … minus the line of the half-plane beyond the ends of the edge.
-  const Axis axis = axis_of(edge);
-  const auto beyond = [&](const ContourPoint& end, double sign) -> ContourPoint {
-    constexpr double far = 1e6;
-    return {end.x + sign * far * axis.ux, end.y + sign * far * axis.uy};
-  };
-  if (edge.corner_at_from) sum += flux_through(p, beyond(edge.from, -1), edge.from);
-  if (edge.corner_at_to) sum += flux_through(p, edge.to, beyond(edge.to, 1));
-  return sum;
 }
 
 }  // namespace petzval

@@ -50,8 +50,4 @@ std::vector<EdgeSample> samples_about(const Plane& plane, const FoundEdge& edge,
 /// degrees.
 const FoundEdge* edge_along(const FoundEdges& found, const EdgeLine& line);
 
-/// At (x, y): ∬ r⁻³ dA over what is bright beyond the edge's half-plane, minus that over what is missing from
-/// it [1/pixel], as far as its outline lies within 200 pixels of the edge; see SfrOptions::missing_target.
-double missing_target_at(const FoundEdge& edge, double x, double y);
-
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/measure/sfr/sample_comb.h>
+#include <petzval/measure/sfr/smooth_about_edge.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +95,7 @@ double middle_of(const EdgeSpreadModel& model, double low, double high) {
   return 0.5 * (from + to);
 }
 
-/// Where contrast falls below a level for the first time, from values a 512th of a cycle apart.
+/// Where contrast falls below a level for the first time, from values `step_cpp` apart.
 MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vector<double>& contrast,
                     double step_cpp) {
   MtfLevel result{level, NAN, NAN};
@@ -116,29 +117,6 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vecto
   }
   result.frequency_cpp = 0.5 * (low + high);
   return result;
-}
-
-void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model,
-                 const EdgeSpreadModel::Deviation& deviation, double comb_px) {
-  constexpr double step = 1.0 / 512;
-  const double highest = std::max(1.0, result.frequencies_cpp.back());
-  std::vector<double> contrast{1};
-  // Until the last level is passed, and no farther.
-  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
-    contrast.push_back(std::abs(model.transform(f)));
-  for (int percent = 90; percent >= 10; percent -= 10) {
-    MtfLevel level = find_level(model, percent / 100.0, contrast, step);
-    if (std::isfinite(level.frequency_cpp)) {
-      constexpr double h = 1e-4;
-      const double slope = (std::abs(model.transform(level.frequency_cpp + h)) -
-                            std::abs(model.transform(level.frequency_cpp - h))) /
-                           (2 * h);
-      level.deviation_cpp = std::hypot(deviation.of_modulus(level.frequency_cpp),
-                                       alias_deviation(model, comb_px, level.frequency_cpp)) /
-                            std::max(1e-9, std::abs(slope));
-    }
-    result.mtf.push_back(level);
-  }
 }
 
 void fill_curves(EdgeMeasurement& result, const EdgeSpreadModel& model, const EdgeProfile& profile) {
@@ -170,64 +148,6 @@ std::vector<double> usual_frequencies() {
   return frequencies;
 }
 
-/// A smooth function of the place about an edge, by interpolation between 13 × 11 Chebyshev nodes along and
-/// across.
-class SmoothAboutEdge {
- public:
-  SmoothAboutEdge(const std::function<double(double x, double y)>& function, const EdgeLine& line,
-                  double low_px, double high_px)
-      : line_(straight(line)),
-        frame_(line_),
-        middle_(0.5 * (low_px + high_px)),
-        half_(0.5 * (high_px - low_px)) {
-    const double c = std::cos(line.normal_rad), s = std::sin(line.normal_rad);
-    for (int i = 0; i < nodes_along; ++i)
-      for (int j = 0; j < nodes_across; ++j) {
-        const double t = line.half_length * node(i, nodes_along), d = middle_ + half_ * node(j, nodes_across);
-        values_[i][j] = function(line.centre_x + d * c - t * s, line.centre_y + d * s + t * c);
-      }
-  }
-  double operator()(double x, double y) const {
-    double along[nodes_along], across[nodes_across];
-    const EdgeFrame::Place place = frame_.at(x, y);
-    weights(std::clamp(place.along, -1.0, 1.0), nodes_along, along);
-    weights(std::clamp((place.distance - middle_) / half_, -1.0, 1.0), nodes_across, across);
-    double sum = 0;
-    for (int i = 0; i < nodes_along; ++i)
-      for (int j = 0; j < nodes_across; ++j) sum += along[i] * across[j] * values_[i][j];
-    return sum;
-  }
-
- private:
-  static constexpr int nodes_along = 13, nodes_across = 11;
-  static double node(int i, int count) { return std::cos(pi * (i + 0.5) / count); }
-  /// Barycentric weights over their sum.
-  static void weights(double x, int count, double* result) {
-    double sum = 0;
-    for (int i = 0; i < count; ++i) {
-      const double rest = x - node(i, count);
-      if (rest == 0) {
-        std::fill(result, result + count, 0.0);
-        result[i] = 1;
-        return;
-      }
-      result[i] = (i % 2 == 0 ? 1 : -1) * std::sin(pi * (i + 0.5) / count) / rest;
-      sum += result[i];
-    }
-    for (int i = 0; i < count; ++i) result[i] /= sum;
-  }
-
-  static EdgeLine straight(EdgeLine line) {
-    line.bend.clear();
-    return line;
-  }
-
-  EdgeLine line_;
-  EdgeFrame frame_;
-  double middle_, half_;
-  double values_[nodes_along][nodes_across];
-};
-
 /// Line and profile of one edge, fitted in turn.
 class EdgeFit {
  public:
@@ -239,17 +159,30 @@ class EdgeFit {
 
   void run(const SfrOptions& options) {
     bend_by_guess(options.edge_order);
+    // The first profile is rough, and tells the noise.
+    fit_placed();
+    align(line_, alignment_of(static_cast<int>(line_.bend.size())), 1);
+    turn_by_bend(line_);
+    varying_light_ = options.varying_light;
     settle();
     if (options.edge_order == 0) bend_by_evidence();
-    if (options.varying_light) vary_by_evidence();
-    place_samples();
+    if (options.varying_light) judge_light();
     comb_px_ = sample_comb_px(profile_.points);
     if (comb_px_ > 0) {
       join_rows(profile_.points);
       smoothing_ = -1;
+      fit_profile();
     }
-    fit_profile();
   }
+
+  /// The same profile by other splines: finer ones, which end nearer.
+  EdgeSpreadModel variant() const {
+    EdgeSpreadOptions options = model_->options();
+    options.core_px *= 0.85, options.knot_px *= 0.8;
+    options.noise = noise_, options.smoothing = 0;
+    return EdgeSpreadModel(profile_.points, options);
+  }
+  double noise() const { return noise_; }
 
   const EdgeLine& line() const { return line_; }
   const EdgeProfile& profile() const { return profile_; }
@@ -268,7 +201,7 @@ class EdgeFit {
       const double d = frame.at(s.x, s.y).distance;
       low = std::min(low, d), high = std::max(high, d);
     }
-    const SmoothAboutEdge smooth(missing_target, line_, low, high);
+    const SmoothAboutEdge smooth(missing_target, line_, {low, high}, {13, 11});
     for (const EdgeSample& s : samples_) missing_.push_back(smooth(s.x, s.y));
   }
 
@@ -276,12 +209,24 @@ class EdgeFit {
     profile_ = profile_along(samples_, line_);
     for (std::size_t i = 0; i < profile_.points.size(); ++i) {
       EdgePoint& point = profile_.points[i];
-      if (!missing_.empty()) point.missing = missing_[profile_.sample[i]];
-      if (!varying_light_) continue;
-      const double step = model_->step(), bright = model_->dark() + step;
-      const double share = std::clamp((model_->value(point.distance) - model_->dark()) / step, 0.0, 1.0);
-      point.light = (model_->dark() + share * step) / std::max(bright, 1e-3 * step);
+      const std::size_t sample = profile_.sample[i];
+      if (!missing_.empty()) point.missing = missing_[sample];
+      if (varying_light_) point.light = light_[sample];
     }
+  }
+
+  /// Of each sample, as the last profile has it.
+  void expect_light() {
+    const double dark = model_->dark(), step = model_->step(), bright = dark + step;
+    const double per_bright = 1 / std::max(bright, 1e-3 * step);
+    light_.resize(samples_.size());
+    for (std::size_t i = 0; i < profile_.points.size(); ++i)
+      light_[profile_.sample[i]] = std::clamp(profile_.fitted[i].value, dark, bright) * per_bright;
+  }
+
+  void fit_placed() {
+    place_samples();
+    fit_profile();
   }
 
   void fit_profile() {
@@ -296,19 +241,19 @@ class EdgeFit {
     options.varying_light = varying_light_;
     options.smoothing = smoothing_;
     model_.emplace(profile_.points, options);
+    take_profile();
+  }
+
+  void take_profile() {
     if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
-    profile_.fitted.clear();
-    for (std::size_t i = 0; i < profile_.points.size(); ++i) {
-      profile_.variation[i] = model_->variation(profile_.points[i]);
-      profile_.fitted.push_back(model_->evaluate(profile_.points[i].distance));
-    }
+    profile_.variation = model_->variation();
+    profile_.fitted = model_->fitted();
+    expect_light();
     if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
     noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
   }
 
-  EdgeAlignment alignment_of(int order) const {
-    return alignment(profile_, order, model_->core_px(), noise_);
-  }
+  EdgeAlignment alignment_of(int order) const { return alignment(profile_, *model_, order, noise_); }
 
   /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
   /// scatters.
@@ -317,57 +262,92 @@ class EdgeFit {
     EdgeLine bent = line_;
     bent.bend.assign(static_cast<std::size_t>(asked == 0 ? 3 : asked), 0);
     const double reach = 6 * guess_.scale_px + 1;
+    constexpr double most_bent_px = 10;
+    std::vector<EdgeSample> near;
+    const EdgeFrame frame(line_);
+    for (const EdgeSample& s : samples_)
+      if (std::abs(frame.at(s.x, s.y).distance) < reach + most_bent_px) near.push_back(s);
     constexpr int rounds = 12;
+    EdgeAlignment change;
     for (int round = 0; round < rounds; ++round) {
-      EdgeProfile profile = profile_along(samples_, bent);
+      EdgeProfile profile = profile_along(near, bent);
       fit_logistic(profile, guess_);
-      const double shift = align(bent, alignment(profile, static_cast<int>(bent.bend.size()), reach, 1));
-      if (shift < 1e-3) break;
+      change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
+      if (align(bent, change, 1) < 1e-3) break;
     }
-    double offset = 0;
-    for (std::size_t k = 1; k < bent.bend.size(); ++k) offset = std::max(offset, std::abs(bent.bend[k]));
     constexpr double plainly_bent_px = 0.1;
-    if (asked > 1 || offset > plainly_bent_px) line_ = bent;
+    bool plainly = asked > 1;
+    for (int k = 2; k <= change.order; ++k) {
+      const double bend = std::abs(bent.bend[static_cast<std::size_t>(k - 1)]);
+      plainly = plainly || (bend > plainly_bent_px && bend > significant * change.deviation[k]);
+    }
+    if (plainly) line_ = bent;
   }
 
   void settle() {
     constexpr int most_rounds = 40;
-    // Half a thousandth of a pixel over the length of an edge changes no SFR by 1e-6.
-    constexpr double at_rest_px = 2e-5;
+    EdgeAlignment before;
+    double length = 1;  // of a step, over the one that a linear problem needs
     for (int round = 0; round < most_rounds; ++round) {
-      // How smooth the profile is shows once the line is nearly at rest.
-      constexpr int choosing_round = 1;
-      smoothing_ = round == choosing_round ? -1 : smoothing_;
-      place_samples();
-      fit_profile();
+      if (round == 0) smoothing_ = -1;
+      fit_placed();
       smoothing_ = model_->smoothing();
-      const double shift = align(line_, alignment_of(static_cast<int>(line_.bend.size())));
+      const EdgeAlignment change = alignment_of(static_cast<int>(line_.bend.size()));
+      if (at_rest(change)) break;
+      // A step that repeats the one before was too short, one that takes it back too long (J. Barzilai & J.
+      // M. Borwein, IMA J. Numer. Anal. 8, 141, 1988).
+      if (round > 0) length = std::clamp(length / (1 - likeness(change, before)), 0.3, 3.0);
+      before = change;
+      align(line_, change, length);
       turn_by_bend(line_);
-      if (round >= 2 && shift < std::max(at_rest_px, 1e-3 * noise_ / model_->step())) break;
     }
+  }
+
+  static bool at_rest(const EdgeAlignment& change) {
+    // A hundred-thousandth of a pixel changes no SFR by 1e-6. Nor do steps count that are small beside their
+    // own uncertainty, as along the pixel grid, where a bend and the profile are hard to tell apart.
+    constexpr double at_rest_px = 2e-5, at_rest_deviations = 0.03;
+    double significance = 0;
+    for (int k = 1; k <= change.order; ++k) significance = std::max(significance, change.significance(k));
+    return shift_of(change) < at_rest_px || significance < at_rest_deviations;
+  }
+
+  /// The part of a step that repeats an earlier one.
+  static double likeness(const EdgeAlignment& step, const EdgeAlignment& earlier) {
+    double product = 0, square = 0;
+    for (int k = 1; k <= step.order; ++k) {
+      product += step.change[k] * earlier.change[k];
+      square += earlier.change[k] * earlier.change[k];
+    }
+    return std::min(0.9, product / std::max(1e-300, square));
   }
 
   void bend_by_evidence() {
     if (line_.bend.size() > 1) return;  // it is bent already
     const EdgeAlignment bends = alignment_of(3);
     const auto shown = [&](int k) {
-      return bends.significance[k] > significant && std::abs(bends.change[k]) > least_bend_px;
+      return bends.significance(k) > significant && std::abs(bends.change[k]) > least_bend_px;
     };
     if (!shown(2) && !shown(3)) return;
     line_.bend.assign(shown(3) ? 3 : 2, 0);
     settle();
   }
 
-  void vary_by_evidence() {
-    varying_light_ = true;
-    place_samples();
-    fit_profile();
+  void judge_light() {
     const double reach = std::min(-profile_.low, profile_.high);
     const EdgeSpreadModel::Variation variation = model_->variation_over(reach, noise_);
     varying_light_ = variation.significance > significant && variation.share > least_variation;
-    if (!varying_light_) return;
-    settle();
-    light_variation_ = 2 * model_->variation_over(reach, noise_).share;
+    if (varying_light_) {
+      light_variation_ = 2 * variation.share;
+    } else {
+      model_->take_light_for_even(profile_.points);
+      take_profile();
+      const EdgeAlignment change = alignment_of(static_cast<int>(line_.bend.size()));
+      if (at_rest(change)) return;
+      align(line_, change, 1);
+      turn_by_bend(line_);
+      settle();
+    }
   }
 
   const std::vector<EdgeSample>& samples_;
@@ -375,10 +355,68 @@ class EdgeFit {
   EdgeLine line_;
   EdgeProfile profile_;
   std::optional<EdgeSpreadModel> model_;
-  std::vector<double> missing_;
+  std::vector<double> missing_, light_;  ///< of each sample
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
   bool varying_light_ = false;
 };
+
+/// What |transform| may be off by, for all reasons together.
+class Uncertainty {
+ public:
+  Uncertainty(const EdgeFit& fit, const EdgeSpreadModel::Deviation& noise) : fit_(fit), noise_(noise) {
+    // What a model of splines and a tail cannot follow shows where there is next to no noise: in what other
+    // splines make of the same samples, and in how far the tail is extrapolated.
+    constexpr double quiet = 1e-3;
+    if (fit.noise() < quiet * fit.model().step() && fit.comb_px() == 0) variant_.emplace(fit.variant());
+    constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
+    tail_ = extrapolated / std::min(-fit.profile().low, fit.profile().high);
+  }
+  std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp) const {
+    std::vector<double> deviations = noise_.of_moduli(frequencies_cpp);
+    for (std::size_t i = 0; i < deviations.size(); ++i) {
+      const double f = frequencies_cpp[i];
+      const double other =
+          variant_ ? std::abs(variant_->transform(f)) - std::abs(fit_.model().transform(f)) : 0;
+      constexpr double all_of_it_cpp = 0.02;
+      const double model = std::hypot(other, tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
+      deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
+    }
+    return deviations;
+  }
+
+ private:
+  const EdgeFit& fit_;
+  const EdgeSpreadModel::Deviation& noise_;
+  std::optional<EdgeSpreadModel> variant_;
+  double tail_;
+};
+
+void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Uncertainty& uncertainty) {
+  // A transform of what lies within ±core changes over 1/(2 core).
+  const double step = 1 / (8 * model.core_px());
+  const double highest = std::max(1.0, result.frequencies_cpp.back());
+  std::vector<double> contrast{1};
+  // Until the last level is passed, and no farther.
+  for (double f = step; f <= highest + 1e-9 && contrast.back() >= 0.1; f += step)
+    contrast.push_back(std::abs(model.transform(f)));
+  std::vector<double> passed;
+  for (int percent = 90; percent >= 10; percent -= 10) {
+    result.mtf.push_back(find_level(model, percent / 100.0, contrast, step));
+    if (std::isfinite(result.mtf.back().frequency_cpp)) passed.push_back(result.mtf.back().frequency_cpp);
+  }
+  const std::vector<double> deviations = uncertainty.of_moduli(passed);
+  auto of_modulus = deviations.begin();
+  for (MtfLevel& level : result.mtf) {
+    if (!std::isfinite(level.frequency_cpp)) continue;
+    const double spread = *of_modulus++;
+    // Over as much as the deviation covers: at a point the slope is noisy, too.
+    const double reach = std::clamp(2 * spread, 1e-4, 0.8 * std::min(level.level, 1 - level.level));
+    const double before = find_level(model, level.level + reach, contrast, step).frequency_cpp;
+    const double after = find_level(model, level.level - reach, contrast, step).frequency_cpp;
+    const double run = std::isfinite(after) ? (after - before) / 2 : level.frequency_cpp - before;
+    level.deviation_cpp = spread * run / reach;
+  }
+}
 
 }  // namespace
 
@@ -408,22 +446,25 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);
   std::vector<double> variance, unrounded;
-  for (const EdgePoint& point : profile.points) {
-    const double value = model.value(point.distance);
+  for (std::size_t i = 0; i < profile.points.size(); ++i) {
+    const EdgePoint& point = profile.points[i];
+    const double value = profile.fitted[i].value;
     const double share = std::clamp((value - model.dark()) / model.step(), 0.0, 1.0);
     unrounded.push_back(
         std::abs(point.distance) > 1.5 * result.rise_px ? usual_tail_at(point.distance, result) : value);
     variance.push_back(spread.dark + share * (spread.bright - spread.dark));
   }
   const QuantisationNoise rounding(options.code_levels, unrounded, variance);
-  const EdgeSpreadModel::Deviation deviation(model, profile.points, variance, rounding);
+  const EdgeSpreadModel::Deviation deviation(model, variance, rounding);
   result.frequencies_cpp = options.frequencies_cpp.empty() ? usual_frequencies() : options.frequencies_cpp;
-  for (const double f : result.frequencies_cpp) {
+  const Uncertainty uncertainty(fit, deviation);
+  result.sfr_deviation = uncertainty.of_moduli(result.frequencies_cpp);
+  for (std::size_t i = 0; i < result.frequencies_cpp.size(); ++i) {
+    const double f = result.frequencies_cpp[i];
     const std::complex<double> value = model.transform(f);
     result.sfr.push_back(std::abs(value));
     result.phase_rad.push_back(std::arg(value));
-    result.sfr_deviation.push_back(
-        std::hypot(deviation.of_modulus(f), alias_deviation(model, fit.comb_px(), f)));
+    result.sfr_deviation[i] = std::hypot(result.sfr_deviation[i], alias_deviation(model, fit.comb_px(), f));
   }
   // With rows half a pixel apart the alias of Nyquist's frequency lies beyond what lenses and pixels
   // pass.
@@ -433,7 +474,7 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
                     "every {:.2f} pixels; a tilt "
                     "by half a degree is enough to tell what lies between",
                     fit.comb_px()));
-  fill_levels(result, model, deviation, fit.comb_px());
+  fill_levels(result, model, uncertainty);
   fill_curves(result, model, profile);
   return result;
 }

@@ -35,7 +35,7 @@ struct SfrOptions {
 struct MtfLevel {
   double level = 0.5;
   double frequency_cpp = 0;  ///< NaN if the table ends before
-  double deviation_cpp = 0;  ///< standard deviation from noise and rounding
+  double deviation_cpp = 0;  ///< standard deviation from noise, rounding and what the model cannot follow
 };
 
 struct EdgeMeasurement {
@@ -48,7 +48,7 @@ struct EdgeMeasurement {
   double overshoot = 0, undershoot = 0;  ///< beyond bright and dark, over the step
   std::vector<double> frequencies_cpp, sfr;
   std::vector<double> phase_rad;
-  std::vector<double> sfr_deviation;          ///< standard deviation from noise and rounding
+  std::vector<double> sfr_deviation;          ///< the same of sfr
   std::vector<MtfLevel> mtf;                  ///< at 0.9, 0.8, … 0.1
   std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
   /// What the light of either side changes by over the samples, over the step; 0 if it is even.

@@ -4,6 +4,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/measure/sfr/find_edges.h>
 #include <petzval/measure/sfr/measure_picture.h>
+#include <petzval/measure/sfr/missing_target.h>
 
 #include <algorithm>
 #include <atomic>
@@ -137,11 +138,12 @@ class Measurement {
   }
 
   EdgeMeasurement measure(const Channel& channel, const std::vector<EdgeSample>& samples,
-                          const FoundEdge* edge) const {
+                          const FoundEdge* edge, bool sampled) const {
     SfrOptions options = options_;
     if (edge != nullptr) {
       options.start = edge->line();
-      options.missing_target = [=](double x, double y) { return missing_target_at(*edge, x, y); };
+      options.missing_target =
+          sampled ? MissingTarget::where_sampled(*edge) : MissingTarget::everywhere(*edge);
     }
     return measure_edge(samples, channel.lattices.front().step, options);
   }
@@ -161,9 +163,9 @@ class Measurement {
     for (const Channel& channel : channels_) {
       const auto samples = merged(
           channel, [&](const PixelLattice& lattice) { return samples_in(channel.plane, box, lattice); });
-      MeasuredEdge edge{channel.name, box, measure(channel, samples, nullptr), {}, {}};
+      MeasuredEdge edge{channel.name, box, measure(channel, samples, nullptr, false), {}, {}};
       if (const FoundEdge* known = edge_along(found_, edge.exact.line))
-        edge.exact = measure(channel, samples, known);
+        edge.exact = measure(channel, samples, known, false);
       if (request_.iso) edge.iso = iso_esfr(channel.plane, box);
       edges.push_back(std::move(edge));
     }
@@ -177,7 +179,7 @@ class Measurement {
       const auto samples = merged(
           channel, [&](const PixelLattice& lattice) { return samples_about(channel.plane, found, lattice); });
       if (samples.size() < 64) throw InputError("an edge with fewer than 64 pixels about it");
-      MeasuredEdge edge{channel.name, box_around(samples), measure(channel, samples, &found), {}, {}};
+      MeasuredEdge edge{channel.name, box_around(samples), measure(channel, samples, &found, true), {}, {}};
       if (request_.iso) edge.iso = iso_esfr(channel.plane, edge.roi);
       edges.push_back(std::move(edge));
     }

@@ -143,17 +143,18 @@ std::vector<ContourPoint> straightened(const LevelContour& contour, double toler
 std::vector<Stretch> stretches_of(const Outline& outline) {
   constexpr double smooth = 8 * pi / 180, most = 25 * pi / 180;
   const std::size_t sides = outline.sides();
+  const auto turn_before = [&](std::size_t side) {
+    return turn_between(outline.side((side + sides - 1) % sides), outline.side(side));
+  };
   std::size_t start = 0;  // at a corner, if a closed outline has one
   if (outline.closed)
-    while (start < sides &&
-           std::abs(turn_between(outline.side(start + sides - 1), outline.side(start))) < smooth)
-      ++start;
+    while (start < sides && std::abs(turn_before(start)) < smooth) ++start;
   if (start == sides) start = 0;
   std::vector<Stretch> stretches;
   double turned = 0;
   for (std::size_t i = 0; i < sides; ++i) {
     const std::size_t s = (start + i) % sides;
-    const double turn = i == 0 ? pi : turn_between(outline.side(s + sides - 1), outline.side(s));
+    const double turn = i == 0 ? pi : turn_before(s);
     turned += turn;
     if (i > 0 && std::abs(turn) < smooth && std::abs(turned) < most) {
       ++stretches.back().count;

@@ -26,6 +26,8 @@ class QuantisationNoise {
   QuantisationNoise(std::span<const double> levels, std::span<const double> values,
                     std::span<const double> variance);
 
+  bool none() const { return cells_.empty(); }
+
   /// Tells the entries of the row that sample i has in a linear fit which are not zero.
   using RowOf =
       std::function<void(std::size_t i, const std::function<void(int unknown, double value)>& entry)>;

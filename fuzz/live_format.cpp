@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "live_format.h"
+
+#include <petzval/live/message.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "require.h"
+
+namespace petzval::fuzz {
+
+namespace {
+
+const LiveNames& offered() {
+  static const LiveNames names{{"tessar"},  {"studio", "grid"}, {"third-inch-vga"},
+                               {"", "D65"}, {"mtf", "spots"},   {"none"}};
+  return names;
+}
+
+bool is_offered(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+void check_state(const BenchState& state) {
+  require(state.id >= 0, "an id below 0");
+  require(std::isfinite(state.f_number.value_or(0)) && std::isfinite(state.defocus_mm),
+          "a number that is not finite");
+  require(!state.distance_m || *state.distance_m > 0, "a distance that is not positive");
+  require(std::isfinite(state.cursor_mm[0]) && std::isfinite(state.cursor_mm[1]),
+          "a place that is not finite");
+  require(is_offered(offered().scenes, state.scene) && is_offered(offered().sensors, state.sensor) &&
+              is_offered(offered().illuminants, state.illuminant),
+          "a name that was not offered");
+  for (const std::string& plot : state.plots)
+    require(is_offered(offered().analyses, plot), "another analysis");
+}
+
+}  // namespace
+
+bool try_live(std::string_view bytes) {
+  const bool message = accepted([&] {
+    const LiveMessage read = parse_live_message(bytes, offered());
+    if (const auto* state = std::get_if<BenchState>(&read)) check_state(*state);
+    if (const auto* lens = std::get_if<LensWish>(&read))
+      require(is_offered(offered().lenses, lens->name), "a lens that was not offered");
+  });
+  const bool upload = accepted([&] {
+    const Upload read = parse_live_upload(bytes);
+    require(is_offered(upload_lens_extensions(), read.extension) ||
+                is_offered(upload_photograph_extensions(), read.extension),
+            "another extension");
+  });
+  return message || upload;
+}
+
+}  // namespace petzval::fuzz

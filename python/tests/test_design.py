@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lenses as they are built, and better ones: the same as the program's."""
+
+import numpy as np
+import petzval as pz
+import pytest
+
+
+def test_tolerances_are_the_programs(program):
+    lens = pz.Lens("cooke-triplet")
+    ours = lens.tolerance([0, 14], builds=20, accept=16, seed=3)
+    theirs = program.json("lens", "tolerance", "cooke-triplet", "--fields", "0,14", "--builds", 20, "--accept", 16,
+                          "--seed", 3)
+    assert [row["worst_change"] for row in ours.tables["rows"].rows] == [row["worst_change"] for row in theirs["rows"]]
+    assert ours.facts["yield"] == [theirs["yield"], *theirs["yield_interval_95"]]
+    assert ours.tables["builds"]["overall"].shape == (20,)
+    assert "svg" in str(ours.plot)[:200]
+
+
+def test_a_build_is_the_row_of_its_number():
+    lens = pz.Lens("cooke-triplet")
+    worst = lens.tolerance(builds=3).tables["builds"]["worst"]
+    # Judged where it stands: focused already, nothing to gain.
+    again = [lens.built(n).tolerance(builds=0, tolerances=["thickness_mm@1=1e-9"]).facts["designed_worst"][0]
+             for n in range(3)]
+    np.testing.assert_allclose(again, worst, rtol=1e-6)
+    assert lens.built(0).to_json() != lens.built(1).to_json() == lens.built(1).to_json()
+
+
+def test_an_optimised_lens_is_better():
+    lens = pz.Lens("cooke-triplet")
+    better, report = lens.optimise(["radii", "gaps", "image"])
+    assert report.facts["after"][0] < report.facts["before"][0]
+    assert better.efl_mm == pytest.approx(lens.efl_mm, rel=1e-3)
+    assert len(report.tables["numbers"].rows) == 9
+
+
+def test_errors_say_what_would_be_right():
+    lens = pz.Lens("cooke-triplet")
+    with pytest.raises(pz.InputError, match="commercial"):
+        lens.built(0, grade="best")
+    with pytest.raises(pz.InputError, match="radii, thicknesses"):
+        lens.optimise(["bendings"])
+    with pytest.raises(pz.InputError, match="element_tilt_deg"):
+        lens.tolerance(tolerances=["tilt=3"])

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/lens/wavelength_range.h>
+
+#include <algorithm>
+
+namespace petzval {
+
+LensWavelengths wavelength_range(const Lens& lens) {
+  LensWavelengths range;
+  const auto narrow = [&](double shortest_nm, double longest_nm) {
+    range.shortest_nm = std::max(range.shortest_nm, shortest_nm);
+    range.longest_nm = std::min(range.longest_nm, longest_nm);
+  };
+  for (const Surface& surface : lens.surfaces) {
+    const Material::Kind& kind = surface.material.kind();
+    if (const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&kind))
+      narrow((*glass)->shortest_nm, (*glass)->longest_nm);
+    if (const auto* table = std::get_if<Material::Table>(&kind))
+      narrow(table->front().first, table->back().first);
+  }
+  return range;
+}
+
+}  // namespace petzval

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/base/scratch_folder.h>
+#include <petzval/base/whole_file.h>
+#include <petzval/camera/mounted_lens.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_file.h>
+#include <petzval/live/bench.h>
+#include <petzval/live/bench_json.h>
+#include <petzval/live/bench_picture.h>
+#include <petzval/live/bench_psf.h>
+#include <petzval/live/bench_sensor.h>
+#include <petzval/simulate/analysis.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace petzval {
+
+using nlohmann::json;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* dropped_photograph = "dropped photograph";
+
+/// The lens of a state in use, and the state of which it is.
+struct LensInUse {
+  std::string key = {};
+  Camera camera = {};
+  Lens lens = Lens();
+};
+
+std::string optics_key(const BenchState& state) {
+  return fmt::format("{}|{}|{}|{}|{}", state.lens_json, state.f_number.value_or(0), state.focus.text(),
+                     state.distance_m.value_or(0), state.defocus_mm);
+}
+
+/// As the picture uses it: focused, and the object where the scene stands.
+Lens used_for_scene(Camera camera, const std::optional<double>& distance_m, const Context& context) {
+  const double scene_m = distance_m.value_or(INFINITY);
+  if (camera.focus.kind == Focus::Kind::automatic) camera.focus = Focus::at_m(scene_m);
+  const Lens focused = lens_in_use(camera, context);
+  // A lens that stays as it was designed, before a scene that stands where nobody said: its own object.
+  if (camera.focus.kind == Focus::Kind::design && !distance_m) return focused;
+  MountedLens mounted(focused);
+  if (mounted.object_distance_from_sensor_m() != distance_m) mounted.place_object_at_m(distance_m);
+  return mounted.lens();
+}
+
+json list_of_lenses() {
+  static const json all = [] {
+    json list = json::array();
+    for (const std::string& name : bundled_names("lenses", ".json"))
+      list.push_back({{"name", name}, {"title", read_lens(name).lens.name}});
+    return list;
+  }();
+  return all;
+}
+
+double image_height_of(const Lens& lens) {
+  double height = 0;
+  for (const double field : lens.fields.values)
+    height =
+        std::max(height, std::abs(paraxial_image_height_mm(lens, object_field(lens, lens.fields.kind, field),
+                                                           lens.reference_wavelength_nm)));
+  return height;
+}
+
+std::string sensor_for(const Lens& lens) {
+  try {
+    const double height = image_height_of(lens);
+    return usual_sensor(std::isfinite(height) && height > 0 ? height : 1);
+  } catch (const InputError&) {
+    return usual_sensor(1);
+  }
+}
+
+}  // namespace
+
+struct Bench::Impl {
+  LiveStart start;
+  SendReply send;
+  LiveNames names;
+  std::map<std::string, std::string> scene_paths = {}, sensor_paths = {};
+  ScratchFolder files = {};
+  LensInUse use = {};
+  std::map<std::string, std::string> shown = {};  ///< stage → key of what was sent
+  std::map<std::string, Clock::time_point> shown_at = {};
+  const BenchQuestions* ask = nullptr;  ///< while show() is under way
+  int threads = 0;
+  BenchPicture pictures = {};
+  int uploads = 0;
+
+  void tell(const json& message) const {
+    send({message.dump(-1, ' ', false, json::error_handler_t::replace), {}});
+  }
+
+  void problem(std::int64_t id, const std::string& stage, const std::string& text) const {
+    tell({{"kind", "problem"}, {"id", id}, {"stage", stage}, {"text", text}});
+  }
+
+  /// Whether a stage was shown so short a time ago that it may wait for the next state.
+  bool is_fresh(const std::string& name) const {
+    constexpr std::chrono::milliseconds moment{150};
+    const auto found = shown_at.find(name);
+    return found != shown_at.end() && Clock::now() - found->second < moment;
+  }
+
+  /// The full picture gives way at once, other stages as is_fresh() says.
+  bool gives_way(const std::string& name) const {
+    return ask->ended() || (ask->newer() && (name == "picture" || is_fresh(name)));
+  }
+
+  /// Does a stage unless it has been shown as it is. \returns whether it stands.
+  template <typename Work>
+  bool stage(std::int64_t id, const std::string& name, const std::string& key, const Work& work) {
+    if (const auto found = shown.find(name); found != shown.end() && found->second == key) return true;
+    if (gives_way(name)) throw Cancelled();
+    shown.erase(name);
+    const Clock::time_point began = Clock::now();
+    Context context;
+    context.threads = threads;
+    context.progress = [&](double, const std::string&) { return !gives_way(name); };
+    try {
+      work(context);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      problem(id, name, error.what());
+      return false;
+    } catch (const std::bad_alloc&) {
+      problem(id, name, "out of memory; a smaller picture would fit");
+      return false;
+    }
+    shown[name] = key;
+    shown_at[name] = Clock::now();
+    const std::chrono::duration<double, std::milli> took = Clock::now() - began;
+    tell({{"kind", "stage"}, {"id", id}, {"stage", name}, {"ms", std::round(took.count() * 10) / 10}});
+    return true;
+  }
+
+  void show(const BenchState& state);
+  void show_layout(const BenchState& state) const;
+  void show_plots(const BenchState& state);
+  void show_psf(const BenchState& state, const Context& context) const;
+};
+
+void Bench::Impl::show_layout(const BenchState& state) const {
+  json message = layout_json(use.lens);
+  message["kind"] = "layout";
+  message["id"] = state.id;
+  tell(message);
+}
+
+void Bench::Impl::show_psf(const BenchState& state, const Context& context) const {
+  const BenchPsf psf = bench_psf(use.lens, state.cursor_mm, context);
+  send({json{{"kind", "psf"},
+             {"id", state.id},
+             {"size", psf.size},
+             {"spacing_um", psf.spacing_um},
+             {"height_mm", psf.height_mm},
+             {"azimuth_deg", psf.azimuth_deg},
+             {"captured", psf.captured}}
+            .dump(),
+        float_bytes(psf.rgb), true});
+}
+
+void Bench::Impl::show_plots(const BenchState& state) {
+  AnalysisRequest request;
+  request.plots = true;
+  request.polychromatic_mtf = true;
+  request.mtf.frequencies_cpmm = {0, 10, 20, 40, 60, 80, 100};
+  for (const std::string& name : state.plots) {
+    stage(state.id, "plot:" + name, use.key, [&](const Context& context) {
+      const AnalysisResult result = analyse(name, use.lens, request, context);
+      json plots = json::array();
+      for (const Plot& plot : result.plots) plots.push_back(plot_json(plot));
+      tell({{"kind", "plots"},
+            {"id", state.id},
+            {"analysis", name},
+            {"across", result.plots_across},
+            {"title", result.plots_title},
+            {"plots", std::move(plots)}});
+    });
+  }
+}
+
+void Bench::Impl::show(const BenchState& state) {
+  const std::string key = optics_key(state);
+  if (use.key != key) {
+    use.key.clear();
+    std::string failed_at = "lens";
+    try {
+      use.camera = {};
+      use.camera.lens = lens_from_json(state.lens_json, "lens");
+      use.camera.f_number = state.f_number;
+      use.camera.focus = state.focus;
+      use.camera.defocus_mm = state.defocus_mm;
+      failed_at = "camera";
+      use.lens = used_for_scene(use.camera, state.distance_m, {});
+    } catch (const Error& error) {
+      return problem(state.id, failed_at, error.what());
+    }
+    use.key = key;
+  }
+  if (!stage(state.id, "layout", key, [&](const Context&) { show_layout(state); })) return;
+  const auto picture = [&](const char* name, PictureQuality quality) {
+    const auto scene = scene_paths.find(state.scene);
+    const auto sensor = sensor_paths.find(state.sensor);
+    // The picture knows itself whether it is new.
+    const auto work = [&](const Context& context) {
+      pictures.show(state, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
+                    sensor == sensor_paths.end() ? state.sensor : sensor->second, quality, context, send);
+    };
+    return stage(state.id, name,
+                 fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, state.scene, state.illuminant,
+                             state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
+                             state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
+                 work);
+  };
+  stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
+        [&](const Context& context) { show_psf(state, context); });
+  const bool previewed = state.picture && picture("preview", PictureQuality::preview);
+  show_plots(state);
+  if (previewed) {
+    if (!ask->rests()) throw Cancelled();
+    picture("picture", PictureQuality::full);
+  }
+}
+
+Bench::Bench(const LiveStart& start, SendReply send) : impl_(std::make_unique<Impl>()) {
+  impl_->start = start;
+  impl_->send = std::move(send);
+  impl_->names = bundled_live_names();
+  impl_->scene_paths = start.scene_files;
+  impl_->sensor_paths = start.sensor_files;
+  for (const auto& [label, path] : start.scene_files) impl_->names.scenes.push_back(label);
+  for (const auto& [label, path] : start.sensor_files) impl_->names.sensors.push_back(label);
+}
+
+Bench::~Bench() = default;
+
+const LiveNames& Bench::names() const {
+  return impl_->names;
+}
+
+void Bench::greet() {
+  const LiveStart& start = impl_->start;
+  const Lens lens = lens_from_json(start.lens_json, "lens");
+  json analyses_list = json::array();
+  for (const Analysis& analysis : analyses())
+    analyses_list.push_back({{"name", analysis.name}, {"title", analysis.description}});
+  impl_->tell({{"kind", "welcome"},
+               {"lens_name", start.lens_name},
+               {"lens", json::parse(start.lens_json)},
+               {"scene", start.scene},
+               {"sensor", start.sensor.empty() ? sensor_for(lens) : start.sensor},
+               {"lenses", list_of_lenses()},
+               {"scenes", impl_->names.scenes},
+               {"sensors", impl_->names.sensors},
+               {"illuminants", impl_->names.illuminants},
+               {"tones", impl_->names.tones},
+               {"analyses", std::move(analyses_list)}});
+}
+
+void Bench::show(const BenchState& state, int threads, const BenchQuestions& ask) {
+  impl_->ask = &ask;
+  impl_->threads = threads;
+  impl_->show(state);
+  impl_->tell({{"kind", "idle"}, {"id", state.id}});
+}
+
+void Bench::send_lens(const LensWish& wish) {
+  const Lens lens = read_lens(wish.name).lens;
+  impl_->tell({{"kind", "lens"},
+               {"id", wish.id},
+               {"name", wish.name},
+               {"lens", json::parse(lens_to_json(lens))},
+               {"sensor", sensor_for(lens)}});
+}
+
+void Bench::send_glasses(const GlassWish& wish) {
+  impl_->tell({{"kind", "glasses"}, {"id", wish.id}, {"glasses", glasses_json(wish.text)}});
+}
+
+void Bench::save(const SaveWish& wish, const Context& context) {
+  const bool of_lens = wish.extension == ".json" || wish.extension == ".zmx" || wish.extension == ".seq";
+  const std::string path = impl_->files.path() + "/saved" + wish.extension;
+  try {
+    if (of_lens && impl_->use.key.empty()) throw InputError("there is no lens that could be saved");
+    if (of_lens)
+      write_lens(impl_->use.camera.lens, path);
+    else
+      impl_->pictures.write(path, context);
+    const std::string bytes = read_whole_file(path);
+    impl_->send({json{{"kind", "file"}, {"id", wish.id}, {"extension", wish.extension}}.dump(),
+                 {bytes.begin(), bytes.end()},
+                 true});
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    impl_->problem(wish.id, "save", error.what());
+  }
+}
+
+void Bench::take(const Upload& upload) {
+  const auto& photographs = upload_photograph_extensions();
+  const bool photograph = std::ranges::find(photographs, upload.extension) != photographs.end();
+  const std::string path =
+      fmt::format("{}/upload{}{}", impl_->files.path(), photograph ? impl_->uploads++ : 0, upload.extension);
+  try {
+    write_whole_file(path, upload.bytes);
+    if (photograph) {
+      read_scene(path, {.wavelengths_nm = {550}});
+      std::string label = dropped_photograph;
+      if (impl_->uploads > 1) label += fmt::format(" {}", impl_->uploads);
+      impl_->scene_paths[label] = path;
+      impl_->names.scenes.push_back(label);
+      return impl_->tell(
+          {{"kind", "scenes"}, {"id", upload.id}, {"scene", label}, {"scenes", impl_->names.scenes}});
+    }
+    const LensFile read = read_lens(path);
+    impl_->tell({{"kind", "lens"},
+                 {"id", upload.id},
+                 {"name", upload.label},
+                 {"lens", json::parse(lens_to_json(read.lens))},
+                 {"sensor", sensor_for(read.lens)},
+                 {"notes", read.notes}});
+  } catch (const Error& error) {
+    // The reader names its file; people know it by the name it had.
+    std::string text = error.what();
+    if (text.starts_with(path)) text = upload.label + upload.extension + text.substr(path.size());
+    impl_->problem(upload.id, "upload", text);
+  }
+}
+
+}  // namespace petzval

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One page's bench: what is on it is worked out stage by stage, the quick ones first.
+#pragma once
+
+#include <petzval/base/context.h>
+#include <petzval/live/message.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// What is sent to the page: JSON alone, or with bytes behind it (pixels, a file).
+struct LiveReply {
+  std::string json;
+  std::vector<std::uint8_t> bytes = {};
+  bool with_bytes = false;
+};
+using SendReply = std::function<void(LiveReply reply)>;
+
+/// What the server was started with.
+struct LiveStart {
+  std::string lens_name = {};  ///< as typed, for the command line that the page shows
+  std::string lens_json = {};
+  std::string scene = {};   ///< the first to be shown
+  std::string sensor = {};  ///< empty: the usual one of the lens
+  std::map<std::string, std::string> scene_files =
+      {};  ///< files that were named at the start, by their labels
+  std::map<std::string, std::string> sensor_files = {};
+};
+
+/// What the bench asks of whoever runs it.
+struct BenchQuestions {
+  std::function<bool()> newer;  ///< whether something waits that is newer than what is shown
+  std::function<bool()> ended;  ///< whether nobody looks any more
+  std::function<bool()> rests;  ///< waits until the hand has rested; false if something came first
+};
+
+/// Stages: layout → psf → preview (few pixels, three bands) → plots → picture. What has been shown already
+/// and has not changed is left out. While a hand moves, a stage that was shown a moment ago gives way to what
+/// is newer; one that was not is finished first, so that all of them follow the hand. A Bench is for one
+/// thread at a time.
+///
+/// All of its numbers come from `simulate` and below; what fails is told to the page ("problem") and ends
+/// the stage, not the bench.
+class Bench {
+ public:
+  Bench(const LiveStart& start, SendReply send);
+  ~Bench();
+
+  /// Of everything there is to choose from, and the first lens.
+  void greet();
+  /// \throws Cancelled if something newer came before the end; what was shown stays shown.
+  void show(const BenchState& state, int threads, const BenchQuestions& ask);
+  void send_lens(const LensWish& wish);
+  void send_glasses(const GlassWish& wish);
+  /// The lens or the picture that was shown last, as a file. \throws Cancelled.
+  void save(const SaveWish& wish, const Context& context);
+  /// Reads a lens, or keeps a photograph as a scene.
+  void take(const Upload& upload);
+  /// What its messages may name.
+  const LiveNames& names() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace petzval

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
+#include <petzval/analysis/ray_fan.h>
+#include <petzval/base/error.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/live/bench_json.h>
+#include <petzval/report/colours.h>
+#include <petzval/report/lens_drawing.h>
+#include <petzval/report/surface_profile.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+using nlohmann::json;
+
+namespace {
+
+json finite_or_null(double value) {
+  return std::isfinite(value) ? json(value) : json();
+}
+
+/// With as many digits as a screen shows.
+json short_values(const std::vector<double>& values) {
+  json list = json::array();
+  for (const double value : values) list.push_back(finite_or_null(static_cast<float>(value)));
+  return list;
+}
+
+json axis_json(const PlotAxis& axis) {
+  return {{"label", axis.label},
+          {"unit", axis.unit},
+          {"log", axis.scale == PlotScale::logarithmic},
+          {"from", axis.from ? finite_or_null(*axis.from) : json()},
+          {"to", axis.to ? finite_or_null(*axis.to) : json()}};
+}
+
+json points_json(const std::vector<PlanePoint>& points) {
+  json list = json::array();
+  for (const PlanePoint& point : points)
+    if (std::isfinite(point[0]) && std::isfinite(point[1])) list.push_back({point[0], point[1]});
+  return list;
+}
+
+json first_order_json(const Lens& lens) {
+  const FirstOrder data = first_order(lens);
+  return {{"efl_mm", finite_or_null(data.efl_mm)},
+          {"bfl_mm", finite_or_null(data.bfl_mm)},
+          {"f_number", finite_or_null(data.f_number)},
+          {"working_f_number", finite_or_null(data.working_f_number)},
+          {"image_space_na", finite_or_null(data.image_space_na)},
+          {"field_of_view_deg", finite_or_null(data.field_of_view_deg)},
+          {"magnification", finite_or_null(data.magnification)},
+          {"total_track_mm", finite_or_null(data.total_track_mm)},
+          {"paraxial_image_mm", finite_or_null(data.paraxial_image_mm)},
+          {"petzval_radius_mm", finite_or_null(data.petzval_radius_mm)},
+          {"entrance_pupil_mm", finite_or_null(data.entrance_pupil.position_mm)},
+          {"entrance_pupil_diameter_mm", finite_or_null(data.entrance_pupil.diameter_mm)},
+          {"exit_pupil_mm", finite_or_null(data.exit_pupil.position_mm)},
+          {"exit_pupil_diameter_mm", finite_or_null(data.exit_pupil.diameter_mm)},
+          {"stop_semi_diameter_mm", finite_or_null(data.stop_semi_diameter_mm)}};
+}
+
+struct LayoutRays {
+  std::vector<DrawnRay> drawn;
+  json fields = json::array(), blocked = json::array();
+};
+
+LayoutRays layout_rays(const Lens& lens) {
+  constexpr int rays_a_field = 5;
+  constexpr double lead = 0.25;  // of the length of the lens
+  LayoutRays rays;
+  FieldTracer tracer(lens, lens.reference_wavelength_nm);
+  const FieldTableRequest at = FieldTableRequest::of(lens);
+  for (std::size_t i = 0; i < at.fields.size(); ++i) {
+    const double field = object_field(lens, at.field_kind, at.fields[i]);
+    json paths = json::array();
+    for (const MeridionalPath& path :
+         meridional_fan(tracer, field, rays_a_field, lead * lens.total_track_mm())) {
+      rays.drawn.push_back({path, series_colour(i).hex()});
+      paths.push_back(points_json({path.begin(), path.end()}));
+    }
+    if (paths.empty()) {
+      int surface = -1;
+      const std::string why = blocking_surface(tracer.tracer(), lens, field, surface);
+      rays.blocked.push_back({{"field", at.fields[i]}, {"surface", surface}, {"text", why}});
+    }
+    rays.fields.push_back({{"value", at.fields[i]},
+                           {"unit", field_unit(at.field_kind)},
+                           {"colour", series_colour(i).hex()},
+                           {"rays", std::move(paths)}});
+  }
+  return rays;
+}
+
+/// A number of a search such as "1.62 60".
+std::optional<std::array<double, 2>> two_numbers(const std::string& text) {
+  double nd = 0, vd = 0;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%lf%*[ ,/]%lf %n", &nd, &vd, &end) < 2) return {};
+  if (static_cast<std::size_t>(end) != text.size() || !(nd >= 1 && nd < 5 && vd > 0 && vd < 200)) return {};
+  return std::array<double, 2>{nd, vd};
+}
+
+std::string letters_and_digits(const std::string& text) {
+  std::string kept;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      kept += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return kept;
+}
+
+struct KnownGlass {
+  std::string name, letters, status;
+  double nd, vd;
+};
+
+/// Read once: what a search goes through.
+const std::vector<KnownGlass>& known_glasses() {
+  static const std::vector<KnownGlass> all = [] {
+    std::vector<KnownGlass> list;
+    const GlassCatalogue& catalogue = GlassCatalogue::bundled();
+    for (const std::string& name : catalogue.full_names()) {
+      const auto glass = catalogue.find(name);
+      if (const auto abbe = glass->abbe())
+        list.push_back({name, letters_and_digits(glass->name), glass->status, abbe->nd, abbe->vd});
+    }
+    return list;
+  }();
+  return all;
+}
+
+/// How far a glass is from what is sought: in steps of 0.001 of nd and 0.1 of Vd, or by how much its name
+/// goes on.
+double misfit(const KnownGlass& glass, const std::optional<std::array<double, 2>>& numbers,
+              const std::string& letters) {
+  constexpr double nd_step = 1e-3, vd_step = 0.1;
+  if (numbers) return std::hypot((glass.nd - (*numbers)[0]) / nd_step, (glass.vd - (*numbers)[1]) / vd_step);
+  const std::size_t at = letters_and_digits(glass.name).find(letters);
+  if (at == std::string::npos) return INFINITY;
+  constexpr double inside = 0.5;
+  return static_cast<double>(glass.letters.size()) + (glass.letters.starts_with(letters) ? 0 : inside);
+}
+
+}  // namespace
+
+json plot_json(const Plot& plot) {
+  json series = json::array(), guides = json::array();
+  for (const PlotSeries& line : plot.series)
+    series.push_back({{"label", line.label},
+                      {"x", short_values(line.x)},
+                      {"y", short_values(line.y)},
+                      {"stroke", static_cast<int>(line.stroke)},
+                      {"marker", static_cast<int>(line.marker)},
+                      {"colour", line.colour}});
+  for (const PlotGuide& guide : plot.guides)
+    guides.push_back({{"x", guide.at == PlotGuide::At::x}, {"value", guide.value}, {"label", guide.label}});
+  return {{"title", plot.title},         {"x", axis_json(plot.x)},      {"y", axis_json(plot.y)},
+          {"series", std::move(series)}, {"guides", std::move(guides)}, {"equal", plot.equal_aspect}};
+}
+
+json layout_json(const Lens& lens) {
+  LayoutRays rays = layout_rays(lens);
+  const std::vector<double> heights = drawn_semi_diameters_mm(lens, rays.drawn, {});
+  json surfaces = json::array(), elements = json::array();
+  std::vector<PlanePoint> before;
+  double z = 0;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const Surface& surface = lens.surfaces[i];
+    const std::vector<PlanePoint> here = profile(surface, z, heights[i]);
+    if (i > 0 && !lens.surfaces[i - 1].material.is_air())
+      elements.push_back(points_json(element_outline(before, here)));
+    surfaces.push_back(
+        {{"z", z}, {"height", heights[i]}, {"stop", surface.stop}, {"profile", points_json(here)}});
+    before = here;
+    z += surface.thickness_mm;
+  }
+  double image_height = 0;
+  for (const DrawnRay& ray : rays.drawn)
+    if (std::isfinite(ray.zy_mm.back()[1]))
+      image_height = std::max(image_height, std::abs(ray.zy_mm.back()[1]));
+  return {{"surfaces", std::move(surfaces)},
+          {"elements", std::move(elements)},
+          {"fields", std::move(rays.fields)},
+          {"blocked", std::move(rays.blocked)},
+          {"image_z", z},
+          {"image_height", image_height},
+          {"first_order", first_order_json(lens)}};
+}
+
+std::string blocking_surface(const Tracer& tracer, const Lens& lens, double object_field, int& surface) {
+  constexpr int rays = 41;
+  constexpr double degree = 3.14159265358979323846 / 180;
+  double reach_mm = 0;
+  for (const Surface& each : lens.surfaces) reach_mm = std::max(reach_mm, each.semi_diameter_mm.value_or(0));
+  if (reach_mm == 0) reach_mm = tracer.stop_radius_mm();
+  Ray farthest;
+  farthest.failed_at = -1;
+  for (int i = 0; i < rays; ++i) {
+    const double height = reach_mm * (2.0 * i / (rays - 1) - 1);
+    Ray ray;
+    if (lens.object_distance_mm) {
+      const double along = *lens.object_distance_mm, across = height - object_field;
+      const double length = std::hypot(along, across);
+      ray.point_mm = {0, object_field, -along};
+      ray.direction = {0, across / length, along / length};
+    } else {
+      // At vertex 1, not in front of it: aimed through the height at which the surface is met.
+      ray.direction = {0, std::sin(object_field * degree), std::cos(object_field * degree)};
+      const double lead = lens.total_track_mm();
+      ray.point_mm = {0, height - lead * std::tan(object_field * degree), -lead};
+    }
+    const Ray end = tracer.trace(ray);
+    if (end.status != RayStatus::ok && end.failed_at > farthest.failed_at) farthest = end;
+  }
+  surface = farthest.failed_at;
+  if (surface < 0) return "no ray finds its way through the stop";
+  const char* what = farthest.status == RayStatus::missed      ? "rays miss surface"
+                     : farthest.status == RayStatus::vignetted ? "the rim stops all rays at surface"
+                                                               : "rays are totally reflected at surface";
+  return fmt::format("{} {}", what, surface);
+}
+
+json glasses_json(const std::string& text, std::size_t most) {
+  const auto numbers = two_numbers(text);
+  const std::string letters = letters_and_digits(text);
+  std::vector<std::pair<double, const KnownGlass*>> found;
+  for (const KnownGlass& glass : known_glasses()) {
+    const double far = misfit(glass, numbers, letters);
+    if (std::isfinite(far)) found.emplace_back(far, &glass);
+  }
+  std::ranges::stable_sort(found, {}, [](const auto& each) { return each.first; });
+  if (found.size() > most) found.resize(most);
+  json list = json::array();
+  for (const auto& [far, glass] : found)
+    list.push_back({{"name", glass->name}, {"nd", glass->nd}, {"vd", glass->vd}, {"status", glass->status}});
+  return list;
+}
+
+}  // namespace petzval

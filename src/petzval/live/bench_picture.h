@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The picture of the bench: light, exposure, development, each kept as long as it holds.
+#pragma once
+
+#include <petzval/live/bench.h>
+#include <petzval/simulate/develop.h>
+#include <petzval/simulate/image.h>
+#include <petzval/simulate/outputs.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// How much a picture is to tell.
+enum class PictureQuality {
+  preview,  ///< at most 160 pixels across, three bands, blur to a twentieth
+  full      ///< at most 640 pixels across, fewer of a blur that is wide, 16 bands, blur to a hundredth
+};
+
+/// The pictures of one bench.
+class BenchPicture {
+ public:
+  /// \param used  the lens, stopped down and focused, before the scene. \param scene_path  what read_scene()
+  /// takes. \param sensor_path  what read_sensor() takes. \returns whether there was anything new to send.
+  void show(const BenchState& state, const Lens& used, const std::string& scene_path,
+            const std::string& sensor_path, PictureQuality quality, const Context& context,
+            const SendReply& send);
+
+  /// Files of the last picture of full quality. \throws InputError if there is none yet.
+  void write(const std::string& path, const Context& context) const;
+
+ private:
+  struct Shot {
+    std::string light_key = {}, shown_key = {};
+    std::optional<SpectralImage> light = {};
+    std::optional<Sensor> sensor = {};
+    std::vector<std::string> sensor_settings = {};
+    int pixels_added = 1;
+    double spread_um = 0;  ///< how far light spreads about its chief ray
+    OutputOptions outputs = {};
+    std::string method = {};
+  };
+  Shot shots_[2];
+};
+
+}  // namespace petzval

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
+#include <petzval/lens/formats/json_document.h>
+#include <petzval/live/message.h>
+#include <petzval/scene/scene_file.h>
+#include <petzval/simulate/analysis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace petzval {
+
+namespace {
+
+/// More than any message has, so that what is refused is refused soon.
+constexpr std::size_t most_header_bytes = 4096, most_name_bytes = 200, most_plots = 16;
+
+double number_within(const JsonEntry& entry, double least, double most) {
+  const double value = entry.number("a number");
+  if (!(value >= least && value <= most)) entry.fail(fmt::format("must be {:g} to {:g}", least, most));
+  return value;
+}
+
+std::optional<double> optional_within(const JsonEntry& entry, double least, double most) {
+  if (entry.is_null()) return {};
+  return number_within(entry, least, most);
+}
+
+std::int64_t id_of(const JsonEntry& message) {
+  constexpr double most = 9e15;  // whole numbers that a double tells apart
+  const JsonEntry entry = message.at("id");
+  const double id = number_within(entry, 0, most);
+  if (id != std::floor(id)) entry.fail("must be a whole number");
+  return static_cast<std::int64_t>(id);
+}
+
+std::string short_text(const JsonEntry& entry) {
+  std::string text = entry.text("a text");
+  if (text.size() > most_name_bytes) entry.fail(fmt::format("must be of at most {} bytes", most_name_bytes));
+  if (std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < ' '; }))
+    entry.fail("must be without control characters");
+  return text;
+}
+
+std::string one_of(const JsonEntry& entry, const std::vector<std::string>& names) {
+  std::string text = short_text(entry);
+  if (std::ranges::find(names, text) == names.end())
+    entry.fail("must be one of the names that the server gave");
+  return text;
+}
+
+void read_camera(const JsonEntry& camera, BenchState& state) {
+  camera.allow_only({"f_number", "focus", "distance_m", "defocus_mm"});
+  state.f_number = optional_within(camera.at("f_number"), 0.1, 1000);
+  state.focus = Focus::parse(short_text(camera.at("focus")));
+  state.distance_m = optional_within(camera.at("distance_m"), 1e-3, 1e6);
+  state.defocus_mm = number_within(camera.at("defocus_mm"), -100, 100);
+}
+
+void read_shot(const JsonEntry& shot, BenchState& state) {
+  shot.allow_only({"exposure", "compensation_ev", "noise", "denoise", "sharpen", "tone"});
+  state.exposure = Exposure::parse(short_text(shot.at("exposure")));
+  state.compensation_ev = number_within(shot.at("compensation_ev"), -20, 20);
+  state.noise = shot.at("noise").truth();
+  state.denoise = number_within(shot.at("denoise"), 0, 10);
+  state.sharpen = number_within(shot.at("sharpen"), 0, 10);
+}
+
+BenchState read_state(const JsonEntry& message, const JsonDocument& document, const LiveNames& names) {
+  message.allow_only({"kind", "id", "lens", "camera", "scene", "illuminant", "sensor", "shot", "cursor_mm",
+                      "plots", "picture"});
+  BenchState state;
+  state.id = id_of(message);
+  if (!message.at("lens").is_object()) message.at("lens").fail("must be a lens");
+  state.lens_json = document.root().at("lens").dump();
+  read_camera(message.at("camera"), state);
+  state.scene = one_of(message.at("scene"), names.scenes);
+  state.illuminant = one_of(message.at("illuminant"), names.illuminants);
+  state.sensor = one_of(message.at("sensor"), names.sensors);
+  read_shot(message.at("shot"), state);
+  state.tone = one_of(message.at("shot").at("tone"), names.tones);
+  const std::vector<JsonEntry> cursor = message.at("cursor_mm").items("two numbers");
+  if (cursor.size() != 2) message.at("cursor_mm").fail("must be two numbers");
+  for (std::size_t i = 0; i < 2; ++i) state.cursor_mm[i] = number_within(cursor[i], -1e4, 1e4);
+  for (const JsonEntry& plot : message.at("plots").items("names of analyses"))
+    state.plots.push_back(one_of(plot, names.analyses));
+  if (state.plots.size() > most_plots) message.at("plots").fail("must be fewer");
+  state.picture = message.at("picture").truth();
+  return state;
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+}  // namespace
+
+LiveNames bundled_live_names() {
+  LiveNames names;
+  names.lenses = bundled_names("lenses", ".json");
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    const std::string name = scene.name.substr(0, scene.name.find('['));
+    if (!is_deep_chart(name)) names.scenes.push_back(name);
+  }
+  names.sensors = bundled_names("sensors", ".json");
+  names.illuminants = {"", "D65", "D50", "A", "F11", "2856K", "4000K", "6500K", "9000K"};
+  for (const Analysis& analysis : analyses()) names.analyses.push_back(analysis.name);
+  names.tones = {"none", "soft"};
+  return names;
+}
+
+LiveMessage parse_live_message(std::string_view text, const LiveNames& names) {
+  if (text.size() > most_message_bytes)
+    throw InputError(fmt::format("a message has at most {} bytes", most_message_bytes));
+  const JsonDocument document(std::string(text), "message");
+  const JsonEntry message(document);
+  const std::string kind = short_text(message.at("kind"));
+  if (kind == "state") return read_state(message, document, names);
+  if (kind == "hello") {
+    message.allow_only({"kind"});
+    return LiveGreeting{};
+  }
+  if (kind == "lens") {
+    message.allow_only({"kind", "id", "name"});
+    return LensWish{id_of(message), one_of(message.at("name"), names.lenses)};
+  }
+  if (kind == "glasses") {
+    message.allow_only({"kind", "id", "text"});
+    return GlassWish{id_of(message), short_text(message.at("text"))};
+  }
+  if (kind == "save") {
+    message.allow_only({"kind", "id", "extension"});
+    return SaveWish{id_of(message), one_of(message.at("extension"),
+                                           {".json", ".zmx", ".seq", ".png", ".tif", ".dng", ".exr"})};
+  }
+  message.at("kind").fail("must be hello, state, lens, glasses or save");
+}
+
+Upload parse_live_upload(std::string_view bytes) {
+  constexpr std::size_t length_bytes = 4;
+  if (bytes.size() < length_bytes) throw InputError("an upload begins with the length of its header");
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < length_bytes; ++i)
+    length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  if (length > most_header_bytes || length > bytes.size() - length_bytes)
+    throw InputError(fmt::format("the header of an upload has at most {} bytes", most_header_bytes));
+  const JsonDocument document(std::string(bytes.substr(length_bytes, length)), "upload");
+  const JsonEntry header(document);
+  header.allow_only({"kind", "id", "name"});
+  if (header.at("kind").text("a text") != "upload") header.at("kind").fail("must be upload");
+  Upload upload;
+  upload.id = id_of(header);
+  const std::string name = short_text(header.at("name"));
+  const std::size_t dot = name.rfind('.');
+  if (dot != std::string::npos) upload.extension = lower_case(name.substr(dot));
+  upload.label = name.substr(0, dot);
+  const auto takes = [&](const std::vector<std::string>& extensions) {
+    return std::ranges::find(extensions, upload.extension) != extensions.end();
+  };
+  if (!takes(upload_lens_extensions()) && !takes(upload_photograph_extensions()))
+    header.at("name").fail(fmt::format("must end in {} (lenses) or {} (photographs)",
+                                       fmt::join(upload_lens_extensions(), ", "),
+                                       fmt::join(upload_photograph_extensions(), ", ")));
+  upload.bytes = std::string(bytes.substr(length_bytes + length));
+  if (upload.bytes.size() > most_upload_bytes)
+    throw InputError(fmt::format("a file has at most {} bytes", most_upload_bytes));
+  return upload;
+}
+
+const std::vector<std::string>& upload_lens_extensions() {
+  static const std::vector<std::string> extensions{".json", ".zmx", ".seq", ".dat"};
+  return extensions;
+}
+
+const std::vector<std::string>& upload_photograph_extensions() {
+  static const std::vector<std::string> extensions{".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+  return extensions;
+}
+
+}  // namespace petzval

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a page may say to the live server. Whatever else comes is refused (docs/LIVE.md, "Protocol").
+#pragma once
+
+#include <petzval/simulate/expose.h>
+#include <petzval/simulate/focus.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace petzval {
+
+/// The names that a page may choose from; nothing else is looked up, so that no message is a path.
+struct LiveNames {
+  std::vector<std::string> lenses, scenes, sensors, illuminants, analyses, tones;
+};
+/// Those of the bundled data.
+LiveNames bundled_live_names();
+
+/// All that is on the bench. The lens is native JSON, read later, so that a fault in it is told as one of the
+/// lens and not of the message.
+struct BenchState {
+  std::int64_t id = 0;
+  std::string lens_json = {};
+  std::optional<double> f_number = {};
+  Focus focus = {};
+  std::optional<double> distance_m = {};  ///< of the scene from the sensor; absent: infinity
+  double defocus_mm = 0;
+  std::string scene = {}, illuminant = {}, sensor = {};
+  Exposure exposure = {};
+  double compensation_ev = 0;
+  bool noise = true;
+  double denoise = 0, sharpen = 0;
+  std::string tone = "none";
+  std::array<double, 2> cursor_mm =
+      {};  ///< a place on the sensor, as the upright picture shows it: x right, y up
+  std::vector<std::string> plots = {};  ///< analyses that are shown
+  bool picture = true;
+};
+
+struct LiveGreeting {};
+/// A bundled lens.
+struct LensWish {
+  std::int64_t id = 0;
+  std::string name = {};
+};
+/// Glasses by a part of their name, or near an index and an Abbe number.
+struct GlassWish {
+  std::int64_t id = 0;
+  std::string text = {};
+};
+/// A file of what was shown last: a lens as ".json", ".zmx" or ".seq", a picture as ".png", ".tif", ".dng" or
+/// ".exr".
+struct SaveWish {
+  std::int64_t id = 0;
+  std::string extension = {};
+};
+/// A lens or a photograph that was dropped onto the page.
+struct Upload {
+  std::int64_t id = 0;
+  std::string extension = {};  ///< ".zmx", one of upload_extensions()
+  std::string label = {};      ///< the name without it, as people read it; never part of a path
+  std::string bytes = {};
+};
+
+using LiveMessage = std::variant<LiveGreeting, BenchState, LensWish, GlassWish, SaveWish>;
+
+constexpr std::size_t most_message_bytes = std::size_t{1} << 20;
+constexpr std::size_t most_upload_bytes = std::size_t{24} << 20;
+
+/// Of a text. \throws InputError for whatever is not exactly a message: other or missing keys, other types,
+/// numbers out of range, names that are not among the lists, more than `most_message_bytes`.
+LiveMessage parse_live_message(std::string_view text, const LiveNames& names);
+
+/// Of bytes: the length of a JSON header in four bytes, the lowest first, the header, the file. \throws
+/// InputError.
+Upload parse_live_upload(std::string_view bytes);
+/// Lenses, then photographs.
+const std::vector<std::string>& upload_lens_extensions();
+const std::vector<std::string>& upload_photograph_extensions();
+
+}  // namespace petzval

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/measure/sfr/bordered_band.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+constexpr int corner = BorderedBand::width + 1;  // where the border's entries of a column begin
+
+/// How many entries a column has below the diagonal within the band.
+int below(const BorderedBand& matrix, int column) {
+  return std::min(BorderedBand::width, matrix.band() - 1 - column);
+}
+
+}  // namespace
+
+BorderedBand::BorderedBand(int band, int border)
+    : band_(band), border_(border), entries_(static_cast<std::size_t>(band + border) * stride) {}
+
+void BorderedBand::drop_border(int unknowns) {
+  border_ -= unknowns;
+  entries_.resize(static_cast<std::size_t>(size()) * stride);
+  for (int j = 0; j < size(); ++j) std::fill(column(j) + corner + border_, column(j) + stride, 0.0);
+}
+
+void BorderedBand::add(double factor, const BorderedBand& other) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) entries_[i] += factor * other.entries_[i];
+}
+
+std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vectors) const {
+  std::array<double, lanes> sum{};
+  for (int j = 0; j < size(); ++j) {
+    const double* const a = column(j);
+    const double* const x = vectors.data() + static_cast<std::ptrdiff_t>(j) * lanes;
+    double beside[lanes] = {};
+    const auto add = [&](double entry, int row) {
+      for (int k = 0; k < lanes; ++k) beside[k] += entry * x[(row - j) * lanes + k];
+    };
+    if (j < band_)
+      for (int p = 1; p <= below(*this, j); ++p) add(a[p], j + p);
+    for (int r = std::max(0, j - band_ + 1); r < border_; ++r) add(a[corner + r], band_ + r);
+    for (int k = 0; k < lanes; ++k)
+      sum[static_cast<std::size_t>(k)] += x[k] * (at(j, j) * x[k] + 2 * beside[k]);
+  }
+  return sum;
+}
+
+BorderedCholesky::BorderedCholesky(BorderedBand matrix) : factor_(std::move(matrix)), good_(true) {
+  const int band = factor_.band(), border = factor_.border();
+  for (int j = 0; j < factor_.size() && good_; ++j) {
+    double* const l = factor_.column(j);
+    const bool in_band = j < band;
+    const int reach = in_band ? below(factor_, j) : 0;
+    double& diagonal = in_band ? l[0] : l[corner + j - band];
+    good_ = diagonal > 0 && std::isfinite(diagonal);
+    diagonal = std::sqrt(diagonal);
+    const double scale = 1 / diagonal;
+    per_diagonal_.push_back(scale);
+    for (int p = 1; p <= reach; ++p) l[p] *= scale;
+    const int first = in_band ? 0 : j - band + 1;
+    for (int r = first; r < border; ++r) l[corner + r] *= scale;
+    for (int p = 1; p <= reach; ++p) {
+      double* const other = factor_.column(j + p);
+      for (int q = p; q <= reach; ++q) other[q - p] -= l[p] * l[q];
+      for (int r = 0; r < border; ++r) other[corner + r] -= l[p] * l[corner + r];
+    }
+    for (int s = first; s < border; ++s) {
+      double* const other = factor_.column(band + s);
+      for (int r = s; r < border; ++r) other[corner + r] -= l[corner + s] * l[corner + r];
+    }
+  }
+}
+
+double BorderedCholesky::log_determinant() const {
+  double sum = 0;
+  for (int j = 0; j < factor_.size(); ++j) sum += std::log(factor_.at(j, j));
+  return 2 * sum;
+}
+
+template <int lanes>
+void BorderedCholesky::solve_lanes(double* x) const {
+  const int band = factor_.band(), border = factor_.border(), size = factor_.size();
+  double value[lanes];
+  for (int j = 0; j < size; ++j) {
+    const double* const l = factor_.column(j);
+    for (int k = 0; k < lanes; ++k) value[k] = x[j * lanes + k] *= per_diagonal_[static_cast<std::size_t>(j)];
+    const auto take = [&](double entry, int row) {
+      for (int k = 0; k < lanes; ++k) x[row * lanes + k] -= entry * value[k];
+    };
+    if (j < band)
+      for (int p = 1; p <= below(factor_, j); ++p) take(l[p], j + p);
+    for (int r = std::max(0, j - band + 1); r < border; ++r) take(l[corner + r], band + r);
+  }
+  for (int j = size - 1; j >= 0; --j) {
+    const double* const l = factor_.column(j);
+    for (int k = 0; k < lanes; ++k) value[k] = x[j * lanes + k];
+    const auto take = [&](double entry, int row) {
+      for (int k = 0; k < lanes; ++k) value[k] -= entry * x[row * lanes + k];
+    };
+    for (int r = std::max(0, j - band + 1); r < border; ++r) take(l[corner + r], band + r);
+    if (j < band)
+      for (int p = below(factor_, j); p > 0; --p) take(l[p], j + p);
+    for (int k = 0; k < lanes; ++k) x[j * lanes + k] = value[k] * per_diagonal_[static_cast<std::size_t>(j)];
+  }
+}
+
+Eigen::VectorXd BorderedCholesky::solve(const Eigen::VectorXd& right) const {
+  Eigen::VectorXd x = right;
+  solve_lanes<1>(x.data());
+  return x;
+}
+
+void BorderedCholesky::solve_in_place(BorderedBand::Block& right) const {
+  solve_lanes<BorderedBand::lanes>(right.data());
+}
+
+BorderedBand BorderedCholesky::inverse() const {
+  // From N = L Lᵀ: Lᵀ Z = L⁻¹, whose upper half is the diagonal 1/l. Column by column from the last.
+  const int band = factor_.band(), border = factor_.border();
+  BorderedBand z(band, border);
+  const auto entry = [&](int i, int j) { return i >= j ? z.at(i, j) : z.at(j, i); };
+  for (int j = factor_.size() - 1; j >= 0; --j) {
+    int rows[BorderedBand::width + BorderedBand::most_border];
+    double l[BorderedBand::width + BorderedBand::most_border];
+    int count = 0;
+    for (int p = 1; j < band && p <= below(factor_, j); ++p) rows[count++] = j + p;
+    for (int r = std::max(0, j - band + 1); r < border; ++r) rows[count++] = band + r;
+    for (int k = 0; k < count; ++k) l[k] = factor_.at(rows[k], j);
+    const double scale = 1 / factor_.at(j, j);
+    for (int i = count - 1; i >= 0; --i) {
+      double sum = 0;
+      for (int k = 0; k < count; ++k) sum += l[k] * entry(rows[i], rows[k]);
+      z.at(rows[i], j) = -sum * scale;
+    }
+    double sum = 0;
+    for (int k = 0; k < count; ++k) sum += l[k] * z.at(rows[k], j);
+    z.at(j, j) = (scale - sum) * scale;
+  }
+  return z;
+}
+
+double trace_of_product(const BorderedBand& a, const BorderedBand& b) {
+  double diagonal = 0, beside = 0;
+  const int band = a.band(), border = a.border();
+  for (int j = 0; j < a.size(); ++j) {
+    diagonal += a.at(j, j) * b.at(j, j);
+    for (int p = 1; j < band && p <= below(a, j); ++p) beside += a.at(j + p, j) * b.at(j + p, j);
+    for (int r = std::max(0, j - band + 1); r < border; ++r) beside += a.at(band + r, j) * b.at(band + r, j);
+  }
+  return diagonal + 2 * beside;
+}
+
+}  // namespace petzval

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Better lenses: numbers of a prescription altered until its rays meet more closely.
+#pragma once
+
+#include <petzval/analysis/field_tables.h>
+#include <petzval/base/context.h>
+#include <petzval/optimise/lens_variable.h>
+
+#include <optional>
+#include <vector>
+
+namespace petzval {
+
+/// What is made small.
+enum class OptimiseMerit {
+  rms_spot,  ///< RMS radius of the spots [µm], all wavelengths of a field about one centre
+  wavefront  ///< RMS of the wavefront [nm], of every wavelength about one point of the image
+};
+
+struct OptimiseRequest {
+  std::vector<LensVariable> variables = {};  ///< none: all radii, and the distance to the sensor
+  FieldTableRequest at = {};                 ///< fields and wavelengths; empty: the lens's own
+  std::vector<double> field_weights = {};    ///< one a field; empty: all alike
+  OptimiseMerit merit = OptimiseMerit::rms_spot;
+  std::optional<double> efl_mm = {};  ///< at the reference wavelength; absent: what the lens has
+  double least_rim_mm = 0.5;          ///< of glass at the clear aperture; what is thinner already may stay so
+  int rounds = 30;                    ///< at most; in each the rays are chosen anew from the real pupils
+  int starts = 1;                     ///< the lens itself, and this number less one that begin beside it
+  double start_spread = 0.05;         ///< how far beside: standard deviation, as a share of every number
+};
+
+/// One variable before and after.
+struct OptimisedNumber {
+  LensNumber number;
+  double before = 0, after = 0;  ///< as people give it: the radius of a curvature
+};
+
+struct OptimiseResult {
+  Lens lens;                                        ///< as altered, its name saying so
+  double before = 0, after = 0;                     ///< the merit: root mean square over the weighted fields
+  std::vector<double> fields_before, fields_after;  ///< of every field
+  double efl_before_mm = 0, efl_after_mm = 0;
+  std::vector<OptimisedNumber> numbers;
+  std::vector<double> by_round;  ///< the merit, from the start of the winner on
+  int start = 0;                 ///< which start won; 0: the lens itself
+};
+
+/// Least squares by Levenberg and Marquardt (Moré's MINPACK, as Eigen has it) over transverse aberrations or
+/// path differences of rays through the real pupils, with exact derivatives (trace_derived); beside them the
+/// focal length and the thickness of glass at the rim. A lens that no step improves comes back as it was. The
+/// same request and seed give the same lens on any number of threads.
+/// \throws InputError for variables, weights or numbers that do not fit, a lens with poses, a field at which
+/// no ray passes; Cancelled.
+OptimiseResult optimise(const Lens& lens, const OptimiseRequest& request = {}, const Context& context = {});
+
+}  // namespace petzval

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/field_rows.h>
+#include <petzval/base/units.h>
+#include <petzval/optimise/ray_merit.h>
+#include <petzval/trace/pupil.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numeric>
+
+namespace petzval {
+
+namespace {
+
+/// Nodes of a pupil: enough for aberrations up to the ninth order, and few enough to be quick.
+constexpr int merit_azimuths = 16, merit_radii = 5;
+constexpr double nm_per_mm_of_path = 1e6;
+
+}  // namespace
+
+/// A list of numbers and their derivatives.
+struct RayMerit::Columns {
+  Eigen::MatrixXd values;  ///< of rays: x, y, path, α, β; of residuals: one column
+  std::vector<Eigen::MatrixXd> slopes;
+
+  /// Column `c` and its derivatives, side by side.
+  Eigen::MatrixXd joined(Eigen::Index c) const {
+    const Eigen::MatrixXd& by = slopes[static_cast<std::size_t>(c)];
+    Eigen::MatrixXd all(values.rows(), 1 + by.cols());
+    all << values.col(c), by;
+    return all;
+  }
+};
+
+RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request) : kind_(request.merit) {
+  const FieldTableRequest at = with_own_lists(request.at, lens);
+  wavelengths_nm_ = at.wavelengths_nm;
+  for (const LensVariable& variable : request.variables) numbers_.push_back(variable.number);
+  const double per_wavelength = 1 / static_cast<double>(wavelengths_nm_.size());
+  std::vector<double> weights = request.field_weights;
+  if (weights.empty()) weights.assign(at.fields.size(), 1);
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (const double weight : weights) fields_.push_back({weight / total, {}});
+  for (std::size_t w = 0; w < wavelengths_nm_.size(); ++w) {
+    FieldTracer tracer(lens, wavelengths_nm_[w], at.clip, at.azimuth_deg);
+    for (std::size_t f = 0; f < at.fields.size(); ++f) {
+      const double object = object_field(lens, at.field_kind, at.fields[f]);
+      const std::optional<ChiefRay> chief = tracer.chief_ray(object);
+      const auto pupil = chief ? tracer.object_pupil(*chief, merit_azimuths) : std::nullopt;
+      if (!pupil) throw no_ray_passes(lens, at.fields[f], wavelengths_nm_[w]);
+      const Pencil pencil = Pencil::from_object(lens, object);
+      for (const PupilNode& node : pupil_nodes(*pupil, merit_radii)) {
+        const std::optional<Ray> launch = pencil.ray(node.u, node.v);
+        if (!launch) continue;
+        const Ray end = tracer.tracer().trace(*launch, Tracer::Clip::none);
+        if (end.status != RayStatus::ok) continue;
+        fields_[f].rays.push_back({w, *launch, per_wavelength * node.weight / pupil->area(),
+                                   pupil->mirrored(), end.direction[0], end.direction[1]});
+      }
+    }
+  }
+}
+
+Eigen::Index RayMerit::rows() const {
+  Eigen::Index count = 0;
+  for (const FieldRays& field : fields_)
+    count += static_cast<Eigen::Index>(field.rays.size()) * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+  return count;
+}
+
+/// Places against the mean of the field, which of mirrored rays lies at x = 0.
+void RayMerit::spot_rows(const FieldRays& field, const Columns& rays, Columns& rows) const {
+  const auto count = static_cast<Eigen::Index>(field.rays.size());
+  Eigen::VectorXd weights(count);
+  for (Eigen::Index i = 0; i < count; ++i) weights[i] = field.rays[static_cast<std::size_t>(i)].weight;
+  for (const Eigen::Index axis : {0, 1}) {
+    Eigen::MatrixXd all = rays.joined(axis);
+    if (axis == 1 || !field.rays.front().mirrored)
+      all.rowwise() -= Eigen::RowVectorXd(weights.transpose() * all);
+    all = (weights * field.weight).cwiseSqrt().asDiagonal() * all * um_per_mm;
+    const Eigen::Index first = axis * count;
+    rows.values.middleRows(first, count) = all.leftCols(1);
+    rows.slopes[0].middleRows(first, count) = all.rightCols(all.cols() - 1);
+  }
+}
+
+/// Paths to the feet of perpendiculars from one point of the image, piston of every wavelength and a move of
+/// the point removed: what is left does not come together anywhere on the sensor.
+void RayMerit::wave_rows(const FieldRays& field, const Columns& rays, Columns& rows) const {
+  const auto count = static_cast<Eigen::Index>(field.rays.size());
+  const bool mirrored = field.rays.front().mirrored;
+  const auto pistons = static_cast<Eigen::Index>(wavelengths_nm_.size());
+  Eigen::VectorXd weights(count);
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(count, pistons + (mirrored ? 1 : 2));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FieldRay& ray = field.rays[static_cast<std::size_t>(i)];
+    weights[i] = ray.weight;
+    basis(i, static_cast<Eigen::Index>(ray.wavelength)) = 1;
+    basis(i, pistons) = ray.beta;
+    if (!mirrored) basis(i, pistons + 1) = ray.alpha;
+  }
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * basis;
+  Eigen::MatrixXd all = rays.joined(2);
+  all -= basis * (weighted.transpose() * basis).ldlt().solve(weighted.transpose() * all);
+  all = (weights * field.weight).cwiseSqrt().asDiagonal() * all * nm_per_mm_of_path;
+  rows.values = all.leftCols(1);
+  rows.slopes[0] = all.rightCols(all.cols() - 1);
+}
+
+std::optional<Eigen::VectorXd> RayMerit::residuals(const Lens& lens, Eigen::MatrixXd* slopes) const {
+  std::vector<Tracer> tracers;
+  for (const double wavelength : wavelengths_nm_)
+    tracers.emplace_back(lens, wavelength, std::numeric_limits<double>::infinity());
+  const std::vector<LensNumber> numbers = slopes ? numbers_ : std::vector<LensNumber>();
+  const auto variables = static_cast<Eigen::Index>(numbers.size());
+  Eigen::VectorXd result(rows());
+  if (slopes) slopes->resize(rows(), variables);
+  Eigen::Index first = 0;
+  for (const FieldRays& field : fields_) {
+    const auto count = static_cast<Eigen::Index>(field.rays.size());
+    Columns rays{Eigen::MatrixXd(count, 3),
+                 std::vector<Eigen::MatrixXd>(3, Eigen::MatrixXd(count, variables))};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const FieldRay& launched = field.rays[static_cast<std::size_t>(i)];
+      const Tracer& tracer = tracers[launched.wavelength];
+      const std::optional<DerivedRay> traced = trace_derived(tracer, launched.launch, numbers);
+      if (!traced) return {};
+      const Ray& end = traced->ray;
+      const double x = end.point_mm[0], y = end.point_mm[1], alpha = end.direction[0],
+                   beta = end.direction[1], index = tracer.image_index();
+      // The path to the foot of the perpendicular from the axis's point, from where a plane wave would come.
+      rays.values.row(i) << x, y, end.opl_mm - index * (alpha * x + beta * y);
+      for (Eigen::Index v = 0; v < variables; ++v) {
+        const DerivedRay::Slope& by = traced->by[static_cast<std::size_t>(v)];
+        rays.slopes[0](i, v) = by.x_mm;
+        rays.slopes[1](i, v) = by.y_mm;
+        rays.slopes[2](i, v) =
+            by.opl_mm - index * (by.alpha * x + alpha * by.x_mm + by.beta * y + beta * by.y_mm);
+      }
+    }
+    const Eigen::Index more = count * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+    Columns rows{Eigen::MatrixXd(more, 1), {Eigen::MatrixXd(more, variables)}};
+    kind_ == OptimiseMerit::rms_spot ? spot_rows(field, rays, rows) : wave_rows(field, rays, rows);
+    result.segment(first, more) = rows.values.col(0);
+    if (slopes) slopes->middleRows(first, more) = rows.slopes[0];
+    first += more;
+  }
+  return result;
+}
+
+double RayMerit::merit(const Eigen::VectorXd& residuals) const {
+  return std::sqrt(residuals.squaredNorm());
+}
+
+std::vector<double> RayMerit::by_field(const Eigen::VectorXd& residuals) const {
+  std::vector<double> fields;
+  Eigen::Index first = 0;
+  for (const FieldRays& field : fields_) {
+    const Eigen::Index more =
+        static_cast<Eigen::Index>(field.rays.size()) * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+    fields.push_back(std::sqrt(residuals.segment(first, more).squaredNorm() / field.weight));
+    first += more;
+  }
+  return fields;
+}
+
+}  // namespace petzval

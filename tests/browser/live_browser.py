@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""petzval live and a browser without a window that looks at it: for tests, screenshots and measurements."""
+
+import os
+import subprocess
+
+from selenium import webdriver
+from selenium.webdriver.chrome.options import Options
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.support.ui import WebDriverWait
+
+PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
+
+SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
+return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id);"""
+
+
+class Server:
+    """petzval live, which is ended with this; `port` 0: one that is free."""
+
+    def __init__(self, program, *words, port=0, folder=None):
+        environment = dict(os.environ)
+        if folder:
+            environment["XDG_RUNTIME_DIR"] = str(folder)
+        self.process = subprocess.Popen([program, "live", "--no-open", "--quiet", "--port", str(port), *words], stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL, text=True, env=environment)
+        self.url = self.process.stdout.readline().strip()
+        if not self.url:
+            raise RuntimeError("petzval live did not start")
+        self.port = int(self.url.split(":")[2].split("/")[0])
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.kill()
+
+
+class Browser:
+    """Chromium with one page, in a window of this size."""
+
+    def __init__(self, chromium, driver, width=1280, height=720, downloads=None):
+        options = Options()
+        options.binary_location = chromium
+        for word in ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", f"--window-size={width},{height}"]:
+            options.add_argument(word)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        if downloads:
+            options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
+        self.driver = webdriver.Chrome(service=Service(driver), options=options)
+        self.resize(width, height)
+
+    def resize(self, width, height):
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+
+    def open(self, url):
+        self.driver.get(url)
+        self.settle()
+
+    def run(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def until(self, what, condition):
+        WebDriverWait(self.driver, PATIENCE_S, 0.05).until(lambda _: condition(), what)
+
+    def settle(self):
+        """Waits until all that was asked for is shown, the full picture too."""
+        self.until("everything is shown", lambda: self.run(SETTLED))
+
+    def session(self):
+        return self.run("return JSON.parse(JSON.stringify(window.petzvalPage.session))")
+
+    def text(self, selector):
+        return self.run("return document.querySelector(arguments[0])?.textContent ?? ''", selector)
+
+    def complaints(self):
+        """What the page told the console as an error."""
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.driver.quit()

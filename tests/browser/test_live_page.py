@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of petzval live as a person meets it, in Chromium.
+
+    test_live_page.py PROGRAM CHROMIUM CHROMEDRIVER
+"""
+
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+
+from live_browser import Browser, Server
+
+PROGRAM, CHROMIUM, DRIVER = sys.argv[1:4]
+LENS = "achromat-50mm"
+QUICK = [LENS, "--scene", "slanted-edge", "--sensor", "third-inch-1280x960"]
+
+SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
+slider.value = arguments[1]; slider.dispatchEvent(new Event("input")); slider.dispatchEvent(new Event("change"));"""
+CHOOSE = """const select = document.querySelector(`[data-choice="${arguments[0]}"]`);
+select.value = arguments[1]; select.dispatchEvent(new Event("change"));"""
+TYPE = """const field = document.querySelector(`[data-path="${arguments[0]}"]`);
+field.value = arguments[1]; field.dispatchEvent(new Event("change"));"""
+
+
+class LivePage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.downloads = tempfile.TemporaryDirectory()
+        cls.server = Server(PROGRAM, *QUICK)
+        cls.browser = Browser(CHROMIUM, DRIVER, downloads=cls.downloads.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+        cls.server.kill()
+        cls.downloads.cleanup()
+
+    def setUp(self):
+        self.fresh()
+
+    def fresh(self):
+        """As if the page had never been open."""
+        if self.browser.driver.current_url.startswith("http"):
+            self.browser.run("sessionStorage.clear(); localStorage.clear()")
+        self.browser.driver.get("about:blank")
+        self.browser.open(self.server.url)
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+
+    def problem(self):
+        return self.browser.text(".banner")
+
+    def change_shows(self, script, *arguments):
+        """After a change something was worked out, and nothing is wrong."""
+        before = self.browser.run("return window.petzvalPage.id")
+        self.browser.run(script, *arguments)
+        self.browser.settle()
+        self.assertGreater(self.browser.run("return window.petzvalPage.id"), before, arguments)
+        self.assertEqual(self.problem(), "", arguments)
+
+    def test_shows_everything_and_ends_with_the_full_picture(self):
+        browser = self.browser
+        self.assertEqual(browser.text(".badge"), "full")
+        self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".prescription tr[data-surface]")), 3)
+        self.assertGreater(len(browser.driver.find_elements(By.CSS_SELECTOR, ".layout .ray")), 10)
+        self.assertIn("f50", browser.text(".facts").replace(" ", "").replace("49.", "50"))
+        lit = browser.run("const c = document.querySelector('.picture'); return Math.max(...c.getContext('2d').getImageData(0, 0, c.width, c.height).data.filter((v, i) => i % 4 !== 3))")
+        self.assertGreater(lit, 100)
+        self.assertNotIn("token", browser.driver.current_url, "the secret does not stay in the address")
+
+    def test_every_slider_and_choice_is_shown(self):
+        for name, step in [("f_number", 500), ("defocus_mm", 700), ("distance_m", 500), ("compensation_ev", 600), ("denoise", 500), ("sharpen", 500)]:
+            with self.subTest(name):
+                self.change_shows(SLIDE, name, step)
+        for name, value in [("focus", "auto"), ("focus", "infinity"), ("focus", "paraxial"), ("focus", "best-spot"), ("focus", "distance"), ("illuminant", "A"),
+                            ("tone", "soft"), ("scene", "grid"), ("sensor", "third-inch-vga")]:
+            with self.subTest(name + " " + value):
+                self.change_shows(CHOOSE, name, value)
+        self.change_shows(SLIDE, "focus_m", 300)
+        self.change_shows("document.querySelector('[data-check=noise]').click()")
+        command = self.browser.text(".command")
+        for word in ["--f-number", "--defocus", "--scene-distance", "--exposure-compensation", "--denoise", "--sharpen", "--illuminant A", "--tone soft",
+                     "petzval image grid", "--sensor third-inch-vga", "--without shot"]:
+            self.assertIn(word, command)
+
+    def test_every_lens_of_the_list_can_be_chosen(self):
+        for lens in ["tessar", "fisheye-10mm", "plano-convex"]:
+            with self.subTest(lens):
+                self.change_shows(CHOOSE, "lens", lens)
+                self.browser.until("it is there", lambda lens=lens: self.browser.session()["lensName"] == lens)
+                self.browser.settle()
+                self.assertEqual(self.browser.run("return document.querySelector('[data-choice=lens]').value"), lens)
+
+    def test_every_plot_has_lines(self):
+        for tab in self.browser.run("return [...document.querySelectorAll('.tabs button')].map(tab => tab.id)"):
+            with self.subTest(tab):
+                self.browser.run("document.getElementById(arguments[0]).click()", tab)
+                self.browser.settle()
+                self.assertGreater(self.browser.run("return document.querySelectorAll('.plot-box .plot g path').length"), 0)
+
+    def test_table_undo_and_redo(self):
+        path = "surfaces[1].thickness_mm"
+        self.change_shows(TYPE, path, "4")
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 4)
+        self.assertIn("--set 'surfaces[1].thickness_mm=4'", self.browser.text(".command"))
+        self.browser.driver.find_element(By.ID, "undo").click()
+        self.browser.settle()
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 2.5)
+        ActionChains(self.browser.driver).key_down(Keys.CONTROL).key_down(Keys.SHIFT).send_keys("z").key_up(Keys.SHIFT).key_up(Keys.CONTROL).perform()
+        self.browser.settle()
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 4)
+
+    def test_typed_nonsense_is_refused_and_forgotten(self):
+        self.browser.run(TYPE, "surfaces[0].radius_mm", "forty")
+        self.browser.until("it says so", lambda: "is not a number" in self.browser.text(".message"))
+        self.assertNotEqual(self.browser.run("return document.querySelector('[data-path=\"surfaces[0].radius_mm\"]').value"), "forty")
+
+    def test_a_number_gets_a_slider(self):
+        self.browser.run("document.querySelector('[data-path=\"surfaces[0].radius_mm\"]').parentElement.querySelector('.pin').click()")
+        self.browser.settle()
+        self.change_shows(SLIDE, "surfaces[0].radius_mm", 600)
+        session = self.browser.session()
+        self.assertNotEqual(session["lens"]["surfaces"][0]["radius_mm"], session["base"]["surfaces"][0]["radius_mm"])
+
+    def test_glass_is_found_by_a_part_of_its_name(self):
+        field = self.browser.driver.find_element(By.CSS_SELECTOR, "[data-glass='0']")
+        field.click()
+        field.send_keys(Keys.CONTROL, "a")
+        field.send_keys("nsf11")
+        self.browser.until("a list", lambda: "SCHOTT:N-SF11" in self.browser.text(".glass-list"))
+        field.send_keys(Keys.ARROW_DOWN)
+        self.browser.driver.switch_to.active_element.send_keys(Keys.ENTER)
+        self.browser.settle()
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][0]["glass"], "SCHOTT:N-SF11")
+
+    def test_glass_can_be_dragged_along_the_axis(self):
+        handle = self.browser.driver.find_elements(By.CSS_SELECTOR, ".layout .handle:not(.vertical)")[-1]  # the sensor
+        before = self.browser.session()["lens"]["surfaces"][2]["thickness_mm"]
+        ActionChains(self.browser.driver).click_and_hold(handle).move_by_offset(-4, 0).move_by_offset(-4, 0).release().perform()
+        self.browser.settle()
+        self.assertLess(self.browser.session()["lens"]["surfaces"][2]["thickness_mm"], before)
+        self.browser.driver.find_element(By.ID, "undo").click()
+        self.browser.settle()
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][2]["thickness_mm"], before, "one drag is one step")
+
+    def test_the_place_of_the_psf_follows_the_pointer(self):
+        picture = self.browser.driver.find_element(By.CSS_SELECTOR, ".picture-stage")
+        ActionChains(self.browser.driver).move_to_element_with_offset(picture, 80, -50).click().perform()
+        self.browser.settle()
+        x, y = self.browser.session()["cursor_mm"]
+        self.assertGreater(x, 0)
+        self.assertGreater(y, 0)
+        self.assertNotIn(" 0 mm", self.browser.text(".psf-facts"))
+
+    def test_a_lens_that_no_light_passes_is_told_and_can_be_mended(self):
+        self.change_shows(SLIDE, "f_number", 1000)
+        self.browser.run("window.petzvalPage.change(() => { window.petzvalPage.session.f_number = 200; })")
+        self.browser.run(TYPE, "surfaces[2].semi_diameter_mm", "0.001")
+        self.browser.until("it is told", lambda: "surface 2" in self.problem())
+        self.browser.settle()
+        self.assertTrue(self.browser.run("return document.querySelector('tr[data-surface=\"2\"]').classList.contains('blamed')"))
+        self.browser.run(TYPE, "surfaces[2].semi_diameter_mm", "12")
+        self.browser.settle()
+        self.assertEqual(self.problem(), "")
+        self.browser.run(TYPE, "surfaces[0].radius_mm", "0.00001")
+        self.browser.until("a fault is told", lambda: self.problem() != "")
+        self.browser.run("document.getElementById('undo').click()")
+        self.browser.settle()
+        self.assertEqual(self.problem(), "")
+
+    def test_reload_and_link_bring_the_session_back(self):
+        self.change_shows(SLIDE, "defocus_mm", 800)
+        expected = self.browser.session()
+        self.browser.driver.refresh()
+        self.browser.settle()
+        self.assertEqual(self.browser.session(), expected)
+        packed = self.browser.driver.execute_async_script(
+            "const done = arguments[0], bytes = new Blob([JSON.stringify(window.petzvalPage.session)]).stream().pipeThrough(new CompressionStream('deflate-raw'));"
+            "new Response(bytes).arrayBuffer().then(b => done(btoa(String.fromCharCode(...new Uint8Array(b))).replace(/\\+/g, '-').replace(/\\//g, '_').replace(/=+$/, '')))")
+        self.fresh()
+        self.assertNotEqual(self.browser.session(), expected)
+        self.browser.driver.get("about:blank")
+        self.browser.open(self.server.url.split("#")[0] + "#session=" + packed)
+        self.assertEqual(self.browser.session(), expected)
+
+    def test_two_pages_are_two_benches(self):
+        driver, first = self.browser.driver, self.browser.driver.current_window_handle
+        self.change_shows(SLIDE, "defocus_mm", 900)
+        driver.switch_to.new_window("tab")
+        self.browser.resize(1280, 720)
+        self.browser.open(self.server.url)
+        self.assertEqual(self.browser.session()["defocus_mm"], 0)
+        self.change_shows(SLIDE, "defocus_mm", 100)
+        driver.close()
+        driver.switch_to.window(first)
+        self.browser.settle()
+        self.assertGreater(self.browser.session()["defocus_mm"], 0)
+
+    def test_damaged_files_are_refused_and_good_ones_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            field = self.browser.driver.find_element(By.ID, "file")
+            for name, content in [("bad.zmx", b"SURF 0\n CURV x\n"), ("bad.json", b"{\"format\":"), ("bad.png", b"\x89PNG\r\n\x1a\n"), ("what.exe", b"MZ")]:
+                path = pathlib.Path(folder) / name
+                path.write_bytes(content)
+                count = self.browser.run("return document.querySelectorAll('.note.bad').length")
+                field.send_keys(str(path))
+                self.browser.until(name, lambda count=count: self.browser.run("return document.querySelectorAll('.note.bad').length") > count)
+            lens = self.browser.session()["lens"]
+            lens["surfaces"][1]["thickness_mm"] = 3.25
+            good = pathlib.Path(folder) / "mine.json"
+            good.write_text(json.dumps(lens))
+            field.send_keys(str(good))
+            self.browser.until("the lens is there", lambda: self.browser.session()["lensName"] == "mine")
+            self.browser.settle()
+            self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 3.25)
+
+    def test_lens_and_picture_are_saved(self):
+        for entry, name in [("save-json", LENS + ".json"), ("save-zmx", LENS + ".zmx"), ("save-png", LENS + ".png"), ("save-dng", LENS + ".dng"), ("save-session", "session.petzval.json")]:
+            with self.subTest(entry):
+                path = pathlib.Path(self.downloads.name) / name
+                path.unlink(missing_ok=True)
+                self.browser.run("document.getElementById(arguments[0]).click()", entry)
+                self.browser.until(name, lambda path=path: path.exists() and path.stat().st_size > 100)
+
+    def test_before_and_after_theme_and_tour(self):
+        self.browser.run("document.getElementById('before').click()")
+        self.assertTrue(self.browser.run("return !document.querySelector('.divider').hidden"))
+        self.change_shows(SLIDE, "defocus_mm", 900)
+        self.browser.run("document.getElementById('before').click()")
+        self.assertTrue(self.browser.run("return document.querySelector('.divider').hidden"))
+        ground = "return getComputedStyle(document.body).backgroundColor"
+        light = self.browser.run(ground)
+        self.browser.run("document.getElementById('theme').click()")
+        self.assertNotEqual(self.browser.run(ground), light)
+        self.browser.run("document.getElementById('theme').click()")
+        self.browser.run("document.getElementById('tour').click()")
+        self.browser.until("the lens of the exercise", lambda: self.browser.session()["lensName"] == "dgauss-50mm")
+        self.browser.run("document.getElementById('tour').click()")
+
+    def test_fits_the_screen(self):
+        for width, height in [(1280, 720), (1920, 1080)]:
+            self.browser.resize(width, height)
+            self.browser.settle()
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollHeight"), height)
+            for selector in [".layout-box", ".picture-stage", ".plot-box", ".table-box", ".controls"]:
+                box = self.browser.run("const b = document.querySelector(arguments[0]).getBoundingClientRect(); return [b.width, b.height]", selector)
+                self.assertGreater(min(box), 100, selector)
+        self.browser.resize(1280, 720)
+
+
+class ServerThatEnds(unittest.TestCase):
+    def test_a_page_goes_on_with_a_server_that_was_started_again(self):
+        with tempfile.TemporaryDirectory() as folder, Server(PROGRAM, *QUICK) as free:
+            port = free.port
+            free.kill()
+            first = Server(PROGRAM, *QUICK, port=port, folder=folder)
+            with Browser(CHROMIUM, DRIVER) as browser:
+                browser.open(first.url)
+                browser.run(SLIDE, "defocus_mm", 800)
+                browser.settle()
+                expected = browser.session()
+                first.kill()
+                browser.until("it says so", lambda: "does not answer" in browser.text(".banner"))
+                browser.run(SLIDE, "defocus_mm", 900)
+                changed = browser.session()
+                self.assertNotEqual(changed, expected)
+                with Server(PROGRAM, *QUICK, port=port, folder=folder):
+                    browser.until("it is back", lambda: browser.text(".banner") == "")
+                    browser.settle()
+                    self.assertEqual(browser.session(), changed)
+
+    def test_ends_with_its_last_page(self):
+        with Server(PROGRAM, *QUICK, "--end-with-page") as server:
+            with Browser(CHROMIUM, DRIVER) as browser:
+                browser.open(server.url)
+            self.assertEqual(server.process.wait(), 0)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

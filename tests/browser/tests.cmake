@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The page of petzval live in a real browser, where there is one that can be driven; and its types, where there is tsc.
+find_program(CHROMIUM chromium)
+find_program(CHROMEDRIVER chromedriver)
+execute_process(COMMAND ${Python3_EXECUTABLE} -c "import selenium" RESULT_VARIABLE no_selenium OUTPUT_QUIET ERROR_QUIET)
+if(TARGET petzval_program AND CHROMIUM AND CHROMEDRIVER AND no_selenium EQUAL 0)
+  add_test(NAME browser.live COMMAND Python3::Interpreter ${CMAKE_CURRENT_LIST_DIR}/test_live_page.py $<TARGET_FILE:petzval_program>
+    ${CHROMIUM} ${CHROMEDRIVER})
+  # A browser and pictures on every core: beside nothing else.
+  set_tests_properties(browser.live PROPERTIES RUN_SERIAL ON TIMEOUT 1500)
+else()
+  message(STATUS "no test in a browser: it wants chromium, chromium-driver and python3-selenium")
+endif()
+find_program(TSC tsc)
+if(TSC)
+  add_test(NAME architecture.page_types COMMAND ${TSC} -p ${PROJECT_SOURCE_DIR}/web)
+endif()

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a page is shown.
+#include <petzval/analysis/spot_diagram.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/live/bench_json.h>
+#include <petzval/live/bench_psf.h>
+#include <petzval/live/bench_sensor.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <numeric>
+
+#include "live_page.h"
+
+namespace petzval {
+namespace {
+
+using test::bench_state;
+using test::json;
+using test::LivePage;
+using test::RunningServer;
+
+TEST(Bench, ShowsWhatIsOnIt) {
+  RunningServer server;
+  LivePage page(*server);
+  page.send(bench_state(3));
+  const json layout = page.next("layout");
+  EXPECT_EQ(layout["id"], 3);
+  // The focal length in the name of the lens; its designer rounded to half a millimetre.
+  EXPECT_NEAR(layout["first_order"]["efl_mm"].get<double>(), 50, 0.5);
+  EXPECT_TRUE(layout["blocked"].empty());
+  const json psf = page.next("psf");
+  const std::size_t size = psf["size"];
+  EXPECT_EQ(page.bytes.size(), size * size * 3 * sizeof(float));
+  EXPECT_EQ(page.next("plots")["analysis"], "distortion");
+  EXPECT_EQ(page.next("idle")["id"], 3);
+}
+
+TEST(Bench, ShowsThePreviewBeforeThePicture) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(4);
+  state["picture"] = true;
+  page.send(state);
+  const json preview = page.next("picture");
+  EXPECT_EQ(preview["quality"], "preview");
+  EXPECT_EQ(page.bytes.size(),
+            4 * preview["columns"].get<std::size_t>() * preview["rows"].get<std::size_t>());
+  const json full = page.next("picture");
+  EXPECT_EQ(full["quality"], "full");
+  EXPECT_GT(full["columns"], preview["columns"]);
+  // The light half of the chart is lighter, in both: left 0.2, right 0.8 of the light.
+  const auto level = [&](std::size_t column) {
+    const std::size_t columns = full["columns"], row = full["rows"].get<std::size_t>() / 2;
+    return static_cast<unsigned char>(page.bytes[4 * (row * columns + column) + 1]);
+  };
+  EXPECT_GT(level(full["columns"].get<std::size_t>() * 3 / 4),
+            level(full["columns"].get<std::size_t>() / 4) + 50);
+}
+
+TEST(Bench, GivesUpAnOlderPictureForANewerState) {
+  RunningServer server;
+  LivePage page(*server);
+  json old_state = bench_state(1, "dgauss-50mm"), new_state = bench_state(2, "dgauss-50mm");
+  old_state["picture"] = true;
+  old_state["sensor"] = new_state["sensor"] = "full-frame-24mp";
+  page.send(old_state);
+  EXPECT_EQ(page.next("picture")["quality"], "preview");
+  page.send(new_state);
+  // The full picture of the first, which takes seconds, never comes.
+  while (true) {
+    const json message = page.next();
+    EXPECT_FALSE(message["kind"] == "picture" && message["id"] == 1) << message["quality"];
+    if (message["kind"] == "idle") {
+      EXPECT_EQ(message["id"], 2);
+      break;
+    }
+  }
+}
+
+TEST(Bench, ShowsTwoPagesTheirOwn) {
+  RunningServer server;
+  LivePage first(*server), second(*server);
+  first.send(bench_state(11));
+  second.send(bench_state(12, "tessar"));
+  const json tessar = second.next("layout"), achromat = first.next("layout");
+  EXPECT_EQ(achromat["id"], 11);
+  EXPECT_EQ(tessar["id"], 12);
+  EXPECT_EQ(achromat["surfaces"].size(), read_lens("achromat-50mm").lens.surfaces.size());
+  EXPECT_EQ(tessar["surfaces"].size(), read_lens("tessar").lens.surfaces.size());
+}
+
+TEST(Bench, SaysWhichSurfaceIsInTheWayAndGoesOn) {
+  RunningServer server;
+  LivePage page(*server);
+  json broken = bench_state(1);
+  // At f/200 the beam is a quarter of a millimetre wide, and 7.5 mm of glass behind the stop, at 4 degrees,
+  // it is more than its radius from the axis: a pinhole there stops all of it.
+  broken["camera"]["f_number"] = 200;
+  broken["lens"]["surfaces"][2]["semi_diameter_mm"] = 0.001;
+  page.send(broken);
+  const json layout = page.next("layout");
+  ASSERT_FALSE(layout["blocked"].empty());
+  EXPECT_EQ(layout["blocked"][0]["surface"], 2);
+  page.send(bench_state(2));
+  EXPECT_TRUE(page.next("layout")["blocked"].empty());
+}
+
+TEST(Bench, TellsAFaultOfTheLensAsOne) {
+  RunningServer server;
+  LivePage page(*server);
+  json faulty = bench_state(5);
+  faulty["lens"]["surfaces"][1]["glass"] = "SCHOTT:N-BK8";
+  page.send(faulty);
+  const json problem = page.next();
+  EXPECT_EQ(problem["kind"], "problem");
+  EXPECT_EQ(problem["stage"], "lens");
+  EXPECT_EQ(problem["id"], 5);
+  EXPECT_NE(problem["text"].get<std::string>().find("surfaces[1]"), std::string::npos) << problem["text"];
+  page.send(bench_state(6));
+  EXPECT_EQ(page.next("layout")["id"], 6);
+}
+
+TEST(Bench, TakesGoodFilesAndRefusesDamagedOnes) {
+  RunningServer server;
+  LivePage page(*server);
+  page.upload("my lens.json", lens_to_json(read_lens("tessar").lens));
+  const json lens = page.next();
+  EXPECT_EQ(lens["kind"], "lens");
+  EXPECT_EQ(lens["name"], "my lens");
+  EXPECT_EQ(lens_to_json(lens_from_json(lens["lens"].dump(), "test")),
+            lens_to_json(read_lens("tessar").lens));
+  for (const auto& [name, bytes] : std::map<std::string, std::string>{{"a.zmx", "SURF 0\n  CURV x\n"},
+                                                                      {"b.json", "{"},
+                                                                      {"c.png", "\x89PNG\r\n"},
+                                                                      {"d.jpg", "\xFF\xD8\xFF"},
+                                                                      {"e.tif", "II*"}}) {
+    page.upload(name, bytes);
+    const json problem = page.next();
+    EXPECT_EQ(problem["kind"], "problem") << name;
+    EXPECT_EQ(problem["stage"], "upload");
+    EXPECT_EQ(problem["text"].get<std::string>().find("/tmp/"), std::string::npos) << problem["text"];
+  }
+  for (const char* name : {"a.exe", "a", "", ".json/../../x", "/etc/passwd", "a.pbrt"}) {
+    page.upload(name, "x");
+    EXPECT_EQ(page.next()["kind"], "refused") << name;
+  }
+}
+
+TEST(Bench, SavesTheLensItShows) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(1);
+  state["lens"]["surfaces"][0]["thickness_mm"] = 7.25;
+  page.send(state);
+  page.next("idle");
+  page.send(json{{"kind", "save"}, {"id", 2}, {"extension", ".json"}});
+  page.next("file");
+  EXPECT_EQ(lens_from_json(page.bytes, "saved").surfaces[0].thickness_mm, 7.25);
+  page.send(json{{"kind", "save"}, {"id", 3}, {"extension", ".png"}});
+  EXPECT_EQ(page.next("problem")["stage"], "save") << "no picture was asked for";
+}
+
+TEST(Bench, FindsGlassesByNameAndByNumbers) {
+  EXPECT_EQ(glasses_json("nbk7")[0]["name"], "SCHOTT:N-BK7");
+  // N-BK7 is sold as 517642: nd 1.51680, Vd 64.17 (its data sheet).
+  const json near = glasses_json("1.5168 64.17");
+  bool found = false;
+  for (std::size_t i = 0; i < 5; ++i) found = found || near[i]["name"] == "SCHOTT:N-BK7";
+  EXPECT_TRUE(found) << near.dump();
+  EXPECT_LE(glasses_json("n").size(), 40u);
+  EXPECT_TRUE(glasses_json("no such glass").empty());
+}
+
+TEST(BenchPsf, PointsItsComaAwayFromTheAxisOrToIt) {
+  const Lens lens = read_lens("coma-singlet").lens;
+  const double field = lens.fields.values.back();
+  FieldTableRequest at{.fields = {field}, .wavelengths_nm = {lens.reference_wavelength_nm}};
+  const SpotDiagram spot = spot_diagrams(lens, at, 8).front();
+  // Rays say to which side of the chief ray the light lies; the image height may have either sign.
+  const double outward_um = std::accumulate(spot.y_um.begin(), spot.y_um.end(), 0.0) /
+                            static_cast<double>(spot.y_um.size()) * (spot.height_um < 0 ? -1 : 1);
+  Lens single = lens;
+  single.wavelengths_nm = {lens.reference_wavelength_nm};
+  const double height_mm = std::abs(spot.height_um) / 1000;
+  const BenchPsf psf = bench_psf(single, {0, height_mm}, {});
+  double rows = 0, light = 0;
+  for (int row = 0; row < psf.size; ++row)
+    for (int column = 0; column < psf.size; ++column) {
+      const double value = psf.rgb[3 * static_cast<std::size_t>(row * psf.size + column) + 1];
+      rows += value * ((psf.size - 1) / 2.0 - row);
+      light += value;
+    }
+  const double psf_um = rows / light * psf.spacing_um;
+  EXPECT_GT(psf_um * outward_um, 0) << psf_um << " against " << outward_um;
+  EXPECT_NEAR(light, psf.captured, 0.02);
+}
+
+TEST(BinnedSensor, KeepsFrameAndExposureAndAddsNoiseAsPixelsDo) {
+  const Sensor whole = read_sensor("full-frame-24mp");
+  const BinnedSensor binned = binned_sensor("full-frame-24mp", 640);
+  ASSERT_EQ(binned.pixels_added, 10);  // 6000 / 640, rounded up
+  EXPECT_NEAR(binned.sensor.geometry.width_mm(), whole.geometry.width_mm(),
+              2 * binned.sensor.geometry.pitch_um * 1e-3);
+  const GainMode& large = binned.sensor.electronics->gain_modes[0];
+  const GainMode& small = whole.electronics->gain_modes[0];
+  // A hundred times the area catches a hundred times the light, and is full after the same time.
+  EXPECT_NEAR(large.full_well_e / small.full_well_e, 100, 1e-9);
+  // The same number at the end of its range: electrons of a full pixel times the gain.
+  EXPECT_NEAR(large.full_well_e * large.dn_per_e, small.full_well_e * small.dn_per_e, 1e-6);
+  // A hundred independent readings add up as the root of their number.
+  EXPECT_NEAR(large.read_noise_e / small.read_noise_e, std::sqrt(100.0), 1e-9);
+  EXPECT_EQ(read_sensor("full-frame-24mp", binned.settings).geometry.columns, binned.sensor.geometry.columns);
+}
+
+TEST(BinnedSensor, LeavesASmallSensorAsItIs) {
+  const BinnedSensor same = binned_sensor("third-inch-vga", 640);
+  EXPECT_TRUE(same.settings.empty());
+  EXPECT_EQ(same.pixels_added, 1);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <petzval/base/error.h>
+#include <petzval/live/message.h>
+
+#include "live_page.h"
+
+namespace petzval {
+namespace {
+
+using test::bench_state;
+using test::json;
+
+LiveMessage parsed(const json& message) {
+  static const LiveNames names = bundled_live_names();
+  return parse_live_message(message.dump(), names);
+}
+
+TEST(LiveMessage, HoldsWhatThePageSaid) {
+  json message = bench_state(9, "tessar");
+  message["camera"] = {{"f_number", 5.6}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
+  message["cursor_mm"] = {1.5, -2};
+  const auto state = std::get<BenchState>(parsed(message));
+  EXPECT_EQ(state.id, 9);
+  EXPECT_EQ(state.f_number, 5.6);
+  EXPECT_EQ(state.focus, Focus::at_m(1.2));
+  EXPECT_EQ(state.distance_m, 3);
+  EXPECT_EQ(state.defocus_mm, -0.25);
+  EXPECT_EQ(state.cursor_mm[1], -2);
+  EXPECT_EQ(lens_to_json(lens_from_json(state.lens_json, "test")), lens_to_json(read_lens("tessar").lens));
+}
+
+TEST(LiveMessage, RefusesEveryMissingAndEveryFurtherKey) {
+  const json whole = bench_state(1);
+  EXPECT_NO_THROW(parsed(whole));
+  for (const auto& [key, value] : whole.items()) {
+    json without = whole;
+    without.erase(key);
+    EXPECT_THROW(parsed(without), InputError) << key;
+    if (!value.is_object() || key == "lens") continue;
+    for (const auto& [inner, unused] : value.items()) {
+      json less = whole;
+      less[key].erase(inner);
+      EXPECT_THROW(parsed(less), InputError) << key << "." << inner;
+    }
+    json more = whole;
+    more[key]["path"] = "/etc/passwd";
+    EXPECT_THROW(parsed(more), InputError) << key;
+  }
+  json more = whole;
+  more["path"] = "/etc/passwd";
+  EXPECT_THROW(parsed(more), InputError);
+}
+
+TEST(LiveMessage, RefusesNamesThatWereNotOffered) {
+  for (const char* key : {"scene", "sensor", "illuminant"}) {
+    for (const char* name :
+         {"/etc/passwd", "../data/lenses/tessar.json", "http://evil.example/x", "studio\n", ""}) {
+      if (std::string(key) == "illuminant" && std::string(name).empty()) continue;  // its own light
+      json state = bench_state(1);
+      state[key] = name;
+      EXPECT_THROW(parsed(state), InputError) << key << " " << name;
+    }
+  }
+}
+
+TEST(LiveMessage, RefusesNumbersOutOfRange) {
+  const auto with = [](const char* pointer, const json& value) {
+    json state = bench_state(1);
+    state[json::json_pointer(pointer)] = value;
+    return state;
+  };
+  EXPECT_THROW(parsed(with("/id", 1.5)), InputError);
+  EXPECT_THROW(parsed(with("/id", -1)), InputError);
+  EXPECT_THROW(parsed(with("/camera/f_number", 0)), InputError);
+  EXPECT_THROW(parsed(with("/camera/f_number", "2")), InputError);
+  EXPECT_THROW(parsed(with("/camera/distance_m", -1)), InputError);
+  EXPECT_THROW(parsed(with("/camera/focus", "somewhere")), InputError);
+  EXPECT_THROW(parsed(with("/shot/exposure", "long")), InputError);
+  EXPECT_THROW(parsed(with("/shot/noise", 1)), InputError);
+  EXPECT_THROW(parsed(with("/cursor_mm", json::array({1}))), InputError);
+  EXPECT_THROW(parsed(with("/cursor_mm/0", 1e300)), InputError);
+  EXPECT_THROW(parsed(with("/plots", json(std::vector<std::string>(17, "mtf")))), InputError);
+}
+
+TEST(LiveUpload, IsAHeaderAndBytes) {
+  const std::string header = R"({"kind":"upload","id":3,"name":"Old Lens.ZMX"})";
+  const std::string frame = std::string({static_cast<char>(header.size()), 0, 0, 0}) + header + "SURF";
+  const Upload upload = parse_live_upload(frame);
+  EXPECT_EQ(upload.extension, ".zmx");
+  EXPECT_EQ(upload.label, "Old Lens");
+  EXPECT_EQ(upload.bytes, "SURF");
+  // Cut anywhere in the header it is none.
+  for (std::size_t length = 0; length < 4 + header.size(); ++length)
+    EXPECT_THROW(parse_live_upload(std::string_view(frame).substr(0, length)), InputError) << length;
+}
+
+}  // namespace
+}  // namespace petzval

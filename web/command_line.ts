@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What to type to get what is on the screen.
+import {Incoming} from "./link";
+import {Session, settingsBetween} from "./model";
+
+function quoted(text: string): string {
+  return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replace(/'/g, `'\\''`)}'`;
+}
+
+export function focusText(session: Session): string {
+  return session.focus === "distance" ? `${session.focus_m}m` : session.focus;
+}
+
+/** `petzval image …` for the full picture; `settings`: of the sensor, as the server made it. */
+export function commandLine(session: Session, picture: Incoming | null): string {
+  const settings = settingsBetween(session.base, session.lens);
+  const words = ["petzval", "image", session.scene, "--lens", settings === null ? "lens.json" : session.lensName];
+  for (const setting of settings ?? []) words.push("--set", setting);
+  if (session.f_number !== null) words.push("--f-number", String(session.f_number));
+  words.push("--focus", focusText(session));
+  if (session.defocus_mm !== 0) words.push("--defocus", String(session.defocus_mm));
+  if (session.distance_m !== null) words.push("--scene-distance", `${session.distance_m}m`);
+  if (session.illuminant) words.push("--illuminant", session.illuminant);
+  const columns = picture?.scene_columns as number | undefined;
+  if (columns) words.push("--scene-size", `${columns}x${columns * 3 / 4}`);
+  if (picture?.wavelengths) words.push("--wavelengths", picture.wavelengths);
+  words.push("--sensor", session.sensor);
+  for (const setting of picture?.sensor_settings ?? []) words.push("--sensor-set", setting);
+  if (picture?.tolerance) words.push("--tolerance", String(picture.tolerance));
+  const shot = session.shot;
+  if (shot.compensation_ev !== 0) words.push("--exposure-compensation", String(shot.compensation_ev));
+  if (!shot.noise) for (const source of ["shot", "dark", "read", "dsnu", "prnu", "column", "row", "defects"]) words.push("--without", source);
+  if (shot.denoise !== 0) words.push("--denoise", String(shot.denoise));
+  if (shot.sharpen !== 0) words.push("--sharpen", String(shot.sharpen));
+  if (shot.tone !== "none") words.push("--tone", shot.tone);
+  words.push("-o", "picture.png");
+  return words.map(quoted).join(" ");
+}

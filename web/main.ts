@@ -1,0 +1,572 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: joins what is on the bench, what is shown, and the server.
+import {commandLine, focusText} from "./command_line";
+import {choice, Slider} from "./controls";
+import {h, icon, icons, shown} from "./dom";
+import {LayoutView} from "./layout_view";
+import {Incoming, Link, takeToken} from "./link";
+import {copied, History, Lens, newSession, packed, pinAbout, Session, setValue, unpacked, valueAt} from "./model";
+import {PictureView} from "./picture_view";
+import {drawPlots, PlotData} from "./plot_view";
+import {PsfView} from "./psf_view";
+import {FoundGlass, TableView} from "./table_view";
+import {explainTerms} from "./terms";
+import {exercises, Tour} from "./tour";
+
+const shownPlots: [string, string, string][] = [
+  ["mtf", "MTF", "mtf"], ["spots", "Spots", "spots"], ["distortion", "Distortion", "distortion"],
+  ["illumination", "Illumination", "illumination"], ["field-curvature", "Field curvature", "field-curvature"],
+  ["fans", "Ray fans", "fans"], ["colour", "Colour", "colour"], ["vignetting", "Vignetting", "vignetting"],
+  ["wavefront", "Wavefront", "wavefront"], ["encircled-energy", "Encircled energy", "encircled-energy"],
+];
+
+class Page {
+  private session!: Session;
+  private history!: History;
+  private welcome: Incoming | null = null;
+  private id = 0;
+  private pending = false;
+  private unanswered_since = 0;
+  private uploads = new Map<number, string>();
+  private glassWaiting = new Map<number, (glasses: FoundGlass[]) => void>();
+  private saving = new Map<number, string>();
+  private lastPicture: Incoming | null = null;
+  private plots = new Map<string, Incoming>();
+  private sliders = new Map<string, Slider>();
+  private readonly link: Link;
+
+  private readonly table = new TableView({
+    changed: (alter, gesture) => this.alterLens(alter, gesture),
+    pinned: path => this.togglePin(path),
+    isPinned: path => this.session.pins.some(pin => pin.path === path),
+    searchGlass: (text, show) => {
+      const id = ++this.id;
+      this.glassWaiting.set(id, show);
+      this.link.send({kind: "glasses", id, text});
+    },
+    refused: text => this.tell(text),
+  });
+  private readonly layout = new LayoutView({
+    moved: (first, last, shift, done) => this.moveGroup(first, last, shift, done),
+    stopRadius: (radius, done) => this.openStop(radius, done),
+    chosen: surface => this.table.select(Math.min(surface, this.session.lens.surfaces.length - 1)),
+  });
+  private readonly picture = new PictureView({
+    placed: (x, y, done) => this.change(() => { this.session.cursor_mm = [x, y]; }, done ? "" : "cursor"),
+  });
+  private readonly psf = new PsfView();
+  private readonly plotBox = h("div", {class: "plot-box"});
+  private readonly tabs = h("div", {class: "tabs", role: "tablist"});
+  private readonly facts = h("div", {class: "facts"});
+  private readonly controls = h("div", {class: "controls"});
+  private readonly choices = h("div", {class: "choices"});
+  private readonly message = h("div", {class: "message", role: "status", "aria-live": "polite"});
+  private readonly banner = h("div", {class: "banner", role: "alert"});
+  private readonly timing = h("div", {class: "timing", title: "time of each stage, on the server"});
+  private readonly command = h("code", {class: "command"});
+  private readonly undoButton = this.button("Undo", "undo", () => this.step(this.history.undo()), "Ctrl+Z");
+  private readonly redoButton = this.button("Redo", "redo", () => this.step(this.history.redo()), "Ctrl+Shift+Z");
+  private readonly beforeButton = h("button", {type: "button", class: "text-button", id: "before", title: "keep this picture to compare with (B)", "aria-pressed": "false",
+    onclick: () => this.toggleBefore()}, "Before / after");
+  private times = new Map<string, number>();
+  private readonly tour = new Tour(exercise => this.startExercise(exercise));
+
+  constructor() {
+    this.build();
+    this.link = new Link(takeToken(), {
+      opened: () => {
+        this.pending = false;
+        this.unanswered_since = 0;
+        this.link.send({kind: "hello"});
+      },
+      lost: () => {
+        this.banner.textContent = "The server does not answer. Start it again on the same port (petzval live --port …), and this page goes on.";
+        document.body.classList.add("offline");
+      },
+      message: (message, bytes) => this.take(message, bytes),
+    });
+    (window as any).petzvalPage = this;  // for tests
+  }
+
+  // ---- the frame of the page -------------------------------------------------------------------------------------
+
+  private button(label: string, name: keyof typeof icons, act: () => void, key: string): HTMLButtonElement {
+    return h("button", {type: "button", class: "icon-button", id: name, title: `${label} (${key})`, "aria-label": label, onclick: act}, icon(icons[name]));
+  }
+
+  private build(): void {
+    const copy = h("button", {type: "button", class: "text-button", id: "copy-command", onclick: () => this.copy(this.command.textContent ?? "", "command copied")}, "Copy");
+    const card = (title: string, term: string, extra: (Node | string)[], ...content: Node[]) => h("section", {class: `card ${term}-card`},
+        h("header", {}, h("h2", {"data-term": term, class: "term-mark"}, title), ...extra), ...content);
+    document.body.append(
+        h("header", {class: "bar"}, h("div", {class: "brand"}, h("img", {src: "/icon.svg", alt: "", width: 22, height: 22}), h("b", {}, "Petzval"), h("span", {}, "live")),
+            this.choices, h("div", {class: "spring"}), this.undoButton, this.redoButton, this.beforeButton, this.saveMenu(),
+            h("button", {type: "button", class: "text-button", id: "tour", onclick: () => this.tour.toggle()}, "Tour"),
+            h("button", {type: "button", class: "text-button", id: "theme", title: "dark or light (D)", "aria-label": "dark or light", onclick: () => this.toggleTheme()}, "◐")),
+        this.banner,
+        h("main", {},
+            h("div", {class: "column left"},
+                card("Prescription", "radius", [h("small", {class: "hint"}, "mm · ↑↓ to nudge · • for a slider")], this.table.element),
+                card("Controls", "f-number", [], this.controls)),
+            h("div", {class: "column middle"},
+                card("Layout", "stop", [this.facts], this.layout.element),
+                card("Picture", "preview", [this.picture.badge], this.picture.element)),
+            h("div", {class: "column right"},
+                card("Point spread", "psf", [], this.psf.element),
+                h("section", {class: "card analysis-card"}, this.tabs, this.plotBox))),
+        h("footer", {}, h("span", {class: "prompt"}, "$"), this.command, copy, this.timing),
+        this.message);
+    this.buildTabs();
+    document.addEventListener("keydown", event => this.key(event));
+    document.addEventListener("dragover", event => { event.preventDefault(); document.body.classList.add("dropping"); });
+    document.addEventListener("dragleave", event => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
+    document.addEventListener("drop", event => {
+      event.preventDefault();
+      document.body.classList.remove("dropping");
+      const file = event.dataTransfer?.files[0];
+      if (file) void this.upload(file);
+    });
+    new ResizeObserver(() => this.drawPlot()).observe(this.plotBox);
+    const theme = localStorage.getItem("petzval-theme");
+    if (theme) document.documentElement.dataset.theme = theme;
+    explainTerms();
+  }
+
+  private saveMenu(): HTMLElement {
+    const file = h("input", {type: "file", id: "file", hidden: true, onchange: (event: Event) => {
+      const input = event.target as HTMLInputElement;
+      if (input.files?.[0]) void this.upload(input.files[0]);
+      input.value = "";
+    }});
+    const entry = (label: string, id: string, act: () => void) => h("button", {type: "button", role: "menuitem", id, onclick: () => { menu.removeAttribute("open"); act(); }}, label);
+    const save = (extension: string) => () => {
+      const id = ++this.id;
+      this.saving.set(id, extension);
+      this.link.send({kind: "save", id, extension});
+    };
+    const menu: HTMLDetailsElement = h("details", {class: "menu"}, h("summary", {class: "text-button", id: "file-menu"}, "File"),
+        h("div", {class: "menu-list", role: "menu"},
+            entry("Open a lens, photograph or session …", "open", () => file.click()), h("hr"),
+            entry("Save lens (.json)", "save-json", save(".json")), entry("Save lens (.zmx)", "save-zmx", save(".zmx")), entry("Save lens (.seq)", "save-seq", save(".seq")), h("hr"),
+            entry("Save picture (.png)", "save-png", save(".png")), entry("Save raw image (.dng)", "save-dng", save(".dng")), entry("Save light (.exr)", "save-exr", save(".exr")), h("hr"),
+            entry("Save session (.json)", "save-session", () => this.download(new Blob([JSON.stringify({petzval_session: 1, ...this.session})]), "session.petzval.json")),
+            entry("Copy a link to this session", "copy-link", async () => this.copy(`${location.origin}/#session=${await packed(this.session)}`, "link copied; it works while this server runs"))));
+    document.addEventListener("pointerdown", event => { if (!menu.contains(event.target as Node)) menu.removeAttribute("open"); });
+    return h("div", {}, menu, file);
+  }
+
+  private buildTabs(): void {
+    this.tabs.replaceChildren(...shownPlots.map(([name, title, term]) => h("button", {type: "button", role: "tab", id: `tab-${name}`, "data-term": term,
+      onclick: () => this.change(() => { this.session.plot = name; }, "plot")}, title)));
+  }
+
+  private buildChoices(): void {
+    const welcome = this.welcome!, session = this.session;
+    const plain = (names: string[]): [string, string][] => names.map(name => [name, name]);
+    const lenses: [string, string][] = welcome.lenses.map((lens: any) => [lens.name, lens.name]);
+    if (!lenses.some(([name]) => name === session.lensName)) lenses.unshift([session.lensName, session.lensName]);
+    this.choices.replaceChildren(
+        choice("Lens", "lens", lenses, session.lensName, name => this.link.send({kind: "lens", id: ++this.id, name})),
+        choice("Scene", "scene", plain(welcome.scenes), session.scene, scene => this.change(() => { session.scene = scene; })),
+        choice("Light", "illuminant", welcome.illuminants.map((name: string) => [name, name || "own"]), session.illuminant, name => this.change(() => { session.illuminant = name; })),
+        choice("Sensor", "sensor", plain(welcome.sensors), session.sensor, sensor => this.change(() => { session.sensor = sensor; })));
+  }
+
+  private buildControls(): void {
+    const session = this.session;
+    const list: (Node | null)[] = [];
+    this.sliders.clear();
+    const slider = (wish: ConstructorParameters<typeof Slider>[0]) => {
+      const made = new Slider(wish);
+      this.sliders.set(wish.name, made);
+      list.push(made.element);
+    };
+    const set = <K extends keyof Session>(key: K) => (value: Session[K], done: boolean) => this.change(() => { session[key] = value; }, String(key), done);
+    for (const pin of session.pins) {
+      slider({label: pin.path.replace("surfaces", "").replace(/_mm$/, "").replace("].", "] "), name: pin.path, unit: pin.path.endsWith("_mm") ? "mm" : "", digits: 5,
+        from: pin.from, to: pin.to, value: valueAt(session.lens, pin.path), usual: valueAt(session.base, pin.path),
+        changed: (value, done) => this.alterLens(lens => { if (valueAt(lens, pin.path) !== null) setValue(lens, pin.path, value); }, pin.path, done),
+        unpin: () => this.togglePin(pin.path),
+        ranged: (from, to) => this.change(() => { pin.from = from; pin.to = to; this.buildControls(); })});
+    }
+    if (session.pins.length) list.push(h("hr"));
+    const widest = this.widest();
+    slider({label: "f-number", name: "f_number", term: "f-number", from: widest, to: Math.max(22, 2 * widest), log: true, value: session.f_number ?? widest, usual: widest, digits: 3,
+      changed: (value, done) => set("f_number")(value === null || value <= widest * 1.003 ? null : value, done)});
+    list.push(choice("Focus", "focus", [["design", "as prescribed"], ["auto", "on the scene"], ["infinity", "infinity"], ["distance", "at a distance"], ["paraxial", "paraxial"], ["best-spot", "least spots"]],
+        session.focus, focus => this.change(() => { session.focus = focus; this.buildControls(); }), "focus"));
+    if (session.focus === "distance")
+      slider({label: "focused at", name: "focus_m", term: "focus", unit: "m", from: 0.2, to: 100, log: true, value: session.focus_m, usual: 2, changed: (value, done) => set("focus_m")(value ?? 2, done)});
+    slider({label: "scene at", name: "distance_m", term: "distance", unit: "m", from: 0.2, to: 100, log: true, end: "∞", value: session.distance_m, usual: null, changed: set("distance_m")});
+    slider({label: "sensor shift", name: "defocus_mm", term: "defocus", unit: "mm", from: -0.5, to: 0.5, value: session.defocus_mm, usual: 0, changed: (value, done) => set("defocus_mm")(value ?? 0, done)});
+    list.push(h("hr"));
+    const shot = (key: "compensation_ev" | "denoise" | "sharpen") => (value: number | null, done: boolean) => this.change(() => { session.shot[key] = value ?? 0; }, key, done);
+    slider({label: "exposure", name: "compensation_ev", term: "exposure", unit: "EV", from: -4, to: 4, value: session.shot.compensation_ev, usual: 0, digits: 3, changed: shot("compensation_ev")});
+    slider({label: "denoise", name: "denoise", from: 0, to: 3, value: session.shot.denoise, usual: 0, digits: 3, changed: shot("denoise")});
+    slider({label: "sharpen", name: "sharpen", from: 0, to: 2, value: session.shot.sharpen, usual: 0, digits: 3, changed: shot("sharpen")});
+    list.push(h("div", {class: "pair"},
+        h("label", {class: "check", "data-term": "noise"}, h("input", {type: "checkbox", checked: session.shot.noise, "data-check": "noise",
+          onchange: (event: Event) => this.change(() => { session.shot.noise = (event.target as HTMLInputElement).checked; })}), "noise"),
+        choice("Tone", "tone", this.welcome!.tones.map((tone: string) => [tone, tone]), session.shot.tone, tone => this.change(() => { session.shot.tone = tone; }))));
+    this.controls.replaceChildren(...list.filter((each): each is Node => each !== null));
+  }
+
+  private widestOpen = 2;
+  private widest(): number { return this.widestOpen; }
+
+  // ---- changes ---------------------------------------------------------------------------------------------------
+
+  /** Does a change, remembers it, and tells the server. */
+  private change(alter: () => void, gesture = "", done = true): void {
+    alter();
+    this.history.record(JSON.stringify(this.session), gesture);
+    if (done && gesture !== "plot") this.history.endGesture();
+    this.refresh();
+    this.ask();
+  }
+
+  private alterLens(alter: (lens: Lens) => void, gesture: string, done = true): void {
+    this.change(() => alter(this.session.lens), gesture, done);
+  }
+
+  private moveGroup(first: number, last: number, shift: number, done: boolean): void {
+    this.alterLens(lens => {
+      const surfaces = lens.surfaces, sensor = first === surfaces.length;
+      const before = first > 0 ? surfaces[first - 1] : null, behind = sensor ? null : surfaces[last];
+      // Nothing passes through its neighbours.
+      let by = before ? Math.max(shift, -before.thickness_mm) : shift;
+      if (behind) by = Math.min(by, behind.thickness_mm);
+      const tidy = (value: number) => Number(value.toFixed(4));
+      if (before) before.thickness_mm = tidy(before.thickness_mm + by);
+      if (behind) behind.thickness_mm = tidy(behind.thickness_mm - by);
+    }, `move ${first}`, done);
+  }
+
+  /** The stop by its radius: as an f-number where that closes it, as the f-number scales with it. */
+  private openStop(radius: number, done: boolean): void {
+    if (this.stopNow <= 0) return;
+    const widest = this.widest(), wished = this.fNumberNow * this.stopNow / radius;
+    this.stopNow = radius;
+    this.fNumberNow = wished;
+    const value = Number(Math.min(64, Math.max(widest, wished)).toPrecision(4));
+    this.change(() => { this.session.f_number = value <= widest * 1.003 ? null : value; }, "stop", done);
+  }
+  private stopNow = 0;
+  private fNumberNow = 1;
+
+  private togglePin(path: string): void {
+    this.change(() => {
+      const at = this.session.pins.findIndex(pin => pin.path === path);
+      if (at >= 0) this.session.pins.splice(at, 1);
+      else this.session.pins.push(pinAbout(path, valueAt(this.session.lens, path) ?? 0));
+      this.buildControls();
+    });
+  }
+
+  private step(state: string | null): void {
+    if (state === null) return;
+    this.session = JSON.parse(state) as Session;
+    this.rebuild();
+    this.ask();
+  }
+
+  private start(session: Session): void {
+    this.session = session;
+    this.history = new History(JSON.stringify(session));
+    this.knowsWidest = false;
+    this.rebuild();
+    this.ask();
+  }
+  private knowsWidest = false;
+
+  private rebuild(): void {
+    this.buildChoices();
+    this.buildControls();
+    this.refresh();
+  }
+
+  /** Everything that follows from the session alone. */
+  private refresh(): void {
+    const session = this.session;
+    this.table.show(session.lens);
+    this.picture.setCursor(session.cursor_mm);
+    for (const pin of session.pins) this.sliders.get(pin.path)?.show(valueAt(session.lens, pin.path));
+    this.sliders.get("f_number")?.show(session.f_number ?? this.widest());
+    for (const name of ["distance_m", "defocus_mm", "focus_m"] as const) this.sliders.get(name)?.show(session[name]);
+    for (const name of ["compensation_ev", "denoise", "sharpen"] as const) this.sliders.get(name)?.show(session.shot[name]);
+    this.undoButton.disabled = !this.history.canUndo;
+    this.redoButton.disabled = !this.history.canRedo;
+    this.tabs.querySelectorAll("button").forEach(tab => tab.setAttribute("aria-selected", String(tab.id === `tab-${session.plot}`)));
+    this.drawPlot();
+    this.command.textContent = commandLine(session, this.lastPicture);
+    this.command.title = this.command.textContent;
+    sessionStorage.setItem("petzval-session", JSON.stringify({start: this.startKey(), session}));
+  }
+
+  private startKey(): string { return JSON.stringify([this.welcome?.lens_name, this.welcome?.lens?.surfaces]); }
+
+  // ---- the server ------------------------------------------------------------------------------------------------
+
+  /** Sends the state once the last one has been answered by rays, or has not been for long. */
+  private ask(): void {
+    const patience_ms = 120;
+    if (this.pending) return;
+    const since = performance.now() - this.unanswered_since;
+    if (this.unanswered_since > 0 && since < patience_ms) {
+      this.pending = true;
+      setTimeout(() => { if (this.pending) { this.pending = false; this.unanswered_since = 0; this.ask(); } }, patience_ms - since);
+      return;
+    }
+    this.sendState();
+  }
+
+  private sendState(): void {
+    if (!this.link?.isOpen || !this.welcome) return;
+    this.unanswered_since = performance.now();
+    const session = this.session;
+    this.link.send({kind: "state", id: ++this.id, lens: session.lens,
+      camera: {f_number: session.f_number, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
+      scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot,
+      cursor_mm: session.cursor_mm, plots: [session.plot], picture: true});
+    document.body.dataset.busy = "1";
+  }
+
+  private answered(): void {
+    this.unanswered_since = 0;
+    if (!this.pending) return;
+    this.pending = false;
+    this.ask();
+  }
+
+  private take(message: Incoming, bytes: Uint8Array | null): void {
+    switch (message.kind) {
+      case "welcome": return void this.greeted(message);
+      case "lens": return this.takeLens(message);
+      case "scenes":
+        this.welcome!.scenes = message.scenes;
+        this.change(() => { this.session.scene = message.scene; });
+        return this.buildChoices();
+      case "layout": return this.takeLayout(message);
+      case "plots":
+        this.plots.set(message.analysis, message);
+        return this.drawPlot();
+      case "psf": return this.psf.show(message, bytes!, this.session.cursor_mm);
+      case "picture":
+        this.picture.show(message, bytes!);
+        if (message.quality === "full") this.lastPicture = message;
+        this.command.textContent = commandLine(this.session, this.lastPicture);
+        document.body.dataset[message.quality] = String(message.id);
+        return;
+      case "glasses":
+        this.glassWaiting.get(message.id!)?.(message.glasses);
+        this.glassWaiting.delete(message.id!);
+        return;
+      case "file": return this.takeFile(message, bytes!);
+      case "stage": return this.took(message);
+      case "problem": return this.takeProblem(message);
+      case "refused": return this.tell(message.text, true);
+      case "idle":
+        if (message.id === this.id || !this.pending) delete document.body.dataset.busy;
+        document.body.dataset.idle = String(message.id);
+        return;
+    }
+  }
+
+  private async greeted(welcome: Incoming): Promise<void> {
+    const first = this.welcome === null;
+    this.welcome = welcome;
+    document.body.classList.remove("offline");
+    this.banner.textContent = "";
+    if (!first) {  // a server that came back
+      this.plots.clear();
+      this.buildChoices();
+      return this.ask();
+    }
+    const fresh = newSession(welcome.lens_name, welcome.lens as Lens, welcome.scene, welcome.sensor);
+    this.start(await this.restored() ?? fresh);
+    document.body.dataset.ready = "1";
+  }
+
+  /** From the address, or from this tab before it was loaded anew. */
+  private async restored(): Promise<Session | null> {
+    try {
+      const parts = new URLSearchParams(location.hash.slice(1));
+      const link = parts.get("session");
+      if (link) {
+        history.replaceState(null, "", location.pathname);
+        return this.checked(await unpacked(link));
+      }
+      const kept = JSON.parse(sessionStorage.getItem("petzval-session") ?? "null");
+      if (kept && kept.start === this.startKey()) return this.checked(kept.session);
+    } catch {
+      this.tell("the session could not be restored", true);
+    }
+    return null;
+  }
+
+  /** What the server knows by name now; all else is checked by the server. */
+  private checked(session: Session): Session {
+    const welcome = this.welcome!;
+    const usual = newSession(welcome.lens_name, session.lens, welcome.scene, welcome.sensor);
+    const whole = {...usual, ...session, shot: {...usual.shot, ...session.shot}};
+    if (!welcome.scenes.includes(whole.scene)) whole.scene = welcome.scene;
+    if (!welcome.sensors.includes(whole.sensor)) whole.sensor = welcome.sensor;
+    return whole;
+  }
+
+  private takeLens(message: Incoming): void {
+    for (const note of message.notes ?? []) this.tell(note);
+    const session = newSession(message.name, message.lens as Lens, this.session.scene, message.sensor);
+    const {illuminant, shot, plot} = this.session;
+    const next = {...session, illuminant, shot: copied(shot), plot};
+    this.knowsWidest = false;
+    this.session = next;
+    this.history.record(JSON.stringify(next));
+    this.plots.clear();
+    this.rebuild();
+    this.ask();
+  }
+
+  private takeLayout(message: Incoming): void {
+    this.layout.show(message, this.session.lens);
+    const first = message.first_order;
+    this.stopNow = first.stop_semi_diameter_mm ?? 0;
+    this.fNumberNow = first.f_number ?? 1;
+    if (!this.knowsWidest && this.session.f_number === null && first.f_number) {
+      this.knowsWidest = true;
+      this.widestOpen = Number(first.f_number.toPrecision(4));
+      this.buildControls();
+    }
+    const fact = (label: string, term: string, text: string) => h("span", {"data-term": term}, h("i", {}, label), text);
+    this.facts.replaceChildren(
+        fact("f", "efl", `${shown(first.efl_mm, 4)} mm`), fact("f/", "f-number", shown(first.f_number, 3)),
+        fact("entrance pupil", "entrance-pupil", `${shown(first.entrance_pupil_diameter_mm, 3)} mm`),
+        fact("exit pupil", "exit-pupil", `${shown(first.exit_pupil_mm, 3)} mm`),
+        fact("field", "distortion", `${shown(first.field_of_view_deg, 3)}°`), fact("Petzval", "petzval", `${shown(first.petzval_radius_mm, 3)} mm`));
+    this.table.blame(message.blocked.map((each: any) => each.surface));
+    const dark = message.blocked.length === message.fields.length;
+    this.showProblem("layout", message.blocked.length === 0 ? "" : dark
+      ? `No ray passes: ${message.blocked[0].text}.`
+      : `No ray passes at field ${message.blocked.map((each: any) => shown(each.field)).join(", ")}: ${message.blocked[0].text}.`);
+    for (const stage of ["lens", "camera"]) this.showProblem(stage, "");
+    this.answered();
+  }
+
+  private problems = new Map<string, string>();
+
+  private takeProblem(message: Incoming): void {
+    if (message.stage === "upload" || message.stage === "save") return this.tell(message.text, true);
+    this.showProblem(message.stage, message.text);
+    if (["lens", "camera", "layout"].includes(message.stage)) {
+      this.layout.stale();
+      this.psf.stale();
+      this.picture.stale();
+      this.answered();
+      delete document.body.dataset.busy;
+    }
+    if (message.stage === "psf") this.psf.stale();
+    if (message.stage === "preview" || message.stage === "picture") this.picture.stale();
+    if (message.stage.startsWith("plot:")) {
+      this.plots.delete(message.stage.slice(5));
+      this.drawPlot(message.text);
+    }
+  }
+
+  /** What is wrong stays until it is right: the first stage that failed tells why. */
+  private showProblem(stage: string, text: string): void {
+    if (text) this.problems.set(stage, text);
+    else this.problems.delete(stage);
+    const order = ["lens", "camera", "layout", "preview", "picture", "psf"];
+    const worst = order.find(each => this.problems.has(each));
+    this.banner.textContent = worst ? this.problems.get(worst)! : "";
+    document.body.classList.toggle("has-problem", worst !== undefined);
+  }
+
+  private took(message: Incoming): void {
+    this.times.set(message.stage, message.ms);
+    this.showProblem(message.stage, message.stage === "layout" ? this.problems.get("layout") ?? "" : "");
+    const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], ["preview", "preview"], [`plot:${this.session.plot}`, "plot"], ["picture", "full"]];
+    this.timing.replaceChildren(...names.filter(([stage]) => this.times.has(stage)).map(([stage, name]) =>
+      h("span", {}, h("i", {}, name), `${shown(this.times.get(stage)!, 3)} ms`)));
+  }
+
+  private takeFile(message: Incoming, bytes: Uint8Array): void {
+    this.saving.delete(message.id!);
+    const name = this.session.lensName.replace(/[^\w.-]+/g, "-") || "lens";
+    this.download(new Blob([bytes.slice()]), `${name}${message.extension}`);
+  }
+
+  // ---- files, keys, messages -------------------------------------------------------------------------------------
+
+  private download(blob: Blob, name: string): void {
+    const url = URL.createObjectURL(blob);
+    h("a", {href: url, download: name}).click();
+    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    this.tell(`saved ${name}`);
+  }
+
+  private async upload(file: File): Promise<void> {
+    const most = 24 * 1024 * 1024;
+    if (file.size > most) return this.tell("a file has at most 24 MB", true);
+    const bytes = await file.arrayBuffer();
+    if (file.name.endsWith(".json") && bytes.byteLength < 1e6) {
+      try {
+        const read = JSON.parse(new TextDecoder().decode(bytes));
+        if (read.petzval_session === 1) return this.start(this.checked(read as Session));
+      } catch { /* the server says what is wrong with it */ }
+    }
+    const id = ++this.id;
+    this.uploads.set(id, file.name);
+    this.link.upload({kind: "upload", id, name: file.name}, bytes);
+  }
+
+  private copy(text: string, done: string): void {
+    navigator.clipboard.writeText(text).then(() => this.tell(done), () => this.tell("the browser does not let this page copy", true));
+  }
+
+  private tell(text: string, bad = false): void {
+    const note = h("div", {class: bad ? "note bad" : "note"}, text);
+    this.message.append(note);
+    setTimeout(() => note.remove(), bad ? 9000 : 4000);
+  }
+
+  private toggleTheme(): void {
+    const root = document.documentElement;
+    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    localStorage.setItem("petzval-theme", root.dataset.theme);
+  }
+
+  private toggleBefore(): void {
+    const kept = this.picture.toggleBefore(this.session.lensName);
+    this.beforeButton.setAttribute("aria-pressed", String(kept));
+  }
+
+  private key(event: KeyboardEvent): void {
+    const field = event.target instanceof HTMLInputElement && event.target.type === "text" || event.target instanceof HTMLSelectElement;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !field) {
+      event.preventDefault();
+      return this.step(event.shiftKey ? this.history.redo() : this.history.undo());
+    }
+    if (field || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === "b") this.toggleBefore();
+    if (event.key === "d") this.toggleTheme();
+    const tab = shownPlots[Number(event.key) - 1];
+    if (tab) this.change(() => { this.session.plot = tab[0]; }, "plot");
+  }
+
+  private drawPlot(problem = ""): void {
+    const plots = this.plots.get(this.session?.plot);
+    if (plots) return drawPlots(this.plotBox, plots.plots as PlotData[], plots.across);
+    this.plotBox.replaceChildren(h("p", {class: "nothing"}, problem || "…"));
+  }
+
+  private startExercise(exercise: (typeof exercises)[number]): void {
+    const id = ++this.id;
+    this.link.send({kind: "lens", id, name: exercise.lens});
+    this.change(() => { this.session.plot = exercise.plot; }, "plot");
+    if (exercise.scene) this.change(() => { this.session.scene = exercise.scene!; });
+  }
+}
+
+new Page();

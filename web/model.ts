@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is on the bench, and its history.
+
+/** A material as lens files have it: a name, or numbers; absent: air. */
+export type Glass = string | {[key: string]: unknown};
+
+export interface Surface {
+  radius_mm: number | null;
+  thickness_mm: number;
+  glass?: Glass;
+  stop?: boolean;
+  semi_diameter_mm?: number;
+  conic?: number;
+  asphere?: Record<string, number>;
+  [key: string]: unknown;
+}
+
+/** A lens in the native format, "petzval-lens/1". */
+export interface Lens {
+  name: string;
+  object_distance_mm: number | null;
+  aperture: Record<string, number>;
+  fields: {type: string; values: number[]};
+  wavelengths_nm: number[];
+  reference_wavelength_nm: number;
+  surfaces: Surface[];
+  [key: string]: unknown;
+}
+
+/** A number of the lens that has a slider: its path in the file, and its range. */
+export interface Pin {
+  path: string;
+  from: number;
+  to: number;
+}
+
+export interface Shot {
+  exposure: string;
+  compensation_ev: number;
+  noise: boolean;
+  denoise: number;
+  sharpen: number;
+  tone: string;
+}
+
+export interface Session {
+  lensName: string;
+  base: Lens;  ///< as it was read
+  lens: Lens;
+  f_number: number | null;
+  focus: string;  ///< "design", "auto", "infinity", "best-spot", "paraxial", or "distance"
+  focus_m: number;
+  distance_m: number | null;  ///< null: infinity
+  defocus_mm: number;
+  scene: string;
+  illuminant: string;
+  sensor: string;
+  shot: Shot;
+  cursor_mm: [number, number];
+  plot: string;
+  pins: Pin[];
+}
+
+export function newSession(lensName: string, lens: Lens, scene: string, sensor: string): Session {
+  return {
+    lensName, base: lens, lens: copied(lens), f_number: null, focus: "design", focus_m: 2, distance_m: null,
+    defocus_mm: 0, scene, illuminant: "", sensor,
+    shot: {exposure: "auto", compensation_ev: 0, noise: true, denoise: 0, sharpen: 0, tone: "none"},
+    cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),
+  };
+}
+
+/** The widest air gaps inside a lens: what is most worth moving. */
+function usualPins(lens: Lens): Pin[] {
+  const gaps = lens.surfaces.map((surface, i) => ({i, surface})).slice(0, -1).filter(each => !each.surface.glass);
+  gaps.sort((a, b) => b.surface.thickness_mm - a.surface.thickness_mm);
+  return gaps.slice(0, 2).sort((a, b) => a.i - b.i).map(
+      ({i, surface}) => pinAbout(`surfaces[${i}].thickness_mm`, surface.thickness_mm));
+}
+
+/** A range about a number that is wide enough to see something and narrow enough to aim. */
+export function pinAbout(path: string, value: number): Pin {
+  const half = value === 0 ? 1 : Math.abs(value) * (path.endsWith("radius_mm") ? 0.3 : 0.5);
+  const tidy = (x: number) => Number(x.toPrecision(3));
+  const from = tidy(value - half);
+  return {path, from: path.endsWith("thickness_mm") && value >= 0 ? Math.max(0, from) : from, to: tidy(value + half)};
+}
+
+export function copied<T>(value: T): T {
+  return JSON.parse(JSON.stringify(value)) as T;
+}
+
+/** "surfaces[4].thickness_mm" → ["surfaces", 4, "thickness_mm"] */
+function steps(path: string): (string | number)[] {
+  return path.split(/[.[\]]+/).filter(part => part !== "").map(part => /^\d+$/.test(part) ? Number(part) : part);
+}
+
+export function valueAt(lens: Lens, path: string): number | null {
+  let at: any = lens;
+  for (const step of steps(path)) at = at?.[step];
+  return typeof at === "number" ? at : null;
+}
+
+export function setValue(lens: Lens, path: string, value: unknown): void {
+  const all = steps(path);
+  let at: any = lens;
+  for (const step of all.slice(0, -1)) at = at[step] ??= {};
+  const last = all[all.length - 1];
+  if (value === undefined) delete at[last];
+  else at[last] = value;
+}
+
+/** What `--set` would alter to make one lens of the other; null if surfaces came or went. */
+export function settingsBetween(base: Lens, lens: Lens): string[] | null {
+  if (base.surfaces.length !== lens.surfaces.length) return null;
+  const found: string[] = [];
+  let impossible = false;
+  const compare = (a: any, b: any, path: string) => {
+    if (JSON.stringify(a) === JSON.stringify(b)) return;
+    const objects = a && b && typeof a === "object" && typeof b === "object" && Array.isArray(a) === Array.isArray(b);
+    if (b === undefined) {
+      // A key that is gone: there is no setting for that, but for a glass.
+      impossible = true;
+    } else if (objects && (!Array.isArray(a) || a.length === b.length)) {
+      for (const key of new Set([...Object.keys(a), ...Object.keys(b)]))
+        compare(a[key], b[key], Array.isArray(a) ? `${path}[${key}]` : path ? `${path}.${key}` : key);
+    } else {
+      found.push(`${path}=${JSON.stringify(b)}`);
+    }
+  };
+  compare(base, lens, "");
+  return impossible ? null : found;
+}
+
+/** States that can be gone back to. A gesture of many moves is one step. */
+export class History {
+  private past: string[] = [];
+  private future: string[] = [];
+  constructor(private now: string) {}
+
+  /** After a change; `gesture`: the same as that of the change before, or "" for one that stands alone. */
+  private gesture = "";
+  record(state: string, gesture = ""): void {
+    if (state === this.now) return;
+    if (gesture === "" || gesture !== this.gesture) {
+      this.past.push(this.now);
+      const most = 200;
+      if (this.past.length > most) this.past.shift();
+    }
+    this.gesture = gesture;
+    this.future = [];
+    this.now = state;
+  }
+  endGesture(): void { this.gesture = ""; }
+  get canUndo(): boolean { return this.past.length > 0; }
+  get canRedo(): boolean { return this.future.length > 0; }
+  undo(): string | null {
+    const before = this.past.pop();
+    if (before === undefined) return null;
+    this.future.push(this.now);
+    this.gesture = "";
+    return this.now = before;
+  }
+  redo(): string | null {
+    const after = this.future.pop();
+    if (after === undefined) return null;
+    this.past.push(this.now);
+    this.gesture = "";
+    return this.now = after;
+  }
+}
+
+/** A session as a part of an address, and back. */
+export async function packed(session: Session): Promise<string> {
+  const stream = new Blob([JSON.stringify(session)]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  let text = "";
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return btoa(text).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+}
+
+export async function unpacked(text: string): Promise<Session> {
+  const bytes = Uint8Array.from(atob(text.replace(/-/g, "+").replace(/_/g, "/")), c => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return JSON.parse(await new Response(stream).text()) as Session;
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The picture, what it was before, and the place that the PSF is asked at.
+import {h, shown} from "./dom";
+import {Incoming} from "./link";
+
+export interface PictureListener {
+  placed(x_mm: number, y_mm: number, done: boolean): void;
+}
+
+interface Kept {
+  canvas: HTMLCanvasElement;
+  caption: string;
+}
+
+export class PictureView {
+  readonly element: HTMLElement;
+  readonly badge = h("span", {class: "badge", "data-term": "preview"});
+  private readonly stage = h("div", {class: "picture-stage"});
+  private readonly now = h("canvas", {class: "picture", role: "img", "aria-label": "the picture"});
+  private readonly mark = h("div", {class: "cursor-mark"});
+  private readonly divider = h("div", {class: "divider", role: "slider", tabindex: "0", "aria-label": "before and after",
+    "aria-valuemin": "0", "aria-valuemax": "100"});
+  private readonly captions = h("div", {class: "captions"});
+  private kept: Kept | null = null;
+  private split = 0.5;
+  private frame_mm: [number, number] = [36, 24];
+  private cursor: [number, number] = [0, 0];
+
+  constructor(private readonly listener: PictureListener) {
+    this.stage.append(this.now, this.mark, this.divider, this.captions);
+    this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage);
+    this.divider.hidden = true;
+    new ResizeObserver(() => this.fit()).observe(this.element);
+    this.stage.addEventListener("pointerdown", event => this.down(event));
+    this.divider.addEventListener("pointerdown", event => this.dragDivider(event));
+    this.divider.addEventListener("keydown", event => {
+      const step = event.key === "ArrowLeft" ? -0.02 : event.key === "ArrowRight" ? 0.02 : 0;
+      if (!step) return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.setSplit(this.split + step);
+    });
+    this.element.addEventListener("keydown", event => this.key(event));
+  }
+
+  show(message: Incoming, pixels: Uint8Array): void {
+    const {columns, rows} = message as unknown as {columns: number; rows: number};
+    this.now.width = columns;
+    this.now.height = rows;
+    this.now.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(pixels), columns, rows), 0, 0);
+    this.frame_mm = [columns * message.pitch_um / 1000, rows * message.pitch_um / 1000];
+    const preview = message.quality === "preview";
+    this.badge.textContent = preview ? "preview" : "full";
+    this.badge.classList.toggle("is-preview", preview);
+    this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, blur to ${100 * message.tolerance} %`;
+    this.element.dataset.quality = message.quality;
+    this.element.classList.remove("stale");
+    this.fit();
+  }
+
+  get caption(): string { return `${this.badge.textContent}`; }
+
+  stale(): void { this.element.classList.add("stale"); }
+
+  /** Keeps the picture as it is, to be compared with what follows; or lets the kept one go. */
+  toggleBefore(caption: string): boolean {
+    if (this.kept) {
+      this.kept.canvas.remove();
+      this.kept = null;
+    } else {
+      const canvas = h("canvas", {class: "picture before", width: this.now.width, height: this.now.height});
+      canvas.getContext("2d")!.drawImage(this.now, 0, 0);
+      this.kept = {canvas, caption};
+      this.now.after(canvas);
+    }
+    this.divider.hidden = !this.kept;
+    this.captions.replaceChildren(...(this.kept ? [h("span", {}, `before · ${caption}`), h("span", {}, "now")] : []));
+    this.setSplit(0.5);
+    this.fit();
+    return this.kept !== null;
+  }
+
+  setCursor(cursor: [number, number]): void {
+    this.cursor = cursor;
+    this.mark.style.left = `${50 + 100 * cursor[0] / this.frame_mm[0]}%`;
+    this.mark.style.top = `${50 - 100 * cursor[1] / this.frame_mm[1]}%`;
+    this.mark.title = `${shown(cursor[0], 3)}, ${shown(cursor[1], 3)} mm`;
+  }
+
+  /** As large as the box takes, in the sensor's own proportions. */
+  private fit(): void {
+    const box = this.element.getBoundingClientRect();
+    const scale = Math.min(box.width / this.frame_mm[0], box.height / this.frame_mm[1]);
+    this.stage.style.width = `${Math.floor(scale * this.frame_mm[0])}px`;
+    this.stage.style.height = `${Math.floor(scale * this.frame_mm[1])}px`;
+    this.setCursor(this.cursor);
+  }
+
+  private setSplit(split: number): void {
+    this.split = Math.min(1, Math.max(0, split));
+    this.divider.style.left = `${100 * this.split}%`;
+    this.divider.setAttribute("aria-valuenow", String(Math.round(100 * this.split)));
+    if (this.kept) this.kept.canvas.style.clipPath = `inset(0 ${100 * (1 - this.split)}% 0 0)`;
+  }
+
+  private dragDivider(event: PointerEvent): void {
+    event.preventDefault();
+    event.stopPropagation();
+    this.divider.setPointerCapture(event.pointerId);
+    const move = (next: PointerEvent) => {
+      const box = this.stage.getBoundingClientRect();
+      this.setSplit((next.clientX - box.left) / box.width);
+    };
+    this.divider.addEventListener("pointermove", move);
+    this.divider.addEventListener("pointerup", () => this.divider.removeEventListener("pointermove", move), {once: true});
+  }
+
+  private down(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    this.stage.setPointerCapture(event.pointerId);
+    const place = (next: PointerEvent, done: boolean) => {
+      const box = this.stage.getBoundingClientRect();
+      const clamp = (v: number) => Math.min(0.5, Math.max(-0.5, v));
+      const x = clamp((next.clientX - box.left) / box.width - 0.5), y = clamp(0.5 - (next.clientY - box.top) / box.height);
+      this.setCursor([x * this.frame_mm[0], y * this.frame_mm[1]]);
+      this.listener.placed(this.cursor[0], this.cursor[1], done);
+    };
+    place(event, false);
+    const move = (next: PointerEvent) => place(next, false);
+    this.stage.addEventListener("pointermove", move);
+    this.stage.addEventListener("pointerup", next => {
+      this.stage.removeEventListener("pointermove", move);
+      place(next, true);
+    }, {once: true});
+  }
+
+  private key(event: KeyboardEvent): void {
+    const step = event.shiftKey ? 0.1 : 0.02;
+    const moves: Record<string, [number, number]> = {
+      ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step]};
+    const move = moves[event.key];
+    if (!move) return;
+    event.preventDefault();
+    const limit = (v: number, half: number) => Math.min(half, Math.max(-half, v));
+    this.setCursor([limit(this.cursor[0] + move[0] * this.frame_mm[0], this.frame_mm[0] / 2),
+      limit(this.cursor[1] + move[1] * this.frame_mm[1], this.frame_mm[1] / 2)]);
+    this.listener.placed(this.cursor[0], this.cursor[1], true);
+  }
+}
