@@ -4,6 +4,7 @@
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/pupil_rays.h>
 #include <petzval/base/error.h>
+#include <petzval/base/scratch_folder.h>
 #include <petzval/base/units.h>
 #include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/image_formation.h>
@@ -193,10 +194,10 @@ TEST(TableOverFrame, KernelsLieAsTracedSpotsDo) {
 
 TEST(TableOverFrame, ComesBackFromItsFile) {
   const LensDataTable table = table_of(askew_gauss(), {60, 40, 200});
-  const std::string path = ::testing::TempDir() + "/over_frame.h5";
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/over_frame.h5";
   write_table(table, path);
   const LensDataTable read = read_table(path);
-  std::remove(path.c_str());
   ASSERT_TRUE(read.frame);
   EXPECT_EQ(read.frame->x_mm, table.frame->x_mm);
   EXPECT_EQ(read.frame->y_mm, table.frame->y_mm);

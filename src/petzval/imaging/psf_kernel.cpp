@@ -15,7 +15,7 @@ std::unique_ptr<const KernelMaker> kernels_of(const LensDataTable& table, double
     return std::make_unique<HeightKernels>(table, wavelength_nm, cell_um, interpolation, centres);
   if (interpolation == PsfInterpolation::otf)
     throw InputError(
-        "OTFs are interpolated between field heights, not over the frame; `interpolation` psf does");
+        "OTFs are interpolated between field heights, not over the frame; `interpolate` psf does");
   return std::make_unique<FrameKernels>(table, wavelength_nm, cell_um, centres);
 }
 
