@@ -24,7 +24,8 @@ struct BuildCommand {
   CameraChoice camera;
   std::string output, wavelengths, sensor;
   std::optional<double> image_height_mm;
-  int field_count = TableOptions{}.field_count;
+  int field_count = TableOptions{}.field_count, frame_places = TableOptions{}.frame_places;
+  bool over_frame = false;
 };
 
 TableOptions table_options(const BuildCommand& command) {
@@ -36,14 +37,26 @@ TableOptions table_options(const BuildCommand& command) {
     throw InputError(
         fmt::format("--image-height {}: a positive number of mm would be right", *command.image_height_mm));
   if (command.image_height_mm) options.max_image_height_mm = *command.image_height_mm;
-  if (!command.sensor.empty())
-    options.max_image_height_mm = read_sensor(command.sensor).geometry.half_diagonal_mm();
+  options.frame_places = command.frame_places;
+  if (!command.sensor.empty()) {
+    const SensorGeometry frame = read_sensor(command.sensor).geometry;
+    options.max_image_height_mm = frame.half_diagonal_mm();
+    options.half_frame_mm = {frame.width_mm() / 2, frame.height_mm() / 2};
+  }
+  if (command.over_frame) options.places = TableOptions::Places::over_frame;
   options.validate();
   return options;
 }
 
+void note_dark_places(const LensDataTable& table, const Shared& shared) {
+  const auto dark = std::count(table.g_source_sr.begin(), table.g_source_sr.end(), 0.0);
+  if (dark > 0)
+    note(shared, fmt::format("{}: no ray reaches {} of {} places", table.lens_name, dark, table.psf.size()));
+}
+
 /// A table that ends before the height asked for is useful, but the user should know.
 void note_short_table(const LensDataTable& table, double wanted_mm, const Shared& shared) {
+  if (table.frame) return note_dark_places(table, shared);
   const std::size_t last = table.fields.size() - 1;
   double reached_mm = INFINITY;
   for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
@@ -105,6 +118,11 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
       ->excludes(sensor);
   command->add_option("--fields", options->field_count, "Number of fields, the axis included")
       ->capture_default_str();
+  command
+      ->add_option("--places", options->frame_places,
+                   "Places along the longer side, of a table over the frame: for lenses with poses or blades")
+      ->capture_default_str();
+  command->add_flag("--over-frame", options->over_frame, "Places over the frame for a centred lens too");
   options->camera.add_stop_and_focus(*command, Focus::design());
   options->camera.add_positions(*command);
   options->camera.add_apertures(*command);

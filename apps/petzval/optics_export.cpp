@@ -83,6 +83,7 @@ void check_light(const ExportCommand& command, const LensDataTable& before, cons
 /// The table with its PSFs on one grid, if it is allowed to bring them there.
 LensDataTable prepared(const ExportCommand& command, const Shared& shared) {
   LensDataTable table = read_table(command.path);
+  require_by_height(table, "ISET's files hold centred lenses");
   const bool resample = command.resample || command.spacing_um || command.size;
   if (!resample || (has_one_grid(table) && !command.spacing_um && !command.size)) return table;
   const PsfGridSize grid = asked_grid(command, table);

@@ -187,9 +187,72 @@ void print_fit(const LensDataTable& table, const RadialProfiles& profiles, const
   }
 }
 
+/// Of a table over the frame: a row for each place and wavelength.
+nlohmann::ordered_json frame_rows_json(const LensDataTable& table) {
+  const FramePlaces& frame = *table.frame;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (std::size_t place = 0; place < table.places(); ++place)
+    for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+      const std::size_t i = table.index(place, w);
+      rows.push_back({{"image_x_mm", frame.x_mm[place % frame.x_mm.size()]},
+                      {"image_y_mm", frame.y_mm[place / frame.x_mm.size()]},
+                      {"wavelength_nm", table.wavelengths_nm[w]},
+                      {"object_x", frame.object_x[i]},
+                      {"object_y", frame.object_y[i]},
+                      {"g_source_sr", table.g_source_sr[i]},
+                      {"g_sensor_sr", table.g_sensor_sr[i]},
+                      {"psf_azimuth_deg", frame.psf_azimuth_deg[i]},
+                      {"psf_size", table.psf[i].size},
+                      {"psf_spacing_um", table.psf[i].spacing_um},
+                      {"psf_captured", table.psf[i].captured}});
+    }
+  return rows;
+}
+
+nlohmann::ordered_json frame_info_json(const LensDataTable& table) {
+  return {{"lens", table.lens_name},
+          {"provenance", table.provenance},
+          {"object_distance_mm", number_or_null(table.object_distance_mm.value_or(INFINITY))},
+          {"vertex_to_sensor_mm", table.vertex_to_sensor_mm},
+          {"first_order", first_order_json(table.first_order)},
+          {"object_unit", table.field_unit()},
+          {"wavelengths_nm", table.wavelengths_nm},
+          {"image_x_mm", table.frame->x_mm},
+          {"image_y_mm", table.frame->y_mm},
+          {"rows", frame_rows_json(table)}};
+}
+
+void print_frame(const LensDataTable& table) {
+  const FramePlaces& frame = *table.frame;
+  fmt::print("\n{} x {} places over the frame, x' from {:g} to {:g} mm, y' from {:g} to {:g} mm\n",
+             frame.x_mm.size(), frame.y_mm.size(), frame.x_mm.front(), frame.x_mm.back(), frame.y_mm.front(),
+             frame.y_mm.back());
+  fmt::print("{:>10} {:>10} {:>15} {:>13} {:>13} {:>13} {:>13} {:>11} {:>13} {:>9}\n", "x' [mm]", "y' [mm]",
+             "wavelength [nm]", fmt::format("object x [{}]", table.field_unit()),
+             fmt::format("object y [{}]", table.field_unit()), "g_source [sr]", "g_sensor [sr]",
+             "PSF samples", "spacing [um]", "captured");
+  for (std::size_t place = 0; place < table.places(); ++place)
+    for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+      const std::size_t i = table.index(place, w);
+      const Psf& psf = table.psf[i];
+      fmt::print(
+          "{:>10.4g} {:>10.4g} {:>15g} {:>13.5f} {:>13.5f} {:>13.6f} {:>13.6f} {:>11} {:>13.4f} {:>9.4f}\n",
+          frame.x_mm[place % frame.x_mm.size()], frame.y_mm[place / frame.x_mm.size()],
+          table.wavelengths_nm[w], frame.object_x[i], frame.object_y[i], table.g_source_sr[i],
+          table.g_sensor_sr[i], fmt::format("{0}x{0}", psf.size), psf.spacing_um, psf.captured);
+    }
+}
+
 void info(const TableInfoCommand& command, const Shared& shared) {
   const RadialFit fit = RadialFit::parse(command.fit);
   const LensDataTable table = read_table(command.path);
+  if (table.frame) {
+    if (fit.polynomial_order != 0)
+      throw InputError(command.path, "its places lie over the frame; --fit is for tables by field height");
+    if (shared.json) return print_json(frame_info_json(table));
+    print_header(table);
+    return print_frame(table);
+  }
   const RadialProfiles profiles(table, fit);
   if (shared.json) return print_json(info_json(table, profiles, command.fit));
   print_header(table);

@@ -228,18 +228,30 @@ void bind_plan(nb::module_& module) {
       .def_prop_ro(
           "g_source_sr",
           [](const LensDataTable& t) {
-            return array_of(t.g_source_sr, {t.fields.size(), t.wavelengths_nm.size()});
+            return array_of(t.g_source_sr, {t.places(), t.wavelengths_nm.size()});
           },
           "(field, wavelength)")
       .def_prop_ro(
           "g_sensor_sr",
           [](const LensDataTable& t) {
-            return array_of(t.g_sensor_sr, {t.fields.size(), t.wavelengths_nm.size()});
+            return array_of(t.g_sensor_sr, {t.places(), t.wavelengths_nm.size()});
           },
           "(field, wavelength)")
+      .def_prop_ro(
+          "over_frame", [](const LensDataTable& t) { return t.frame.has_value(); },
+          "Whether places lie over the frame in two dimensions; then fields and heights are empty, and "
+          "what is by field is by place, row by row.")
+      .def_prop_ro(
+          "image_x_mm",
+          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->x_mm : std::vector<double>()); },
+          "Places along x', of a table over the frame.")
+      .def_prop_ro(
+          "image_y_mm",
+          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->y_mm : std::vector<double>()); },
+          "Places along y', of a table over the frame.")
       .def("__repr__", [](const LensDataTable& t) {
-        return fmt::format("<LensDataTable of '{}': {} fields, {} wavelengths>", t.lens_name, t.fields.size(),
-                           t.wavelengths_nm.size());
+        return fmt::format("<LensDataTable of '{}': {} {}, {} wavelengths>", t.lens_name, t.places(),
+                           t.frame ? "places" : "fields", t.wavelengths_nm.size());
       });
   nb::class_<ImagePlan>(module, "ImagePlan", "Scene, table of the lens and frame, made to fit each other.")
       .def_prop_ro(

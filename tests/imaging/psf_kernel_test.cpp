@@ -134,7 +134,7 @@ TEST(PsfKernel, AnEvenWindowOfASymmetricPsfIsSymmetric) {
     TableRecipe recipe;
     recipe.psf = [&](double, double) { return psf_of_spots({spot}, 40, 0.5); };
     const PsfField psfs(make_table(recipe), 550, 2.0);
-    symmetric = psfs.mirror_symmetric();
+    symmetric = psfs.symmetry() == KernelSymmetry::mirrored;
     return psfs.kernel_at(0, 1);  // away from the axis is down
   };
   bool symmetric = false;
@@ -157,7 +157,7 @@ TEST(PsfKernel, PointsAwayFromTheMiddleOfThePictureAtEightAzimuths) {
   for (const double lean : {0.0, 0.6}) {
     const LensDataTable table = make_table(comatic_recipe(lean));
     const PsfField psfs(table, 550, 3.0);
-    EXPECT_EQ(psfs.mirror_symmetric(), lean == 0);
+    EXPECT_EQ(psfs.symmetry(), lean == 0 ? KernelSymmetry::mirrored : KernelSymmetry::turned);
     const double height_mm = table.real_image_height_mm[3];
     const Psf& psf = table.psf[3];
     double mean_s = 0, mean_t = 0;  // of the samples [cells]
@@ -283,7 +283,7 @@ TEST(PsfKernel, SaysItsReachBeforeItIsMade) {
 TEST(PsfKernel, IsTheSameWhenPrepared) {
   const LensDataTable table = make_table(comatic_recipe(0.3));
   const PsfField prepared(table, 550, 12.5), as_it_comes(table, 550, 12.5);
-  prepared.prepare({0, 0.1, 0.4, 0.4, 2});
+  prepared.prepare({{0, 0}, {0, 0.1}, {0.4, 0}, {0, -0.4}, {2, 0}});
   for (const double height_mm : {0.1, 0.25, 0.4})
     EXPECT_EQ(prepared.kernel_at(0.6 * height_mm, 0.8 * height_mm).weights,
               as_it_comes.kernel_at(0.6 * height_mm, 0.8 * height_mm).weights);

@@ -90,6 +90,19 @@ std::optional<std::array<double, 2>> FieldTracer::image_of(double across, double
                     at->image_height_mm * std::cos(turn) - at->image_x_mm * std::sin(turn)};
 }
 
+std::optional<std::array<double, 2>> FieldTracer::landing_mm(double object_x, double object_y) {
+  const double field = std::hypot(object_x, object_y);
+  if (!designed_) {
+    const std::optional<ChiefRay> chief = chief_ray(field);
+    if (!chief) return {};
+    const double per_field = field > 0 ? chief->image_height_mm / field : 0;
+    return std::array{per_field * object_x, per_field * object_y};
+  }
+  if (lens_.object_distance_mm) return image_of(object_x, object_y, 1);
+  const double per_degree = field > 0 ? std::sin(radians(field)) / field : 0;
+  return image_of(per_degree * object_x, per_degree * object_y, std::cos(radians(field)));
+}
+
 double FieldTracer::object_area_by_neighbours(const ChiefRay& chief) {
   const bool far = !lens_.object_distance_mm;
   const double step = far ? radians(difference_deg) : difference_step(lens_);

@@ -47,6 +47,10 @@ class FieldTracer {
   /// Nothing where no chief ray reaches the image surface. Of a lens with poses it goes through the middle of
   /// the stop where that stands.
   std::optional<ChiefRay> chief_ray(double object_field);
+  /// Where the chief ray of an object lands [mm]: x' and y', in the axes of all else here. \param object_x,
+  /// object_y  its field as a vector: the angle from the axis [degrees], or the place in its plane [mm].
+  /// Nothing where no chief ray reaches the image surface.
+  std::optional<std::array<double, 2>> landing_mm(double object_x, double object_y);
   /// The vignetted pupil in object space; nothing where no ray passes.
   std::optional<PupilBoundary> object_pupil(const ChiefRay& chief, int azimuths = default_azimuths) const;
   /// The same with a round stop, whatever its blades.

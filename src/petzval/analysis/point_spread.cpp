@@ -18,9 +18,6 @@ constexpr double spacing_per_lambda_n = 0.45;
 /// λN have them) over coarser ones: the error is a few thousandths of the cells' rms, less for wide spots.
 constexpr double sample_per_lambda_n = 0.4, coarse_sample_per_lambda_n = 0.6;
 constexpr double coarse_cell_lambda_n = 2;
-/// Nodes in any order are summed in windows up to this, whose square their number goes with: a million rays.
-/// Beyond it the rays of a pupil that is not smooth are counted.
-constexpr double widest_node_window_lambda_n = 256;
 /// Around the ray spot, and at least in all: the square that holds 99 % of an Airy pattern.
 constexpr double margin_lambda_n = 12;
 constexpr double least_half_width_lambda_n = 18.5;
@@ -215,8 +212,8 @@ std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief
   if (!extent) return {};
   return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
     const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();
-    if (width_mm > 2 * widest_node_window_lambda_n * extent->lambda_n_mm())
-      return traced_spot(tracer, chief, plan.grid());
+    if (width_mm > 2 * options.widest_node_window_lambda_n * extent->lambda_n_mm())
+      return traced_spot(tracer, chief, plan.grid(), options.spot_radial_nodes);
     const std::optional<PupilWaves> waves = pupil_waves(tracer, chief, plan.radial_nodes, plan.azimuths);
     if (!waves) return {};
     return sum_nodes(*waves, plan);

@@ -31,7 +31,12 @@ struct PsfOptions {
   int largest_size = 256;      ///< of a chosen size
   double wanted_share = 0.99;  ///< of the light, inside a chosen window
   double widest_wave_window_lambda_n = 500;
+  /// Nodes in any order are summed in windows up to this, whose square their number goes with: a million
+  /// rays. Beyond it the rays of a pupil that is not smooth are counted.
+  double widest_node_window_lambda_n = 256;
   int radial_nodes = 0, azimuths = 0;
+  /// Of a spot of rays, where waves would take too long: as many as fill 256 × 256 cells by a dozen each.
+  int spot_radial_nodes = 384;
 };
 
 /// \returns nothing when no ray of the field passes.

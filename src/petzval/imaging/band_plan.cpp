@@ -21,7 +21,6 @@ double half_diagonal_mm(const SensorGeometry& grid) {
 
 std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
                                  const ImagingOptions& options) {
-  const RadialProfiles profiles(table, options.fit);
   const LightCentres centres(table);
   std::vector<BandPlan> plans;
   for (const double wavelength_nm : scene.wavelengths_nm()) {
@@ -33,8 +32,7 @@ std::vector<BandPlan> plan_bands(const Scene& scene, const LensDataTable& table,
       least_captured = reach.least_captured;
     }
     if (options.by_sections()) transform_size(options.section_options(), margin);
-    const LightProfile lens(profiles.at_wavelength(wavelength_nm), table, centres, wavelength_nm);
-    SceneMap map(lens, object_to_sensor_mm(table), scene,
+    SceneMap map(table, centres, options.fit, wavelength_nm, scene,
                  half_diagonal_mm(grown(frame, margin + source_margin(margin))));
     plans.push_back({std::move(map), margin, least_captured});
   }

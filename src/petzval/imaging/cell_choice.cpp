@@ -26,6 +26,22 @@ class FrameMtf {
     const std::size_t wavelength = bracketing_wavelengths(table, wavelength_nm).front().first;
     const double corner_mm = half_diagonal_mm(sensor);
     double weights = 0;
+    if (table.frame) {
+      // Places lie evenly; those beyond the frame by less than a mesh stand for its edge.
+      const FramePlaces& frame = *table.frame;
+      const double half_x = sensor.width_mm() / 2 + (frame.x_mm[1] - frame.x_mm[0]) / 2,
+                   half_y = sensor.height_mm() / 2 + (frame.y_mm[1] - frame.y_mm[0]) / 2;
+      for (std::size_t place = 0; place < table.places(); ++place) {
+        if (std::abs(frame.x_mm[place % frame.x_mm.size()]) > half_x ||
+            std::abs(frame.y_mm[place / frame.x_mm.size()]) > half_y)
+          continue;
+        const std::size_t entry = table.index(place, wavelength);
+        if (table.g_source_sr.at(entry) == 0) continue;
+        add(table.psf.at(entry), sensor.pitch_um, 1);
+        ++weights;
+      }
+      if (weights == 0) add(table.psf.front(), sensor.pitch_um, weights = 1);
+    }
     for (std::size_t field = 0; field < table.fields.size(); ++field) {
       const std::size_t entry = table.index(field, wavelength);
       const double height_mm = table.real_image_height_mm.at(entry);
@@ -82,10 +98,9 @@ class FrameMtf {
 /// Samples of a scene along a side of a pixel, on the axis.
 double samples_per_pixel(const Scene& scene, const LensDataTable& table, double wavelength_nm,
                          const SensorGeometry& sensor, const RadialFit& fit) {
-  const LightProfile lens(RadialProfiles(table, fit).at_wavelength(wavelength_nm));
   const double corner_mm = half_diagonal_mm(sensor), pitch_mm = sensor.pitch_um * mm_per_um;
-  const SceneMap map(lens, object_to_sensor_mm(table), scene, corner_mm);
-  return map.around(pitch_mm, 0).finest_samples_per_mm() * pitch_mm;
+  const SceneMap map(table, {}, fit, wavelength_nm, scene, corner_mm);
+  return map.samples_per_mm_at(pitch_mm, 0) * pitch_mm;
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ void DirectStrip::prepare(const CellPlane& source, const SourceRow& row, bool ri
   const int outward = row.below ? row.row - blur_.down_.cell(0, true) : blur_.down_.cell(0, false) - row.row;
   const int tile_row = outward / side;
   const auto cell = static_cast<std::size_t>(outward % side), nodes = blur_.nodes_.size();
-  const std::size_t set = blur_.sets_.size() == 1 || right == row.below ? 0 : 1;
+  const std::size_t set = kernel_set({right, row.below}, blur_.sets_.size());
   const std::size_t size = blur_.taps() * blur_.taps();
   const std::size_t first_down = (nodes - 1) * static_cast<std::size_t>(tile_row),
                     first_across = (nodes - 1) * static_cast<std::size_t>(tile);
@@ -132,18 +132,19 @@ DirectBlur::DirectBlur(const PsfField& psfs, const SensorGeometry& grid, const P
       tiles_down_((down_.count() + plan.tile - 1) / plan.tile),
       nodes_(lobatto_nodes(plan.nodes)),
       weights_(cell_weights(nodes_, plan.tile)),
-      sets_(psfs.mirror_symmetric() ? 1 : 2) {
+      sets_(kernel_set_count(psfs.symmetry())) {
   const std::size_t across = nodes_across(),
                     down = (nodes_.size() - 1) * static_cast<std::size_t>(tiles_down_) + 1,
                     size = taps() * taps(), phases = nodes_.size() - 1;
   for (std::size_t set = 0; set < sets_.size(); ++set) {
+    const Quadrant quadrant = quadrants_of_set(set, sets_.size()).front();
     sets_[set].resize(across * down * size);
     parallel_for(across * down, [&](std::size_t node) {
       const auto position = [&](std::size_t index) {
         return plan_.tile * (double(index / phases) + nodes_[index % phases]);
       };
       const Kernel kernel =
-          kernel_at_node(psfs, across_, down_, position(node % across), position(node / across), set == 1);
+          kernel_at_node(psfs, across_, down_, position(node % across), position(node / across), quadrant);
       std::transform(kernel.weights.begin(), kernel.weights.end(),
                      sets_[set].begin() + static_cast<std::ptrdiff_t>(node * size),
                      [](double weight) { return static_cast<float>(weight); });

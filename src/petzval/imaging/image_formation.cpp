@@ -201,11 +201,6 @@ void ImagingOptions::validate() const {
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
 
-std::optional<double> object_to_sensor_mm(const LensDataTable& table) {
-  if (!table.object_distance_mm) return std::nullopt;
-  return *table.object_distance_mm + table.vertex_to_sensor_mm;
-}
-
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& asked, const TakeBand& take, const ProgressCallback& progress,
                 ImagingReport* report) {

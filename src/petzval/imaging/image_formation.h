@@ -116,7 +116,4 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress = {},
                 ImagingReport* report = nullptr);
 
-/// From the object plane to the sensor plane [mm]; absent: infinity.
-std::optional<double> object_to_sensor_mm(const LensDataTable& table);
-
 }  // namespace petzval

@@ -2,6 +2,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/kernel_error.h>
+#include <petzval/imaging/node_kernel.h>
 #include <petzval/imaging/product_layout.h>
 
 #include <algorithm>
@@ -57,28 +58,30 @@ class ErrorAtPlaces {
         margin_(grid.margin),
         tile_(tile),
         nodes_(lobatto_nodes(nodes)) {}
+  bool symmetric() const { return psfs_.symmetry() != KernelSymmetry::none; }
   const OutwardAxis& across() const { return across_; }
   const OutwardAxis& down() const { return down_; }
   int columns_in_picture() const { return std::max(1, across_.count() - margin_); }
   int rows_in_picture() const { return std::max(1, down_.count() - margin_); }
-  /// Σd²/(1 + Σh²).
-  double square(int column, int row) const {
-    const Kernel exact = kernel(column, row);
+  /// Σd²/(1 + Σh²). \param quadrant  where the cell lies.
+  double square(int column, int row, const Quadrant& quadrant = {true, true}) const {
+    const Kernel exact = kernel(column, row, quadrant);
     double square = 0;
     for (const double weight : exact.weights) square += weight * weight;
     const auto last = [&](const OutwardAxis& axis, int at) {
       return std::min(exact.radius, axis.count() - margin_ - 1 - at);
     };
     const LitPart lit{last(across_, column), last(down_, row)};
-    return (squared_error(exact, lit, column, tile_, nodes_, [&](double at) { return kernel(at, row); }) +
-            squared_error(exact, lit, row, tile_, nodes_, [&](double at) { return kernel(column, at); })) /
+    const auto along_row = [&](double at) { return kernel(at, row, quadrant); };
+    const auto along_column = [&](double at) { return kernel(column, at, quadrant); };
+    return (squared_error(exact, lit, column, tile_, nodes_, along_row) +
+            squared_error(exact, lit, row, tile_, nodes_, along_column)) /
            (1 + square);
   }
 
  private:
-  Kernel kernel(double column, double row) const {
-    const double cell_mm = psfs_.cell_um() * mm_per_um;
-    return psfs_.kernel_at(-across_.position(column) * cell_mm, down_.position(row) * cell_mm);
+  Kernel kernel(double column, double row, const Quadrant& quadrant) const {
+    return kernel_at_node(psfs_, across_, down_, column, row, quadrant);
   }
 
   const PsfField& psfs_;
@@ -138,8 +141,12 @@ namespace {
 
 /// Evenly over the grid, in an order in which any number of first places is spread over it.
 double square_at(const ErrorAtPlaces& errors, int place) {
-  return errors.square(static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
-                       static_cast<int>(radical_inverse(place, 3) * errors.down().count()));
+  const auto column = static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
+             row = static_cast<int>(radical_inverse(place, 3) * errors.down().count());
+  if (errors.symmetric()) return errors.square(column, row);
+  // Quadrant after quadrant, in another order than that of columns.
+  const int turn = place + place / 4;
+  return errors.square(column, row, {turn % 2 == 0, turn / 2 % 2 == 0});
 }
 
 }  // namespace
@@ -180,7 +187,7 @@ class Rim {
  public:
   Rim(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes)
       : errors_(psfs, grid, tile, nodes),
-        sampled_(places_within(errors_, psfs.last_height_mm() / (psfs.cell_um() * mm_per_um) + 1)) {}
+        sampled_(places_within(errors_, psfs.rim_mm() / (psfs.cell_um() * mm_per_um) + 1)) {}
 
   const std::vector<Place>& places() const { return sampled_.inside; }
   bool is_too_small() const {

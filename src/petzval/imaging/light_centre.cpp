@@ -4,9 +4,11 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/light_centre.h>
+#include <petzval/imaging/psf_deposit.h>
 #include <petzval/numeric/interpolation.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace petzval {
 
@@ -44,7 +46,41 @@ std::vector<std::pair<std::size_t, double>> bracketing_wavelengths(const LensDat
   return {{i, 1 - t}, {i + 1, t}};
 }
 
-LightCentres::LightCentres(const LensDataTable& table) : offsets_mm_(table.psf.size()) {
+void LightCentres::find_over_frame(const LensDataTable& table) {
+  const FramePlaces& frame = *table.frame;
+  frame_offsets_mm_.resize(table.psf.size());
+  parallel_for(frame_offsets_mm_.size(), [&](std::size_t entry) {
+    const LightMoments light = light_moments(table.psf[entry], 0);
+    if (!(light.sum > 0)) return;
+    const double s = light.sums.mean[0] / light.sum * mm_per_um,
+                 t = light.sums.mean[1] / light.sum * mm_per_um;
+    const double a = radians(frame.psf_azimuth_deg[entry]);
+    frame_offsets_mm_[entry] = {s * std::cos(a) - t * std::sin(a), s * std::sin(a) + t * std::cos(a)};
+  });
+  constexpr double most_of_step = 0.5;
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    bool tame = true;
+    const auto compare = [&](std::size_t a, std::size_t b, double step_mm) {
+      const auto &from = frame_offsets_mm_[table.index(a, w)], &to = frame_offsets_mm_[table.index(b, w)];
+      tame = tame && std::hypot(to[0] - from[0], to[1] - from[1]) < most_of_step * step_mm;
+    };
+    for (std::size_t j = 0; j < frame.y_mm.size(); ++j)
+      for (std::size_t i = 0; i < frame.x_mm.size(); ++i) {
+        if (i > 0) compare(frame.place(i - 1, j), frame.place(i, j), frame.x_mm[i] - frame.x_mm[i - 1]);
+        if (j > 0) compare(frame.place(i, j - 1), frame.place(i, j), frame.y_mm[j] - frame.y_mm[j - 1]);
+      }
+    if (!tame)
+      for (std::size_t place = 0; place < frame.count(); ++place)
+        frame_offsets_mm_[table.index(place, w)] = {};
+  }
+}
+
+LightCentres::LightCentres(const LensDataTable& table) {
+  if (table.frame) {
+    find_over_frame(table);
+    return;
+  }
+  offsets_mm_.resize(table.psf.size());
   constexpr double least_stretch = 0.5, most_stretch = 2;
   std::vector<double> own_mm(table.psf.size());
   parallel_for(own_mm.size(),

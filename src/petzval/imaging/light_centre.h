@@ -4,6 +4,7 @@
 
 #include <petzval/optics/table_interpolation.h>
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -30,14 +31,22 @@ class LightCentres {
   LightCentres() = default;
   /// Zero on the axis; and from one field to the next the centres move at least half and at most twice as far
   /// as the chief rays. What that leaves out (at the rim of a fisheye, in PSFs that no lens has) stays in the
-  /// kernels.
+  /// kernels. Over a frame in two dimensions they are zero at a wavelength where centres would move by more
+  /// than half as far as the chief rays, against them.
   explicit LightCentres(const LensDataTable& table);
 
   double offset_mm(std::size_t entry) const { return offsets_mm_.empty() ? 0 : offsets_mm_[entry]; }
-  bool none() const { return offsets_mm_.empty(); }
+  /// Of a table over the frame: along x' and y'.
+  std::array<double, 2> frame_offset_mm(std::size_t entry) const {
+    return frame_offsets_mm_.empty() ? std::array<double, 2>{} : frame_offsets_mm_[entry];
+  }
+  bool none() const { return offsets_mm_.empty() && frame_offsets_mm_.empty(); }
 
  private:
+  void find_over_frame(const LensDataTable& table);
+
   std::vector<double> offsets_mm_;  ///< [field][wavelength], as in the table
+  std::vector<std::array<double, 2>> frame_offsets_mm_;
 };
 
 /// The radial curves of a lens at one wavelength over the height of the centre of light.

@@ -4,39 +4,45 @@
 #include <petzval/imaging/node_kernel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace petzval {
 
 Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,
-                      double row, bool mirrored) {
+                      double row, const Quadrant& quadrant) {
   const double cell_mm = psfs.cell_um() * mm_per_um;
   const double x_mm = across.position(column) * cell_mm, y_mm = down.position(row) * cell_mm;
-  Kernel kernel = psfs.kernel_at(mirrored ? x_mm : -x_mm, y_mm);  // columns run along −x'
-  if (mirrored)
+  Kernel kernel =
+      psfs.kernel_at(quadrant.right ? -x_mm : x_mm, quadrant.below ? y_mm : -y_mm);  // columns run along −x'
+  if (!quadrant.right)
     for (int i = -kernel.radius; i <= kernel.radius; ++i)
       for (int j = 1; j <= kernel.radius; ++j) std::swap(kernel.at(i, j), kernel.at(i, -j));
+  if (!quadrant.below)
+    for (int i = 1; i <= kernel.radius; ++i)
+      for (int j = -kernel.radius; j <= kernel.radius; ++j) std::swap(kernel.at(i, j), kernel.at(-i, j));
   return kernel;
 }
 
 NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
                          std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down,
-                         bool mirrored)
+                         const Quadrant& quadrant)
     : psfs_(psfs),
       across_(across),
       down_(down),
       places_(std::move(places)),
       nodes_across_(nodes_across),
       nodes_down_(nodes_down),
-      mirrored_(mirrored),
-      diagonal_(psfs.mirror_symmetric() && across.position(0) == down.position(0)) {
-  std::vector<double> heights_mm;
+      quadrant_(quadrant),
+      diagonal_(psfs.symmetry() == KernelSymmetry::mirrored && across.position(0) == down.position(0)) {
+  std::vector<std::array<double, 2>> places_mm;
+  const double cell_mm = psfs.cell_um() * mm_per_um;
   for (std::size_t j = 0; j < nodes_down_; ++j)
     for (std::size_t i = 0; i < nodes_across_; ++i)
-      heights_mm.push_back(psfs.cell_um() * mm_per_um *
-                           std::hypot(across_.position(places_[i]), down_.position(places_[j])));
-  psfs.prepare(heights_mm);
+      places_mm.push_back({(quadrant.right ? -1 : 1) * cell_mm * across_.position(places_[i]),
+                           (quadrant.below ? 1 : -1) * cell_mm * down_.position(places_[j])});
+  psfs.prepare(places_mm);
 
   constexpr double most_bytes = 256e6;
   const auto size = static_cast<std::size_t>(2 * psfs.radius() + 1), weights = size * size;
@@ -65,7 +71,7 @@ std::size_t NodeKernels::index(std::size_t node_across, std::size_t node_down) c
 }
 
 Kernel NodeKernels::made(std::size_t node_across, std::size_t node_down) const {
-  return kernel_at_node(psfs_, across_, down_, places_[node_across], places_[node_down], mirrored_);
+  return kernel_at_node(psfs_, across_, down_, places_[node_across], places_[node_down], quadrant_);
 }
 
 void NodeKernels::lay(std::size_t node_across, std::size_t node_down, double scale, float* out) const {

@@ -11,10 +11,9 @@
 
 namespace petzval {
 
-/// The kernel at a place counted from the axis [cells], rows and columns growing outwards. \param mirrored
-/// in the quadrants left of the axis and below it, and right and above, where PSFs are not mirror symmetric.
+/// The kernel at a place of a quadrant, counted from the axis [cells], rows and columns growing outwards.
 Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,
-                      double row, bool mirrored);
+                      double row, const Quadrant& quadrant);
 
 /// The kernels at nodes that lie at the same places along both axes, one of which may go on farther. Where
 /// the places of PSFs are mirror symmetric about the diagonal too, a kernel and its transpose are made once.
@@ -22,7 +21,8 @@ class NodeKernels {
  public:
   /// \param places  of nodes, increasing [cells]. \param nodes_across, nodes_down  so many of them.
   NodeKernels(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
-              std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down, bool mirrored);
+              std::vector<double> places, std::size_t nodes_across, std::size_t nodes_down,
+              const Quadrant& quadrant);
   /// Writes scale · weights to `out`. From any thread.
   void lay(std::size_t node_across, std::size_t node_down, double scale, float* out) const;
 
@@ -36,7 +36,8 @@ class NodeKernels {
   OutwardAxis across_, down_;
   std::vector<double> places_;
   std::size_t nodes_across_, nodes_down_;
-  bool mirrored_, diagonal_;
+  Quadrant quadrant_;
+  bool diagonal_;
   UnsetVector<float> weights_;  ///< empty where there is no symmetry to gain by
 };
 

@@ -2,9 +2,23 @@
 // How tiles cover a grid of cells, from the optical axis outwards, and where their kernels are taken.
 #pragma once
 
+#include <petzval/imaging/kernel_maker.h>
+
+#include <cstddef>
 #include <vector>
 
 namespace petzval {
+
+/// One of the four quarters of a grid about the axis.
+struct Quadrant {
+  bool right, below;
+};
+/// Sets of kernels that a grid needs, one for each of the quadrants that differ: 1, 2 or 4.
+std::size_t kernel_set_count(KernelSymmetry symmetry);
+/// The set that a quadrant's kernels belong to.
+std::size_t kernel_set(const Quadrant& quadrant, std::size_t set_count);
+/// The quadrants of a set; its kernels are made for the first of them.
+std::vector<Quadrant> quadrants_of_set(std::size_t set, std::size_t set_count);
 
 /// Cells along one axis of a grid, counted from the optical axis outwards on both sides. With an odd number
 /// of cells the one in the middle belongs to both sides, half of its light to each.

@@ -31,7 +31,7 @@ constexpr double deposit_ns = 2.5;        // per sample of a PSF and cell of a k
 double kernel_count(const PsfField& psfs, const SourceGrid& grid, const ProductPlan& plan) {
   const double across = std::ceil(OutwardAxis(grid.cells.columns).count() / double(plan.tile)),
                down = std::ceil(OutwardAxis(grid.cells.rows).count() / double(plan.tile));
-  const double sets = psfs.mirror_symmetric() ? 1 : 2;
+  const auto sets = double(kernel_set_count(psfs.symmetry()));
   return sets * ((plan.nodes - 1) * across + 1) * ((plan.nodes - 1) * down + 1);
 }
 double kernel_ns(const PsfField& psfs) {
@@ -82,7 +82,9 @@ ProductPlan candidate(const PsfField& psfs, const SourceGrid& grid, int transfor
   const double lines = nodes * std::ceil(tile / lanes) + (nodes * nodes + 1) * columns +
                        std::ceil((tile + 2 * psfs.radius()) / lanes);
   plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
-  plan.filter_ns = 2 * across * down * lines * transform * line_ns + plan.kernel_bytes * fetch_ns;
+  // Two quadrants at a time, where they share kernels.
+  const int pairs = psfs.symmetry() == KernelSymmetry::none ? 4 : 2;
+  plan.filter_ns = pairs * across * down * lines * transform * line_ns + plan.kernel_bytes * fetch_ns;
   const double kernel_lines = (std::ceil((2 * psfs.radius() + 1) / lanes) + columns) / 2;
   plan.kernels_ns = kernel_count(psfs, grid, plan) *
                     (kernel_ns(psfs) + kernel_lines * transform * std::log2(transform) * kernel_line_ns);

@@ -2,14 +2,10 @@
 // From the PSFs of a lens data table to the weights with which one cell's light reaches the cells about it.
 #pragma once
 
-#include <petzval/imaging/field_mixture.h>
+#include <petzval/imaging/kernel_maker.h>
 #include <petzval/imaging/light_centre.h>
-#include <petzval/imaging/psf_deposit.h>
-#include <petzval/imaging/psf_series.h>
 #include <petzval/optics/lens_data_table.h>
 
-#include <array>
-#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -22,100 +18,38 @@ enum class PsfInterpolation {
         ///< compare
 };
 
-/// How far the kernels of one wavelength reach.
-struct PsfReach {
-  int radius = 0;             ///< cells
-  double least_captured = 1;  ///< the least share of light that a PSF's window caught
-};
 /// What a PsfField says of itself, without making one. \throws InputError as PsfField.
 PsfReach psf_reach(const LensDataTable& table, double wavelength_nm, double cell_um,
                    const LightCentres& centres = {});
 
-/// The kernels of one wavelength at every place of the image.
-///
-/// For light that lands about (x', y') the PSFs of the four fields about that height (field_shares()), at the
-/// bracketing wavelengths, are stretched to the widths of the height, mixed, seen through a round window
-/// (SmoothPsf), rotated to the azimuth of (x', y'), taken at the middles of the cells and normalised to sum 1
-/// (after Maeda, Catrysse & Wandell 2005, section 2.2.3; the sum is the OTF at zero frequency). The kernel
-/// has the centroid of the PSF, and its spread and that of the window, wherever the cells lie. Beyond the
-/// heights of the table its last PSF holds.
+/// The kernels of one wavelength at every place of the image, whatever the kind of the table.
 class PsfField {
  public:
   /// \throws InputError if the wavelength lies outside the table, a PSF is empty, damaged or dark, or spans
-  /// more than 4000 cells.
+  /// more than 4000 cells, and for OTFs of a table over the frame.
   /// \param centres  what kernels are centred on, and heights counted to: the chief rays unless given.
   PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
            PsfInterpolation interpolation = PsfInterpolation::psf, const LightCentres& centres = {});
 
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
-  int radius() const { return reach_.radius; }
+  int radius() const { return maker_->reach().radius; }
   double cell_um() const { return cell_um_; }
-  /// The height from which on kernels are those of the last field, turned.
-  double last_height_mm() const { return layers_[0].height_mm.back(); }
+  /// KernelMaker::rim_mm().
+  double rim_mm() const { return maker_->rim_mm(); }
   /// Coefficients that a kernel is made of, about.
-  double coefficients() const;
-  /// Whether all PSFs are the same left and right of the tangential plane, as those of a centred lens are;
-  /// then mirrored places have mirrored kernels.
-  bool mirror_symmetric() const { return mirror_symmetric_; }
+  double coefficients() const { return maker_->coefficients(); }
+  KernelSymmetry symmetry() const { return maker_->symmetry(); }
   /// The least share of light that a PSF's window caught when the table was made.
-  double least_captured() const { return reach_.least_captured; }
+  double least_captured() const { return maker_->reach().least_captured; }
 
   /// \param x_mm, y_mm  where the chief ray, or the centre of the light, lands in image space (x' > 0 is left
   /// of the picture's middle).
-  Kernel kernel_at(double x_mm, double y_mm) const;
-  /// Makes ready what kernels at these heights share, with all threads; else the first that needs it does.
-  void prepare(const std::vector<double>& heights_mm) const;
+  Kernel kernel_at(double x_mm, double y_mm) const { return maker_->kernel_at(x_mm, y_mm); }
+  void prepare(const std::vector<std::array<double, 2>>& places_mm) const { maker_->prepare(places_mm); }
 
  private:
-  /// The moments of PSFs of unit sum over height: smooth curves, for where the spread of light grows ever
-  /// faster with height, bends in it at each field of the table would show on a wall.
-  class MomentCurves {
-   public:
-    MomentCurves() = default;
-    MomentCurves(const std::vector<double>& height_mm, const std::vector<MergedPsf>& psfs);
-    Moments at(double height_mm) const {
-      return {{s_(height_mm), t_(height_mm)}, ss_(height_mm), st_(height_mm), tt_(height_mm)};
-    }
-
-   private:
-    MonotoneCubic s_, t_, ss_, st_, tt_;
-  };
-  /// One wavelength of the table.
-  struct Layer {
-    double weight = 1;
-    std::vector<double> height_mm;
-    std::vector<MergedPsf> psfs;
-    std::vector<double> half_side_um;  ///< of the square about a kernel's centre that holds their light
-    MomentCurves moments;
-  };
-  /// The two PSFs of a layer between which a height lies.
-  struct Pair {
-    const MergedPsf *low, *high;
-    double weight_high;
-  };
-  static Pair pair_at(const Layer& layer, double height_mm);
-  /// Of the PSF at this height [cells], its tangential direction along the rows' growing numbers.
-  Moments moments_at(double height_mm) const;
-  /// Lays a PSF down on a lattice, stretched to the spread that PSFs have at this height, and by factors
-  /// along s and t beyond it.
-  void add(const Layer& layer, const MergedPsf& psf, const FieldShare& share, double height_mm,
-           const std::array<double, 2>& beyond, Kernel& lattice) const;
-  /// The mixture of fields and wavelengths for a height, stretched so.
-  Kernel mixture_at(double height_mm, std::size_t interval, const std::array<double, 2>& beyond) const;
-  double spacing_um() const;
-  /// Of the lattice for the PSFs of an interval between two fields: as wide as their light.
-  int half_of(std::size_t interval) const;
-  /// mixture_at() with the spread of the height.
-  SmoothPsf psf_at(double height_mm, std::size_t interval) const;
-  Kernel interpolated_psf(const std::array<double, 2>& direction, double height_mm) const;
-  Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
-
   double cell_um_;
-  PsfInterpolation interpolation_;
-  std::vector<Layer> layers_;
-  std::unique_ptr<PsfSeries> series_;
-  PsfReach reach_;
-  bool mirror_symmetric_ = true;
+  std::unique_ptr<const KernelMaker> maker_;
 };
 
 }  // namespace petzval

@@ -61,30 +61,22 @@ double SceneRows::mean_radiance(const Rectangle& seen) const {
 }
 
 double SceneRows::cell(double x_mm, double y_mm) const {
-  const double pitch_mm = grid_.pitch_um * mm_per_um;
-  const SceneMap::Surroundings near = map_.around(x_mm, y_mm);
-  constexpr double rounding = 1e-6;
-  const double samples = near.finest_samples_per_mm() * pitch_mm;
-  const int count = static_cast<int>(std::clamp(std::ceil(samples - rounding), 1.0, double(parts_)));
-  const double part_mm = pitch_mm / count;
+  thread_local std::vector<ScenePart> parts;
+  map_.look().cut(x_mm, y_mm, grid_.pitch_um * mm_per_um, parts_, parts);
   double sum = 0;
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j) {
-      const double x = x_mm + (j - (count - 1) / 2.0) * part_mm, y = y_mm + (i - (count - 1) / 2.0) * part_mm;
-      const SceneMap::Place place = near.place(x, y);
-      if (place.g_source_sr == 0) continue;
-      if (panorama_) {
-        sum += place.g_source_sr *
-               panorama_->radiance(place.column - scene_.columns() / 2.0, place.row - scene_.rows() / 2.0);
-        continue;
-      }
-      constexpr double least = 1e-9;  // a length to divide by
-      const auto side = [&](double at_mm) {
-        return std::clamp(std::abs(near.samples_per_mm_along(at_mm)) * part_mm, least, 1.0);
-      };
-      sum += place.g_source_sr * mean_radiance({place.column, place.row, side(x), side(y)});
+  for (const ScenePart& part : parts) {
+    const ScenePlace& place = part.place;
+    if (place.g_source_sr == 0) continue;
+    if (panorama_) {
+      sum += place.g_source_sr *
+             panorama_->radiance(place.column - scene_.columns() / 2.0, place.row - scene_.rows() / 2.0);
+      continue;
     }
-  return sum / (double(count) * count);
+    constexpr double least = 1e-9;  // a length to divide by
+    const auto side = [&](double samples) { return std::clamp(samples, least, 1.0); };
+    sum += place.g_source_sr * mean_radiance({place.column, place.row, side(part.width), side(part.height)});
+  }
+  return sum / double(parts.size());
 }
 
 void SceneRows::write(std::size_t row, float* irradiance) const {
@@ -93,7 +85,7 @@ void SceneRows::write(std::size_t row, float* irradiance) const {
   // From a cell's middle to the farthest sample that it needs, and one more for rounding.
   const PlaneView view{radiance_.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
   RowView cells;
-  if (!panorama_) cells.look(map_.steps(), {pitch_mm, y_mm, columns});
+  if (!panorama_) map_.look().look({pitch_mm, y_mm, columns}, cells);
   const std::size_t at_once = sampled_at_once();
   for (std::size_t column = 0; column < columns;) {
     if (!panorama_) column = sample_row(view, cells, 1, column, irradiance);

@@ -113,16 +113,27 @@ void SectionBlur::add_to_result(int first_row, int first_column, bool flip_rows,
 
 /// All sections of two groups that cross: at most four, mirror images of each other. The kernel of one serves
 /// the one that lies opposite the axis (rotated by half a turn), and all four if the PSFs are mirror
-/// symmetric.
+/// symmetric; none but itself where nothing is symmetric.
 void blur_crossing(const SectionGroup& rows, const SectionGroup& columns, const PsfField& psfs,
                    SectionBlur& blur) {
   const double cell_mm = psfs.cell_um() * 1e-3;
+  const bool mirror_symmetric = psfs.symmetry() == KernelSymmetry::mirrored;
+  if (psfs.symmetry() == KernelSymmetry::none) {
+    for (const SectionSpan& row : rows.sections)
+      for (const SectionSpan& column : columns.sections) {
+        if (!blur.has_light(row.first, column.first)) continue;
+        blur.set_kernel(psfs.kernel_at((column.mirrored ? 1 : -1) * columns.centre * cell_mm,
+                                       (row.mirrored ? -1 : 1) * rows.centre * cell_mm));
+        blur.add_section(row.first, column.first, false, false);
+      }
+    return;
+  }
   for (const bool across : {false, true}) {
-    if (across && psfs.mirror_symmetric()) break;
+    if (across && mirror_symmetric) break;
     bool ready = false;
     for (const SectionSpan& row : rows.sections)
       for (const SectionSpan& column : columns.sections) {
-        if (!psfs.mirror_symmetric() && (row.mirrored != column.mirrored) != across) continue;
+        if (!mirror_symmetric && (row.mirrored != column.mirrored) != across) continue;
         if (!blur.has_light(row.first, column.first)) continue;
         if (!ready)  // columns run along −x'; the kernel of the pair across the axis is made for its mirrored
                      // column

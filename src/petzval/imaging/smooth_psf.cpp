@@ -246,6 +246,7 @@ void sample_mixture(std::span<const WeightedPsf> psfs, double spacing_cells, con
     const double column_start = row * column_down + column_shift, row_start = row * row_down + row_shift;
     narrow(column_start, column_step, bound, first, last);
     narrow(row_start, row_step, bound, first, last);
+    if (!(first <= last)) continue;  // numbers too large for an int among them
     const int from = static_cast<int>(std::ceil(first)), to = static_cast<int>(std::floor(last));
     if (from > to) continue;
     const auto count = static_cast<std::size_t>(to - from + 1);

@@ -81,8 +81,11 @@ class TransformBlur::Light : public TileLight {
         first_column_(tile % blur.tiles_across_ * blur.plan_.tile) {}
 
   void load_row(int row, float* real, float* imaginary) const override {
-    load_row(row, pair_[0], real);
-    load_row(row, pair_[1], imaginary);
+    load_row(row, pair_.real, real);
+    if (pair_.imaginary)
+      load_row(row, *pair_.imaginary, imaginary);
+    else
+      std::fill_n(imaginary, blur_.plan_.tile, 0.0F);
   }
 
  private:
@@ -123,21 +126,26 @@ TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, c
       sets_(std::move(memory)) {
   const std::vector<float> weights = cell_weights(nodes_, plan.tile);
   weights_.assign(weights.begin(), weights.end());
-  sets_.resize(psfs.mirror_symmetric() ? 1 : 2);
-  for (std::size_t set = 0; set < sets_.size(); ++set) make_kernels(psfs, set == 1, sets_[set]);
+  sets_.resize(kernel_set_count(psfs.symmetry()));
+  for (std::size_t set = 0; set < sets_.size(); ++set)
+    make_kernels(psfs, quadrants_of_set(set, sets_.size()).front(), sets_[set]);
 }
 
-std::vector<TransformBlur::QuadrantPair> TransformBlur::pairs_of(std::size_t set, bool symmetric) {
-  if (symmetric) return {{{{true, true}, {false, true}}}, {{{true, false}, {false, false}}}};
-  if (set == 0) return {{{{true, true}, {false, false}}}};
-  return {{{{false, true}, {true, false}}}};
+std::vector<TransformBlur::QuadrantPair> TransformBlur::pairs_of(std::size_t set, std::size_t set_count) {
+  const std::vector<Quadrant> quadrants = quadrants_of_set(set, set_count);
+  std::vector<QuadrantPair> pairs;
+  for (std::size_t i = 0; i < quadrants.size(); i += 2) {
+    pairs.push_back({quadrants[i]});
+    if (i + 1 < quadrants.size()) pairs.back().imaginary = quadrants[i + 1];
+  }
+  return pairs;
 }
 
-void TransformBlur::make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const {
+void TransformBlur::make_kernels(const PsfField& psfs, const Quadrant& quadrant, KernelSet& set) const {
   std::vector<double> places;
   for (std::size_t node = 0; node < std::max(nodes_across(), nodes_down()); ++node)
     places.push_back(plan_.tile * (double(node / phases()) + nodes_[node % phases()]));
-  const NodeKernels kernels(psfs, across_, down_, places, nodes_across(), nodes_down(), mirrored);
+  const NodeKernels kernels(psfs, across_, down_, places, nodes_across(), nodes_down(), quadrant);
 
   const int size = 2 * radius_ + 1;
   const auto weights = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
@@ -182,7 +190,7 @@ std::vector<TransformBlur::TileRun> TransformBlur::runs() const {
   std::vector<TileRun> in_rows;
   for (std::size_t set = 0; set < sets_.size(); ++set)
     for (int first = 0; first < tiles; first += length)
-      for (const QuadrantPair& pair : pairs_of(set, sets_.size() == 1))
+      for (const QuadrantPair& pair : pairs_of(set, sets_.size()))
         in_rows.push_back({set, pair, first, std::min(tiles, first + length)});
   std::vector<TileRun> result;
   const std::size_t half = (in_rows.size() + 1) / 2;
@@ -198,22 +206,23 @@ void TransformBlur::add(const float* blurred, const QuadrantPair& pair, int tile
   const int extent = plan_.tile + 2 * radius_, columns = result.grid.columns;
   const int first_row = tile / tiles_across_ * plan_.tile - radius_,
             first_column = tile % tiles_across_ * plan_.tile - radius_;
-  for (int row = 0; row < extent; ++row)
-    for (const Quadrant& quadrant : pair) {
-      const float* in = blurred;
-      blurred += plan_.transform;
-      const int result_row = down_.cell(first_row + row, quadrant.below) - margin;
-      if (result_row < 0 || result_row >= result.grid.rows) continue;
-      const int base = across_.cell(first_column, quadrant.right) - margin;
-      float* out = result.row(static_cast<std::size_t>(result_row));
-      // base ± i must lie within the result.
-      const int from = quadrant.right ? std::max(0, -base) : std::max(0, base - (columns - 1));
-      const int to = quadrant.right ? std::min(extent, columns - base) : std::min(extent, base + 1);
-      if (quadrant.right)
-        for (int i = from; i < to; ++i) out[base + i] += in[i];
-      else
-        for (int i = from; i < to; ++i) out[base - i] += in[i];
-    }
+  const auto add_row = [&](int row, const Quadrant& quadrant, const float* in) {
+    const int result_row = down_.cell(first_row + row, quadrant.below) - margin;
+    if (result_row < 0 || result_row >= result.grid.rows) return;
+    const int base = across_.cell(first_column, quadrant.right) - margin;
+    float* out = result.row(static_cast<std::size_t>(result_row));
+    // base ± i must lie within the result.
+    const int from = quadrant.right ? std::max(0, -base) : std::max(0, base - (columns - 1));
+    const int to = quadrant.right ? std::min(extent, columns - base) : std::min(extent, base + 1);
+    if (quadrant.right)
+      for (int i = from; i < to; ++i) out[base + i] += in[i];
+    else
+      for (int i = from; i < to; ++i) out[base - i] += in[i];
+  };
+  for (int row = 0; row < extent; ++row, blurred += 2 * static_cast<std::ptrdiff_t>(plan_.transform)) {
+    add_row(row, pair.real, blurred);
+    if (pair.imaginary) add_row(row, *pair.imaginary, blurred + plan_.transform);
+  }
 }
 
 CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {

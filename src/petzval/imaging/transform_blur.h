@@ -8,8 +8,8 @@
 #include <petzval/imaging/product_plan.h>
 #include <petzval/imaging/tile_blur.h>
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,7 +21,7 @@ class TransformBlur {
  public:
   /// Transfer functions of kernels that are shared by mirrored places: [node down][node across].
   using KernelSet = UnsetVector<float, AlignedAllocator<float>>;
-  /// One if the PSFs are mirror symmetric, else two.
+  /// As many as kernel_set_count() says.
   using KernelSets = std::vector<KernelSet>;
 
   /// Makes the transfer functions of all nodes. \param grid  of the source planes. \param memory  of another
@@ -36,12 +36,11 @@ class TransformBlur {
   const ProductPlan& plan() const { return plan_; }
 
  private:
-  /// One of the four quadrants: right of the axis, below it.
-  struct Quadrant {
-    bool right, below;
+  /// Two quadrants that share all kernels, as real and imaginary part; or one alone, the other part dark.
+  struct QuadrantPair {
+    Quadrant real;
+    std::optional<Quadrant> imaginary = {};
   };
-  /// Two quadrants that share all kernels, as real and imaginary part.
-  using QuadrantPair = std::array<Quadrant, 2>;
   /// Tiles [first, end) of a pair of quadrants, counted row by row, which are added to the result together.
   struct TileRun {
     std::size_t set = 0;
@@ -49,13 +48,13 @@ class TransformBlur {
     int first = 0, end = 0;
   };
   class Light;
-  static std::vector<QuadrantPair> pairs_of(std::size_t set, bool symmetric);
+  static std::vector<QuadrantPair> pairs_of(std::size_t set, std::size_t set_count);
   /// All runs in the order in which they are added to the result.
   std::vector<TileRun> runs() const;
   std::size_t nodes_across() const { return phases() * static_cast<std::size_t>(tiles_across_) + 1; }
   std::size_t nodes_down() const { return phases() * static_cast<std::size_t>(tiles_down_) + 1; }
   std::size_t phases() const { return nodes_.size() - 1; }
-  void make_kernels(const PsfField& psfs, bool mirrored, KernelSet& set) const;
+  void make_kernels(const PsfField& psfs, const Quadrant& quadrant, KernelSet& set) const;
   TileMixture mixture_of(std::size_t set, int tile) const;
   void add(const float* blurred, const QuadrantPair& pair, int tile, int margin, CellPlane& result) const;
 

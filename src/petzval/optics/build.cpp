@@ -11,6 +11,7 @@
 #include <petzval/base/version.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
+#include <petzval/optics/frame_build.h>
 
 #include <algorithm>
 #include <atomic>
@@ -20,12 +21,21 @@
 
 namespace petzval {
 
-namespace {
-
-/// Objects of the table lie on the side that images to +y', so that t of a Psf is +y'.
 double towards_positive_image(const Lens& lens) {
   return ideal_image_height_mm(lens, 1.0, lens.reference_wavelength_nm) < 0 ? -1.0 : 1.0;
 }
+
+PsfOptions psf_options_of(const TableOptions& options) {
+  PsfOptions psf;
+  psf.size = options.psf_size;
+  psf.largest_size = options.largest_psf_size;
+  // Kernels add up many samples: a picture of dgauss-50mm with poses changes by less than 1e-4 with more.
+  psf.spot_radial_nodes = 128;
+  psf.widest_node_window_lambda_n = 64;  // a table has hundreds of PSFs
+  return psf;
+}
+
+namespace {
 
 /// How far from the chief ray the PSF window of a field reaches [mm], to its corner; nothing where no ray
 /// passes.
@@ -36,9 +46,6 @@ std::optional<double> psf_reach_mm(FieldTracer& tracer, double object_field, con
   return std::numbers::sqrt2 * 0.5 * plan->size * plan->spacing_um * mm_per_um;
 }
 
-/// A pupil that vignetting has shrunk to this share of the one on axis counts as dark: its PSF is wider than
-/// any grid.
-constexpr double dark_pupil_share = 1e-3;
 constexpr int limit_azimuths = 32;
 
 /// Objects at a finite distance are looked for no farther out than this (87°).
@@ -102,13 +109,6 @@ class FieldLimit {
   double sign_;
   double least_area_ = 0;
 };
-
-PsfOptions psf_options_of(const TableOptions& options) {
-  PsfOptions psf;
-  psf.size = options.psf_size;
-  psf.largest_size = options.largest_psf_size;
-  return psf;
-}
 
 /// The field whose image lies a PSF's reach beyond the asked height, or the last one that passes.
 double outermost_field(const Lens& lens, const TableOptions& options, double wavelength_nm, double stride) {
@@ -200,18 +200,24 @@ void TableOptions::validate() const {
     throw InputError(fmt::format("an image height of {:g} mm; it must be zero or more", max_image_height_mm));
   if (field_count < 2 || field_count > 1000)
     throw InputError(fmt::format("{} fields; a lens data table has 2 to 1000", field_count));
+  if (frame_places < 4 || frame_places > 200)
+    throw InputError(fmt::format("{} places along the frame; 4 to 200 are right", frame_places));
+  if (half_frame_mm && !((*half_frame_mm)[0] > 0 && (*half_frame_mm)[1] > 0 &&
+                         std::isfinite((*half_frame_mm)[0] + (*half_frame_mm)[1])))
+    throw InputError(fmt::format("half a frame of {:g} × {:g} mm; positive sides are right",
+                                 (*half_frame_mm)[0], (*half_frame_mm)[1]));
   if (psf_size != 0 && (psf_size < 8 || psf_size > 4096))
     throw InputError(fmt::format("a PSF of {0} × {0} samples; 8 to 4096 a side, or 0 to choose", psf_size));
 }
 
-LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
-                                    const ProgressCallback& progress) {
-  // On a sensor a polygon stands still, while the PSFs of a table turn with the azimuth of the field.
-  require_centred(lens, "a lens data table holds centred lenses");
-  require_round_stop(lens,
-                     "a table by field height turns with the field, which polygons do not; single PSFs "
-                     "(`field_azimuth_deg`) and renderings have blades");
-  const TableOptions options = completed(lens, asked);
+namespace {
+
+bool needs_frame(const Lens& lens) {
+  return has_poses(lens) || lens.stop_blades().count > 0;
+}
+
+/// What a table says of the lens as a whole.
+LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
   LensDataTable table;
   table.lens_name = lens.name;
   table.lens_json = lens_to_json(lens);
@@ -223,6 +229,26 @@ LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
   table.first_order = first_order(lens);
   if (const double radius = stop_radius_mm(lens); std::isfinite(radius)) table.stop_semi_diameter_mm = radius;
   table.wavelengths_nm = options.wavelengths_nm;
+  return table;
+}
+
+}  // namespace
+
+LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
+                                    const ProgressCallback& progress) {
+  using Places = TableOptions::Places;
+  const TableOptions options = completed(lens, asked);
+  LensDataTable table = blank_table(lens, options);
+  if (options.places == Places::over_frame || (options.places == Places::automatic && needs_frame(lens))) {
+    fill_frame(lens, options, table, progress);
+    table.validate();
+    return table;
+  }
+  require_centred(lens, "a table by field height holds centred lenses; one over the frame has poses");
+  require_round_stop(
+      lens,
+      "a table by field height turns with the field, which polygons do not; one over the frame "
+      "has blades");
   table.fields = choose_fields(lens, options);
   const std::size_t fields = table.fields.size(), entries = fields * table.wavelengths_nm.size();
   table.real_image_height_mm.resize(entries);

@@ -7,6 +7,8 @@
 #include <petzval/trace/losses.h>
 #include <petzval/trace/tracer.h>
 
+#include <array>
+#include <optional>
 #include <vector>
 
 namespace petzval {
@@ -20,6 +22,17 @@ struct TableOptions {
   int field_count = 31;  ///< evenly spaced object fields, 0 included
   int psf_size = 0;      ///< cells a side of every PSF, as wide as each one needs; 0: as many as needed, too
   int largest_psf_size = 256;
+  /// Where the places of the table lie.
+  enum class Places {
+    automatic,  ///< over the frame for a lens with poses or blades, by height for any other
+    by_height,
+    over_frame
+  };
+  Places places = Places::automatic;
+  /// Half the width and half the height of the frame that places cover, and a PSF radius more [mm]; absent:
+  /// the square about the circle of max_image_height_mm.
+  std::optional<std::array<double, 2>> half_frame_mm = {};
+  int frame_places = 17;  ///< along the longer side of the frame, evenly spaced
   Tracer::Clip clip = Tracer::Clip::apertures;
   Losses losses = {};  ///< that g_source, g_sensor and the PSFs count
 
@@ -30,9 +43,9 @@ struct TableOptions {
 /// The table of a lens as it stands (MountedLens::lens()): chief rays aimed at the real stop, g_source,
 /// g_sensor and diffraction PSFs through the vignetted pupil, at every field and wavelength. Deterministic
 /// for any number of threads. Every PSF holds 99 % of its light or says in `captured` what it does hold.
-/// Memory: at most fields × wavelengths × largest_psf_size² × 4 bytes. \throws InputError if no ray passes on
-/// the axis, if the stop has blades (tables turn with the azimuth of the field, polygons do not), or an index
-/// is not known at a wavelength.
+/// Memory: at most places × wavelengths × largest_psf_size² × 4 bytes. \throws InputError if no ray passes on
+/// the axis, if a lens with poses or blades is asked for by height (such tables turn with the azimuth of the
+/// field, polygons and tilted surfaces do not), or an index is not known at a wavelength.
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& options,
                                     const ProgressCallback& progress = {});
 

@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/optics/lens_data_table.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -30,16 +31,34 @@ void require_axis(const std::vector<double>& axis, const char* name) {
   }
 }
 
-void require_values(const LensDataTable& table, const std::vector<double>& values, const char* name) {
-  const std::size_t expected = table.fields.size() * table.wavelengths_nm.size();
+std::string entry_name(const LensDataTable& table, std::size_t entry) {
+  const std::size_t wavelengths = table.wavelengths_nm.size();
+  return fmt::format("{} at {} nm", table.place_name(entry / wavelengths),
+                     table.wavelengths_nm[entry % wavelengths]);
+}
+
+void require_count(const LensDataTable& table, const std::vector<double>& values, const char* name) {
+  const std::size_t expected = table.places() * table.wavelengths_nm.size();
   if (values.size() != expected)
-    refuse(fmt::format("{} has {} values; {} fields × {} wavelengths need {}", name, values.size(),
-                       table.fields.size(), table.wavelengths_nm.size(), expected));
+    refuse(fmt::format("{} has {} values; {} {} × {} wavelengths need {}", name, values.size(),
+                       table.places(), table.frame ? "places" : "fields", table.wavelengths_nm.size(),
+                       expected));
+}
+
+void require_values(const LensDataTable& table, const std::vector<double>& values, const char* name) {
+  require_count(table, values, name);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!(std::isfinite(values[i]) && values[i] >= 0))
-      refuse(fmt::format("{} of field {} at {} nm is {}; it must be finite and not negative", name,
-                         table.fields[i / table.wavelengths_nm.size()],
-                         table.wavelengths_nm[i % table.wavelengths_nm.size()], values[i]));
+      refuse(fmt::format("{} of {} is {}; it must be finite and not negative", name, entry_name(table, i),
+                         values[i]));
+}
+
+/// Of numbers that may have any sign.
+void require_finite(const LensDataTable& table, const std::vector<double>& values, const char* name) {
+  require_count(table, values, name);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      refuse(fmt::format("{} of {} is {}; it must be finite", name, entry_name(table, i), values[i]));
 }
 
 /// Illumination that a lens can give. Light from every direction makes g_sensor π n'², n' the index in front
@@ -54,10 +73,9 @@ void require_possible_light(const LensDataTable& table) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i] > limit)
         refuse(
-            fmt::format("{} of field {} at {} nm is {:.4g} sr; the most that a lens in air gives is π, light "
-                        "from the whole hemisphere",
-                        name, table.fields[i / table.wavelengths_nm.size()],
-                        table.wavelengths_nm[i % table.wavelengths_nm.size()], values[i]));
+            fmt::format("{} of {} is {:.4g} sr; the most that a lens in air gives is π, light from the "
+                        "whole hemisphere",
+                        name, entry_name(table, i), values[i]));
   };
   require(table.g_sensor_sr, most, "g_sensor_sr");
   require(table.g_source_sr, widest_spread * most, "g_source_sr");
@@ -103,16 +121,62 @@ std::string psf_fault(const Psf& psf) {
 }
 
 void require_psfs(const LensDataTable& table) {
-  const std::size_t expected = table.fields.size() * table.wavelengths_nm.size();
+  const std::size_t expected = table.places() * table.wavelengths_nm.size();
   if (table.psf.size() != expected)
-    refuse(fmt::format("there are {} PSFs; {} fields × {} wavelengths need {}", table.psf.size(),
-                       table.fields.size(), table.wavelengths_nm.size(), expected));
+    refuse(fmt::format("there are {} PSFs; {} {} × {} wavelengths need {}", table.psf.size(), table.places(),
+                       table.frame ? "places" : "fields", table.wavelengths_nm.size(), expected));
   std::vector<std::string> faults(expected);
   parallel_for(expected, [&](std::size_t i) { faults[i] = psf_fault(table.psf[i]); });
   for (std::size_t i = 0; i < expected; ++i)
-    if (!faults[i].empty())
-      refuse(fmt::format("the PSF of field {} at {} nm {}", table.fields[i / table.wavelengths_nm.size()],
-                         table.wavelengths_nm[i % table.wavelengths_nm.size()], faults[i]));
+    if (!faults[i].empty()) refuse(fmt::format("the PSF of {} {}", entry_name(table, i), faults[i]));
+}
+
+/// Chief rays keep their order: what the corners of each mesh of the lattice see goes round the same way.
+/// Meshes where no light arrives at a corner may be anything.
+void require_ordered_frame(const LensDataTable& table) {
+  const FramePlaces& frame = *table.frame;
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+    for (std::size_t j = 0; j + 1 < frame.y_mm.size(); ++j)
+      for (std::size_t i = 0; i + 1 < frame.x_mm.size(); ++i) {
+        const std::array<std::size_t, 4> corners{
+            table.index(frame.place(i, j), w), table.index(frame.place(i + 1, j), w),
+            table.index(frame.place(i + 1, j + 1), w), table.index(frame.place(i, j + 1), w)};
+        double area = 0;
+        bool lit = true;
+        for (std::size_t k = 0; k < 4; ++k) {
+          const std::size_t a = corners[k], b = corners[(k + 1) % 4];
+          area += (frame.object_x[a] * frame.object_y[b] - frame.object_x[b] * frame.object_y[a]) / 2;
+          lit = lit && table.g_source_sr[a] > 0;
+        }
+        if (lit && !(area > 0))
+          refuse(fmt::format(
+              "what is seen at {} nm turns over between {} and {}; x' and y' of object and "
+              "image must increase together",
+              table.wavelengths_nm[w], frame.name(frame.place(i, j)), frame.name(frame.place(i + 1, j + 1))));
+      }
+}
+
+void require_frame(const LensDataTable& table) {
+  const FramePlaces& frame = *table.frame;
+  if (!table.fields.empty() || !table.real_image_height_mm.empty())
+    refuse("places lie over the frame and at field heights too; one or the other is right");
+  require_axis(frame.x_mm, "image_x");
+  require_axis(frame.y_mm, "image_y");
+  if (frame.x_mm.size() < 2 || frame.y_mm.size() < 2)
+    refuse(fmt::format("{} × {} places over the frame; two along each axis or more are right",
+                       frame.x_mm.size(), frame.y_mm.size()));
+  require_finite(table, frame.object_x, "object_x");
+  require_finite(table, frame.object_y, "object_y");
+  require_finite(table, frame.psf_azimuth_deg, "psf_azimuth_deg");
+}
+
+void require_light_over_frame(const LensDataTable& table) {
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    bool lit = false;
+    for (std::size_t place = 0; place < table.places(); ++place)
+      lit = lit || table.g_source_sr[table.index(place, w)] > 0;
+    if (!lit) refuse(fmt::format("no light of {} nm reaches the frame", table.wavelengths_nm[w]));
+  }
 }
 
 }  // namespace
@@ -130,18 +194,37 @@ void LensDataTable::validate() const {
     refuse(fmt::format("the object distance is {} mm; it must be positive", *object_distance_mm));
   if (!std::isfinite(vertex_to_sensor_mm))
     refuse(fmt::format("the sensor stands at {} mm from vertex 1", vertex_to_sensor_mm));
-  require_axis(fields, "fields");
+  if (!frame) require_axis(fields, "fields");
   require_axis(wavelengths_nm, "wavelengths");
-  if (fields.front() != 0)
+  if (!frame && fields.front() != 0)
     refuse(fmt::format("the first field is {}; it must be 0, the axis", fields.front()));
   if (wavelengths_nm.front() <= 0) refuse(fmt::format("{} nm is no wavelength", wavelengths_nm.front()));
-  require_values(*this, real_image_height_mm, "real_image_height_mm");
+  if (frame)
+    require_frame(*this);
+  else
+    require_values(*this, real_image_height_mm, "real_image_height_mm");
   require_values(*this, g_source_sr, "g_source_sr");
   require_values(*this, g_sensor_sr, "g_sensor_sr");
-  require_light_on_axis(*this);
+  frame ? require_light_over_frame(*this) : require_light_on_axis(*this);
   require_possible_light(*this);
-  require_rising_heights(*this);
+  frame ? require_ordered_frame(*this) : require_rising_heights(*this);
   require_psfs(*this);
+}
+
+std::string FramePlaces::name(std::size_t place) const {
+  return fmt::format("({:.4g}, {:.4g}) mm", x_mm[place % x_mm.size()], y_mm[place / x_mm.size()]);
+}
+
+std::string LensDataTable::place_name(std::size_t place) const {
+  return frame ? frame->name(place) : fmt::format("field {}", fields[place]);
+}
+
+void require_by_height(const LensDataTable& table, const char* what) {
+  if (table.frame)
+    throw InputError(
+        fmt::format("{}: the places of the table lie over the frame in two dimensions, and {}; "
+                    "a table of the centred lens with a round stop would do",
+                    table.lens_name, what));
 }
 
 }  // namespace petzval

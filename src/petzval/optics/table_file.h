@@ -18,6 +18,14 @@
 //     first_order            group with the paraxial data as attributes, the unit in each name; those that
 //                            are not known (NaN in memory) are left out
 //
+// Where places lie over the frame, format is "petzval-optics/2", F counts places (a dataset `place` numbers
+// them), and instead of object_field and real_image_height there are
+//
+//     image_x, image_y       [X], [Y] mm, F = X × Y: place row · X + column
+//     object_x, object_y     [F × W] deg or mm: the object's field as a vector
+//     psf_azimuth            [F × W] deg: direction of a PSF's rows, anticlockwise from +y' as seen from the
+//                            film; columns run a quarter turn clockwise from it
+//
 // with units and long_name on every dataset and dimension labels on every axis. A user block of 512 bytes in
 // front, which HDF5 readers skip, holds size and checksum of the rest, so that a damaged file is told before
 // HDF5, which damaged files crash, gets to see it. Files of the same layout without it (made in Python, say)

@@ -71,6 +71,7 @@ RadialProfiles::RadialProfiles(const LensDataTable& table, RadialFit fit)
       real_image_height_mm_(table.real_image_height_mm),
       g_source_sr_(table.g_source_sr),
       g_sensor_sr_(table.g_sensor_sr) {
+  require_by_height(table, "curves over field height belong to centred lenses");
   if (fit.polynomial_order != 0 &&
       (fit.polynomial_order < lowest_order || fit.polynomial_order > highest_order))
     throw InputError(

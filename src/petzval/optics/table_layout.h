@@ -6,9 +6,16 @@
 
 namespace petzval::table_layout {
 
-inline constexpr char format[] = "petzval-optics/1";
+inline constexpr char format[] = "petzval-optics/1";        ///< places by field height
+inline constexpr char frame_format[] = "petzval-optics/2";  ///< places over the frame
 
 inline constexpr char field[] = "object_field";
+inline constexpr char place[] = "place";
+inline constexpr char image_x[] = "image_x";
+inline constexpr char image_y[] = "image_y";
+inline constexpr char object_x[] = "object_x";
+inline constexpr char object_y[] = "object_y";
+inline constexpr char psf_azimuth[] = "psf_azimuth";
 inline constexpr char wavelength[] = "wavelength";
 inline constexpr char height[] = "real_image_height";
 inline constexpr char g_source[] = "g_source";

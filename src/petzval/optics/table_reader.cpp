@@ -160,8 +160,12 @@ class TableFile {
 };
 
 void read_header(const TableFile& file, LensDataTable& table) {
-  if (const std::string format = file.text("format"); format != table_layout::format)
-    file.refuse(fmt::format("has the format \"{}\"; this version reads {}", format, table_layout::format));
+  const std::string format = file.text("format");
+  if (format == table_layout::frame_format)
+    table.frame.emplace();
+  else if (format != table_layout::format)
+    file.refuse(fmt::format("has the format \"{}\"; this version reads {} and {}", format,
+                            table_layout::format, table_layout::frame_format));
   table.lens_name = file.text("lens_name");
   table.lens_json = file.text("lens_json");
   table.provenance = file.text("provenance");
@@ -176,6 +180,17 @@ void read_header(const TableFile& file, LensDataTable& table) {
   });
 }
 
+/// Places over the frame.
+void read_frame(const TableFile& file, LensDataTable& table) {
+  FramePlaces& frame = *table.frame;
+  frame.x_mm = file.axis(table_layout::image_x);
+  frame.y_mm = file.axis(table_layout::image_y);
+  const Sizes both{frame.count(), table.wavelengths_nm.size()};
+  frame.object_x = file.matrix(table_layout::object_x, both);
+  frame.object_y = file.matrix(table_layout::object_y, both);
+  frame.psf_azimuth_deg = file.matrix(table_layout::psf_azimuth, both);
+}
+
 /// The side of the squares that hold the PSFs.
 hsize_t psf_side(const TableFile& file, const Hdf5Handle& data, const Sizes& sizes, const Sizes& table) {
   if (sizes.size() != 4 || sizes[0] != table[0] || sizes[1] != table[1] || sizes[2] != sizes[3] ||
@@ -187,7 +202,7 @@ hsize_t psf_side(const TableFile& file, const Hdf5Handle& data, const Sizes& siz
 }
 
 void read_psfs(const TableFile& file, bool sealed, LensDataTable& table) {
-  const Sizes both{table.fields.size(), table.wavelengths_nm.size()};
+  const Sizes both{table.places(), table.wavelengths_nm.size()};
   const std::vector<double> size = file.matrix(table_layout::psf_size, both);
   const std::vector<double> spacing = file.matrix(table_layout::psf_spacing, both);
   const std::vector<double> captured = file.matrix(table_layout::psf_captured, both);
@@ -213,7 +228,7 @@ void read_psfs(const TableFile& file, bool sealed, LensDataTable& table) {
     for (std::size_t i = 0; i < size.size(); ++i) read(i);
   if (const auto bad = std::find(good.begin(), good.end(), 0); bad != good.end()) {
     const auto i = static_cast<std::size_t>(bad - good.begin());
-    file.refuse(fmt::format("the PSF of field {} and wavelength {} cannot be read; the file is damaged",
+    file.refuse(fmt::format("the PSF of place {} and wavelength {} cannot be read; the file is damaged",
                             i / both[1], i % both[1]));
   }
 }
@@ -224,10 +239,11 @@ LensDataTable read_file(const std::string& path, bool sealed) {
   const TableFile file(path);
   LensDataTable table;
   read_header(file, table);
-  table.fields = file.axis(table_layout::field);
+  if (!table.frame) table.fields = file.axis(table_layout::field);
   table.wavelengths_nm = file.axis(table_layout::wavelength);
-  const Sizes both{table.fields.size(), table.wavelengths_nm.size()};
-  table.real_image_height_mm = file.matrix(table_layout::height, both);
+  if (table.frame) read_frame(file, table);
+  const Sizes both{table.places(), table.wavelengths_nm.size()};
+  if (!table.frame) table.real_image_height_mm = file.matrix(table_layout::height, both);
   table.g_source_sr = file.matrix(table_layout::g_source, both);
   table.g_sensor_sr = file.matrix(table_layout::g_sensor, both);
   read_psfs(file, sealed, table);

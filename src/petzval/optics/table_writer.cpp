@@ -94,12 +94,13 @@ Hdf5Handle write_dataset(hid_t file, const char* name, const std::vector<Number>
   return dataset;
 }
 
-/// Datasets over the axes object_field and wavelength, joined to them as the HDF5 Dimension Scale
+/// Datasets over the axes object_field (or place) and wavelength, joined to them as the HDF5 Dimension Scale
 /// Specification (version 1.0) lays down, so that h5py and netCDF readers find the coordinates.
 class Scales {
  public:
-  Scales(const Hdf5Handle& field, const Hdf5Handle& wavelength) : axes_{field.id(), wavelength.id()} {
-    const char* names[] = {table_layout::field, table_layout::wavelength};
+  Scales(const Hdf5Handle& place, const char* place_name, const Hdf5Handle& wavelength)
+      : axes_{place.id(), wavelength.id()} {
+    const char* names[] = {place_name, table_layout::wavelength};
     for (int axis = 0; axis < 2; ++axis) {
       write_fixed_text(axes_[axis], "CLASS", "DIMENSION_SCALE");
       write_fixed_text(axes_[axis], "NAME", names[axis]);
@@ -165,11 +166,13 @@ Hdf5Handle write_psfs(hid_t file, const LensDataTable& table) {
   int size = 0;
   for (const Psf& psf : table.psf) size = std::max(size, psf.size);
   const auto side = static_cast<hsize_t>(size);
-  const Sizes all{table.fields.size(), table.wavelengths_nm.size(), side, side}, one{1, 1, side, side};
+  const Sizes all{table.places(), table.wavelengths_nm.size(), side, side}, one{1, 1, side, side};
   Hdf5Handle dataset =
       create_dataset(file, table_layout::psf, H5T_IEEE_F32LE, all, one, "1",
-                     "point-spread function centred on the real chief ray, sum 1; rows: tangential, "
-                     "away from the axis; columns: sagittal");
+                     table.frame ? "point-spread function centred on the real chief ray, sum 1; rows: along "
+                                   "psf_azimuth; columns: a quarter turn clockwise from it"
+                                 : "point-spread function centred on the real chief ray, sum 1; rows: "
+                                   "tangential, away from the axis; columns: sagittal");
   const Hdf5Handle target = space_of(all), memory = space_of(one);
   for (std::size_t f = 0; f < all[0]; ++f)
     for (std::size_t w = 0; w < all[1]; ++w) {
@@ -184,7 +187,7 @@ Hdf5Handle write_psfs(hid_t file, const LensDataTable& table) {
 }
 
 void write_header(hid_t file, const LensDataTable& table) {
-  write_text(file, "format", table_layout::format);
+  write_text(file, "format", table.frame ? table_layout::frame_format : table_layout::format);
   write_text(file, "lens_name", table.lens_name);
   write_text(file, "lens_json", table.lens_json);
   write_text(file, "provenance", table.provenance);
@@ -199,19 +202,37 @@ void write_header(hid_t file, const LensDataTable& table) {
   });
 }
 
+std::vector<double> numbered(hsize_t count) {
+  std::vector<double> numbers;
+  for (hsize_t i = 0; i < count; ++i) numbers.push_back(double(i));
+  return numbers;
+}
+
 void write_datasets(hid_t file, const LensDataTable& table) {
-  const Sizes fields{table.fields.size()}, wavelengths{table.wavelengths_nm.size()};
-  const Sizes both{fields[0], wavelengths[0]};
+  const Sizes places{table.places()}, wavelengths{table.wavelengths_nm.size()};
+  const Sizes both{places[0], wavelengths[0]};
   const bool finite = table.finite_object();
-  const Hdf5Handle field = write_dataset(file, table_layout::field, table.fields, fields, table.field_unit(),
-                                         finite ? "object height" : "object angle from the axis");
+  const char* const place = table.frame ? table_layout::place : table_layout::field;
+  const Hdf5Handle field =
+      table.frame
+          ? write_dataset(file, place, numbered(places[0]), places, "1",
+                          "number of the place: row of image_y times places along image_x, and column")
+          : write_dataset(file, place, table.fields, places, table.field_unit(),
+                          finite ? "object height" : "object angle from the axis");
   const Hdf5Handle wavelength = write_dataset(file, table_layout::wavelength, table.wavelengths_nm,
                                               wavelengths, "nm", "wavelength in air");
-  Scales scales(field, wavelength);
+  if (table.frame) {
+    const FramePlaces& frame = *table.frame;
+    write_dataset(file, table_layout::image_x, frame.x_mm, {frame.x_mm.size()}, "mm",
+                  "where chief rays land, x' of image space");
+    write_dataset(file, table_layout::image_y, frame.y_mm, {frame.y_mm.size()}, "mm",
+                  "where chief rays land, y' of image space");
+  }
+  Scales scales(field, place, wavelength);
   const auto write = [&]<typename Number>(const char* name, const std::vector<Number>& values,
                                           const char* units, const char* long_name) {
     scales.attach(write_dataset(file, name, values, both, units, long_name),
-                  {table_layout::field, table_layout::wavelength});
+                  {place, table_layout::wavelength});
   };
   std::vector<int> size;
   std::vector<double> spacing, captured;
@@ -220,15 +241,24 @@ void write_datasets(hid_t file, const LensDataTable& table) {
     spacing.push_back(psf.spacing_um);
     captured.push_back(psf.captured);
   }
-  write(table_layout::height, table.real_image_height_mm, "mm", "height of the real chief ray on the sensor");
+  if (table.frame) {
+    write(table_layout::object_x, table.frame->object_x, table.field_unit(),
+          "field of the object, the part along image_x");
+    write(table_layout::object_y, table.frame->object_y, table.field_unit(),
+          "field of the object, the part along image_y");
+    write(table_layout::psf_azimuth, table.frame->psf_azimuth_deg, "deg",
+          "direction of the PSF's rows, anticlockwise from +y' as seen from the film");
+  } else {
+    write(table_layout::height, table.real_image_height_mm, "mm",
+          "height of the real chief ray on the sensor");
+  }
   write(table_layout::g_source, table.g_source_sr, "sr",
         "flux of an object point per area of its chief-ray image and per radiance");
   write(table_layout::g_sensor, table.g_sensor_sr, "sr", "irradiance under a uniform wall per radiance");
   write(table_layout::psf_size, size, "1", "samples a side of the PSF, in the middle of its square");
   write(table_layout::psf_spacing, spacing, "um", "spacing of the PSF's samples");
   write(table_layout::psf_captured, captured, "1", "share of the light inside the PSF's window");
-  scales.attach(write_psfs(file, table),
-                {table_layout::field, table_layout::wavelength, "tangential", "sagittal"});
+  scales.attach(write_psfs(file, table), {place, table_layout::wavelength, "tangential", "sagittal"});
   scales.finish();
 }
 

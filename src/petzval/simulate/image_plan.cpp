@@ -11,6 +11,7 @@
 #include <petzval/simulate/mounting.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -141,6 +142,13 @@ double image_height_mm(const Scene& scene, const Lens& lens, const std::optional
   return with_rim(pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2, pitch_um);
 }
 
+/// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
+std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
+  constexpr double pixels_beyond = 8;
+  const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
+  return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
+}
+
 /// Every `step`th of the wavelengths, and the last.
 std::vector<double> thinned(const std::vector<double>& wavelengths_nm, std::size_t step) {
   std::vector<double> few;
@@ -156,6 +164,7 @@ TableOptions table_options(const Camera& camera, const Scene& scene, TableDetail
     constexpr std::size_t step = 5;
     options.wavelengths_nm = thinned(options.wavelengths_nm, step);
     options.field_count = 11;
+    options.frame_places = 7;
   }
   if (camera.apertures == Camera::Apertures::ignored) options.clip = Tracer::Clip::stop_only;
   options.losses = camera.losses;
@@ -192,6 +201,7 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
     note_short_field(focused, camera.sensor->geometry, context);
   TableOptions table = table_options(camera, scene, detail);
   table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
+  if (camera.sensor) table.half_frame_mm = half_frame_mm(camera.sensor->geometry);
   if (deep)
     return {std::move(scene),
             facts_alone(focused),

@@ -219,6 +219,7 @@ ImportedTable table_of(const RayTraceData& data, const RayTraceReading& reading)
 
 RayTraceData ray_trace_data(const LensDataTable& table) {
   table.validate();
+  require_by_height(table, "ISET's files hold centred lenses");
   const FirstOrder& first = table.first_order;
   const bool finite = table.finite_object();
   const double scale = height_scale(finite, first.efl_mm, first.magnification);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
+#include <petzval/imaging/distortion.h>
+#include <petzval/imaging/height_look.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+HeightLook::HeightLook(const LightProfile& lens, std::optional<double> object_to_sensor_mm,
+                       const Scene& scene, double largest_height_mm)
+    : middle_column_(scene.columns() / 2.0),
+      middle_row_(scene.rows() / 2.0),
+      last_height_mm_(std::min(lens.max_height_mm(), largest_height_mm)),
+      last_height_squared_(last_height_mm_ * last_height_mm_) {
+  constexpr std::size_t step_count = 4096;
+  steps_per_square_ = last_height_squared_ > 0 ? double(step_count) / last_height_squared_ : 0;
+  // Towards the axis ρ/r' tends to a constant: taken where it is still numerically sound.
+  const double near_axis_mm = 1e-4 * last_height_mm_;
+  for (std::size_t k = 0; k <= step_count + 1; ++k) {
+    const double height_mm = last_height_mm_ * std::sqrt(std::min(1.0, double(k) / double(step_count)));
+    const double off_axis_mm = std::max(height_mm, near_axis_mm);
+    const double ratio =
+        off_axis_mm > 0
+            ? scene_radius(lens.object_field(off_axis_mm), object_to_sensor_mm, scene) / off_axis_mm
+            : 0.0;
+    steps_.push_back({ratio, lens.g_source_sr(height_mm)});
+    if (k == 0 || k > step_count) continue;
+    const double below_mm = last_height_mm_ * std::sqrt(double(k - 1) / double(step_count));
+    const double radial =
+        (ratio * height_mm - steps_[k - 1].samples_per_mm * below_mm) / (height_mm - below_mm);
+    finest_samples_per_mm_ = std::max({finest_samples_per_mm_, radial, ratio});
+  }
+  for (std::size_t k = 0; k + 1 < steps_.size(); ++k) {
+    steps_[k].samples_slope = (steps_[k + 1].samples_per_mm - steps_[k].samples_per_mm) * steps_per_square_;
+    steps_[k].g_source_slope = (steps_[k + 1].g_source_sr - steps_[k].g_source_sr) * steps_per_square_;
+  }
+}
+
+HeightLook::Surroundings HeightLook::around(double x_mm, double y_mm) const {
+  const double square = std::min(x_mm * x_mm + y_mm * y_mm, last_height_squared_);
+  const auto k = static_cast<std::size_t>(square * steps_per_square_);
+  const SceneMapStep& step = steps_[k];
+  const double further = steps_per_square_ > 0 ? square - double(k) / steps_per_square_ : 0;
+  return {middle_column_,
+          middle_row_,
+          last_height_squared_ * (1 + 1e-12),  // rounding must not darken the rim
+          square,
+          step.samples_per_mm + further * step.samples_slope,
+          step.samples_slope,
+          step.g_source_sr + further * step.g_source_slope,
+          step.g_source_slope};
+}
+
+void HeightLook::cut(double x_mm, double y_mm, double pitch_mm, int most,
+                     std::vector<ScenePart>& parts) const {
+  const Surroundings near = around(x_mm, y_mm);
+  constexpr double rounding = 1e-6;
+  const double samples = near.finest_samples_per_mm() * pitch_mm;
+  const int count = static_cast<int>(std::clamp(std::ceil(samples - rounding), 1.0, double(most)));
+  const double part_mm = pitch_mm / count;
+  parts.clear();
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) {
+      const double x = x_mm + (j - (count - 1) / 2.0) * part_mm, y = y_mm + (i - (count - 1) / 2.0) * part_mm;
+      const auto side = [&](double at_mm) { return std::abs(near.samples_per_mm_along(at_mm)) * part_mm; };
+      parts.push_back({near.place(x, y), side(x), side(y)});
+    }
+}
+
+SeenExtent HeightLook::extent(const SensorGeometry& grid) const {
+  // ρ grows with r', so the outline of the grid sees farthest; where it lies in the dark, the last bright
+  // place on the way there. One quadrant is enough: the others are its mirror images.
+  SeenExtent seen;
+  const ScenePlace axis = this->place(0, 0);
+  const auto look = [&](double x_mm, double y_mm) {
+    const double shrink = std::min(1.0, last_height_mm_ / std::hypot(x_mm, y_mm));
+    const ScenePlace place = this->place(shrink * x_mm, shrink * y_mm);
+    const double columns = std::abs(place.column - axis.column), rows = std::abs(place.row - axis.row);
+    seen.columns = std::max(seen.columns, columns);
+    seen.rows = std::max(seen.rows, rows);
+    seen.radius = std::max(seen.radius, std::hypot(columns, rows));
+  };
+  for (double column = grid.columns; column > grid.columns / 2.0; --column)
+    look(grid.x_mm(column), grid.y_mm(0));
+  for (double row = grid.rows; row > grid.rows / 2.0; --row) look(grid.x_mm(0), grid.y_mm(row));
+  look(grid.x_mm(grid.columns / 2.0), grid.y_mm(0));
+  look(grid.x_mm(0), grid.y_mm(grid.rows / 2.0));
+  return seen;
+}
+
+}  // namespace petzval
