@@ -48,8 +48,8 @@ std::optional<double> level_of(const std::string& fill) {
   if (std::sscanf(fill.c_str(), " rgb( %d , %d , %d %c", &r, &g, &b, &end) == 4 && end == ')' &&
       std::min({r, g, b}) >= 0 && std::max({r, g, b}) <= 255)
     return luminance(r, g, b);
-  throw InputError(
-      fmt::format("fill '{}': none, black, white, grey, #rgb, #rrggbb or rgb(r, g, b) is right", fill));
+  throw InputError(fmt::format("fill '{}': none, black, white, grey, #rgb, #rrggbb or rgb(r, g, b) is right",
+                               quotable(fill)));
 }
 
 /// What an element inherits.
@@ -66,7 +66,7 @@ double number(const pugi::xml_node& node, const char* name, double otherwise) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (error != std::errc() || !(unit.empty() || unit == "px") || !std::isfinite(value))
-    throw InputError(fmt::format("{}=\"{}\": a number of pixels is right", name, text));
+    throw InputError(fmt::format("{}=\"{}\": a number of pixels is right", name, quotable(text)));
   return value;
 }
 
