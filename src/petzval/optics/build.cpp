@@ -29,9 +29,9 @@ PsfOptions psf_options_of(const TableOptions& options) {
   PsfOptions psf;
   psf.size = options.psf_size;
   psf.largest_size = options.largest_psf_size;
-  // Kernels add up many samples: a picture of dgauss-50mm with poses changes by less than 1e-4 with more.
+  // A table has hundreds of PSFs, and kernels add up many of their samples.
   psf.spot_radial_nodes = 128;
-  psf.widest_node_window_lambda_n = 64;  // a table has hundreds of PSFs
+  psf.widest_node_window_lambda_n = 64;
   return psf;
 }
 
