@@ -71,17 +71,13 @@ double level_not_reached(std::vector<float>& levels, double percent) {
   return levels[static_cast<std::size_t>(index)];
 }
 
-/// Whether three quarters of a picture are dark beside its brightest pixel, or an even ground below a
-/// thousandth of it (the sky about stars): lights in darkness. Then the levels of the lights are left, a
-/// thousandth of the brightest and more.
+/// Whether three quarters of a picture are dark beside its brightest pixel: lights in darkness. Then the
+/// levels of the lights are left, a thousandth of the brightest and more.
 bool leave_lights(std::vector<float>& levels) {
-  constexpr double most_percent = 75, quarter_percent = 25, even = 1.5;
+  constexpr double most_percent = 75;
   constexpr float dark = 1e-5F, lit = 1e-3F;
   const float brightest = *std::max_element(levels.begin(), levels.end());
-  const double ground = level_not_reached(levels, most_percent);
-  const bool is_even =
-      ground < double(lit * brightest) && ground <= even * level_not_reached(levels, quarter_percent);
-  if (ground > double(dark * brightest) && !is_even) return false;
+  if (level_not_reached(levels, most_percent) > double(dark * brightest)) return false;
   std::erase_if(levels, [&](float level) { return level < lit * brightest; });
   return true;
 }

@@ -306,7 +306,8 @@ Scene read_turned_plane(const std::string& path_or_name, SceneOptions options) {
   Scene scene = read_plane(path_or_name, options);
   if (options.width_m && !options.horizontal_angle_deg)
     scene.set_horizontal_angle_deg(angle_of_width_deg(*options.width_m, scene.distance_m()));
-  return options.tilt_deg ? tilted(scene, *options.tilt_deg) : scene;
+  if (options.tilt_deg) return tilted(scene, *options.tilt_deg);
+  return scene;  // moved: a copy of a large scene would be held in memory
 }
 
 }  // namespace
