@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval image: a planar scene through a lens, onto a sensor.
 #include <fmt/format.h>
+#include <petzval/scene/scene_file.h>
 
 #include <memory>
 #include <span>
@@ -30,6 +31,9 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
   else
     formed.light = image(formed.plan, context, &formed.report);
   outputs.shown.false_colour = true;
+  // The ground of the sky is dark, however faint the stars are.
+  constexpr double sky_dark_share = 1e-2;
+  if (is_sky_chart(choice.scene.request().name)) outputs.shown.dark_share = sky_dark_share;
   const Outputs made = write_image(choice.outputs, formed, sensor, outputs, context);
   if (shared.json) return print_json(summary_json(formed, made, choice.outputs));
   if (!shared.quiet) print_summary(formed, made);

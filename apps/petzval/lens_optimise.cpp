@@ -2,6 +2,7 @@
 // petzval lens optimise.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/quantities.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/report/optimise_tables.h>
 

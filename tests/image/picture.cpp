@@ -75,19 +75,21 @@ TEST(Picture, LightsMayBeShownByRootOrLogarithm) {
 
 // Stars fill a twentieth of the picture: white goes by them. With a dim ground, or more of it lit, by all.
 TEST(Picture, LightsInDarknessAreMeteredByThemselves) {
-  const auto level = [](float ground, int stars) {
+  const auto level = [](float ground, int stars, double dark_share = 1e-5) {
     SpectralImage image(20, 20, {550}, 10);
     std::vector<float> values(400, ground);
     for (int i = 0; i < stars; ++i) values[static_cast<std::size_t>(i)] = static_cast<float>(1 + i % 20);
     image.store_band(0, values);
     PictureOptions options;
     options.percentile = 50;
+    options.dark_share = dark_share;
     return PictureRenderer(image, options).white_level();
   };
   const double of_all = level(1, 0);  // one unit of light everywhere
   EXPECT_NEAR(level(0, 20) / of_all, 10, 1e-6);
   EXPECT_NEAR(level(1e-4F, 20) / of_all, 10, 1e-6);  // within 10⁻⁵ of the brightest
   EXPECT_NEAR(level(1e-2F, 20) / of_all, 1e-2, 1e-8);
+  EXPECT_NEAR(level(1e-2F, 20, 1e-3) / of_all, 10, 1e-6);  // a sky that is known to be one
   EXPECT_NEAR(level(1e-2F, 300) / of_all, 7, 1.01);
 }
 

@@ -73,11 +73,11 @@ double level_not_reached(std::vector<float>& levels, double percent) {
 
 /// Whether three quarters of a picture are dark beside its brightest pixel: lights in darkness. Then the
 /// levels of the lights are left, a thousandth of the brightest and more.
-bool leave_lights(std::vector<float>& levels) {
+bool leave_lights(std::vector<float>& levels, double dark) {
   constexpr double most_percent = 75;
-  constexpr float dark = 1e-5F, lit = 1e-3F;
+  constexpr float lit = 1e-3F;
   const float brightest = *std::max_element(levels.begin(), levels.end());
-  if (level_not_reached(levels, most_percent) > double(dark * brightest)) return false;
+  if (level_not_reached(levels, most_percent) > dark * double(brightest)) return false;
   std::erase_if(levels, [&](float level) { return level < lit * brightest; });
   return true;
 }
@@ -180,7 +180,7 @@ double PictureRenderer::level_for(const PictureOptions& options, std::vector<flo
   std::string rule = "as asked for";
   if (options.exposure == PictureOptions::Exposure::percentile) {
     std::vector<float> metered = levels;
-    const bool lights = leave_lights(metered);
+    const bool lights = leave_lights(metered, options.dark_share);
     level = percentile_of(metered, options.percentile);
     rule = fmt::format("the {}th percentile{}", options.percentile, lights ? " of what is lit" : beside);
   } else if (options.exposure == PictureOptions::Exposure::mean_grey) {

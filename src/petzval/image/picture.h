@@ -44,6 +44,8 @@ struct PictureOptions {
   };
   Exposure exposure = Exposure::percentile;
   double percentile = 99.5;
+  /// Of lights in darkness: how bright the darkness may be beside the brightest pixel.
+  double dark_share = 1e-5;
   double grey = 0.18;
   double white_level = 0;
   double compensation_ev = 0;  ///< +1 halves the level that is shown as white

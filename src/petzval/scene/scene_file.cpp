@@ -348,7 +348,11 @@ bool is_deep_chart(const std::string& path_or_name) {
 }
 
 bool is_drawn_to_angle(const std::string& path_or_name, const SceneOptions& options) {
-  return options.tilt_deg || (is_builtin_scene(path_or_name) && find_chart(path_or_name)->is_sky);
+  return options.tilt_deg || is_sky_chart(path_or_name);
+}
+
+bool is_sky_chart(const std::string& path_or_name) {
+  return is_builtin_scene(path_or_name) && find_chart(path_or_name)->is_sky;
 }
 
 std::vector<BuiltinScene> builtin_scenes() {

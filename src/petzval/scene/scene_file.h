@@ -74,6 +74,8 @@ std::vector<BuiltinScene> builtin_scenes();
 bool is_open_scene(const std::string& path_or_name);
 /// Whether it is a chart that has depth.
 bool is_deep_chart(const std::string& path_or_name);
+/// Whether it is a chart of the sky, all of it lights on a faint ground.
+bool is_sky_chart(const std::string& path_or_name);
 /// Whether a scene is another one at another angle, not the same one smaller or larger: stars, a tilted
 /// plane.
 bool is_drawn_to_angle(const std::string& path_or_name, const SceneOptions& options);
