@@ -136,7 +136,7 @@ void bind_design(nb::module_&) {
       nb::arg("tolerances") = std::vector<std::string>(), nb::arg("grade") = "precision",
       nb::arg("mtf_cpmm").none() = nb::none(), nb::arg("accept").none() = nb::none(), nb::arg("builds") = 200,
       nb::arg("distribution") = "normal", nb::arg("azimuths_deg") = Numbers(), nb::arg("refocus") = true,
-      nb::arg("inverse_change").none() = nb::none(), nb::arg("seed") = 1, nb::arg("threads") = 0,
+      nb::arg("inverse").none() = nb::none(), nb::arg("seed") = 1, nb::arg("threads") = 0,
       nb::arg("progress").none() = nb::none(), tolerance_text);
   add("built", built, nb::arg("number"), nb::kw_only(), nb::arg("tolerances") = std::vector<std::string>(),
       nb::arg("grade") = "precision", nb::arg("distribution") = "normal", nb::arg("seed") = 1, built_text);

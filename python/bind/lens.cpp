@@ -75,7 +75,7 @@ void warn(const std::vector<std::string>& notes) {
 
 std::shared_ptr<Lens> read(const std::string& name, const std::map<std::string, std::string>& substitutions,
                            const std::optional<GlassCatalogue>& glasses) {
-  LensFile file = read_lens(name, {substitutions, glasses});
+  LensFile file = read_lens(name, {.substitutions = substitutions, .glasses = glasses});
   warn(file.notes);
   return std::make_shared<Lens>(std::move(file.lens));
 }
@@ -215,7 +215,8 @@ void bind_lens(nb::module_& module) {
       .def(
           "altered",
           [](const Lens& self, const std::string& path, const nb::object& value) {
-            return std::make_shared<Lens>(with_setting(self, setting(path, value), {{}, glasses_of(self)}));
+            return std::make_shared<Lens>(
+                with_setting(self, setting(path, value), {.glasses = glasses_of(self)}));
           },
           nb::arg("path"), nb::arg("value").none(),
           "A copy with one entry of its native file altered: altered(\"surfaces[4].thickness_mm\", 0.7).")
@@ -258,7 +259,7 @@ void bind_lens(nb::module_& module) {
         own.push_back(glass);
     }
     return std::make_shared<Lens>(
-        lens_from_json(text, "pickle", {{}, GlassCatalogue::bundled().with(std::move(own))}));
+        lens_from_json(text, "pickle", {.glasses = GlassCatalogue::bundled().with(std::move(own))}));
   });
 }
 

@@ -123,7 +123,13 @@ void bind_light(nb::module_& module) {
       .def(nb::new_(&of_array), nb::arg("values"), nb::arg("wavelengths_nm"), nb::arg("pitch_um"),
            nb::arg("pixel_aperture") = "box",
            "Of an array (row, column, wavelength) of float32, which is copied.")
-      .def_static("load", &read_irradiance, nb::arg("path"), "Reads what `save` wrote as .exr.")
+      .def_static(
+          "load",
+          [](const std::string& path, const Numbers& wavelengths_nm, double pitch_um) {
+            return read_irradiance(path, {.wavelengths_nm = wavelengths_nm, .pitch_um = pitch_um});
+          },
+          nb::arg("path"), nb::arg("wavelengths_nm") = Numbers(), nb::arg("pitch_um") = 0.0,
+          "Reads what `save` wrote as .exr or .npz; .npy with its wavelengths and its pixel pitch.")
       .def_prop_ro("values", values_view,
                    "A view (row, column, wavelength) of float32, without a copy; it may be written to.")
       .def_prop_ro("wavelengths_nm", [](const SpectralImage& i) { return tuple_of(i.wavelengths_nm()); })

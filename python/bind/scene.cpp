@@ -37,13 +37,14 @@ SceneRequest request(const std::string& name, Maybe<int> columns, Maybe<int> row
                      const Maybe<std::string>& quantity, const std::string& radiance_unit,
                      Maybe<double> scale, const Numbers& file_bands_nm, bool negative_is_zero,
                      Maybe<double> temperature_k, Maybe<double> emissivity, Maybe<double> background_k,
-                     Maybe<double> illuminance_lx, Maybe<double> irradiance_w_m2,
-                     Maybe<double> band_width_nm) {
+                     Maybe<double> illuminance_lx, Maybe<double> irradiance_w_m2, Maybe<double> band_width_nm,
+                     Maybe<double> width_m, Maybe<double> tilt_deg) {
   SceneRequest scene{name, {}};
   SceneOptions& o = scene.options;
   o.columns = columns, o.rows = rows;
   o.wavelengths_nm = wavelengths_nm;
   o.horizontal_angle_deg = horizontal_angle_deg, o.distance_m = distance_m;
+  o.width_m = width_m, o.tilt_deg = tilt_deg;
   o.illuminant = illuminant;
   o.mean_luminance_cd_m2 = mean_luminance_cd_m2;
   o.illuminance_lx = illuminance_lx, o.irradiance_w_m2 = irradiance_w_m2, o.band_width_nm = band_width_nm;
@@ -158,6 +159,7 @@ void bind_request(nb::module_& module) {
            nb::arg("temperature_k").none() = nb::none(), nb::arg("emissivity").none() = nb::none(),
            nb::arg("background_k").none() = nb::none(), nb::arg("illuminance_lx").none() = nb::none(),
            nb::arg("irradiance_w_m2").none() = nb::none(), nb::arg("band_width_nm").none() = nb::none(),
+           nb::arg("width_m").none() = nb::none(), nb::arg("tilt_deg").none() = nb::none(),
            "docs/SCENES.md says what each keyword does; the program's options of the same names do the same.")
       .def_ro("name", &SceneRequest::name)
       .def(

@@ -43,3 +43,10 @@ def test_errors_say_what_would_be_right():
         lens.optimise(["bendings"])
     with pytest.raises(pz.InputError, match="element_tilt_deg"):
         lens.tolerance(tolerances=["tilt=3"])
+
+
+def test_a_tilted_plane_has_depth():
+    flat = pz.SceneRequest("grid", width_m=0.2, distance_m=0.5, wavelengths_nm=[550]).read()
+    assert flat.horizontal_angle_deg == pytest.approx(2 * np.degrees(np.arctan(0.2)))
+    tilted = pz.SceneRequest("grid", width_m=0.2, distance_m=0.5, tilt_deg=30, wavelengths_nm=[550]).read()
+    assert tilted.depth_m is not None and np.ptp(tilted.depth_m) > 0.05

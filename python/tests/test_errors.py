@@ -65,8 +65,8 @@ def test_notes_are_warnings(camera):
 
 
 # Of parts of the library that the package does not have: tables of other programs, and their making.
-NOT_IN_PYTHON = {"clip_negative", "curves", "field_azimuth_deg", "g_axis_sr", "psf_away", "relative_illumination",
-                 "resample", "vertex_to_sensor_mm"}
+NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "port", "psf_away", "relative_illumination", "resample",
+                 "vertex_to_sensor_mm"}
 
 
 def keywords(scope):
