@@ -15,6 +15,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "counted_light.h"
+
 namespace petzval {
 namespace {
 
@@ -96,22 +98,6 @@ Lens askew_gauss() {
   return lens;
 }
 
-/// n'² ∬ dα dβ over the directions that reach the object from an image point, counted on an even grid.
-double counted_g_sr(const Tracer& tracer, double x_mm, double y_mm, int side) {
-  const double half = std::sqrt(0.5);
-  RayBatch rays;
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j) {
-      const double a = half * (2 * (i + 0.5) / side - 1), b = half * (2 * (j + 0.5) / side - 1);
-      if (a * a + b * b < 0.9)
-        rays.push_back(x_mm, y_mm, tracer.image_z_mm(), a, b, -std::sqrt(1 - a * a - b * b));
-    }
-  tracer.trace_backward(rays);
-  double passed = 0;
-  for (const RayStatus status : rays.status) passed += status == RayStatus::ok;
-  return passed * std::pow(2 * half / side, 2) * std::pow(tracer.image_index(), 2);
-}
-
 struct WallPixel {
   int row, column;
 };
@@ -125,7 +111,7 @@ void expect_wall(const Lens& lens, const std::vector<WallPixel>& pixels, int sid
   const SpectralImage image = form_image(wall, table_of(lens, sensor), sensor, options);
   const Tracer tracer(lens, nm);
   for (const auto& [row, column] : pixels) {
-    const double counted = counted_g_sr(tracer, sensor.x_mm(column + 0.5), sensor.y_mm(row + 0.5), side);
+    const double counted = counted_light_sr(tracer, sensor.x_mm(column + 0.5), sensor.y_mm(row + 0.5), side);
     EXPECT_NEAR(double(image.at(0, row, column)) / counted, 1, tolerance) << row << " " << column;
   }
 }

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <complex>
 
+#include "counted_light.h"
+
 namespace petzval {
 namespace {
 
@@ -186,23 +188,6 @@ TEST(PosedLens, MtfIsTheTransformOfThePsf) {
   }
 }
 
-/// n'² ∬ dα dβ over the directions that reach the object from an image point, counted on an even grid that
-/// knows of no pupil. Directions within a cone of 45° about the sensor's normal.
-double counted_g(const Tracer& tracer, double x_mm, double y_mm, int side) {
-  const double half = std::sqrt(0.5);
-  RayBatch rays;
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j) {
-      const double a = half * (2 * (i + 0.5) / side - 1), b = half * (2 * (j + 0.5) / side - 1);
-      if (a * a + b * b < 0.9)
-        rays.push_back(x_mm, y_mm, tracer.image_z_mm(), a, b, -std::sqrt(1 - a * a - b * b));
-    }
-  tracer.trace_backward(rays);
-  double passed = 0;
-  for (const RayStatus status : rays.status) passed += status == RayStatus::ok;
-  return passed * std::pow(2 * half / side, 2) * std::pow(tracer.image_index(), 2);
-}
-
 TEST(PosedLens, GSensorIsThatOfCountedRays) {
   const Lens lens = as_built();
   for (const double azimuth : {0.0, 135.0}) {
@@ -210,7 +195,7 @@ TEST(PosedLens, GSensorIsThatOfCountedRays) {
     for (const double field : {0.0, 9.0, 13.0}) {
       const ChiefRay chief = *tracer.chief_ray(field);
       // Cells cut by the rim: 2 · 1500^−1.5 of the hemisphere's share, as counted_g_sensor_sr() has it.
-      const double counted = counted_g(tracer.tracer(), chief.image_x_mm, chief.image_height_mm, 1500);
+      const double counted = counted_light_sr(tracer.tracer(), chief.image_x_mm, chief.image_height_mm, 1500);
       EXPECT_NEAR(tracer.g_sensor_sr(chief) / counted, 1, 5e-4) << azimuth << " " << field;
     }
   }
