@@ -136,17 +136,24 @@ Psf sum_smooth(const SmoothPupil& pupil, const PsfPlan& plan, const PsfOptions& 
 /// one is at the cell's middle.
 Psf sum_nodes(const PupilWaves& waves, const PsfPlan& plan) {
   if (plan.samples_per_cell == 1) return sum_plane_waves(waves, plan.size, plan.spacing_um);
-  const int side = plan.samples_per_cell | 1, size = plan.size | 1;
-  const Psf fine = sum_plane_waves(waves, size * side, plan.spacing_um / side);
+  const int side = plan.samples_per_cell | 1;
+  // The middle sample of an odd number of cells is the middle of a cell; where their number is even, the last
+  // of them is one too many.
+  const Psf fine = sum_plane_waves(waves, (plan.size | 1) * side, plan.spacing_um / side);
+  const auto size = static_cast<std::size_t>(plan.size);
   Psf psf;
-  psf.size = size;
+  psf.size = plan.size;
   psf.spacing_um = plan.spacing_um;
-  psf.captured = fine.captured;
-  psf.values.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0F);
-  for (int i = 0; i < fine.size; ++i)
-    for (int j = 0; j < fine.size; ++j)
-      psf.values[static_cast<std::size_t>(i / side) * static_cast<std::size_t>(size) +
-                 static_cast<std::size_t>(j / side)] += fine.at(i, j);
+  psf.values.assign(size * size, 0.0F);
+  double inside = 0;
+  for (int i = 0; i < plan.size * side; ++i)
+    for (int j = 0; j < plan.size * side; ++j) {
+      psf.values[static_cast<std::size_t>(i / side) * size + static_cast<std::size_t>(j / side)] +=
+          fine.at(i, j);
+      inside += static_cast<double>(fine.at(i, j));
+    }
+  psf.captured = fine.captured * inside;
+  for (float& value : psf.values) value = static_cast<float>(static_cast<double>(value) / inside);
   return psf;
 }
 
