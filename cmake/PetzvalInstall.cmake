@@ -8,7 +8,7 @@ set(PETZVAL_INSTALL_CMAKEDIR ${CMAKE_INSTALL_LIBDIR}/cmake/petzval)
 install(TARGETS petzval EXPORT petzvalTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 # The public headers, and those that they include; all others are the library's own.
-set(PETZVAL_PUBLIC_HEADERS petzval.h measure/colour_chart.h measure/photon_transfer.h
+set(PETZVAL_PUBLIC_HEADERS petzval.h dataset/dataset.h measure/colour_chart.h measure/photon_transfer.h
   measure/picture_comparison.h measure/sfr/measure_picture.h optics/table_file.h report/lens_drawing.h target/formats/polygon_file.h
   target/test_charts.h)
 function(petzval_install_headers)

@@ -114,5 +114,6 @@ void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
 void add_handout_command(CLI::App& app, Shared& shared);
 void add_live_command(CLI::App& app, Shared& shared);
+void add_dataset_commands(CLI::App& app, Shared& shared);
 
 }  // namespace petzval::app

@@ -56,6 +56,7 @@ void bind_light(nb::module_& module);
 void bind_camera(nb::module_& module);
 void bind_analysis(nb::module_& module);
 void bind_design(nb::module_& module);
+void bind_dataset(nb::module_& module);
 void bind_raw(nb::module_& module);
 void bind_target(nb::module_& module);
 void bind_measure(nb::module_& module);

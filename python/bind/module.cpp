@@ -17,4 +17,5 @@ NB_MODULE(_petzval, module) {
   bind_raw(module);
   bind_target(module);
   bind_measure(module);
+  bind_dataset(module);
 }

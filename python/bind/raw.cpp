@@ -125,6 +125,17 @@ void bind_raw_image(nb::module_& module) {
             return Array<std::uint16_t>(raw.samples.data(), 2, shape, self);
           },
           "A view (row, column) of uint16, as stored.")
+      .def_prop_ro(
+          "linear_values",
+          [](const RawImage& raw) {
+            std::vector<double> linear;
+            for (int row = 0; row < raw.rows; ++row)
+              for (int column = 0; column < raw.columns; ++column) linear.push_back(raw.pixel(row, column));
+            return array_of(std::move(linear),
+                            {static_cast<std::size_t>(raw.rows), static_cast<std::size_t>(raw.columns)});
+          },
+          "A copy (row, column) of float64, proportional to light: (value - black level) / dn_per_e "
+          "electrons.")
       .def_ro("columns", &RawImage::columns)
       .def_ro("rows", &RawImage::rows)
       .def_ro("channels", &RawImage::channels, "Names of the colours.")
