@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval sweep: pictures and numbers over a range of parameters.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
@@ -61,6 +62,21 @@ void check_plot(const SweepCommand& options, const std::vector<SweptParameter>& 
   throw InputError(fmt::format(
       "--plot: {} cannot be an axis; two or more numbers in one unit would be right, as in f-number=4,5.6,8",
       keys));
+}
+
+/// \throws InputError for a quantity that the command does not measure, and then nothing stays of the first
+/// point. \param results  of which the last was made.
+void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results) {
+  if (options.plot_of.empty()) return;
+  const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), {});
+  for (const std::string& key : options.plot_of) {
+    if (std::ranges::find(measured, key) != measured.end()) continue;
+    std::error_code ignored;
+    std::filesystem::remove(options.folder + "/" + name_of_point(results.size() - 1) + ".json", ignored);
+    for (const std::string& path : results.back().outputs) std::filesystem::remove(path, ignored);
+    throw InputError(fmt::format("--plot-of {}: the command measures no such thing; {} would be right", key,
+                                 fmt::join(measured, ", ")));
+  }
 }
 
 void write_page(const SweepCommand& options, const std::vector<PointResult>& results, const Table& table,
@@ -219,6 +235,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
       held.clear();
     }
     if (!result.done) continue;
+    if (written.empty()) check_quantities(options, results);
     folder.keep();
     written.insert(name_of_point(results.size() - 1) + ".json");
     for (const std::string& path : result.outputs)

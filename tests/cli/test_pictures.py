@@ -81,6 +81,16 @@ class Pictures(ProgramTest):
         # The tables may reach to different fields, so that their PSFs lie at different heights.
         self.assertLess(numpy.abs(stored - direct).max() / direct.max(), 2e-3)
 
+    def test_nodes_and_tiles_are_heeded_or_said_not_to_be(self):
+        shot = ["image", "siemens", "--lens", "edmund-54852", "--sensor", "64x48@10", "--wavelengths", "550", "-o", "light.npy"]
+        method = lambda *options: self.json_of(*shot, *options)["method"]
+        self.assertIn("4 x 4 nodes in tiles of 60 x 60", method("--nodes", "4", "--tile", "60"))
+        self.assertIn("5 x 5 nodes", method("--nodes", "5"))
+        done = self.petzval(*shot, "--tile", "1000")
+        self.assertIn("blended sections", done.stdout)
+        self.assertIn("--tile had no effect", done.stderr)
+        self.assertNotIn("no effect", self.petzval(*shot).stderr)
+
     def test_insets_stand_beside_the_picture(self):
         shot = ["image", "points:3", *CAMERA, "--wavelengths", "550"]
         self.assert_succeeds(*shot, "-o", "plain.png")
