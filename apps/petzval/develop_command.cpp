@@ -2,15 +2,19 @@
 // petzval develop: from a raw file to a picture.
 #include <fmt/format.h>
 #include <petzval/base/data_directory.h>
+#include <petzval/base/error.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/isp/display_picture.h>
 #include <petzval/sensor/formats/dng.h>
+#include <petzval/simulate/outputs.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "develop_option.h"
+#include "inset_option.h"
 #include "output_option.h"
 
 namespace petzval::app {
@@ -20,13 +24,16 @@ namespace {
 struct DevelopCommand {
   std::string raw;
   DevelopChoice choice;
-  std::vector<std::string> outputs;
+  std::vector<std::string> outputs, insets;
   int bits = 8;
 };
 
 void run_develop(const DevelopCommand& command, const Shared& shared) {
   for (const std::string& path : command.outputs)
     require_extension(path, display_picture_extensions(), "a picture");
+  const std::vector<PictureInset> insets = parsed_insets(command.insets);
+  if (!insets.empty() && std::ranges::none_of(command.outputs, is_picture_name))
+    throw InputError("--inset has no effect: no picture to look at (.png, .tif) is asked for");
   StagedFiles files;
   std::vector<std::string> staged;
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
@@ -41,7 +48,11 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
   const Picture picture = develop(raw, command.choice.development(), context_of(shared),
                                   steps.empty() ? DevelopStep() : write_step);
   const DevelopReport& report = picture.report;
-  for (const std::string& path : staged) write_picture(path, picture, command.bits);
+  for (std::size_t i = 0; i < staged.size(); ++i)
+    write_picture(
+        staged[i],
+        !insets.empty() && is_picture_name(command.outputs[i]) ? with_insets(picture, insets) : picture,
+        command.bits);
   files.commit();
 
   if (shared.json) {
@@ -81,6 +92,7 @@ void add_develop_command(CLI::App& app, Shared& shared) {
       ->check(output_file())
       ->required()
       ->allow_extra_args(false);
+  add_inset_option(*command, options->insets);
   command->add_option("--bits", options->bits, "Of .png and .tif: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();

@@ -2,6 +2,7 @@
 #include "shot_option.h"
 
 #include "command.h"
+#include "inset_option.h"
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
@@ -57,6 +58,7 @@ void ShotChoice::add_to(CLI::App& command) {
   command.add_option("--bits", bits, "Of the picture: 8 or 16")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str();
+  add_inset_option(command, insets);
   add_group(command, exposing, [&] { sense.add_to(command, true); });
   add_group(command, developing, [&] { develop.add_to(command, true); });
 }
@@ -83,6 +85,7 @@ OutputOptions ShotChoice::options() const {
                     : picture == "irradiance" ? OutputOptions::Shows::irradiance
                                               : OutputOptions::Shows::automatic;
   options.bits = bits;
+  options.shown.insets = parsed_insets(insets);
   if (white) {
     options.shown.exposure = PictureOptions::Exposure::fixed;
     options.shown.white_level = *white;
@@ -111,6 +114,8 @@ OutputOptions ShotChoice::checked(const std::optional<Sensor>& sensor,
     throw InputError(fmt::format("{} has no effect: {}", option, why_not_exposed(sensor)));
   if (const std::string option = given_option(command, developing); !developed && !option.empty())
     throw InputError(fmt::format("{} has no effect: no developed picture is asked for", option));
+  if (!insets.empty() && !std::ranges::any_of(outputs, is_picture_name))
+    throw InputError("--inset has no effect: no picture (.png) is asked for");
   for (const char* option : {"--white", "--display"})
     if (const CLI::Option* given = command.get_option_no_throw(option);
         shows_light_ && given->count() > 0 && develops(options, sensor))

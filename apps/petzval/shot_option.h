@@ -21,6 +21,7 @@ struct ShotChoice {
   int bits = 8;
   std::optional<double> white;
   std::string display = "linear";
+  std::vector<std::string> insets;
 
   /// Adds --picture, --bits, and the options of `sense` and `develop`, in groups of their
   /// own.

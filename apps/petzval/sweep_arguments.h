@@ -18,6 +18,8 @@ struct SweepCommand {
   std::string irradiance;            ///< exr, npy or nothing
   std::vector<std::string> kept;     ///< extensions of what else is written at each point
   std::string scene_width = "same";  ///< of all points, each as its frame needs, or a length
+  std::string plot;                  ///< of the numbers, or nothing
+  std::vector<std::string> plot_of;  ///< what it shows; empty: what the command is about
   std::string clip;                  ///< a film of the pictures, or nothing
   double frames_per_second = 12;
   std::optional<int> frames;  ///< of ranges that have no step

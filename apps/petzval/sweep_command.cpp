@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval sweep: pictures and numbers over a range of parameters.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/report/html.h>
+#include <petzval/report/sweep_plot.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -15,6 +17,7 @@
 #include "clip.h"
 #include "field_option.h"
 #include "output_option.h"
+#include "plot_output.h"
 #include "sweep_folder.h"
 #include "sweep_result.h"
 #include "sweep_scene.h"
@@ -35,13 +38,55 @@ std::string label_of(const SweepPoint& point) {
   return label;
 }
 
+/// What was measured over what was varied.
+std::string plot_svg(const SweepCommand& options, const std::vector<SweptParameter>& parameters,
+                     const Table& table) {
+  std::vector<std::string> varied;
+  for (const SweptParameter& parameter : parameters) varied.push_back(parameter.key);
+  return plot_grid_svg(sweep_plots(table, varied, options.plot_of), 1, "");
+}
+
+/// \throws InputError if a plot is asked for that cannot be.
+void check_plot(const SweepCommand& options, const std::vector<SweptParameter>& parameters) {
+  if (options.plot.empty()) {
+    if (!options.plot_of.empty())
+      throw InputError("--plot-of says what a plot shows; with --plot FILE.svg it would be right");
+    return;
+  }
+  require_drawing(options.plot, "a plot");
+  std::string keys;
+  for (const SweptParameter& parameter : parameters) {
+    if (swept_axis(parameter.values)) return;
+    keys += (keys.empty() ? "" : ", ") + parameter.key;
+  }
+  throw InputError(fmt::format(
+      "--plot: {} cannot be an axis; two or more numbers in one unit would be right, as in f-number=4,5.6,8",
+      keys));
+}
+
+/// \throws InputError for a quantity that the command does not measure, and then nothing stays of the first
+/// point. \param results  of which the last was made.
+void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results) {
+  if (options.plot_of.empty()) return;
+  const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), {});
+  for (const std::string& key : options.plot_of) {
+    if (std::ranges::find(measured, key) != measured.end()) continue;
+    std::error_code ignored;
+    std::filesystem::remove(options.folder + "/" + name_of_point(results.size() - 1) + ".json", ignored);
+    for (const std::string& path : results.back().outputs) std::filesystem::remove(path, ignored);
+    throw InputError(fmt::format("--plot-of {}: the command measures no such thing; {} would be right", key,
+                                 fmt::join(measured, ", ")));
+  }
+}
+
 void write_page(const SweepCommand& options, const std::vector<PointResult>& results, const Table& table,
-                bool pictures) {
+                const std::string& plot, bool pictures) {
   html::Page page(fmt::format("Sweep of petzval {}", options.command),
                   fmt::format("{} points", results.size()));
   if (pictures)
     page.section("Contact sheet")
         .add(html::picture(html::linked_image("contact-sheet.png", "contact sheet")));
+  if (!plot.empty()) page.section("Plot").add(html::drawing(plot));
   page.section("Numbers").add(html::table(table));
   page.footer(fmt::format("petzval {}", version()));
   write_whole_file(options.folder + "/index.html", page.html());
@@ -127,7 +172,8 @@ void refuse_if_all_are_refused(const std::vector<PointResult>& results) {
 
 /// Tables, the sheet and the page. \returns their names.
 std::set<std::string> write_summary(const SweepCommand& options, const std::vector<PointResult>& results,
-                                    const Json& rows, int unit, const Shared& shared) {
+                                    const std::vector<SweptParameter>& parameters, const Json& rows,
+                                    const Shared& shared) {
   std::set<std::string> names{"sweep.csv", "index.html"};
   const Table table = table_of(rows);
   write_whole_file(options.folder + "/sweep.csv", to_csv(table));
@@ -138,13 +184,16 @@ std::set<std::string> write_summary(const SweepCommand& options, const std::vect
     pictures = pictures || !result.picture.empty();
   }
   if (pictures) {
-    const double brightening = write_contact_sheet(options.folder + "/contact-sheet.png", sheet, unit);
+    const double brightening = write_contact_sheet(options.folder + "/contact-sheet.png", sheet,
+                                                   pictures_in_unit(options, parameters));
     if (brightening > 1)
       note(shared, fmt::format("contact-sheet.png shows the pictures {:.3g} times as bright as they are",
                                brightening));
     names.insert("contact-sheet.png");
   }
-  write_page(options, results, table, pictures);
+  const std::string plot = options.plot.empty() ? "" : plot_svg(options, parameters, table);
+  if (!plot.empty()) write_drawing(options.plot, plot);
+  write_page(options, results, table, plot, pictures);
   return names;
 }
 
@@ -157,6 +206,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   if (parameters.empty() && options.points.empty())
     throw InputError("what is varied? --vary f-number=2,4,8 or --points FILE.csv would be right");
   const std::vector<SweepPoint> points = points_of(options, parameters);
+  check_plot(options, parameters);
   check_command_lines(app, options, parameters, shared);
   for (const std::string& text : notes) note(shared, text);
   SweepFolder folder(options.folder, planned_files(options, points.size()));
@@ -185,6 +235,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
       held.clear();
     }
     if (!result.done) continue;
+    if (written.empty()) check_quantities(options, results);
     folder.keep();
     written.insert(name_of_point(results.size() - 1) + ".json");
     for (const std::string& path : result.outputs)
@@ -192,7 +243,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   }
   refuse_if_all_are_refused(results);
   const Json rows = rows_of(results);
-  written.merge(write_summary(options, results, rows, pictures_in_unit(options, parameters), shared));
+  written.merge(write_summary(options, results, parameters, rows, shared));
   folder.finish(rows, written);
   if (!options.clip.empty() && failed == 0)
     write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
@@ -237,6 +288,18 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
       ->add_option("--frames", options->frames,
                    "So many values of a range without a step, --vary KEY=START:STOP")
       ->check(CLI::Range(2, 10000));
+  command
+      ->add_option(
+          "--plot", options->plot,
+          "Also plot what was measured over what was varied (.svg, .png, .pdf): a curve for each field, "
+          "wavelength, frequency and value of further parameters")
+      ->check(output_file());
+  command
+      ->add_option(
+          "--plot-of", options->plot_of,
+          "Columns of sweep.csv that the plot shows, separated by commas; default: what the command is "
+          "about")
+      ->delimiter(',');
   if (name == "lens") return;
   command
       ->add_option("--clip", options->clip,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sweep_tables.h"
 
+#include <fmt/format.h>
 #include <petzval/base/number_text.h>
 
 #include <algorithm>
@@ -17,10 +18,15 @@ Json value_of(const std::string& text) {
   return text;
 }
 
-/// Puts the plain values of an object into a row, those of objects within it by "outer.inner".
+/// Puts the plain values of an object into a row, those of objects within it by "outer.inner", those of the
+/// sensor's channels by "levels.green.inner".
 void flatten(const Json& object, const std::string& prefix, Json& row) {
   for (const auto& [key, value] : object.items()) {
     if (value.is_object()) flatten(value, prefix + key + ".", row);
+    if (value.is_array())
+      for (const Json& entry : value)
+        if (entry.is_object() && entry.contains("channel") && entry["channel"].is_string())
+          flatten(entry, fmt::format("{}{}.{}.", prefix, key, entry["channel"].get<std::string>()), row);
     if (value.is_number() || value.is_string() || value.is_boolean() || value.is_null())
       if (!row.contains(prefix + key)) row[prefix + key] = value;
   }

@@ -81,6 +81,36 @@ class Pictures(ProgramTest):
         # The tables may reach to different fields, so that their PSFs lie at different heights.
         self.assertLess(numpy.abs(stored - direct).max() / direct.max(), 2e-3)
 
+    def test_nodes_and_tiles_are_heeded_or_said_not_to_be(self):
+        shot = ["image", "siemens", "--lens", "edmund-54852", "--sensor", "64x48@10", "--wavelengths", "550", "-o", "light.npy"]
+        method = lambda *options: self.json_of(*shot, *options)["method"]
+        self.assertIn("4 x 4 nodes in tiles of 60 x 60", method("--nodes", "4", "--tile", "60"))
+        self.assertIn("5 x 5 nodes", method("--nodes", "5"))
+        done = self.petzval(*shot, "--tile", "1000")
+        self.assertIn("blended sections", done.stdout)
+        self.assertIn("--tile had no effect", done.stderr)
+        self.assertNotIn("no effect", self.petzval(*shot).stderr)
+
+    def test_insets_stand_beside_the_picture(self):
+        shot = ["image", "points:3", *CAMERA, "--wavelengths", "550"]
+        self.assert_succeeds(*shot, "-o", "plain.png")
+        self.assert_succeeds(*shot, "--inset", "centre,8", "--inset", "bottom-left", "-o", "beside.png")
+        size = lambda name: struct.unpack(">II", (self.folder / name).read_bytes()[16:24])
+        self.assertEqual(size("plain.png"), (64, 48))
+        columns, rows = size("beside.png")
+        self.assertGreater(columns, 64 + 120)
+        self.assertGreater(rows, 240, "two insets, one above the other")
+        self.assert_refused(*shot, "--inset", "centre", "-o", "light.exr", words=["--inset", ".png"])
+        self.assert_refused(*shot, "--inset", "70,10", "-o", "x.png", words=["70,10", "64 x 48"])
+        self.assert_refused(*shot, "--inset", "up", "-o", "x.png", words=["310,20", "top-right"])
+        raw = ["image", "wall", "--lens", "dgauss-50mm", "--sensor", "third-inch-1280x960", "--sensor-set", "columns=64",
+               "--sensor-set", "rows=48", "--wavelengths", "450,550,650"]
+        self.assert_succeeds(*raw, "--inset", "10,10", "-o", "shot.png", "-o", "shot.dng")
+        self.assert_succeeds("develop", "shot.dng", "--inset", "10,10", "-o", "again.png", "-o", "plain.npy")
+        self.assertEqual(size("shot.png"), size("again.png"))
+        self.assertEqual(numpy.load(self.folder / "plain.npy").shape[:2], (48, 64), "numbers stay what they are")
+        self.assert_refused("develop", "shot.dng", "--inset", "10,10", "-o", "x.npy", words=["--inset"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -50,6 +50,30 @@ class Sweep(ProgramTest):
         self.assertAlmostEqual(said["rows"][0]["efl_mm"], 6.0, delta=0.01)
         self.assertAlmostEqual(said["rows"][1]["efl_mm"], 50.0, delta=0.5)
 
+    def test_a_plot_of_what_was_measured(self):
+        self.assert_succeeds("sweep", "lens", "spots", "cooke-triplet", "--fields", "0,14", "--wavelengths", "550", "--vary",
+                             "f-number=5,8", "--vary", "focus=1m,2m,4m", "-o", "out", "--plot", "spots.svg")
+        plot = (self.folder / "spots.svg").read_text()
+        self.assertIn("f-number", plot)
+        self.assertIn("rms radius [µm]", plot)
+        for focus in ("1m", "2m", "4m"):
+            for field in (0, 14):
+                self.assertIn(f"focus {focus}, field {field}", plot)
+        self.assertIn("Plot", (self.folder / "out" / "index.html").read_text())
+        dark = ["sweep", "image", "wall", "--lens", "dgauss-50mm", "--sensor", "third-inch-1280x960", "--sensor-set", "columns=16",
+                "--sensor-set", "rows=12", "--wavelengths", "450,550,650", "--vary", "exposure=1ms,2ms", "-o", "dark"]
+        self.assert_succeeds(*dark, "--plot", "light.svg", "--plot-of", "levels.green.mean_e,levels.red.mean_e")
+        first, second = self.rows("dark")
+        self.assertAlmostEqual(float(second["levels.green.mean_e"]) / float(first["levels.green.mean_e"]), 2, delta=0.02)
+        self.assertIn("exposure [ms]", (self.folder / "light.svg").read_text())
+        lens = ["sweep", "lens", "info", "cooke-triplet", "-o", "no", "--vary"]
+        self.assert_refused(*lens, "lens=tessar,telephoto-250mm", "--plot", "x.svg", words=["lens"])
+        self.assert_refused("sweep", "lens", "info", "-o", "no", "--vary", "lens=tessar,telephoto-250mm", "--plot", "x.svg",
+                            words=["cannot be an axis", "f-number=4,5.6,8"])
+        self.assert_refused(*lens, "f-number=5,8", "--plot", "x.txt", words=[".svg"])
+        self.assert_refused(*lens, "f-number=5,8", "--plot-of", "efl_mm", words=["--plot FILE.svg"])
+        self.assert_refused(*lens, "f-number=5,8", "--plot", "x.svg", "--plot-of", "efl", words=["efl_mm"])
+
     def test_a_failing_point_is_reported_and_the_rest_goes_on(self):
         done = self.petzval(*IMAGE, "--vary", "f-number=0.5,4", "-o", "out")
         self.assertEqual(done.returncode, 0, done.stderr)

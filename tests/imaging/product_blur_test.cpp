@@ -264,6 +264,19 @@ TEST(ProductBlur, LeavesWhatIsTooLargeForItsTransformsToSections) {
   EXPECT_LE(plan.estimated_error, 1e-3);
 }
 
+/// Large pictures through PSFs that change fast need many kernels: more memory is better than sections, each
+/// of which makes its own transform (five times the time for 12 megapixels at f/2).
+TEST(ProductPlan, TakesMoreMemoryBeforeItFallsBackToSections) {
+  const PsfField psfs(make_table(comatic_recipe()), 550, 0.4);
+  const SensorGeometry grid{9000, 7000, 0.4};
+  ASSERT_LT(2 * psfs.radius(), TileTransform::largest / 2);
+  const std::optional<ProductPlan> plan = plan_product(psfs, grid, {1e-4});
+  ASSERT_TRUE(plan);
+  EXPECT_GT(plan->kernel_bytes, 400e6) << "a grid that needs it";
+  EXPECT_LE(plan->kernel_bytes, 1600e6);
+  EXPECT_LE(plan->estimated_error, 1e-4);
+}
+
 TEST(ProductOptions, RefusesNonsense) {
   for (const ProductOptions& options : {ProductOptions{0},
                                         {1e-7},

@@ -72,6 +72,19 @@ TEST(BundledLenses, TeachingLensesKeepTheirLaws) {
   expect_relative(coma.surfaces[1].conic, -n * n, 1e-8);
 }
 
+/// Machine vision names its lenses by focal length; two groups with a common focus have no power but a scale,
+/// that of their focal lengths.
+TEST(BundledLenses, MachineVisionLensesAreWhatTheyAreCalled) {
+  const std::pair<const char*, double> lenses[] = {
+      {"cmount-8mm", 8.5}, {"cmount-12mm", 12}, {"cmount-16mm", 16}, {"cmount-25mm", 25},
+      {"cmount-35mm", 35}, {"cmount-50mm", 50}, {"m12-4mm", 4},      {"m12-2mm-fisheye", 1.9},
+      {"m12-8mm", 8},      {"m12-12mm", 12}};
+  for (const auto& [name, focal_length_mm] : lenses)
+    expect_relative(first_order(read_lens(name).lens).efl_mm, focal_length_mm, 1e-4);
+  expect_relative(first_order(read_lens("telecentric-0.5x").lens).magnification, -0.5, 1e-5);
+  expect_relative(first_order(read_lens("telecentric-0.25x").lens).magnification, -0.25, 1e-5);
+}
+
 /// Lens files as they were published; see data/lenses/README.md. The folder stands beside the checkout or
 /// nowhere.
 class PublishedFile : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};

@@ -90,6 +90,10 @@ double conjugate_object_mm(const Lens& lens, const LensMatrix& m, double fixed_m
   // Both roots without cancellation: one from the larger sum, the other from the product.
   const double sum = -(half_linear + std::copysign(std::sqrt(discriminant), half_linear));
   const double one = sum / m.c, other = constant / sum;
+  // They differ in their side of unit magnification. Of a lens that is telecentric on both sides, whose power
+  // is next to nothing and of either sign, the farther one may be the wrong one.
+  if (m.beyond_unit_magnification(one) != m.beyond_unit_magnification(other))
+    return m.beyond_unit_magnification(one) == far_side ? one : other;
   return far_side ? std::max(one, other) : std::min(one, other);
 }
 

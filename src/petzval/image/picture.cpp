@@ -128,6 +128,33 @@ void encode_row(std::span<const LinearRgb> pixels, int bits, std::span<std::uint
   }
 }
 
+/// The picture and its insets beside it, on white paper.
+PngImage with_insets(const PngImage& picture, const std::vector<PictureInset>& insets) {
+  const InsetSheet sheet(picture.columns, picture.rows, insets);
+  PngImage beside;
+  static_cast<PngLayout&>(beside) = picture;
+  beside.columns = sheet.columns();
+  beside.rows = sheet.rows();
+  const auto white = static_cast<std::uint16_t>(picture.bits == 8 ? 255 : 65535);
+  beside.samples.assign(beside.row_samples() * static_cast<std::size_t>(beside.rows), white);
+  const std::array<LinearRgb, 1> yellow{{{frame_colour[0], frame_colour[1], frame_colour[2]}}};
+  std::array<std::uint16_t, 3> frame{};
+  encode_row(yellow, picture.bits, frame);
+  auto sample = beside.samples.begin();
+  for (int row = 0; row < beside.rows; ++row)
+    for (int column = 0; column < beside.columns; ++column, sample += 3) {
+      const InsetSheet::Source source = sheet.at(column, row);
+      if (source.kind == InsetSheet::Source::Kind::frame) std::ranges::copy(frame, sample);
+      if (source.kind != InsetSheet::Source::Kind::picture) continue;
+      const auto from =
+          picture.samples.begin() +
+          static_cast<std::ptrdiff_t>(static_cast<std::size_t>(source.row) * picture.row_samples() +
+                                      static_cast<std::size_t>(source.column) * 3);
+      std::copy(from, from + 3, sample);
+    }
+  return beside;
+}
+
 /// Rows whose memory is kept before that of all is given back.
 constexpr std::size_t rows_kept = 64;
 
@@ -250,11 +277,17 @@ PngImage srgb_picture(const SpectralImage& image, const PictureOptions& options,
     encode_row(pixels, bits,
                std::span<std::uint16_t>(picture.samples).subspan(row * row_samples, row_samples));
   });
+  if (!options.insets.empty()) return with_insets(picture, options.insets);
   return picture;
 }
 
 std::string write_picture(const std::string& path, const SpectralImage& image, const PictureOptions& options,
                           int bits) {
+  if (!options.insets.empty()) {
+    const PngImage picture = srgb_picture(image, options, bits);
+    write_png(path, picture);
+    return picture.text.at("Exposure");
+  }
   const PictureRenderer renderer(image, options);
   std::vector<LinearRgb> pixels(static_cast<std::size_t>(image.columns()));
   write_png(path, layout_of(image, renderer, bits), [&](int row, std::span<std::uint16_t> samples) {

@@ -5,6 +5,7 @@
 #include <petzval/colour/display.h>
 #include <petzval/colour/spectrum.h>
 #include <petzval/image/formats/png.h>
+#include <petzval/image/picture_inset.h>
 #include <petzval/image/spectral_image.h>
 
 #include <array>
@@ -71,6 +72,7 @@ struct PictureOptions {
   bool false_colour = false;
 
   std::vector<PictureFrame> frames = {};  ///< drawn over the picture
+  std::vector<PictureInset> insets = {};  ///< drawn beside it by srgb_picture() and write_picture()
 };
 
 /// An image made ready to be shown: the exposure is settled, rows come out one by one. It refers to the
@@ -103,7 +105,7 @@ class PictureRenderer {
   std::string description_;
 };
 
-/// The whole picture, sRGB-encoded, clipped (display.h) and rounded to `bits` = 8 or 16.
+/// The whole picture with its insets, sRGB-encoded, clipped (display.h) and rounded to `bits` = 8 or 16.
 PngImage srgb_picture(const SpectralImage& image, const PictureOptions& options = {}, int bits = 8);
 
 /// Writes it as PNG, row by row, with exposure and provenance in its text chunks.

@@ -228,6 +228,14 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
   const LightPath path = options.light_path(says.scene_points_per_cell);
   BandByBand(scene, table, frame, options, plans, path, progress, says, take).form();
   note_result(says);
+  const ProductPlan& product = says.product;
+  if ((asked.product.nodes != 0 || asked.product.tile != 0) && product.tile != 0 && !product.direct &&
+      product.transform == 0)
+    says.notes.push_back(fmt::format(
+        "`nodes` and `tile` had no effect: tiles as asked for do not go into the transforms beside these "
+        "PSFs, or "
+        "serve the tolerance; sections of {0} x {0} cells that fade into each other took their place",
+        product.tile));
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,

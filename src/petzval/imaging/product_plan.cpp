@@ -20,8 +20,9 @@ constexpr int most_nodes = 6;
 /// What the mean over places may miss of the whole grid's: the estimate must stay below the tolerance by this
 /// factor. A band may come somewhat closer before the plan of its neighbour is given up.
 constexpr double caution = 0.4, caution_of_hint = 0.5;
-/// Kernels of a band may take this much memory.
-constexpr double most_kernel_bytes = 400e6;
+/// Kernels of a band should not take more memory than this; and must not take more than that, where nothing
+/// smaller serves: blended sections need no memory for theirs, but a transform for each section.
+constexpr double most_kernel_bytes = 400e6, most_kernel_bytes_at_need = 1600e6;
 
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
 constexpr double kernel_fixed_ns = 1700;  // of a kernel, whatever its size
@@ -105,8 +106,9 @@ void each_layout(int room, const ProductOptions& options, const Use& use) {
         use(tile, nodes);
 }
 
+/// Layouts whose kernels take memory within (more_than, most], the cheapest first.
 std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid,
-                                    const ProductOptions& options) {
+                                    const ProductOptions& options, double more_than, double most) {
   constexpr int most_direct_radius = 16;  // far beyond where transforms have won
   std::vector<ProductPlan> plans;
   const int widest = std::max(OutwardAxis(grid.cells.columns).count(), OutwardAxis(grid.cells.rows).count());
@@ -118,7 +120,9 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid
       each_layout(std::min(transform - 2 * psfs.radius(), widest), options, [&](int tile, int nodes) {
         plans.push_back(candidate(psfs, grid, transform, tile, nodes));
       });
-  std::erase_if(plans, [](const ProductPlan& plan) { return plan.kernel_bytes > most_kernel_bytes; });
+  std::erase_if(plans, [&](const ProductPlan& plan) {
+    return !(plan.kernel_bytes > more_than && plan.kernel_bytes <= most);
+  });
   std::sort(plans.begin(), plans.end(), [](const ProductPlan& a, const ProductPlan& b) {
     return a.filter_ns + a.kernels_ns < b.filter_ns + b.kernels_ns;
   });
@@ -181,18 +185,22 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
   };
   std::vector<ProductPlan> failed;
   std::optional<ProductPlan> best;
-  for (ProductPlan& plan : candidates(psfs, grid, options)) {
-    if (best && plan.total_ns() >= best->total_ns()) break;
-    // A coarser layout than one that failed fails too.
-    const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
-      return plan.tile >= other.tile && plan.nodes <= other.nodes;
-    });
-    if (hopeless) continue;
-    if (!serves(plan))
-      failed.push_back(plan);
-    else if (!best || plan.total_ns() < best->total_ns())
-      best = plan;
-  }
+  const auto choose = [&](double more_than, double most) {
+    for (ProductPlan& plan : candidates(psfs, grid, options, more_than, most)) {
+      if (best && plan.total_ns() >= best->total_ns()) break;
+      // A coarser layout than one that failed fails too.
+      const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
+        return plan.tile >= other.tile && plan.nodes <= other.nodes;
+      });
+      if (hopeless) continue;
+      if (!serves(plan))
+        failed.push_back(plan);
+      else if (!best || plan.total_ns() < best->total_ns())
+        best = plan;
+    }
+  };
+  choose(0, most_kernel_bytes);
+  if (!best) choose(most_kernel_bytes, most_kernel_bytes_at_need);
   return best;
 }
 

@@ -23,8 +23,15 @@ double object_of_image_shift_mm(const Lens& lens, double shift_mm) {
     return image_mm - here_mm - shift_mm;
   };
   double far = 0, near = lens.object_distance_mm ? 2 / *lens.object_distance_mm : 1e-9;
-  if (beyond(far) >= 0) return infinite;
   constexpr int doublings = 60, halvings = 200;
+  if (beyond(far) >= 0) {
+    // Beyond a limit that there is, a lens without power (telecentric on both sides) sees far objects
+    // anywhere.
+    if (!lens.object_distance_mm) return infinite;
+    far = 1 / *lens.object_distance_mm;
+    for (int i = 0; i < doublings && beyond(far) >= 0; ++i) far /= 1.5;
+    if (beyond(far) >= 0) return infinite;
+  }
   for (int i = 0; i < doublings && beyond(near) < 0; ++i) near *= 1.5;
   for (int i = 0; i < halvings; ++i) {
     const double middle = (far + near) / 2;

@@ -5,10 +5,12 @@
 #include <petzval/base/version.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
+#include <petzval/image/picture.h>
 #include <petzval/isp/display_picture.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/develop.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace petzval {
@@ -82,6 +84,32 @@ Picture develop(const RawImage& raw, const Development& development, const Conte
     picture.provenance = fmt::format("petzval {} develop: {}", version(), raw.provenance);
     return picture;
   });
+}
+
+Picture with_insets(const Picture& picture, const std::vector<PictureInset>& insets) {
+  const InsetSheet sheet(picture.planes.columns, picture.planes.rows, insets);
+  Picture beside = picture;
+  beside.planes.columns = sheet.columns();
+  beside.planes.rows = sheet.rows();
+  const std::size_t pixels =
+      static_cast<std::size_t>(sheet.columns()) * static_cast<std::size_t>(sheet.rows());
+  for (std::size_t channel = 0; channel < picture.planes.values.size(); ++channel) {
+    const std::vector<float>& from = picture.planes.values[channel];
+    std::vector<float>& to = beside.planes.values[channel];
+    to.assign(pixels, 1);
+    std::size_t at = 0;
+    for (int row = 0; row < sheet.rows(); ++row)
+      for (int column = 0; column < sheet.columns(); ++column, ++at) {
+        const InsetSheet::Source source = sheet.at(column, row);
+        if (source.kind == InsetSheet::Source::Kind::picture)
+          to[at] =
+              from[static_cast<std::size_t>(source.row) * static_cast<std::size_t>(picture.planes.columns) +
+                   static_cast<std::size_t>(source.column)];
+        else if (source.kind == InsetSheet::Source::Kind::frame)
+          to[at] = frame_colour[std::min<std::size_t>(channel, 2)];
+      }
+  }
+  return beside;
 }
 
 void write_picture(const std::string& path, const Picture& picture, int bits) {

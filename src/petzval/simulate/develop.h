@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/colour/spectrum.h>
+#include <petzval/image/picture_inset.h>
 #include <petzval/isp/develop.h>
 #include <petzval/sensor/raw_image.h>
 #include <petzval/sensor/sensor.h>
@@ -58,6 +59,9 @@ struct Picture {
 /// empty. \throws InputError for options that do not fit the image; Cancelled.
 Picture develop(const RawImage& raw, const Development& development = {}, const Context& context = {},
                 const DevelopStep& step = {});
+
+/// The picture with parts of it enlarged beside it, on white. \throws InputError as InsetSheet.
+Picture with_insets(const Picture& picture, const std::vector<PictureInset>& insets);
 
 /// Writes it as .png or .tif (8 or 16 bits, with the display's profile), or linear as .exr or .npy.
 /// \throws InputError for another extension; Failure.

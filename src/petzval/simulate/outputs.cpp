@@ -138,11 +138,12 @@ Outputs shoot(const SpectralImage& light, const std::vector<std::string>& raws,
   };
   made.picture =
       develop(stored, options.development, context, options.step_files.empty() ? DevelopStep() : write_step);
+  std::optional<Picture> altered;
+  if (!options.shown.frames.empty()) altered = framed(*made.picture, options.shown.frames, light.columns());
+  if (!options.shown.insets.empty())
+    altered = with_insets(altered ? *altered : *made.picture, options.shown.insets);
   for (const std::string& path : pictures)
-    write_picture(files.stage(path),
-                  options.shown.frames.empty() ? *made.picture
-                                               : framed(*made.picture, options.shown.frames, light.columns()),
-                  options.bits);
+    write_picture(files.stage(path), altered ? *altered : *made.picture, options.bits);
   return made;
 }
 
@@ -165,6 +166,8 @@ bool develops(const OutputOptions& options, const std::optional<Sensor>& sensor)
 void check_outputs(const std::vector<std::string>& paths, const std::optional<Sensor>& sensor,
                    const OutputOptions& options) {
   const bool develop_pictures = develops(options, sensor);
+  // Their places, before there is a picture.
+  if (sensor) InsetSheet(sensor->geometry.columns, sensor->geometry.rows, options.shown.insets);
   bool raw = false, pictures = false;
   for (const std::string& path : paths) {
     if (!is_raw_name(path) && !is_picture_name(path) && !is_irradiance_name(path))
