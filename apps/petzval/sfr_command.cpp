@@ -170,7 +170,8 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
   command
       ->add_option(
           "image", options->pictures,
-          "Pictures, or folders of them: .png, .jpg, .tif, .npy, .exr or .dng; several make one table")
+          "Pictures, or folders of them: .png, .jpg, .tif, .npy, .exr, .dng or a camera's raw files (.nef, "
+          ".cr2, .arw, ...); several make one table")
       ->required();
   command->add_option("--roi", options->rois, "X,Y,WIDTH,HEIGHT around one edge [pixels] (repeatable)")
       ->take_all()
@@ -185,7 +186,7 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
   command->add_option("--bayer", options->bayer,
                       "The picture is a mosaic, rggb and so on: each colour for itself");
   command->add_flag("--demosaic", options->demosaic,
-                    "Of a .dng, measure the demosaiced picture, not each colour for itself");
+                    "Of a raw file, measure the demosaiced picture, not each colour for itself");
   command
       ->add_option("--transfer", options->transfer,
                    "Code values are: stated (as the file says; else sRGB), srgb or linear")

@@ -3,11 +3,14 @@
 
 import csv
 import json
+import pathlib
 import struct
 import unittest
+from random import Random
 
 from petzval_cli import ProgramTest
 
+SEEDS = pathlib.Path(__file__).resolve().parents[2] / "fuzz" / "seeds"
 OPTICS = ["--f-number", 8, "--wavelength", 550, "--pixel-pitch", 4.73]
 
 
@@ -264,6 +267,33 @@ class Sfr(ProgramTest):
         self.assertNotIn("http", page.replace("http://www.w3.org", ""), "a page needs no network")
         self.assert_refused("sfr", "t.npy", "t.npy", "--report", "x.html", words=["--report", "one file"])
         self.assert_refused("sfr", "t.npy", "--report", "x.txt", words=["x.txt", ".html"])
+
+    def test_goes_on_past_damaged_files_of_a_folder(self):
+        """Pictures and raw files altered and cut at random, among one that is sound: each is measured or named with a reason."""
+        common = ["target", "--rectangle", "40x40@6", "--size", "90x90", *OPTICS]
+        self.assert_succeeds(*common, "-o", "t.png", "-o", "t.tif", "-o", "t.npy")
+        self.assert_succeeds(*common[:5], "--f-number", 8, "--wavelength", 550, "--sensor", "third-inch-1280x960", "-o", "t.dng")
+        jpeg = (SEEDS / "jpeg" / "grey.jpg").read_bytes()
+        random, files = Random(3), {}
+        for name, data in {**{name: (self.folder / name).read_bytes() for name in ("t.png", "t.tif", "t.npy", "t.dng")},
+                           "t.nef": (self.folder / "t.dng").read_bytes(), "t.jpg": jpeg}.items():
+            for i in range(12):
+                changed = bytearray(data[:random.randrange(len(data))] if i % 3 == 0 else data)
+                for _ in range(random.randrange(1, 8)):
+                    if changed:
+                        changed[random.randrange(len(changed) if i % 2 else min(len(changed), 400))] = random.randrange(256)
+                files[f"{i}{name}"] = bytes(changed)
+        (self.folder / "all").mkdir()
+        for name, data in files.items():
+            (self.folder / "all" / name).write_bytes(data)
+        (self.folder / "all" / "sound.npy").write_bytes((self.folder / "t.npy").read_bytes())
+        done = self.json_of("sfr", "all")
+        measured = [picture["image"] for picture in done["pictures"]]
+        self.assertIn("all/sound.npy", measured)
+        self.assertEqual(len(measured) + len(done["failed"]), len(files) + 1)
+        self.assertGreater(len(done["failed"]), 20)
+        for failure in done["failed"]:
+            self.assertNotIn("\n", failure["reason"])
 
     def test_draws_other_tables_beside(self):
         self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")
