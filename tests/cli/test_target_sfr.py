@@ -295,6 +295,35 @@ class Sfr(ProgramTest):
         for failure in done["failed"]:
             self.assertNotIn("\n", failure["reason"])
 
+    def test_printed_charts_are_found_again(self):
+        """Drawn in mm, read back as a drawing in CSS pixels (96 to the inch) and measured: places on the chart, and 96/25.4 pixels a mm."""
+        self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "chart.svg")
+        self.assertIn(b'width="200mm" height="150mm"', (self.folder / "chart.svg").read_bytes())
+        self.assert_succeeds("target", "--polygons", "chart.svg", "--size", "756x567", *OPTICS, "-o", "photo.npy")
+        edges = self.json_of("sfr", "photo.npy", "--chart-size", "200x150")["edges"]
+        self.assertGreaterEqual(len(edges), 40)
+        # Squares stand about the middle of the chart, turned by 5 degrees.
+        self.assertAlmostEqual(sum(edge["on_chart"]["x_mm"] for edge in edges) / len(edges), 100, delta=0.1)
+        self.assertAlmostEqual(sum(edge["on_chart"]["y_mm"] for edge in edges) / len(edges), 75, delta=0.1)
+        for edge in edges:
+            self.assertAlmostEqual(edge["on_chart"]["mtf50_cpmm"] / edge["mtf50_cpp"], 96 / 25.4, delta=0.01)
+        self.assert_refused("sfr", "photo.npy", "--chart-size", "200", words=["--chart-size"])
+        self.assert_refused("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "t.npy", words=["t.npy", ".svg"])
+        self.assert_refused("target", "--rectangle", "9x9", "--size", "200x150mm", "-o", "t.svg", words=["--chart"])
+        self.assert_refused("target", "--chart", "slanted-edges", "--size", "20x15mm", "-o", "t.svg", words=["60"])
+        self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "none.npy")
+        self.assert_refused("sfr", "none.npy", "--chart-size", "200x150", words=["none.npy", "0 of the chart's four marks"])
+
+    def test_finds_focus_on_a_tilted_plane(self):
+        """The plane's middle is 1 m away, where the lens is sharpest. Its depth is imaged in 45 layers, of 20 pixels each across the picture."""
+        self.assert_succeeds("image", "slanted-plane", "--lens", "dgauss-50mm", "--f-number", 5.6, "--focus", "1.0m+best-mtf@25",
+                             "--sensor", "900x600@12", "--wavelengths", 550, "-o", "plane.npy")
+        focus, = self.json_of("sfr", "plane.npy", "--focus-along", "x")["focus"]
+        self.assertAlmostEqual(focus["place_px"], 450, delta=20)
+        self.assertLess(focus["deviation_px"], 5)
+        self.assert_refused("sfr", "plane.npy", "--focus-along", "z", words=["--focus-along"])
+        self.assert_refused("sfr", "plane.npy", "--chart-tilt", 30, words=["--focus-along"])
+
     def test_draws_other_tables_beside(self):
         self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")
         self.assert_succeeds("sfr", "t.npy", "--against", "exact.csv", "--plot", "s.svg")
