@@ -71,7 +71,17 @@ double middle_of(const EdgeSpreadModel& model, double low, double high) {
   return 0.5 * (from + to);
 }
 
-/// Where contrast falls below a level for the first time, from values `step_cpp` apart.
+/// Where contrast falls below a level for the first time, straight between values `step_cpp` apart; NaN where
+/// it does not.
+double level_between(double level, const std::vector<double>& contrast, double step_cpp) {
+  const auto below = std::find_if(contrast.begin(), contrast.end(), [&](double c) { return c < level; });
+  if (below == contrast.begin() || below == contrast.end()) return NAN;
+  const double before = *(below - 1);
+  return step_cpp *
+         (static_cast<double>(below - contrast.begin()) - 1 + (before - level) / (before - *below));
+}
+
+/// The same of the model itself, the values being its own.
 MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vector<double>& contrast,
                     double step_cpp) {
   MtfLevel result{level, NAN, NAN};
@@ -84,7 +94,7 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vecto
     double at = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * low_rest / (low_rest - high_rest);
     at = std::clamp(at, low, high);
     const double rest = std::abs(model.transform(at)) - level;
-    if (std::abs(rest) < 1e-14) {
+    if (std::abs(rest) < 1e-12) {
       low = high = at;
       break;
     }
@@ -175,8 +185,8 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Un
     const double spread = *of_modulus++;
     // Over as much as the deviation covers: at a point the slope is noisy, too.
     const double reach = std::clamp(2 * spread, 1e-4, 0.8 * std::min(level.level, 1 - level.level));
-    const double before = find_level(model, level.level + reach, contrast, step).frequency_cpp;
-    const double after = find_level(model, level.level - reach, contrast, step).frequency_cpp;
+    const double before = level_between(level.level + reach, contrast, step);
+    const double after = level_between(level.level - reach, contrast, step);
     const double run = std::isfinite(after) ? (after - before) / 2 : level.frequency_cpp - before;
     level.deviation_cpp = spread * run / reach;
   }
