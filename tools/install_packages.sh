@@ -11,10 +11,10 @@ packages=(
   esbuild
   # libraries
   gemmi-dev libboost-dev libcli11-dev libeigen3-dev libembree-dev libfmt-dev libhdf5-dev libhwy-dev libjpeg-dev liblcms2-dev libmatio-dev
-  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev libzint-dev libzip-dev nlohmann-json3-dev
+  libopenexr-dev libpng-dev libpolyclipping-dev libpugixml-dev libraw-dev libtbb-dev libtiff-dev libtinygltf-dev libyaml-dev libzint-dev libzip-dev nlohmann-json3-dev
   zlib1g-dev
 )
-test_packages=(chromium chromium-driver clang clang-format doxygen furo libbenchmark-dev libgtest-dev libimage-exiftool-perl libraw-dev librsvg2-bin
+test_packages=(chromium chromium-driver clang clang-format doxygen furo libbenchmark-dev libgtest-dev libimage-exiftool-perl librsvg2-bin
   libzxing-dev node-typescript python3 python3-h5py python3-myst-parser python3-numpy python3-selenium python3-sphinx)
 
 case "${1-}" in

@@ -5,7 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/isp/display_picture.h>
-#include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/camera_raw.h>
 #include <petzval/simulate/outputs.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void run_develop(const DevelopCommand& command, const Shared& shared) {
   StagedFiles files;
   std::vector<std::string> staged;
   for (const std::string& path : command.outputs) staged.push_back(files.stage(path));
-  const RawImage raw = read_dng(command.raw);
+  const RawImage raw = read_raw(command.raw);
   const std::vector<std::pair<std::string, std::string>> steps = command.choice.step_files();
   const DevelopStep write_step = [&](const std::string& name, const Planes& planes) {
     for (const auto& [wanted, path] : steps)
@@ -83,7 +83,8 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   CLI::App* command = add_command(app, shared, "develop", "Develop a raw file: a picture",
                                   "petzval develop raw.dng -o picture.png", true,
                                   [options, &shared] { run_develop(*options, shared); });
-  command->add_option("raw", options->raw, "RAW.dng")->required();
+  command->add_option("raw", options->raw, "RAW.dng, or a camera's raw file (.nef, .cr2, .arw, ...)")
+      ->required();
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs,

@@ -17,6 +17,7 @@
 #include "picture_list.h"
 #include "plot_output.h"
 #include "sfr_output.h"
+#include "target_optics.h"
 
 namespace petzval::app {
 
@@ -28,7 +29,8 @@ struct SfrCommand {
   std::string chart, channel = "luminance", bayer, transfer = "stated", method = "exact";
   std::string csv, plot, profile, annotate, map, over_height, report;
   std::vector<std::string> rois, against;
-  std::optional<double> pitch_um;
+  std::string chart_size, focus_along;
+  std::optional<double> pitch_um, chart_tilt_deg;
   int edge_order = 0;
 };
 
@@ -96,7 +98,8 @@ MeasuredPicture measured(const SfrCommand& command, const SfrRequest& request, c
                    picture.columns,
                    picture.rows,
                    command.pitch_um,
-                   measure_sfr(picture, request, path, context_of(shared))};
+                   measure_sfr(picture, request, path, context_of(shared)),
+                   request.chart_mm};
   if (picture.assumed && picture.bits == 16)
     note(shared, fmt::format("{}: numbers of 16 bits that say nothing of themselves are taken for sRGB; "
                              "--transfer linear is right if they are linear in light, --transfer srgb says "
@@ -124,11 +127,16 @@ void write_frame(const SfrCommand& command, const SfrReport& report, const Plane
 void run(const SfrCommand& command, const Shared& shared) {
   const std::vector<std::string> paths = pictures_in(command.pictures, measurable_extensions());
   SfrReports reports;
+  if (!command.focus_along.empty()) reports.focus = {command.focus_along[0], command.chart_tilt_deg};
   reports.single = command.pictures.size() == 1 && paths == command.pictures;
   check_outputs(command, reports.single);
   std::vector<NamedCurve> others;
   for (const std::string& path : command.against) others.push_back(read_sfr_table(path));
   SfrRequest request{{}, command.channel, command.bayer, command.edge_order, command.method == "iso"};
+  if (!command.chart_size.empty()) {
+    const auto [width, height] = pair_of(command.chart_size, 'x', "--chart-size");
+    request.chart_mm = std::array{width, height};
+  }
   for (const std::string& text : command.rois) request.rois.push_back(box_of(text));
   Plane seen;
   for (const std::string& path : paths) {
@@ -170,7 +178,8 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
   command
       ->add_option(
           "image", options->pictures,
-          "Pictures, or folders of them: .png, .jpg, .tif, .npy, .exr or .dng; several make one table")
+          "Pictures, or folders of them: .png, .jpg, .tif, .npy, .exr, .dng or a camera's raw files (.nef, "
+          ".cr2, .arw, ...); several make one table")
       ->required();
   command->add_option("--roi", options->rois, "X,Y,WIDTH,HEIGHT around one edge [pixels] (repeatable)")
       ->take_all()
@@ -179,13 +188,28 @@ void add_sfr_command(CLI::App& app, Shared& shared) {
       ->add_option("--chart", options->chart,
                    "auto (the default without --roi): every straight edge that stands out")
       ->check(CLI::IsMember({"auto"}));
+  command->add_option(
+      "--chart-size", options->chart_size,
+      "The picture shows a chart of target --size WxHmm: places on it and cycles/mm there [mm]");
+  CLI::Option* along =
+      command
+          ->add_option(
+              "--focus-along", options->focus_along,
+              "x or y: the chart is tilted, and sharpest where along this axis? In mm with --chart-size, "
+              "else in pixels; by the edges across it")
+          ->check(CLI::IsMember({"x", "y"}));
+  command
+      ->add_option("--chart-tilt", options->chart_tilt_deg,
+                   "How far it is tilted [degrees]: the place in depth, too, from the middle of the chart")
+      ->needs(along)
+      ->check(CLI::Range(1.0, 89.0));
   command->add_option("--channel", options->channel, "luminance, red, green, blue or all")
       ->check(CLI::IsMember({"luminance", "red", "green", "blue", "all"}))
       ->capture_default_str();
   command->add_option("--bayer", options->bayer,
                       "The picture is a mosaic, rggb and so on: each colour for itself");
   command->add_flag("--demosaic", options->demosaic,
-                    "Of a .dng, measure the demosaiced picture, not each colour for itself");
+                    "Of a raw file, measure the demosaiced picture, not each colour for itself");
   command
       ->add_option("--transfer", options->transfer,
                    "Code values are: stated (as the file says; else sRGB), srgb or linear")

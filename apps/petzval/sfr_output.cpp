@@ -7,6 +7,7 @@
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/colour/display.h>
+#include <petzval/measure/sfr/sharpest_place.h>
 #include <petzval/report/data_uri.h>
 #include <petzval/report/heat_map.h>
 #include <petzval/report/svg_plot.h>
@@ -39,6 +40,10 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
   if (!edge.iso) json["mtf50_deviation_cpp"] = number_or_null(edge.exact.mtf50().deviation_cpp);
   if (!edge.channel.empty()) json["channel"] = edge.channel;
   if (edge.lateral_offset_px) json["lateral_offset_px"] = *edge.lateral_offset_px;
+  if (edge.on_chart)
+    json["on_chart"] = {{"x_mm", edge.on_chart->x_mm},
+                        {"y_mm", edge.on_chart->y_mm},
+                        {"mtf50_cpmm", number_or_null(edge.mtf50() * edge.on_chart->per_mm)}};
   if (!edge.iso) {
     for (const MtfLevel& level : edge.exact.mtf)
       json[fmt::format("mtf{:.0f}_cpp", 100 * level.level)] = number_or_null(level.frequency_cpp);
@@ -60,7 +65,70 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
   return json;
 }
 
-nlohmann::ordered_json picture_json(const SfrReport& report) {
+/// A tilted chart's place of focus in each channel.
+struct ChannelFocus {
+  std::string channel;
+  SharpestPlace sharpest;
+  std::optional<double> depth_mm;  ///< towards where x or y grows, from the middle of the chart
+};
+
+/// By the edges that run across the axis, each of which is at one depth.
+std::vector<ChannelFocus> focus_of(const SfrReport& report, const FocusQuestion& question) {
+  std::map<std::string, std::vector<SharpnessAt>> by_channel;
+  for (const MeasuredEdge& edge : report.edges) {
+    const double normal = edge.exact.line.normal_rad;
+    const double along = question.along == 'x' ? std::cos(normal) : std::sin(normal);
+    if (std::abs(along) < std::cos(radians(30))) continue;
+    const EdgeLine& line = edge.exact.line;
+    const double scale = edge.on_chart ? edge.on_chart->per_mm : 1;
+    const double place = edge.on_chart ? (question.along == 'x' ? edge.on_chart->x_mm : edge.on_chart->y_mm)
+                                       : (question.along == 'x' ? line.centre_x : line.centre_y);
+    by_channel[edge.channel].push_back(
+        {place, edge.mtf50() * scale, edge.iso ? 0 : edge.exact.mtf50().deviation_cpp * scale});
+  }
+  std::vector<ChannelFocus> result;
+  if (by_channel.empty())
+    throw InputError(report.image, "no edge runs across the axis of --focus-along within 30 degrees");
+  for (const auto& [channel, edges] : by_channel) try {
+      ChannelFocus focus{channel, sharpest_place(edges), {}};
+      if (question.tilt_deg && report.chart_mm)
+        focus.depth_mm = (focus.sharpest.place - 0.5 * (*report.chart_mm)[question.along == 'x' ? 0 : 1]) *
+                         std::sin(radians(*question.tilt_deg));
+      result.push_back(focus);
+    } catch (const InputError& error) {
+      throw InputError(report.image, error.what());
+    }
+  return result;
+}
+
+nlohmann::ordered_json focus_json(const SfrReport& report, const FocusQuestion& question) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  const std::string unit = report.chart_mm ? "mm" : "px";
+  for (const ChannelFocus& focus : focus_of(report, question)) {
+    nlohmann::ordered_json one;
+    if (!focus.channel.empty()) one["channel"] = focus.channel;
+    one["along"] = std::string(1, question.along);
+    one["place_" + unit] = focus.sharpest.place;
+    one["deviation_" + unit] = focus.sharpest.deviation;
+    if (focus.depth_mm) one["depth_mm"] = *focus.depth_mm;
+    one["edges"] = focus.sharpest.edges;
+    json.push_back(one);
+  }
+  return json;
+}
+
+void print_focus(const SfrReport& report, const FocusQuestion& question) {
+  const char* const unit = report.chart_mm ? "mm" : "px";
+  for (const ChannelFocus& focus : focus_of(report, question)) {
+    fmt::print("{}{}{}sharpest at {} = {:.2f} +- {:.2f} {}, by {} edges", report.image, ": ",
+               focus.channel.empty() ? "" : focus.channel + " ", question.along, focus.sharpest.place,
+               focus.sharpest.deviation, unit, focus.sharpest.edges);
+    if (focus.depth_mm) fmt::print("; {:+.2f} mm in depth from the middle of the chart", *focus.depth_mm);
+    fmt::print("\n");
+  }
+}
+
+nlohmann::ordered_json edges_json(const SfrReport& report) {
   nlohmann::ordered_json json = {{"image", report.image}, {"columns", report.columns}, {"rows", report.rows}};
   if (!report.light.empty()) json["code_values"] = report.light;
   json["edges"] = nlohmann::ordered_json::array();
@@ -69,6 +137,11 @@ nlohmann::ordered_json picture_json(const SfrReport& report) {
 }
 
 nlohmann::ordered_json json_of(const SfrReports& reports) {
+  const auto picture_json = [&](const SfrReport& report) {
+    nlohmann::ordered_json json = edges_json(report);
+    if (reports.focus) json["focus"] = focus_json(report, *reports.focus);
+    return json;
+  };
   if (reports.single) return picture_json(reports.pictures.front());
   nlohmann::ordered_json json = {{"pictures", nlohmann::ordered_json::array()},
                                  {"failed", nlohmann::ordered_json::array()}};
@@ -98,6 +171,9 @@ void print_edge(const SfrReport& report, std::size_t index) {
              e.iso ? NAN : e.exact.mtf[7].frequency_cpp, e.iso ? NAN : e.exact.rise_px);
   if (report.pitch_um) fmt::print("{:>15.3f}", e.mtf50() * 1e3 / *report.pitch_um);
   if (e.lateral_offset_px) fmt::print("  {:+.4f} px from green", *e.lateral_offset_px);
+  if (e.on_chart)
+    fmt::print("{:>11.2f} {:>10.2f} {:>16.4f}", e.on_chart->x_mm, e.on_chart->y_mm,
+               e.mtf50() * e.on_chart->per_mm);
   fmt::print("\n");
 }
 
@@ -141,12 +217,15 @@ void print_sfr(const SfrReports& reports, const Shared& shared) {
   if (!reports.single) fmt::print("{:<{}} ", "file", width);
   fmt::print("{:>4} {:>9} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10}{}\n", "edge", "channel", "angle [deg]",
              "MTF50 [c/p]", "+- [c/p]", "MTF50[lw/ph]", "MTF20[c/p]", "rise [px]",
-             reports.pictures.front().pitch_um ? "  MTF50 [lp/mm]" : "");
+             (reports.pictures.front().pitch_um ? "  MTF50 [lp/mm]" : std::string()) +
+                 (reports.pictures.front().chart_mm ? " chart x[mm] chart y[mm]  MTF50 [c/mm]" : ""));
   for (const SfrReport& report : reports.pictures)
     for (std::size_t i = 0; i < report.edges.size(); ++i) {
       if (!reports.single) fmt::print("{:<{}} ", report.image, width);
       print_edge(report, i);
     }
+  if (reports.focus)
+    for (const SfrReport& report : reports.pictures) print_focus(report, *reports.focus);
 }
 
 void write_sfr_csv(const std::string& path, const SfrReports& reports) {

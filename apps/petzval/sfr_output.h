@@ -4,6 +4,7 @@
 
 #include <petzval/measure/sfr/measure_picture.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,13 @@ struct SfrReport {
   int columns = 0, rows = 0;
   std::optional<double> pitch_um;
   std::vector<MeasuredEdge> edges;
+  std::optional<std::array<double, 2>> chart_mm = {};  ///< of the chart that it shows
+};
+
+/// What is asked of a tilted chart.
+struct FocusQuestion {
+  char along = 'x';
+  std::optional<double> tilt_deg;
 };
 
 /// What a command line has named.
@@ -26,6 +34,7 @@ struct SfrReports {
   bool single = true;  ///< one file by its own name: tables have no column for it
   std::vector<SfrReport> pictures;
   std::vector<std::pair<std::string, std::string>> failed;  ///< files, and why they could not be measured
+  std::optional<FocusQuestion> focus;
 };
 
 void print_sfr(const SfrReports& reports, const Shared& shared);

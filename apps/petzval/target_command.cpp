@@ -11,6 +11,7 @@
 #include <petzval/target/exact_sfr.h>
 #include <petzval/target/formats/polygon_file.h>
 #include <petzval/target/formats/svg_shapes.h>
+#include <petzval/target/printed_chart.h>
 #include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
 #include <petzval/target/visible_regions.h>
@@ -190,7 +191,35 @@ TargetRequest request_of(const TargetCommand& command, const Shared& shared) {
   return request;
 }
 
+/// A chart to print, at its true size.
+void print_chart(const TargetCommand& command, const Shared& shared) {
+  const auto [width, height] = pair_of(command.size.substr(0, command.size.size() - 2), 'x', "--size");
+  if (command.chart.empty())
+    throw InputError(
+        fmt::format("--size {}: a --chart has a size in mm, to be printed; other targets have "
+                    "pixels",
+                    command.size));
+  if (!command.exact_sfr.empty() || !command.plot.empty())
+    throw InputError("a chart to print has no optics, and so no --exact-sfr and no --plot");
+  for (const std::string& path : command.output.paths) {
+    require_extension(path, {".svg", ".pdf"}, "a chart to print");
+    require_drawing(path, "a chart to print");
+  }
+  const TargetScene scene = printed_chart(command.chart, width, height);
+  StagedFiles files;
+  for (const std::string& path : command.output.paths)
+    write_drawing(files.stage(path), printed_chart_svg(scene, width, height), path);
+  files.commit();
+  if (shared.json)
+    return print_json({{"width_mm", width}, {"height_mm", height}, {"polygons", scene.polygons.size()}});
+  fmt::print(
+      "{:g} x {:g} mm, {} polygons\nprint it at 100 %, and measure its photographs with sfr --chart-size "
+      "{:g}x{:g}\n",
+      width, height, scene.polygons.size(), width, height);
+}
+
 void run(const TargetCommand& command, const Shared& shared) {
+  if (command.size.ends_with("mm")) return print_chart(command, shared);
   const TargetRequest request = request_of(command, shared);
   if (!command.exact_sfr.empty()) require_extension(command.exact_sfr, {".csv"}, "a table of exact SFRs");
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
@@ -244,8 +273,10 @@ void add_target_command(CLI::App& app, Shared& shared) {
       "--at", options->at,
       "Where X,Y the middle of the rectangle, the writing or the half-plane's edge is [pixels]; "
       "default: the middle");
-  command->add_option("--size", options->size,
-                      "Size WxH of the picture [pixels]; default: what the target needs");
+  command->add_option(
+      "--size", options->size,
+      "Size WxH of the picture [pixels]; default: what the target needs. Of a --chart to print into "
+      ".svg or .pdf: 277x190mm");
   options->optics.add_to(*command);
   options->output.add_to(*command);
   command->add_option("--bayer", options->bayer,

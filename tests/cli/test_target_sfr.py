@@ -3,11 +3,14 @@
 
 import csv
 import json
+import pathlib
 import struct
 import unittest
+from random import Random
 
 from petzval_cli import ProgramTest
 
+SEEDS = pathlib.Path(__file__).resolve().parents[2] / "fuzz" / "seeds"
 OPTICS = ["--f-number", 8, "--wavelength", 550, "--pixel-pitch", 4.73]
 
 
@@ -264,6 +267,62 @@ class Sfr(ProgramTest):
         self.assertNotIn("http", page.replace("http://www.w3.org", ""), "a page needs no network")
         self.assert_refused("sfr", "t.npy", "t.npy", "--report", "x.html", words=["--report", "one file"])
         self.assert_refused("sfr", "t.npy", "--report", "x.txt", words=["x.txt", ".html"])
+
+    def test_goes_on_past_damaged_files_of_a_folder(self):
+        """Pictures and raw files altered and cut at random, among one that is sound: each is measured or named with a reason."""
+        common = ["target", "--rectangle", "40x40@6", "--size", "90x90", *OPTICS]
+        self.assert_succeeds(*common, "-o", "t.png", "-o", "t.tif", "-o", "t.npy")
+        self.assert_succeeds(*common[:5], "--f-number", 8, "--wavelength", 550, "--sensor", "third-inch-1280x960", "-o", "t.dng")
+        jpeg = (SEEDS / "jpeg" / "grey.jpg").read_bytes()
+        random, files = Random(3), {}
+        for name, data in {**{name: (self.folder / name).read_bytes() for name in ("t.png", "t.tif", "t.npy", "t.dng")},
+                           "t.nef": (self.folder / "t.dng").read_bytes(), "t.jpg": jpeg}.items():
+            for i in range(12):
+                changed = bytearray(data[:random.randrange(len(data))] if i % 3 == 0 else data)
+                for _ in range(random.randrange(1, 8)):
+                    if changed:
+                        changed[random.randrange(len(changed) if i % 2 else min(len(changed), 400))] = random.randrange(256)
+                files[f"{i}{name}"] = bytes(changed)
+        (self.folder / "all").mkdir()
+        for name, data in files.items():
+            (self.folder / "all" / name).write_bytes(data)
+        (self.folder / "all" / "sound.npy").write_bytes((self.folder / "t.npy").read_bytes())
+        done = self.json_of("sfr", "all")
+        measured = [picture["image"] for picture in done["pictures"]]
+        self.assertIn("all/sound.npy", measured)
+        self.assertEqual(len(measured) + len(done["failed"]), len(files) + 1)
+        self.assertGreater(len(done["failed"]), 20)
+        for failure in done["failed"]:
+            self.assertNotIn("\n", failure["reason"])
+
+    def test_printed_charts_are_found_again(self):
+        """Drawn in mm, read back as a drawing in CSS pixels (96 to the inch) and measured: places on the chart, and 96/25.4 pixels a mm."""
+        self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "chart.svg")
+        self.assertIn(b'width="200mm" height="150mm"', (self.folder / "chart.svg").read_bytes())
+        self.assert_succeeds("target", "--polygons", "chart.svg", "--size", "756x567", *OPTICS, "-o", "photo.npy")
+        edges = self.json_of("sfr", "photo.npy", "--chart-size", "200x150")["edges"]
+        self.assertGreaterEqual(len(edges), 40)
+        # Squares stand about the middle of the chart, turned by 5 degrees.
+        self.assertAlmostEqual(sum(edge["on_chart"]["x_mm"] for edge in edges) / len(edges), 100, delta=0.1)
+        self.assertAlmostEqual(sum(edge["on_chart"]["y_mm"] for edge in edges) / len(edges), 75, delta=0.1)
+        for edge in edges:
+            self.assertAlmostEqual(edge["on_chart"]["mtf50_cpmm"] / edge["mtf50_cpp"], 96 / 25.4, delta=0.01)
+        self.assert_refused("sfr", "photo.npy", "--chart-size", "200", words=["--chart-size"])
+        self.assert_refused("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "t.npy", words=["t.npy", ".svg"])
+        self.assert_refused("target", "--rectangle", "9x9", "--size", "200x150mm", "-o", "t.svg", words=["--chart"])
+        self.assert_refused("target", "--chart", "slanted-edges", "--size", "20x15mm", "-o", "t.svg", words=["60"])
+        self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "none.npy")
+        self.assert_refused("sfr", "none.npy", "--chart-size", "200x150", words=["none.npy", "0 of the chart's four marks"])
+
+    def test_finds_focus_on_a_tilted_plane(self):
+        """The plane's middle is 1 m away, where the lens is sharpest. Its depth is imaged in 45 layers, of 20 pixels each across the picture."""
+        self.assert_succeeds("image", "slanted-plane", "--lens", "dgauss-50mm", "--f-number", 5.6, "--focus", "1.0m+best-mtf@25",
+                             "--sensor", "900x600@12", "--wavelengths", 550, "-o", "plane.npy")
+        focus, = self.json_of("sfr", "plane.npy", "--focus-along", "x")["focus"]
+        self.assertAlmostEqual(focus["place_px"], 450, delta=20)
+        self.assertLess(focus["deviation_px"], 5)
+        self.assert_refused("sfr", "plane.npy", "--focus-along", "z", words=["--focus-along"])
+        self.assert_refused("sfr", "plane.npy", "--chart-tilt", 30, words=["--focus-along"])
 
     def test_draws_other_tables_beside(self):
         self.assert_succeeds("target", "--rectangle", "100x100@5", *OPTICS, "-o", "t.npy", "--exact-sfr", "exact.csv")

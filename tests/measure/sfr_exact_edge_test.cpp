@@ -244,6 +244,26 @@ TEST(MeasureEdge, UnevenLightIsToldFromTheEdge) {
     }
 }
 
+// Light as vignetting leaves it, a parabola about a point beyond the picture. Along the pixel grid the
+// profile must not take it up by steps between the rows of samples; the bounds are those of even light
+// (docs/SFR.md).
+TEST(MeasureEdge, LightOfVignettingIsToldFromEdgesAlongTheGrid) {
+  for (const double fall : {0.02, 0.08})
+    for (const double angle_deg : {0.0, 0.1, 0.25, 5.0}) {
+      EdgeShot shot = shoot({angle_deg, 8, 0, 0});
+      for (int row = 0; row < 100; ++row)
+        for (int column = 0; column < 100; ++column) {
+          const double x = (column - 130) / 100.0, y = (row + 20) / 100.0;
+          double& value = shot.plane.values[static_cast<std::size_t>(100 * row + column)];
+          value = (0.05 + 0.9 * value) * (1 - fall * (x * x + y * y));
+        }
+      const EdgeMeasurement m = shot.measure();
+      EXPECT_NEAR(m.mtf50().frequency_cpp / shot.true_mtf50(), 1, angle_deg == 0 ? 0.05 : 5e-3)
+          << fall << " at " << angle_deg;
+      EXPECT_NEAR(m.line.angle_deg(), angle_deg, 0.03) << fall;
+    }
+}
+
 TEST(MeasureEdge, IsoMethodIsNearAndLow) {
   // The taper and the box of the bin cost some per cent, no more, on a compact PSF.
   const EdgeShot shot = shoot({5, 8, 0, 0});

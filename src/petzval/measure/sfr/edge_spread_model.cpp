@@ -75,6 +75,11 @@ void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand
       f[4] = point.light * point.along;
       f[5] = point.light * d / options_.core_px;
     }
+    if constexpr (fixed > closed_forms + light_terms[1]) {
+      f[6] = f[4] * point.along;
+      f[7] = f[5] * point.along;
+      f[8] = f[5] * d / options_.core_px;
+    }
     for (int r = 0; r < fixed; ++r) {
       for (int s = 0; s <= r; ++s) corner[r][s] += f[r] * f[s];
       corner_right[r] += f[r] * point.value;
@@ -144,8 +149,10 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
   rows_.reserve(points.size());
   BorderedBand normal(padded(), fixed());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(normal.size());
-  if (options_.varying_light)
-    add_points<closed_forms + light_terms>(points, normal, right);
+  if (options_.light_order == 2)
+    add_points<closed_forms + light_terms[2]>(points, normal, right);
+  else if (options_.light_order == 1)
+    add_points<closed_forms + light_terms[1]>(points, normal, right);
   else
     add_points<closed_forms>(points, normal, right);
   data_normal_ = trimmed(normal);
@@ -154,10 +161,11 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
   fit(points);
 }
 
-void EdgeSpreadModel::take_light_for_even(std::span<const EdgePoint> points) {
-  if (!options_.varying_light) return;
-  options_.varying_light = false;
-  data_normal_.drop_border(light_terms);
+void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> points) {
+  if (order >= options_.light_order) return;
+  const int before = lights();
+  options_.light_order = order;
+  data_normal_.drop_border(before - lights());
   right_.conservativeResize(splines_ + fixed());
   fit(points);
 }
@@ -193,7 +201,7 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
         edge_roughness * std::pow(options_.knot_px / (0.25 * options_.blur_px), 3) * (high - low);
     const double most = std::max(least_smoothing, std::pow(options_.noise / roughness, 2) / unit);
     constexpr double factor = 4;
-    const double from = std::max(least_smoothing, 1e-6 * most);
+    const double from = std::max(least_smoothing, options_.least_smoothing_share * most);
     for (double smoothing = from; smoothing < factor * most; smoothing *= factor)
       if (Solved solved = solve(std::min(smoothing, most)); solved.criterion < best.criterion) {
         best = std::move(solved);
@@ -229,7 +237,8 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
     at.value = closed[0] + closed[1] * row.fixed[1] + closed[2] * row.fixed[2] + closed[3] * row.fixed[3] -
                variation;
     at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
-    if (options_.varying_light) variation += closed[4] * row.fixed[4] + closed[5] * row.fixed[5];
+    for (std::size_t k = closed_forms; k < static_cast<std::size_t>(fixed()); ++k)
+      variation += closed[k] * row.fixed[k];
     if (row.first >= 0) {
       double slope = 0;
       for (int p = 0; p < support; ++p) {
@@ -267,15 +276,17 @@ double EdgeSpreadModel::tail_px() const {
 
 EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, double noise) const {
   Variation result;
-  if (!options_.varying_light) return result;
-  for (int k = 0; k < light_terms; ++k) {
+  if (options_.light_order == 0) return result;
+  const double reach = reach_px / options_.core_px;
+  const std::array<double, light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
+  for (int k = light_terms[static_cast<std::size_t>(options_.light_order - 1)]; k < lights(); ++k) {
     const Eigen::Index at = splines_ + closed_forms + k;
     const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
     const double coefficient = std::abs(coefficients_[at]);
-    const double reach = k % 2 == 0 ? 1 : reach_px / options_.core_px;
     result.significance = std::max(result.significance,
                                    coefficient / std::max(1e-300, noise * std::sqrt(std::max(0.0, spread))));
-    result.share = std::max(result.share, coefficient * reach / std::abs(step_));
+    result.share =
+        std::max(result.share, coefficient * reaches[static_cast<std::size_t>(k)] / std::abs(step_));
   }
   return result;
 }

@@ -32,8 +32,11 @@ struct EdgeSpreadOptions {
   double noise = 0;       ///< standard deviation of the values, 0: not known yet
   /// Weight of the roughness of the profile against the data; negative: chosen by the evidence.
   double smoothing = -1;
-  /// The light on the target may rise or fall linearly, along the edge and across it.
-  bool varying_light = false;
+  /// The least that is chosen over the most that edges can bear: more where samples leave gaps, for there
+  /// the evidence is of what else the model lacks.
+  double least_smoothing_share = 1e-6;
+  /// The light on the target may vary along the edge and across it: 0 not, 1 linearly, 2 as a parabola.
+  int light_order = 0;
 };
 
 /// E(d) = dark + step · (½ + atan(d/b)/π) − tail1 d/(d² + b²) − tail3 d/(d² + b²)² + Σ c_j B_j(d), b = 1
@@ -50,15 +53,15 @@ struct EdgeSpreadOptions {
 /// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
 /// as K₃/r³, and K₃ is half of what the edge keeps.
 ///
-/// With light that varies, l (p₁ t + p₂ d) is fitted besides, for a sample at t along the edge whose value is
-/// expected to be l of the bright side's: uneven light and vignetting take the same share of both sides. It
-/// belongs to no transform.
+/// With light that varies, l (p₁ t + p₂ d), and to order 2 l (p₃ t² + p₄ t d + p₅ d²), is fitted besides, for
+/// a sample at t along the edge whose value is expected to be l of the bright side's: uneven light and
+/// vignetting take the same share of both sides. It belongs to no transform.
 class EdgeSpreadModel {
  public:
   /// \throws InputError when the points do not determine the model.
   EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSpreadOptions& options);
-  /// The same, of the same points, with even light.
-  void take_light_for_even(std::span<const EdgePoint> points);
+  /// The same, of the same points, with light of a lower order.
+  void take_light_to_order(int order, std::span<const EdgePoint> points);
 
   /// The profile at a distance, in the middle of the edge and without what varies.
   double value(double distance) const { return evaluate(distance).value; }
@@ -71,8 +74,8 @@ class EdgeSpreadModel {
   /// varies, and a target that is no half-plane, add there.
   const std::vector<ValueAndSlope>& fitted() const { return fitted_; }
   const std::vector<double>& variation() const { return variation_; }
-  /// Coefficients of that over their standard deviations, and the largest share of the step that they make
-  /// within `reach_px` of the edge.
+  /// The terms of the highest order of light that varies: over their standard deviations, and the largest
+  /// share of the step that they make within `reach_px` of the edge.
   struct Variation {
     double significance = 0, share = 0;
   };
@@ -126,18 +129,20 @@ class EdgeSpreadModel {
 
  private:
   static constexpr int closed_forms = 4;  ///< dark, step, tail1, tail3
-  static constexpr int light_terms = 2;
+  /// Terms of light that varies, to each order.
+  static constexpr std::array<int, 3> light_terms = {0, 2, 5};
   static constexpr int support = 6;
   /// What the unknowns do to the value at a point. The splines come first, then the closed forms.
   struct Row {
     int first =
         -1;  ///< of the splines that are not zero, counted from `margin` before the first unknown; −1: none
     std::array<double, support> splines, slopes;  ///< slopes [1/knot]
-    std::array<double, closed_forms + light_terms> fixed;
+    std::array<double, closed_forms + light_terms.back()> fixed;
   };
   /// Splines that reach beyond the core have no unknown; rows count them all the same, so that all are alike.
   static constexpr int margin = support - 1;
-  int fixed() const { return closed_forms + (options_.varying_light ? light_terms : 0); }
+  int lights() const { return light_terms[static_cast<std::size_t>(options_.light_order)]; }
+  int fixed() const { return closed_forms + lights(); }
   int padded() const { return splines_ + 2 * margin; }
   template <int fixed>
   void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);

@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/measure/sfr/edge_alignment.h>
+#include <petzval/measure/sfr/edge_fit.h>
 #include <petzval/measure/sfr/edge_spread_model.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/measure/sfr/sample_comb.h>
-#include <petzval/measure/sfr/smooth_about_edge.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,29 +14,6 @@
 namespace petzval {
 
 namespace {
-
-/// Variance of the samples about a profile, as a function of the value: one near each level, linear between.
-struct Noise {
-  double dark = 0, bright = 0;  ///< variances
-  double all = 0;
-};
-
-/// \param unknowns  of the profile, that the data settle.
-Noise noise_about(const EdgeProfile& profile, const EdgeSpreadModel& model, double unknowns) {
-  double sum[2] = {0, 0}, weight[2] = {0, 0};
-  for (std::size_t i = 0; i < profile.points.size(); ++i) {
-    const double expected = profile.fitted[i].value;
-    const double residual = profile.points[i].value - expected - profile.variation[i];
-    const int side = expected > model.dark() + 0.5 * model.step() ? 1 : 0;
-    sum[side] += residual * residual;
-    weight[side] += 1;
-  }
-  // The unknowns of the profile take their share of the residuals.
-  const double n = static_cast<double>(profile.points.size());
-  const double freedom = std::max(0.1, 1 - unknowns / n);
-  return {sum[0] / std::max(1.0, weight[0]) / freedom, sum[1] / std::max(1.0, weight[1]) / freedom,
-          (sum[0] + sum[1]) / n / freedom};
-}
 
 void refuse_clipped(const EdgeProfile& profile, const std::vector<EdgeSample>& samples,
                     const SfrOptions& options, double rise_px) {
@@ -95,7 +71,17 @@ double middle_of(const EdgeSpreadModel& model, double low, double high) {
   return 0.5 * (from + to);
 }
 
-/// Where contrast falls below a level for the first time, from values `step_cpp` apart.
+/// Where contrast falls below a level for the first time, straight between values `step_cpp` apart; NaN where
+/// it does not.
+double level_between(double level, const std::vector<double>& contrast, double step_cpp) {
+  const auto below = std::find_if(contrast.begin(), contrast.end(), [&](double c) { return c < level; });
+  if (below == contrast.begin() || below == contrast.end()) return NAN;
+  const double before = *(below - 1);
+  return step_cpp *
+         (static_cast<double>(below - contrast.begin()) - 1 + (before - level) / (before - *below));
+}
+
+/// The same of the model itself, the values being its own.
 MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vector<double>& contrast,
                     double step_cpp) {
   MtfLevel result{level, NAN, NAN};
@@ -108,7 +94,7 @@ MtfLevel find_level(const EdgeSpreadModel& model, double level, const std::vecto
     double at = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * low_rest / (low_rest - high_rest);
     at = std::clamp(at, low, high);
     const double rest = std::abs(model.transform(at)) - level;
-    if (std::abs(rest) < 1e-14) {
+    if (std::abs(rest) < 1e-12) {
       low = high = at;
       break;
     }
@@ -147,218 +133,6 @@ std::vector<double> usual_frequencies() {
   for (int i = 0; i <= 100; ++i) frequencies.push_back(i / 100.0);
   return frequencies;
 }
-
-/// Line and profile of one edge, fitted in turn.
-class EdgeFit {
- public:
-  EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess, const SfrOptions& options)
-      : samples_(samples), guess_(guess), line_(guess.line), noise_(1e-4 * (guess.bright - guess.dark)) {
-    line_.bend.assign(static_cast<std::size_t>(std::max(1, options.edge_order)), 0);
-    if (options.missing_target) find_missing(options.missing_target);
-  }
-
-  void run(const SfrOptions& options) {
-    bend_by_guess(options.edge_order);
-    // The first profile is rough, and tells the noise.
-    fit_placed();
-    align(line_, alignment_of(static_cast<int>(line_.bend.size())), 1);
-    turn_by_bend(line_);
-    varying_light_ = options.varying_light;
-    settle();
-    if (options.edge_order == 0) bend_by_evidence();
-    if (options.varying_light) judge_light();
-    comb_px_ = sample_comb_px(profile_.points);
-    if (comb_px_ > 0) {
-      join_rows(profile_.points);
-      smoothing_ = -1;
-      fit_profile();
-    }
-  }
-
-  /// The same profile by other splines: finer ones, which end nearer.
-  EdgeSpreadModel variant() const {
-    EdgeSpreadOptions options = model_->options();
-    options.core_px *= 0.85, options.knot_px *= 0.8;
-    options.noise = noise_, options.smoothing = 0;
-    return EdgeSpreadModel(profile_.points, options);
-  }
-  double noise() const { return noise_; }
-
-  const EdgeLine& line() const { return line_; }
-  const EdgeProfile& profile() const { return profile_; }
-  const EdgeSpreadModel& model() const { return *model_; }
-  double unknowns() const { return unknowns_; }
-  double comb_px() const { return comb_px_; }
-  double light_variation() const { return light_variation_; }
-
- private:
-  static constexpr double significant = 5, least_bend_px = 2e-3, least_variation = 4e-3;
-
-  void find_missing(const std::function<double(double, double)>& missing_target) {
-    double low = 0, high = 0;
-    const EdgeFrame frame(line_);
-    for (const EdgeSample& s : samples_) {
-      const double d = frame.at(s.x, s.y).distance;
-      low = std::min(low, d), high = std::max(high, d);
-    }
-    const SmoothAboutEdge smooth(missing_target, line_, {low, high}, {13, 11});
-    for (const EdgeSample& s : samples_) missing_.push_back(smooth(s.x, s.y));
-  }
-
-  void place_samples() {
-    profile_ = profile_along(samples_, line_);
-    for (std::size_t i = 0; i < profile_.points.size(); ++i) {
-      EdgePoint& point = profile_.points[i];
-      const std::size_t sample = profile_.sample[i];
-      if (!missing_.empty()) point.missing = missing_[sample];
-      if (varying_light_) point.light = light_[sample];
-    }
-  }
-
-  /// Of each sample, as the last profile has it.
-  void expect_light() {
-    const double dark = model_->dark(), step = model_->step(), bright = dark + step;
-    const double per_bright = 1 / std::max(bright, 1e-3 * step);
-    light_.resize(samples_.size());
-    for (std::size_t i = 0; i < profile_.points.size(); ++i)
-      light_[profile_.sample[i]] = std::clamp(profile_.fitted[i].value, dark, bright) * per_bright;
-  }
-
-  void fit_placed() {
-    place_samples();
-    fit_profile();
-  }
-
-  void fit_profile() {
-    // Beyond five times the rise a profile has nothing but its tail; the tail needs a third of the range.
-    const double rise = 4.39 * guess_.scale_px;
-    EdgeSpreadOptions options;
-    options.core_px = std::min(8 + 4 * rise, 0.7 * std::min(-profile_.low, profile_.high));
-    options.blur_px = std::max(1.0, 0.5 * rise);
-    options.noise = noise_;
-    // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
-    options.knot_px = options.core_px > 45 ? 0.5 : 0.25;
-    options.varying_light = varying_light_;
-    options.smoothing = smoothing_;
-    model_.emplace(profile_.points, options);
-    take_profile();
-  }
-
-  void take_profile() {
-    if (!(model_->step() > 0)) throw InputError("no edge stands out: its two sides are equally bright");
-    profile_.variation = model_->variation();
-    profile_.fitted = model_->fitted();
-    expect_light();
-    if (smoothing_ < 0 || unknowns_ == 0) unknowns_ = model_->unknowns();
-    noise_ = std::sqrt(noise_about(profile_, *model_, unknowns_).all);
-  }
-
-  EdgeAlignment alignment_of(int order) const { return alignment(profile_, *model_, order, noise_); }
-
-  /// A bend comes from the smooth profile of the guess first: a free profile would follow what a bend
-  /// scatters.
-  void bend_by_guess(int asked) {
-    if (asked == 1) return;
-    EdgeLine bent = line_;
-    bent.bend.assign(static_cast<std::size_t>(asked == 0 ? 3 : asked), 0);
-    const double reach = 6 * guess_.scale_px + 1;
-    constexpr double most_bent_px = 10;
-    std::vector<EdgeSample> near;
-    const EdgeFrame frame(line_);
-    for (const EdgeSample& s : samples_)
-      if (std::abs(frame.at(s.x, s.y).distance) < reach + most_bent_px) near.push_back(s);
-    constexpr int rounds = 12;
-    EdgeAlignment change;
-    for (int round = 0; round < rounds; ++round) {
-      EdgeProfile profile = profile_along(near, bent);
-      fit_logistic(profile, guess_);
-      change = alignment(profile, static_cast<int>(bent.bend.size()), reach, guess_.rms_residual);
-      if (align(bent, change, 1) < 1e-3) break;
-    }
-    constexpr double plainly_bent_px = 0.1;
-    bool plainly = asked > 1;
-    for (int k = 2; k <= change.order; ++k) {
-      const double bend = std::abs(bent.bend[static_cast<std::size_t>(k - 1)]);
-      plainly = plainly || (bend > plainly_bent_px && bend > significant * change.deviation[k]);
-    }
-    if (plainly) line_ = bent;
-  }
-
-  void settle() {
-    constexpr int most_rounds = 40;
-    EdgeAlignment before;
-    double length = 1;  // of a step, over the one that a linear problem needs
-    for (int round = 0; round < most_rounds; ++round) {
-      if (round == 0) smoothing_ = -1;
-      fit_placed();
-      smoothing_ = model_->smoothing();
-      const EdgeAlignment change = alignment_of(static_cast<int>(line_.bend.size()));
-      if (at_rest(change)) break;
-      // A step that repeats the one before was too short, one that takes it back too long (J. Barzilai & J.
-      // M. Borwein, IMA J. Numer. Anal. 8, 141, 1988).
-      if (round > 0) length = std::clamp(length / (1 - likeness(change, before)), 0.3, 3.0);
-      before = change;
-      align(line_, change, length);
-      turn_by_bend(line_);
-    }
-  }
-
-  static bool at_rest(const EdgeAlignment& change) {
-    // A hundred-thousandth of a pixel changes no SFR by 1e-6. Nor do steps count that are small beside their
-    // own uncertainty, as along the pixel grid, where a bend and the profile are hard to tell apart.
-    constexpr double at_rest_px = 2e-5, at_rest_deviations = 0.03;
-    double significance = 0;
-    for (int k = 1; k <= change.order; ++k) significance = std::max(significance, change.significance(k));
-    return shift_of(change) < at_rest_px || significance < at_rest_deviations;
-  }
-
-  /// The part of a step that repeats an earlier one.
-  static double likeness(const EdgeAlignment& step, const EdgeAlignment& earlier) {
-    double product = 0, square = 0;
-    for (int k = 1; k <= step.order; ++k) {
-      product += step.change[k] * earlier.change[k];
-      square += earlier.change[k] * earlier.change[k];
-    }
-    return std::min(0.9, product / std::max(1e-300, square));
-  }
-
-  void bend_by_evidence() {
-    if (line_.bend.size() > 1) return;  // it is bent already
-    const EdgeAlignment bends = alignment_of(3);
-    const auto shown = [&](int k) {
-      return bends.significance(k) > significant && std::abs(bends.change[k]) > least_bend_px;
-    };
-    if (!shown(2) && !shown(3)) return;
-    line_.bend.assign(shown(3) ? 3 : 2, 0);
-    settle();
-  }
-
-  void judge_light() {
-    const double reach = std::min(-profile_.low, profile_.high);
-    const EdgeSpreadModel::Variation variation = model_->variation_over(reach, noise_);
-    varying_light_ = variation.significance > significant && variation.share > least_variation;
-    if (varying_light_) {
-      light_variation_ = 2 * variation.share;
-    } else {
-      model_->take_light_for_even(profile_.points);
-      take_profile();
-      const EdgeAlignment change = alignment_of(static_cast<int>(line_.bend.size()));
-      if (at_rest(change)) return;
-      align(line_, change, 1);
-      turn_by_bend(line_);
-      settle();
-    }
-  }
-
-  const std::vector<EdgeSample>& samples_;
-  const EdgeGuess& guess_;
-  EdgeLine line_;
-  EdgeProfile profile_;
-  std::optional<EdgeSpreadModel> model_;
-  std::vector<double> missing_, light_;  ///< of each sample
-  double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
-  bool varying_light_ = false;
-};
 
 /// What |transform| may be off by, for all reasons together.
 class Uncertainty {
@@ -411,8 +185,8 @@ void fill_levels(EdgeMeasurement& result, const EdgeSpreadModel& model, const Un
     const double spread = *of_modulus++;
     // Over as much as the deviation covers: at a point the slope is noisy, too.
     const double reach = std::clamp(2 * spread, 1e-4, 0.8 * std::min(level.level, 1 - level.level));
-    const double before = find_level(model, level.level + reach, contrast, step).frequency_cpp;
-    const double after = find_level(model, level.level - reach, contrast, step).frequency_cpp;
+    const double before = level_between(level.level + reach, contrast, step);
+    const double after = level_between(level.level - reach, contrast, step);
     const double run = std::isfinite(after) ? (after - before) / 2 : level.frequency_cpp - before;
     level.deviation_cpp = spread * run / reach;
   }
@@ -442,7 +216,7 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
   result.middle_px = middle_of(model, profile.low, profile.high);
   result.rise_px = rise_of(model, profile.low, profile.high);
   refuse_clipped(profile, samples, options, result.rise_px);
-  const Noise spread = noise_about(profile, model, fit.unknowns());
+  const EdgeNoise spread = noise_about(profile, model, fit.unknowns());
   result.noise_dark = std::sqrt(spread.dark);
   result.noise_bright = std::sqrt(spread.bright);
   std::vector<double> variance, unrounded;

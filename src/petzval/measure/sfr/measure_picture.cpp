@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/measure/sfr/chart_frame.h>
 #include <petzval/measure/sfr/find_edges.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/missing_target.h>
@@ -117,6 +118,7 @@ class Measurement {
     std::vector<MeasuredEdge> edges;
     for (auto& result : results) std::move(result.begin(), result.end(), std::back_inserter(edges));
     if (edges.empty()) throw InputError(name_, faults.empty() ? "no edge" : faults.front());
+    if (request_.chart_mm) place_on_chart(edges);
     for (std::size_t i = 0; i < jobs.size(); ++i)
       if (!faults[i].empty())
         send_note(context, fmt::format("{}: the edge from {:.0f},{:.0f} to {:.0f},{:.0f} is left out: {}",
@@ -126,6 +128,17 @@ class Measurement {
   }
 
  private:
+  void place_on_chart(std::vector<MeasuredEdge>& edges) const try {
+    const ChartFrame frame(guide_, (*request_.chart_mm)[0], (*request_.chart_mm)[1]);
+    for (MeasuredEdge& edge : edges) {
+      const EdgeLine& line = edge.exact.line;
+      const auto [x, y] = frame.on_chart(line.centre_x, line.centre_y);
+      edge.on_chart = {x, y, frame.per_mm(line)};
+    }
+  } catch (const InputError& error) {
+    throw InputError(name_, error.what());
+  }
+
   /// A mosaic's pixels averaged by fours, so that contours do not follow its colours.
   static Plane smoothed(const Plane& plane) {
     Plane result = plane;

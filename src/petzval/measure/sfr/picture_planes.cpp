@@ -10,7 +10,7 @@
 #include <petzval/image/formats/tiff.h>
 #include <petzval/isp/demosaic.h>
 #include <petzval/measure/sfr/picture_planes.h>
-#include <petzval/sensor/formats/dng.h>
+#include <petzval/sensor/formats/camera_raw.h>
 
 #include <algorithm>
 #include <cctype>
@@ -198,8 +198,11 @@ PicturePlanes from_raw(const RawImage& raw, const std::string& path, bool demosa
 }  // namespace
 
 const std::vector<std::string>& measurable_extensions() {
-  static const std::vector<std::string> extensions{".png",  ".jpg", ".jpeg", ".tif",
-                                                   ".tiff", ".npy", ".exr",  ".dng"};
+  static const std::vector<std::string> extensions = [] {
+    std::vector<std::string> all{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".npy", ".exr"};
+    all.insert(all.end(), camera_raw_extensions().begin(), camera_raw_extensions().end());
+    return all;
+  }();
   return extensions;
 }
 
@@ -228,10 +231,12 @@ PicturePlanes read_picture_planes(const std::string& path, PictureTransfer trans
     picture = from_npy(path);
   else if (extension == ".exr")
     picture = from_exr(path);
-  else if (extension == ".dng")
-    picture = from_raw(read_dng(path), path, demosaic);
+  else if (std::ranges::count(camera_raw_extensions(), extension))
+    picture = from_raw(read_raw(path), path, demosaic);
   else
-    throw InputError(path, "a picture to measure is a .png, .jpg, .tif, .npy, .exr or .dng");
+    throw InputError(path,
+                     "a picture to measure is a .png, .jpg, .tif, .npy, .exr, .dng or a camera's raw file "
+                     "(.nef, .cr2, .arw, ...)");
   for (const Plane& plane : picture.planes)
     for (std::size_t i = 0; i < plane.values.size(); ++i)
       if (!std::isfinite(plane.values[i]))

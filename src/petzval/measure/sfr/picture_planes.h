@@ -38,11 +38,12 @@ struct PicturePlanes {
 /// The names of files that read_picture_planes() takes: ".png" and so on.
 const std::vector<std::string>& measurable_extensions();
 
-/// Reads .png, .jpg, .tif, .npy (rows × columns or rows × columns × bands), .exr (spectral) or .dng, as they
-/// are stored, not turned upright. Alpha and colour profiles are left aside. A .dng is linear between its
-/// black level, 0, and its white level, 1. \param demosaic  a mosaic becomes full planes of the sensor's
-/// colours by usual_demosaic_method(); else it stays one plane, and must be a Bayer mosaic. \throws
-/// InputError for another extension, shape or mosaic, values that are not finite, and as the readers.
+/// Reads .png, .jpg, .tif, .npy (rows × columns or rows × columns × bands), .exr (spectral), .dng or another
+/// raw file (read_raw), as they are stored, not turned upright. Alpha and colour profiles are left aside. Raw
+/// files are linear between their black level, 0, and their white level, 1. \param demosaic  a mosaic becomes
+/// full planes of the sensor's colours by usual_demosaic_method(); else it stays one plane, and must be a
+/// Bayer mosaic. \throws InputError for another extension, shape or mosaic, values that are not finite, and
+/// as the readers.
 PicturePlanes read_picture_planes(const std::string& path, PictureTransfer transfer = PictureTransfer::stated,
                                   bool demosaic = false);
 

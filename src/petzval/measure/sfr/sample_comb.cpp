@@ -8,14 +8,32 @@
 
 namespace petzval {
 
-double sample_comb_px(std::span<const EdgePoint> points) {
-  constexpr double reach = 3, cell = 0.01;  // pixels about the edge, and a sample's share of them
-  constexpr double most_filled = 0.1;
+namespace {
+
+constexpr double reach = 3;  // pixels about the edge
+
+std::vector<double> distances_near(std::span<const EdgePoint> points) {
   std::vector<double> near;
   for (const EdgePoint& point : points)
     if (std::abs(point.distance) <= reach) near.push_back(point.distance);
-  if (near.size() < 2) return 0;
   std::sort(near.begin(), near.end());
+  return near;
+}
+
+}  // namespace
+
+double widest_gap_px(std::span<const EdgePoint> points) {
+  const std::vector<double> near = distances_near(points);
+  double widest = 0;
+  for (std::size_t i = 1; i < near.size(); ++i) widest = std::max(widest, near[i] - near[i - 1]);
+  return widest;
+}
+
+double sample_comb_px(std::span<const EdgePoint> points) {
+  constexpr double cell = 0.01;  // pixels: a sample's share of what it fills
+  constexpr double most_filled = 0.1;
+  const std::vector<double> near = distances_near(points);
+  if (near.size() < 2) return 0;
   double widest = 0, filled = cell;
   for (std::size_t i = 1; i < near.size(); ++i) {
     widest = std::max(widest, near[i] - near[i - 1]);

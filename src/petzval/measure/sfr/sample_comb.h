@@ -9,6 +9,9 @@
 
 namespace petzval {
 
+/// The widest stretch [pixels] without a sample within 3 pixels of the edge.
+double widest_gap_px(std::span<const EdgePoint> points);
+
 /// The widest step [pixels] between rows of samples that all lie at nearly the same distances from an edge; 0
 /// where the distances fill a tenth or more of the pixels.
 double sample_comb_px(std::span<const EdgePoint> points);
