@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
 #include <petzval/imaging/field_of_view.h>
+#include <petzval/imaging/image_table.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 #include <petzval/scene/depth_map.h>
@@ -136,17 +137,21 @@ Lens focused_on(MountedLens lens, const Camera& camera, std::optional<double> sc
   return here.lens();
 }
 
+/// Of the sensor, or of the frame that will follow the scene.
+double pixel_um(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
+  if (sensor) return sensor->geometry.pitch_um;
+  return scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
+                               : natural_depth_pitch_um(scene, lens);
+}
+
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
-double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
+double image_height_mm(const Scene& scene, double pitch_um, const std::optional<Sensor>& sensor) {
   constexpr double pixels_beyond = 8;
-  const auto with_rim = [](double half_diagonal_mm, double pitch_um) {
-    return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
-  };
-  if (sensor) return with_rim(sensor->geometry.half_diagonal_mm(), sensor->geometry.pitch_um);
-  const double pitch_um = scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
-                                                : natural_depth_pitch_um(scene, lens);
-  return with_rim(pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2, pitch_um);
+  const double half_diagonal_mm = sensor
+                                      ? sensor->geometry.half_diagonal_mm()
+                                      : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
+  return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
 }
 
 /// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
@@ -187,12 +192,12 @@ LensDataTable facts_alone(const Lens& lens) {
 }
 
 /// All that a table is made of; empty for coatings, which have no text.
-std::string lens_key(const Lens& lens, const TableOptions& options) {
+std::string lens_key(const Lens& lens, const TableOptions& options, double pitch_um) {
   const Losses& losses = options.losses;
   if (losses.air_glass || !losses.surfaces.empty()) return {};
-  std::string key = fmt::format("{} {} {} {} {} {} {}", options.max_image_height_mm, options.field_count,
-                                options.frame_places, static_cast<int>(options.clip), losses.fresnel,
-                                losses.absorption, lens_to_json(lens));
+  std::string key = fmt::format("{} {} {} {} {} {} {} {}", pitch_um, options.max_image_height_mm,
+                                options.field_count, options.frame_places, static_cast<int>(options.clip),
+                                losses.fresnel, losses.absorption, lens_to_json(lens));
   for (const double nm : options.wavelengths_nm) key += fmt::format(" {}", nm);
   if (options.half_frame_mm)
     key += fmt::format(" {} {}", (*options.half_frame_mm)[0], (*options.half_frame_mm)[1]);
@@ -220,9 +225,10 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   if (camera.sensor && detail == TableDetail::full)
     note_short_field(focused, camera.sensor->geometry, context);
   TableOptions table = table_options(camera, scene, detail);
-  table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
+  const double pitch_um = pixel_um(scene, focused, camera.sensor);
+  table.max_image_height_mm = image_height_mm(scene, pitch_um, camera.sensor);
   if (camera.sensor) table.half_frame_mm = half_frame_mm(camera.sensor->geometry);
-  if (deep && memory != nullptr) memory->set_lens_key(lens_key(focused, table));
+  if (deep && memory != nullptr) memory->set_lens_key(lens_key(focused, table, pitch_um));
   if (deep)
     return {std::move(scene),
             facts_alone(focused),
@@ -231,10 +237,17 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
             std::move(options)};
   const auto build = [&] {
     return result_within(context, [&](const ProgressCallback& progress) {
-      return build_lens_data_table(focused, table, progress);
+      if (options.imaging.method != BlurMethod::product || detail == TableDetail::outline)
+        return build_lens_data_table(focused, table, progress);
+      constexpr int cells_a_pixel = 2;  // as many or more
+      const double pitch_um =
+          camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, first_order(focused));
+      return build_image_table(focused, table, {pitch_um / cells_a_pixel, options.imaging.product.tolerance},
+                               progress);
     });
   };
-  LensDataTable built = memory != nullptr ? memory->table(lens_key(focused, table), build) : build();
+  LensDataTable built =
+      memory != nullptr ? memory->table(lens_key(focused, table, pitch_um), build) : build();
   return {std::move(scene), std::move(built), {}, {}, std::move(options)};
 }
 
