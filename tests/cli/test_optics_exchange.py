@@ -68,6 +68,18 @@ class Iset(Exchange):
         np.testing.assert_allclose(self.table("rt.h5")["g_source"], native["g_source"], rtol=1e-12)
         self.assert_same_picture("rt.h5", 1e-6)
 
+    def test_takes_the_structure_under_another_name(self):
+        native = self.native()
+        trace = iset_files.ray_trace()
+        # Beside it may stand what is no table.
+        for name, value in (("rt", trace), ("myLens", trace), ("myOptics", {"rayTrace": trace}),
+                            ("myImage", {"optics": {"rayTrace": trace}})):
+            iset_files.write_mat(self.folder / "named.mat", name, value)
+            self.assert_succeeds("optics", "import", "named.mat", "-o", "named.h5")
+            self.assert_same_table(self.table("named.h5"), native, 1e-12, 1e-6)
+        iset_files.write_mat(self.folder / "other.mat", "notes", {"text": "no table"})
+        self.assert_refused("optics", "import", "other.mat", "-o", "other.h5", words=("optics", "rayTrace"))
+
     def test_transmittance_of_the_optics(self):
         native = self.native()
         iset_files.write_mat(self.folder / "t.mat", "optics", {

@@ -97,6 +97,57 @@ TEST(Image, IsTheSameOnAnyNumberOfThreads) {
   EXPECT_TRUE(std::ranges::equal(a.values(), b.values()));
 }
 
+/// Lenses whose PSFs change little, much, and at the rim above all, over their whole fields.
+struct PreviewCase {
+  const char *lens, *sensor;
+};
+class Previews : public testing::TestWithParam<PreviewCase> {};
+
+// A preview makes fewer PSFs and coarser kernels than a finer picture; what it promises is its tolerance.
+TEST_P(Previews, KeepTheirTolerance) {
+  Camera camera;
+  camera.lens = read_lens(GetParam().lens).lens;
+  camera.sensor = read_sensor(GetParam().sensor);
+  SceneRequest chart{.name = "studio", .options = {.wavelengths_nm = {460, 540, 610}}};
+  chart.options.horizontal_angle_deg = 120;
+  ImageOptions options;
+  options.imaging.surround = Surround::extend;
+  options.imaging.product.tolerance = 3e-4;
+  const SpectralImage reference = image(chart, camera, options);
+  for (const double tolerance : {1e-2, 3e-3}) {
+    options.imaging.product.tolerance = tolerance;
+    const SpectralImage preview = image(chart, camera, options);
+    double difference = 0, light = 0;
+    for (std::size_t i = 0; i < reference.values().size(); ++i) {
+      const double here = double(reference.values()[i]);
+      difference += std::pow(double(preview.values()[i]) - here, 2);
+      light += here * here;
+    }
+    EXPECT_LT(std::sqrt(difference / light), tolerance) << GetParam().lens;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Bundled, Previews,
+                         testing::Values(PreviewCase{"dgauss-50mm", "90x60@400"},
+                                         PreviewCase{"edmund-54852", "96x72@50"},
+                                         PreviewCase{"wide-22mm", "90x60@400"}),
+                         [](const auto& of) {
+                           std::string name = of.param.lens;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(Image, MakesFewerPsfsForAPreview) {
+  Camera camera = small_camera();
+  const auto psfs = [&](double tolerance) {
+    ImageOptions options;
+    options.imaging.product.tolerance = tolerance;
+    const LensDataTable table = plan_image(wall_request(), camera, options).table;
+    return std::ranges::count_if(table.psf, [](const Psf& psf) { return psf.size > 0; });
+  };
+  EXPECT_EQ(psfs(1e-3), 31 * 3);
+  EXPECT_LT(psfs(1e-2), 31 * 3 / 2);
+}
+
 TEST(Image, CanBeStopped) {
   Camera camera = small_camera();
   camera.sensor = read_sensor("640x480@15");

@@ -84,10 +84,13 @@ int radial_for(double phase) {
   return static_cast<int>(std::ceil(0.5 * phase + 3 * std::cbrt(phase) + 12));
 }
 
-int samples_per_cell(double cell_lambda_n) {
+/// \param coarsest_lambda_n  PsfOptions::coarsest_sample_um.
+int samples_per_cell(double cell_lambda_n, double coarsest_lambda_n) {
   constexpr double rounding = 1e-9;
   if (cell_lambda_n <= 0.5 + rounding) return 1;
-  const double most = cell_lambda_n < coarse_cell_lambda_n ? sample_per_lambda_n : coarse_sample_per_lambda_n;
+  const double most =
+      std::max(cell_lambda_n < coarse_cell_lambda_n ? sample_per_lambda_n : coarse_sample_per_lambda_n,
+               coarsest_lambda_n);
   return static_cast<int>(std::ceil(cell_lambda_n / most - rounding));
 }
 
@@ -106,7 +109,8 @@ PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double grow
     const double cells = std::ceil(width_um / plan.spacing_um / size_step) * size_step;
     plan.size = static_cast<int>(std::clamp(cells, double(smallest_size), double(most)));
   }
-  plan.samples_per_cell = samples_per_cell(plan.spacing_um / lambda_n_um);
+  plan.samples_per_cell =
+      samples_per_cell(plan.spacing_um / lambda_n_um, options.coarsest_sample_um / lambda_n_um);
   plan.last_row = plan.size - 1;
   plan.reach = plan.size / 2;
   if (options.size == 0 || options.spacing_um == 0) {  // a chosen window: no farther than the rays need

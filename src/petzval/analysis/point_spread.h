@@ -31,6 +31,9 @@ struct PsfOptions {
   int largest_size = 256;      ///< of a chosen size
   double wanted_share = 0.99;  ///< of the light, inside a chosen window
   double widest_wave_window_lambda_n = 500;
+  /// Cells may hold samples of a smooth pupil's light as far apart as this, beyond 0.6 λN: for light that is
+  /// then added up over many of them.
+  double coarsest_sample_um = 0;
   /// Nodes in any order are summed in windows up to this, whose square their number goes with: a million
   /// rays. Beyond it the rays of a pupil that is not smooth are counted.
   double widest_node_window_lambda_n = 256;

@@ -39,7 +39,8 @@ void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int marg
   grid_ = grid;
   margin_ = margin;
   if (options_.method == BlurMethod::none) return;
-  psfs_.emplace(table_, wavelength_nm, grid.pitch_um, options_.interpolation, centres_);
+  psfs_.emplace(table_, wavelength_nm, grid.pitch_um, options_.interpolation, centres_,
+                options_.is_preview() ? LatticeSteps::coarse : LatticeSteps::fine);
   if (options_.by_sections()) use_sections(options_.section_options());
   if (options_.method == BlurMethod::product) choose_product(hint);
 }

@@ -45,8 +45,11 @@ class FrameMtf {
     for (std::size_t field = 0; field < table.fields.size(); ++field) {
       const std::size_t entry = table.index(field, wavelength);
       const double height_mm = table.real_image_height_mm.at(entry);
-      // The area of the frame about a height grows with it; the axis stands for the first step.
-      const double weight = std::max(height_mm, corner_mm / double(2 * table.fields.size()));
+      if (!table.has_psf(entry)) continue;
+      // The area of the frame about a height grows with it; the axis stands for the first step. A field
+      // stands for those about it that have no PSF.
+      const double weight = std::max(height_mm, corner_mm / double(2 * table.fields.size())) *
+                            stands_for(table, field, wavelength);
       if (height_mm > corner_mm && weights > 0) break;
       add(table.psf.at(entry), sensor.pitch_um, weight);
       weights += weight;
@@ -63,6 +66,17 @@ class FrameMtf {
   }
 
  private:
+  /// So many fields.
+  static double stands_for(const LensDataTable& table, std::size_t field, std::size_t wavelength) {
+    const auto without_psf = [&](std::size_t at) {
+      return at < table.fields.size() && !table.has_psf(table.index(at, wavelength));
+    };
+    double fields = 1;
+    for (std::size_t at = field + 1; without_psf(at); ++at) fields += 0.5;
+    for (std::size_t at = field; at > 0 && without_psf(at - 1); --at) fields += 0.5;
+    return fields;
+  }
+
   static constexpr double step_cpp = 0.1;
   static constexpr std::size_t steps = 250;
 
@@ -180,9 +194,8 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   };
   if (asked != 0) return with(asked);
   // One cell holds little more than what the tolerance of a preview asks for.
-  constexpr double of_a_preview = 3e-3;
   const double tolerance = options.product.tolerance;
-  CellChoice choice = with(tolerance < of_a_preview ? 2 : 1);
+  CellChoice choice = with(options.is_preview() ? 1 : 2);
   while (choice.cells < most_cells && choice.error > tolerance / 2) choice = with(choice.cells + 1);
   return choice;
 }

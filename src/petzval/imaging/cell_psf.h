@@ -22,10 +22,6 @@ bool has_light(const Psf& psf);
 /// Adds a PSF to what is known of a reach. \throws InputError if it spans more than 4000 cells.
 void add_to_reach(const Psf& psf, const PsfExtent& extent, double cell_um, PsfReach& reach);
 
-/// Steps of a lattice along a cell: of light seen through the window, cubic splines between them miss
-/// 5·10⁻⁵.
-inline constexpr double lattice_steps = 4;
-
 /// With samples that are as fine as cells need them, and no finer.
 MergedPsf merged_psf(const Psf& table, double origin_um, double cell_um);
 

@@ -59,9 +59,10 @@ PsfReach frame_reach(const LensDataTable& table, double wavelength_nm, double ce
 }
 
 FrameKernels::FrameKernels(const LensDataTable& table, double wavelength_nm, double cell_um,
-                           const LightCentres& centres)
+                           const LightCentres& centres, LatticeSteps steps)
     : table_(table),
       cell_um_(cell_um),
+      steps_(static_cast<double>(steps)),
       centres_(table, centres, wavelength_nm),
       reach_(frame_reach(table, wavelength_nm, cell_um, centres)) {
   for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm)) {
@@ -120,7 +121,7 @@ const SmoothPsf& FrameKernels::psf(const Layer& layer, std::size_t place) const 
   std::call_once(entry.made, [&] {
     const Psf& table = table_.psf[table_.index(place, layer.wavelength)];
     // About the chief ray; the way to the centre of light is taken as kernels are sampled.
-    const double spacing_um = cell_um_ / lattice_steps;
+    const double spacing_um = cell_um_ / steps_;
     const double half_side_um = extent_of(table, 0).half_side_um + table.spacing_um;
     Kernel lattice(static_cast<int>(std::ceil(half_side_um / spacing_um)));
     const MergedPsf merged = merged_psf(table, 0, cell_um_);
@@ -132,7 +133,7 @@ const SmoothPsf& FrameKernels::psf(const Layer& layer, std::size_t place) const 
                       mean(sums.uu) / square,
                       -mean(sums.uv) / square,
                       mean(sums.vv) / square};
-    entry.psf = std::make_unique<SmoothPsf>(lattice, 1 / lattice_steps, own);
+    entry.psf = std::make_unique<SmoothPsf>(lattice, 1 / steps_, own);
   });
   return *entry.psf;
 }
@@ -171,7 +172,7 @@ Kernel FrameKernels::kernel_at(double x_mm, double y_mm) const {
       const Moments wanted{{-s, t}, ss + s * s, 0, tt + t * t};
       std::fill(part.weights.begin(), part.weights.end(), 0.0);
       const WeightedPsf one{&psf(layer, share.place), 1};
-      sample_mixture({&one, 1}, 1 / lattice_steps, wanted, {-n, c}, part);
+      sample_mixture({&one, 1}, 1 / steps_, wanted, {-n, c}, part);
       const double weight = layer.weight * share.weight;
       for (std::size_t i = 0; i < kernel.weights.size(); ++i) kernel.weights[i] += weight * part.weights[i];
     }

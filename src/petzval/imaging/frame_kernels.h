@@ -27,7 +27,8 @@ PsfReach frame_reach(const LensDataTable& table, double wavelength_nm, double ce
 class FrameKernels : public KernelMaker {
  public:
   /// \throws InputError if the wavelength lies outside the table, or a PSF spans more than 4000 cells.
-  FrameKernels(const LensDataTable& table, double wavelength_nm, double cell_um, const LightCentres& centres);
+  FrameKernels(const LensDataTable& table, double wavelength_nm, double cell_um, const LightCentres& centres,
+               LatticeSteps steps = LatticeSteps::fine);
 
   Kernel kernel_at(double x_mm, double y_mm) const override;
   void prepare(const std::vector<std::array<double, 2>>& places_mm) const override;
@@ -68,6 +69,7 @@ class FrameKernels : public KernelMaker {
 
   const LensDataTable& table_;
   double cell_um_;
+  double steps_;  ///< of the lattices, along a cell
   FrameCentres centres_;
   std::vector<Layer> layers_;
   PsfReach reach_;

@@ -47,27 +47,36 @@ Psf with_partner(const Psf& psf) {
   return odd;
 }
 
+/// The fields between which PSFs are mixed: all of a table from a file.
+std::vector<std::size_t> fields_with_psf(const LensDataTable& table, std::size_t wavelength) {
+  std::vector<std::size_t> fields;
+  for (std::size_t field = 0; field < table.fields.size(); ++field)
+    if (field == 0 || field + 1 == table.fields.size() || table.has_psf(table.index(field, wavelength)))
+      fields.push_back(field);
+  return fields;
+}
+
 /// The PSFs of one wavelength of a table: how far they extend, field by field, and what that makes of
 /// `reach`.
-std::vector<PsfExtent> extents_of(const LensDataTable& table, std::size_t wavelength, double cell_um,
+std::vector<PsfExtent> extents_of(const LensDataTable& table, std::size_t wavelength,
+                                  const std::vector<std::size_t>& fields, double cell_um,
                                   const LightCentres& centres, PsfReach& reach) {
   if (table.fields.empty()) throw InputError("the lens data table has no fields");
-  std::vector<std::optional<PsfExtent>> extents(table.fields.size());
-  parallel_for(extents.size(), [&](std::size_t field) {
-    const std::size_t entry = table.index(field, wavelength);
+  std::vector<std::optional<PsfExtent>> extents(fields.size());
+  parallel_for(extents.size(), [&](std::size_t i) {
+    const std::size_t entry = table.index(fields[i], wavelength);
     const Psf& psf = table.psf.at(entry);
-    if (has_light(psf)) extents[field] = extent_of(psf, centres.offset_mm(entry) * um_per_mm);
+    if (has_light(psf)) extents[i] = extent_of(psf, centres.offset_mm(entry) * um_per_mm);
   });
   std::vector<PsfExtent> found;
-  for (std::size_t field = 0; field < extents.size(); ++field) {
-    if (!extents[field])
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (!extents[i])
       throw InputError(
           fmt::format("the lens data table holds a PSF at {} nm that is empty, dark or damaged; "
                       "samples of sum 1 at a positive spacing are right",
                       table.wavelengths_nm[wavelength]));
-    const Psf& psf = table.psf[table.index(field, wavelength)];
-    add_to_reach(psf, *extents[field], cell_um, reach);
-    found.push_back(*extents[field]);
+    add_to_reach(table.psf[table.index(fields[i], wavelength)], *extents[i], cell_um, reach);
+    found.push_back(*extents[i]);
   }
   return found;
 }
@@ -114,37 +123,38 @@ PsfReach height_reach(const LensDataTable& table, double wavelength_nm, double c
                       const LightCentres& centres) {
   PsfReach reach;
   for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm))
-    extents_of(table, wavelength, cell_um, centres, reach);
+    extents_of(table, wavelength, fields_with_psf(table, wavelength), cell_um, centres, reach);
   return reach;
 }
 
 HeightKernels::HeightKernels(const LensDataTable& table, double wavelength_nm, double cell_um,
-                             PsfInterpolation interpolation, const LightCentres& centres)
-    : cell_um_(cell_um), interpolation_(interpolation) {
+                             PsfInterpolation interpolation, const LightCentres& centres, LatticeSteps steps)
+    : cell_um_(cell_um), steps_(static_cast<double>(steps)), interpolation_(interpolation) {
   for (const auto& part : bracketing_wavelengths(table, wavelength_nm)) {
-    const std::size_t wavelength = part.first, fields = table.fields.size();
+    const std::size_t wavelength = part.first;
     Layer layer;
     layer.weight = part.second;
-    const std::vector<PsfExtent> extents = extents_of(table, wavelength, cell_um, centres, reach_);
-    for (std::size_t field = 0; field < fields; ++field) {
-      const std::size_t entry = table.index(field, wavelength);
+    const std::vector<std::size_t> fields = fields_with_psf(table, wavelength);
+    const std::vector<PsfExtent> extents = extents_of(table, wavelength, fields, cell_um, centres, reach_);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const std::size_t entry = table.index(fields[i], wavelength);
       layer.height_mm.push_back(table.real_image_height_mm.at(entry) + centres.offset_mm(entry));
-      const PsfExtent& extent = extents[field];
+      const PsfExtent& extent = extents[i];
       const bool on_axis = layer.height_mm.back() == 0;  // its corners go all round
       layer.half_side_um.push_back((on_axis ? extent.reach_um : extent.half_side_um) +
                                    table.psf[entry].spacing_um);
     }
-    std::vector<std::optional<MergedPsf>> merged(fields);
-    std::vector<char> symmetric(fields);
-    parallel_for(fields, [&](std::size_t field) {
-      const std::size_t entry = table.index(field, wavelength);
+    std::vector<std::optional<MergedPsf>> merged(fields.size());
+    std::vector<char> symmetric(fields.size());
+    parallel_for(fields.size(), [&](std::size_t field) {
+      const std::size_t entry = table.index(fields[field], wavelength);
       const Psf& psf = table.psf[entry];
       const double height_mm = layer.height_mm[field], origin_um = centres.offset_mm(entry) * um_per_mm;
       symmetric[field] = is_mirror_symmetric(psf);
       const Psf whole = symmetric[field] != 0 && psf.size % 2 == 0 ? with_partner(psf) : psf;
       merged[field] = merged_psf(height_mm == 0 ? turned_about_axis(whole) : whole, origin_um, cell_um);
     });
-    for (std::size_t field = 0; field < fields; ++field) {
+    for (std::size_t field = 0; field < fields.size(); ++field) {
       mirror_symmetric_ = mirror_symmetric_ && symmetric[field] != 0;
       layer.psfs.push_back(std::move(*merged[field]));
     }
@@ -158,7 +168,7 @@ HeightKernels::HeightKernels(const LensDataTable& table, double wavelength_nm, d
 }
 
 double HeightKernels::spacing_um() const {
-  return cell_um_ / lattice_steps;
+  return cell_um_ / steps_;
 }
 
 int HeightKernels::half_of(std::size_t interval) const {
@@ -188,18 +198,35 @@ SmoothPsf HeightKernels::psf_at(double height_mm, std::size_t interval) const {
   const auto missing = [&](double wanted_square, double own_square, std::size_t axis) {
     constexpr double least = 0.8, most = 1.25;
     const double wanted_variance = wanted_square - wanted.mean[axis] * wanted.mean[axis];
-    const double own_variance =
-        (own_square - own.mean[axis] * own.mean[axis]) / (lattice_steps * lattice_steps);
+    const double own_variance = (own_square - own.mean[axis] * own.mean[axis]) / (steps_ * steps_);
     if (!(wanted_variance > 0 && own_variance > 0)) return 1.0;
     return std::clamp(std::sqrt(wanted_variance / own_variance), least, most);
   };
   const std::array<double, 2> beyond{missing(wanted.uu, own.uu, 0), missing(wanted.vv, own.vv, 1)};
-  return {mixture_at(height_mm, interval, beyond), 1 / lattice_steps, wanted};
+  return {mixture_at(height_mm, interval, beyond), 1 / steps_, wanted};
 }
 
 double HeightKernels::coefficients() const {
   const std::size_t intervals = std::max<std::size_t>(1, layers_[0].psfs.size() - 1);
   return std::pow(2.0 * half_of(intervals / 2) + 1, 2);
+}
+
+namespace {
+
+void bring_to_unit_sum(Kernel& kernel) {
+  const double sum = kernel.sum();
+  for (double& weight : kernel.weights) weight /= sum;
+}
+
+}  // namespace
+
+Kernel HeightKernels::lone_kernel(double height_mm) const {
+  const std::vector<double>& heights_mm = layers_[0].height_mm;
+  const SmoothPsf psf = psf_at(height_mm, heights_mm.size() > 1 ? bracket(heights_mm, height_mm) : 0);
+  Kernel kernel(reach_.radius);
+  sample_mixture(std::array{WeightedPsf{&psf, 1}}, 1 / steps_, moments_at(height_mm), {0, 1}, kernel);
+  bring_to_unit_sum(kernel);
+  return kernel;
 }
 
 Kernel HeightKernels::kernel_at(double x_mm, double y_mm) const {
@@ -208,8 +235,7 @@ Kernel HeightKernels::kernel_at(double x_mm, double y_mm) const {
       height_mm > 0 ? std::array{x_mm / height_mm, y_mm / height_mm} : std::array{0.0, 1.0};
   Kernel kernel = interpolation_ == PsfInterpolation::psf ? interpolated_psf(direction, height_mm)
                                                           : interpolated_otf(direction, height_mm);
-  const double sum = kernel.sum();
-  for (double& weight : kernel.weights) weight /= sum;
+  bring_to_unit_sum(kernel);
   return kernel;
 }
 
@@ -278,18 +304,18 @@ Kernel HeightKernels::interpolated_psf(const std::array<double, 2>& direction, d
   Kernel kernel(reach_.radius);
   const PsfSeries::Mixture psfs =
       series_->at(height_mm, [&](double mm, std::size_t interval) { return psf_at(mm, interval); });
-  sample_mixture(psfs, 1 / lattice_steps, moments_at(height_mm), direction, kernel);
+  sample_mixture(psfs, 1 / steps_, moments_at(height_mm), direction, kernel);
   return kernel;
 }
 
 Kernel HeightKernels::interpolated_otf(const std::array<double, 2>& direction, double height_mm) const {
-  const int half = static_cast<int>(std::ceil(reach_.radius * lattice_steps));
+  const int half = static_cast<int>(std::ceil(reach_.radius * steps_));
   const auto kernel_of = [&](const Layer& layer, const MergedPsf& psf) {
     Kernel lattice(half), kernel(reach_.radius);
     add(layer, psf, {0, 1, false}, height_mm, {1, 1}, lattice);
     const Moments wanted = moments_at(height_mm);
-    const SmoothPsf smooth(lattice, 1 / lattice_steps, wanted);
-    sample_mixture(std::array{WeightedPsf{&smooth, 1}}, 1 / lattice_steps, wanted, direction, kernel);
+    const SmoothPsf smooth(lattice, 1 / steps_, wanted);
+    sample_mixture(std::array{WeightedPsf{&smooth, 1}}, 1 / steps_, wanted, direction, kernel);
     return kernel;
   };
   std::vector<Kernel> of_layers;

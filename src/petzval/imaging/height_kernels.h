@@ -33,9 +33,12 @@ class HeightKernels : public KernelMaker {
   /// more than 4000 cells.
   /// \param centres  what kernels are centred on, and heights counted to: the chief rays unless given.
   HeightKernels(const LensDataTable& table, double wavelength_nm, double cell_um,
-                PsfInterpolation interpolation, const LightCentres& centres);
+                PsfInterpolation interpolation, const LightCentres& centres,
+                LatticeSteps steps = LatticeSteps::fine);
 
   Kernel kernel_at(double x_mm, double y_mm) const override;
+  /// At (0, height), from PSFs mixed at this height; what others need is not made ready by it.
+  Kernel lone_kernel(double height_mm) const;
   void prepare(const std::vector<std::array<double, 2>>& places_mm) const override;
   const PsfReach& reach() const override { return reach_; }
   /// PSFs that are the same left and right of the tangential plane, as those of a centred lens are, have
@@ -92,6 +95,7 @@ class HeightKernels : public KernelMaker {
   Kernel interpolated_otf(const std::array<double, 2>& direction, double height_mm) const;
 
   double cell_um_;
+  double steps_;  ///< of the lattices, along a cell
   PsfInterpolation interpolation_;
   std::vector<Layer> layers_;
   std::unique_ptr<PsfSeries> series_;

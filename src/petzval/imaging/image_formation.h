@@ -53,6 +53,9 @@ struct ImagingOptions {
   SensorGeometry cells_of(const SensorGeometry& sensor) const;
   /// What light goes through on its way to the cells of a pixel. \param points  of the scene along a cell.
   LightPath light_path(int points) const;
+  /// Whether the tolerance lets a picture be formed of less: one cell a pixel, coarser kernels, fewer PSFs.
+  bool is_preview() const { return method == BlurMethod::product && product.tolerance >= of_a_preview; }
+  static constexpr double of_a_preview = 3e-3;
   bool by_sections() const { return method == BlurMethod::sections || method == BlurMethod::blended; }
   /// The sections of the method.
   SectionOptions section_options() const;

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/field_mixture.h>
 #include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/psf_deposit.h>
 #include <petzval/numeric/interpolation.h>
@@ -24,6 +25,25 @@ double tangential_centre_mm(const Psf& psf) {
     moment += row * (i - psf.size / 2);
   }
   return light > 0 ? moment / light * psf.spacing_um * mm_per_um : 0;
+}
+
+/// The centres of fields without PSFs: the cubics through those about them, which turn over at the axis.
+void fill_between(const LensDataTable& table, std::size_t wavelength, std::vector<double>& centres_mm) {
+  std::vector<double> height_mm;
+  std::vector<std::size_t> entries;
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    const std::size_t entry = table.index(f, wavelength);
+    if (!table.has_psf(entry)) continue;
+    entries.push_back(entry);
+    height_mm.push_back(table.real_image_height_mm[entry]);
+  }
+  for (std::size_t f = 0; f < table.fields.size(); ++f) {
+    const std::size_t entry = table.index(f, wavelength);
+    if (table.has_psf(entry)) continue;
+    for (const FieldShare& share : field_shares(height_mm, table.real_image_height_mm[entry]))
+      centres_mm[entry] +=
+          (share.across_axis ? -share.weight : share.weight) * centres_mm[entries[share.field]];
+  }
 }
 
 }  // namespace
@@ -85,7 +105,8 @@ LightCentres::LightCentres(const LensDataTable& table) {
   std::vector<double> own_mm(table.psf.size());
   parallel_for(own_mm.size(),
                [&](std::size_t entry) { own_mm[entry] = tangential_centre_mm(table.psf[entry]); });
-  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    fill_between(table, w, own_mm);
     for (std::size_t f = 1; f < table.fields.size(); ++f) {
       const std::size_t here = table.index(f, w), before = table.index(f - 1, w);
       const double step = table.real_image_height_mm[here] - table.real_image_height_mm[before];
@@ -93,6 +114,7 @@ LightCentres::LightCentres(const LensDataTable& table) {
           offsets_mm_[before] + std::clamp(own_mm[here] - offsets_mm_[before], (least_stretch - 1) * step,
                                            (most_stretch - 1) * step);
     }
+  }
 }
 
 LightProfile::LightProfile(RadialProfile chief)

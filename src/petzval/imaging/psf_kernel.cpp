@@ -10,13 +10,13 @@ namespace {
 
 std::unique_ptr<const KernelMaker> kernels_of(const LensDataTable& table, double wavelength_nm,
                                               double cell_um, PsfInterpolation interpolation,
-                                              const LightCentres& centres) {
+                                              const LightCentres& centres, LatticeSteps steps) {
   if (!table.frame)
-    return std::make_unique<HeightKernels>(table, wavelength_nm, cell_um, interpolation, centres);
+    return std::make_unique<HeightKernels>(table, wavelength_nm, cell_um, interpolation, centres, steps);
   if (interpolation == PsfInterpolation::otf)
     throw InputError(
         "OTFs are interpolated between field heights, not over the frame; `interpolate` psf does");
-  return std::make_unique<FrameKernels>(table, wavelength_nm, cell_um, centres);
+  return std::make_unique<FrameKernels>(table, wavelength_nm, cell_um, centres, steps);
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ PsfReach psf_reach(const LensDataTable& table, double wavelength_nm, double cell
 }
 
 PsfField::PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
-                   PsfInterpolation interpolation, const LightCentres& centres)
-    : cell_um_(cell_um), maker_(kernels_of(table, wavelength_nm, cell_um, interpolation, centres)) {}
+                   PsfInterpolation interpolation, const LightCentres& centres, LatticeSteps steps)
+    : cell_um_(cell_um), maker_(kernels_of(table, wavelength_nm, cell_um, interpolation, centres, steps)) {}
 
 }  // namespace petzval

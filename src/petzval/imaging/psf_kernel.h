@@ -29,7 +29,8 @@ class PsfField {
   /// more than 4000 cells, and for OTFs of a table over the frame.
   /// \param centres  what kernels are centred on, and heights counted to: the chief rays unless given.
   PsfField(const LensDataTable& table, double wavelength_nm, double cell_um,
-           PsfInterpolation interpolation = PsfInterpolation::psf, const LightCentres& centres = {});
+           PsfInterpolation interpolation = PsfInterpolation::psf, const LightCentres& centres = {},
+           LatticeSteps steps = LatticeSteps::fine);
 
   /// Of every kernel that kernel_at() returns: no PSF of this wavelength reaches farther at any azimuth.
   int radius() const { return maker_->reach().radius; }

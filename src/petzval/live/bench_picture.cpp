@@ -92,6 +92,21 @@ TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCo
                      sensor};
 }
 
+ImagingSession session_of(const std::string& scene_path, const std::string& illuminant,
+                          const QualityCost& cost) {
+  SceneRequest request;
+  request.name = scene_path;
+  request.options.wavelengths_nm = cost.wavelengths_nm;
+  request.options.illuminant = illuminant;
+  if (is_builtin_scene(scene_path)) {
+    request.options.columns = cost.scene_columns;
+    request.options.rows = cost.scene_columns * 3 / 4;
+  }
+  ImageOptions options;
+  options.imaging.product.tolerance = cost.tolerance;
+  return ImagingSession(std::move(request), std::move(options));
+}
+
 /// RGBA of 8 bits, as a canvas takes them.
 std::vector<std::uint8_t> pixels_of(const Planes& planes) {
   std::vector<std::uint8_t> pixels;
@@ -135,18 +150,12 @@ void BenchPicture::show(const BenchState& state, const Lens& used, const std::st
     BinnedSensor binned = binned_sensor(sensor_path, most_columns);
     TableCamera optics = bench_optics(used, binned.sensor, cost, context);
     shot.spread_um = spread_um(optics.table);
-    SceneRequest request;
-    request.name = scene_path;
-    request.options.wavelengths_nm = cost.wavelengths_nm;
-    request.options.illuminant = state.illuminant;
-    if (is_builtin_scene(scene_path)) {
-      request.options.columns = cost.scene_columns;
-      request.options.rows = cost.scene_columns * 3 / 4;
-    }
-    ImageOptions options;
-    options.imaging.product.tolerance = cost.tolerance;
     ImageReport report;
-    shot.light = image(request, std::move(optics), options, context, &report);
+    const std::string scene_key = scene_path + '|' + state.illuminant;
+    if (shot.scene_key != scene_key || !shot.session)
+      shot.session = session_of(scene_path, state.illuminant, cost);
+    shot.scene_key = scene_key;
+    shot.light = shot.session->image(std::move(optics), context, &report);
     shot.sensor = std::move(binned.sensor);
     shot.sensor_settings = std::move(binned.settings);
     shot.pixels_added = binned.pixels_added;

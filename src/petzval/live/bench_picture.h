@@ -4,7 +4,7 @@
 
 #include <petzval/live/bench.h>
 #include <petzval/simulate/develop.h>
-#include <petzval/simulate/image.h>
+#include <petzval/simulate/imaging_session.h>
 #include <petzval/simulate/outputs.h>
 
 #include <nlohmann/json.hpp>
@@ -35,6 +35,8 @@ class BenchPicture {
  private:
   struct Shot {
     std::string light_key = {}, shown_key = {};
+    std::string scene_key = {};
+    std::optional<ImagingSession> session = {};  ///< of the scene
     std::optional<SpectralImage> light = {};
     std::optional<Sensor> sensor = {};
     std::vector<std::string> sensor_settings = {};

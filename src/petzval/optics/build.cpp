@@ -10,6 +10,7 @@
 #include <petzval/base/units.h>
 #include <petzval/base/version.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/numeric/interpolation.h>
 #include <petzval/optics/build.h>
 #include <petzval/optics/frame_build.h>
 
@@ -18,6 +19,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <ranges>
+#include <utility>
 
 namespace petzval {
 
@@ -29,6 +33,7 @@ PsfOptions psf_options_of(const TableOptions& options) {
   PsfOptions psf;
   psf.size = options.psf_size;
   psf.largest_size = options.largest_psf_size;
+  psf.coarsest_sample_um = options.coarsest_sample_um;
   // A table has hundreds of PSFs, and kernels add up many of their samples.
   psf.spot_radial_nodes = 128;
   psf.widest_node_window_lambda_n = 64;
@@ -156,40 +161,6 @@ TableOptions completed(const Lens& lens, TableOptions options) {
   return options;
 }
 
-/// One chief ray, and object_area_per_image_area() there; nothing where there is none.
-struct TableRay {
-  std::optional<ChiefRay> chief;
-  double object_area = 0;
-};
-
-/// Those of all fields at a wavelength, each found from the last.
-std::vector<TableRay> table_rays(FieldTracer& tracer, double sign, const std::vector<double>& fields) {
-  std::vector<TableRay> rays;
-  for (const double field : fields) {
-    TableRay ray{tracer.chief_ray(sign * field)};
-    if (ray.chief) ray.object_area = tracer.object_area_per_image_area(*ray.chief);
-    rays.push_back(ray);
-  }
-  return rays;
-}
-
-void fill_entry(const FieldTracer& tracer, double object_field, const TableRay& ray,
-                const PsfOptions& options, LensDataTable& table, std::size_t entry) {
-  const std::optional<ChiefRay>& chief = ray.chief;
-  const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief) : std::nullopt;
-  std::optional<Psf> psf;
-  if (pupil) psf = point_spread(*pupil, options);
-  if (chief && !psf) psf = point_spread(tracer, *chief, options);
-  if (!psf)
-    throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", tracer.lens().name,
-                                 object_field, tracer.tracer().wavelength_nm()));
-  table.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
-  // The fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
-  table.g_source_sr[entry] = ray.object_area * (pupil ? pupil->flux : tracer.object_flux(*chief));
-  table.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
-  table.psf[entry] = *psf;
-}
-
 }  // namespace
 
 void TableOptions::validate() const {
@@ -212,10 +183,6 @@ void TableOptions::validate() const {
 
 namespace {
 
-bool needs_frame(const Lens& lens) {
-  return has_poses(lens) || lens.stop_blades().count > 0;
-}
-
 /// What a table says of the lens as a whole.
 LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
   LensDataTable table;
@@ -234,45 +201,123 @@ LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
 
 }  // namespace
 
-LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
-                                    const ProgressCallback& progress) {
-  using Places = TableOptions::Places;
-  const TableOptions options = completed(lens, asked);
-  LensDataTable table = blank_table(lens, options);
-  if (options.places == Places::over_frame || (options.places == Places::automatic && needs_frame(lens))) {
-    fill_frame(lens, options, table, progress);
-    table.validate();
-    return table;
-  }
+bool needs_places_over_frame(const Lens& lens) {
+  return has_poses(lens) || lens.stop_blades().count > 0;
+}
+
+HeightTable::HeightTable(const Lens& lens, const TableOptions& options)
+    : lens_(lens), options_(completed(lens, options)), sign_(towards_positive_image(lens)) {
   require_centred(lens, "a table by field height holds centred lenses; one over the frame has poses");
   require_round_stop(
       lens,
       "a table by field height turns with the field, which polygons do not; one over the frame "
       "has blades");
-  table.fields = choose_fields(lens, options);
-  const std::size_t fields = table.fields.size(), entries = fields * table.wavelengths_nm.size();
-  table.real_image_height_mm.resize(entries);
-  table.g_source_sr.resize(entries);
-  table.g_sensor_sr.resize(entries);
-  table.psf.resize(entries);
+  table_ = blank_table(lens, options_);
+  table_.fields = choose_fields(lens, options_);
+  const std::size_t entries = table_.fields.size() * table_.wavelengths_nm.size();
+  table_.real_image_height_mm.resize(entries);
+  table_.g_source_sr.resize(entries);
+  table_.g_sensor_sr.resize(entries);
+  table_.psf.resize(entries);
+  rays_.resize(table_.wavelengths_nm.size());
+  parallel_for(rays_.size(), [&](std::size_t w) {
+    FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
+    for (const double field : table_.fields) {  // each found from the last
+      Ray ray{tracer.chief_ray(sign_ * field)};
+      if (ray.chief) ray.object_area = tracer.object_area_per_image_area(*ray.chief);
+      rays_[w].push_back(ray);
+    }
+  });
+}
 
-  const PsfOptions psf_options = psf_options_of(options);
-  const double sign = towards_positive_image(lens);
+void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {
+  FieldTracer tracer(lens_, table_.wavelengths_nm[wavelength], options_.clip);
+  tracer.set_losses(options_.losses);
+  const Ray& ray = rays_[wavelength][field];
+  const std::optional<ChiefRay>& chief = ray.chief;
+  const PsfOptions psf_options = psf_options_of(options_);
+  const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief) : std::nullopt;
+  std::optional<Psf> psf;
+  if (pupil) psf = point_spread(*pupil, psf_options);
+  if (chief && !psf) psf = point_spread(tracer, *chief, psf_options);
+  if (!psf)
+    throw InputError(fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens_.name,
+                                 sign_ * table_.fields[field], table_.wavelengths_nm[wavelength]));
+  const std::size_t entry = table_.index(field, wavelength);
+  table_.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
+  // The fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
+  table_.g_source_sr[entry] = ray.object_area * (pupil ? pupil->flux : tracer.object_flux(*chief));
+  table_.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
+  table_.psf[entry] = *std::move(psf);
+}
+
+void HeightTable::add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
+                           const ProgressCallback& progress) {
+  const std::size_t count = fields.size() * wavelengths.size();
   std::atomic<std::size_t> done{0};
-  std::vector<std::vector<TableRay>> rays(table.wavelengths_nm.size());
-  parallel_for(rays.size(), [&](std::size_t w) {
-    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    rays[w] = table_rays(tracer, sign, table.fields);
+  parallel_for(count, [&](std::size_t i) {
+    add_entry(fields[i % fields.size()], wavelengths[i / fields.size()]);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(count), "lens data table");
   });
-  parallel_for(entries, [&](std::size_t entry) {
-    const std::size_t w = entry / fields, f = entry % fields;
-    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    tracer.set_losses(options.losses);
-    fill_entry(tracer, sign * table.fields[f], rays[w][f], psf_options, table, table.index(f, w));
-    if (progress) progress(static_cast<double>(++done) / static_cast<double>(entries), "lens data table");
+}
+
+void HeightTable::remove_psf(std::size_t field, std::size_t wavelength) {
+  table_.psf[table_.index(field, wavelength)] = {};
+}
+
+LensDataTable HeightTable::finished() && {
+  const std::size_t fields = table_.fields.size();
+  parallel_for(table_.wavelengths_nm.size(), [&](std::size_t w) {
+    const auto complete = [&](std::size_t f) { return table_.has_psf(table_.index(f, w)); };
+    if (std::ranges::all_of(std::views::iota(std::size_t{0}, fields), complete)) return;
+    FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
+    tracer.set_losses(options_.losses);
+    // By the boundary of the pupil, times what a fitted pupil's flux is to that about there.
+    std::vector<double> of_boundary(fields), with_psf, ratio;
+    for (std::size_t f = 0; f < fields; ++f) {
+      const std::size_t entry = table_.index(f, w);
+      const Ray& ray = rays_[w][f];
+      if (!ray.chief) continue;
+      of_boundary[f] = ray.object_area * tracer.object_flux(*ray.chief);
+      if (!table_.has_psf(entry)) {
+        table_.real_image_height_mm[entry] = std::abs(ray.chief->image_height_mm);
+        table_.g_sensor_sr[entry] = tracer.g_sensor_sr(*ray.chief);
+        continue;
+      }
+      with_psf.push_back(table_.fields[f]);
+      ratio.push_back(of_boundary[f] > 0 ? table_.g_source_sr[entry] / of_boundary[f] : 1);
+    }
+    for (std::size_t f = 0; f < fields; ++f) {
+      const std::size_t entry = table_.index(f, w);
+      if (table_.has_psf(entry)) continue;
+      const std::size_t i = bracket(with_psf, table_.fields[f]);
+      const double t = (table_.fields[f] - with_psf[i]) / (with_psf[i + 1] - with_psf[i]);
+      table_.g_source_sr[entry] = of_boundary[f] * ((1 - t) * ratio[i] + t * ratio[i + 1]);
+    }
   });
-  table.validate();
-  return table;
+  table_.validate();
+  return std::move(table_);
+}
+
+LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
+                                    const ProgressCallback& progress) {
+  using Places = TableOptions::Places;
+  if (asked.places == Places::over_frame ||
+      (asked.places == Places::automatic && needs_places_over_frame(lens))) {
+    const TableOptions options = completed(lens, asked);
+    LensDataTable table = blank_table(lens, options);
+    fill_frame(lens, options, table, progress);
+    table.validate();
+    return table;
+  }
+  HeightTable parts(lens, asked);
+  const auto all = [](std::size_t count) {
+    std::vector<std::size_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    return numbers;
+  };
+  parts.add_psfs(all(parts.table().fields.size()), all(parts.table().wavelengths_nm.size()), progress);
+  return std::move(parts).finished();
 }
 
 }  // namespace petzval

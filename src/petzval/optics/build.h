@@ -2,13 +2,16 @@
 // Building the lens data table from a prescription.
 #pragma once
 
+#include <petzval/analysis/field_tracer.h>
 #include <petzval/base/progress.h>
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/trace/losses.h>
 #include <petzval/trace/tracer.h>
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace petzval {
@@ -22,6 +25,7 @@ struct TableOptions {
   int field_count = 31;  ///< evenly spaced object fields, 0 included
   int psf_size = 0;      ///< cells a side of every PSF, as wide as each one needs; 0: as many as needed, too
   int largest_psf_size = 256;
+  double coarsest_sample_um = 0;  ///< PsfOptions::coarsest_sample_um, of places by height
   /// Where the places of the table lie.
   enum class Places {
     automatic,  ///< over the frame for a lens with poses or blades, by height for any other
@@ -48,5 +52,37 @@ struct TableOptions {
 /// field, polygons and tilted surfaces do not), or an index is not known at a wavelength.
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& options,
                                     const ProgressCallback& progress = {});
+
+/// The table of a lens by field height in parts: what its chief rays say of all fields at once, PSFs of
+/// whatever fields and wavelengths are asked for. An entry has the same bytes whenever it is made.
+class HeightTable {
+ public:
+  /// Traces the chief rays. \throws InputError as build_lens_data_table().
+  HeightTable(const Lens& lens, const TableOptions& options);
+
+  /// Adds PSFs. From one thread; it takes as many as there are.
+  void add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
+                const ProgressCallback& progress = {});
+  void remove_psf(std::size_t field, std::size_t wavelength);
+  const LensDataTable& table() const { return table_; }
+  /// With g_source of fields without PSFs, between those of fields with one.
+  LensDataTable finished() &&;
+
+ private:
+  struct Ray {
+    std::optional<ChiefRay> chief;
+    double object_area = 0;  ///< FieldTracer::object_area_per_image_area()
+  };
+  void add_entry(std::size_t field, std::size_t wavelength);
+
+  Lens lens_;
+  TableOptions options_;
+  double sign_;
+  std::vector<std::vector<Ray>> rays_;  ///< [wavelength][field]
+  LensDataTable table_;
+};
+
+/// Whether a lens's places lie over the frame unless they are asked for by height.
+bool needs_places_over_frame(const Lens& lens);
 
 }  // namespace petzval

@@ -125,8 +125,16 @@ void require_psfs(const LensDataTable& table) {
   if (table.psf.size() != expected)
     refuse(fmt::format("there are {} PSFs; {} {} × {} wavelengths need {}", table.psf.size(), table.places(),
                        table.frame ? "places" : "fields", table.wavelengths_nm.size(), expected));
+  // What lies between two fields may be left out.
+  const std::size_t row = table.wavelengths_nm.size();
+  const auto left_out = [&](std::size_t i) {
+    return !table.frame && i >= row && i + row < expected && table.psf[i].size == 0 &&
+           table.psf[i].values.empty();
+  };
   std::vector<std::string> faults(expected);
-  parallel_for(expected, [&](std::size_t i) { faults[i] = psf_fault(table.psf[i]); });
+  parallel_for(expected, [&](std::size_t i) {
+    if (!left_out(i)) faults[i] = psf_fault(table.psf[i]);
+  });
   for (std::size_t i = 0; i < expected; ++i)
     if (!faults[i].empty()) refuse(fmt::format("the PSF of {} {}", entry_name(table, i), faults[i]));
 }

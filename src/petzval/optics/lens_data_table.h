@@ -51,8 +51,11 @@ struct LensDataTable {
   std::vector<double> real_image_height_mm;  ///< |height| of the real chief ray on the image surface
   std::vector<double> g_source_sr;           ///< flux per area of chief-ray image, per radiance
   std::vector<double> g_sensor_sr;           ///< irradiance of a uniform wall, per radiance
+  /// Of fields between two others it may be empty (size 0): light is spread there as the PSFs about it say.
+  /// Such tables are for one image (build_image_table()); files hold none.
   std::vector<Psf> psf;
 
+  bool has_psf(std::size_t entry) const { return psf[entry].size > 0; }
   bool finite_object() const { return object_distance_mm.has_value(); }
   std::size_t places() const { return frame ? frame->count() : fields.size(); }
   std::size_t index(std::size_t place, std::size_t wavelength) const {

@@ -286,6 +286,11 @@ std::string file_image(const LensDataTable& table) {
 
 void write_table(const LensDataTable& table, const std::string& path) {
   table.validate();
+  for (std::size_t entry = 0; entry < table.psf.size(); ++entry)
+    if (!table.has_psf(entry))
+      throw InputError(fmt::format(
+          "the table was made for one image and leaves out the PSF of {}; one of all PSFs may be written",
+          table.place_name(entry / table.wavelengths_nm.size())));
   const Hdf5Silence silence;
   const std::string image = file_image(table);
   write_whole_file(path, table_seal(image) + image);

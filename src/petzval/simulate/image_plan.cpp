@@ -5,9 +5,12 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
 #include <petzval/imaging/field_of_view.h>
+#include <petzval/imaging/image_table.h>
+#include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/simulate/image.h>
+#include <petzval/simulate/imaging_memory.h>
 #include <petzval/simulate/mounting.h>
 
 #include <algorithm>
@@ -42,15 +45,20 @@ bool has_width(const SceneRequest& scene) {
   return scene.options.horizontal_angle_deg || scene.options.width_m;
 }
 
-Scene read(const SceneRequest& request, std::optional<double> expected_m, bool expected,
-           const Context& context) {
-  SceneOptions options = request.options;
+Scene read(const SceneRequest& asked, std::optional<double> expected_m, bool expected, const Context& context,
+           ImagingMemory* memory) {
+  SceneRequest request = asked;
+  SceneOptions& options = request.options;
   // Where a chart or a photograph stands if nobody says: where the lens or its table expects the object.
   const bool placed = is_deep_chart(request.name) || is_drawn_to_angle(request.name, {});
   if (expected && !options.distance_m && is_open(request) && !placed && (expected_m || !options.tilt_deg))
     options.distance_m = expected_m.value_or(INFINITY);
-  Scene scene = read_scene(request.name, options);
-  scene.validate();
+  const auto from_file = [&] {
+    Scene scene = read_scene(request.name, options);
+    scene.validate();
+    return scene;
+  };
+  Scene scene = memory != nullptr ? memory->scene(request, from_file) : from_file();
   for (const std::string& text : scene.notes) send_note(context, fmt::format("{}: {}", request.name, text));
   return scene;
 }
@@ -129,17 +137,21 @@ Lens focused_on(MountedLens lens, const Camera& camera, std::optional<double> sc
   return here.lens();
 }
 
+/// Of the sensor, or of the frame that will follow the scene.
+double pixel_um(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
+  if (sensor) return sensor->geometry.pitch_um;
+  return scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
+                               : natural_depth_pitch_um(scene, lens);
+}
+
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
-double image_height_mm(const Scene& scene, const Lens& lens, const std::optional<Sensor>& sensor) {
+double image_height_mm(const Scene& scene, double pitch_um, const std::optional<Sensor>& sensor) {
   constexpr double pixels_beyond = 8;
-  const auto with_rim = [](double half_diagonal_mm, double pitch_um) {
-    return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
-  };
-  if (sensor) return with_rim(sensor->geometry.half_diagonal_mm(), sensor->geometry.pitch_um);
-  const double pitch_um = scene.depth_m.empty() ? natural_pitch_um(scene, first_order(lens))
-                                                : natural_depth_pitch_um(scene, lens);
-  return with_rim(pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2, pitch_um);
+  const double half_diagonal_mm = sensor
+                                      ? sensor->geometry.half_diagonal_mm()
+                                      : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
+  return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
 }
 
 /// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
@@ -179,15 +191,28 @@ LensDataTable facts_alone(const Lens& lens) {
   return table;
 }
 
+/// All that a table is made of; empty for coatings, which have no text.
+std::string lens_key(const Lens& lens, const TableOptions& options, double pitch_um) {
+  const Losses& losses = options.losses;
+  if (losses.air_glass || !losses.surfaces.empty()) return {};
+  std::string key = fmt::format("{} {} {} {} {} {} {} {}", pitch_um, options.max_image_height_mm,
+                                options.field_count, options.frame_places, static_cast<int>(options.clip),
+                                losses.fresnel, losses.absorption, lens_to_json(lens));
+  for (const double nm : options.wavelengths_nm) key += fmt::format(" {}", nm);
+  if (options.half_frame_mm)
+    key += fmt::format(" {} {}", (*options.half_frame_mm)[0], (*options.half_frame_mm)[1]);
+  return key;
+}
+
 /// Scene and table, before frame and scene are fitted to each other.
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
-                 const Context& context) {
+                 const Context& context, ImagingMemory* memory) {
   const MountedLens lens = mounted_lens(camera, context);
-  Scene scene =
-      std::holds_alternative<Scene>(input)
-          ? std::get<Scene>(std::move(input))
-          : read(as_wide_as_fields(*std::get<const SceneRequest*>(input), camera),
-                 lens.object_distance_from_sensor_m(), camera.focus.kind == Focus::Kind::design, context);
+  Scene scene = std::holds_alternative<Scene>(input)
+                    ? std::get<Scene>(std::move(input))
+                    : read(as_wide_as_fields(*std::get<const SceneRequest*>(input), camera),
+                           lens.object_distance_from_sensor_m(), camera.focus.kind == Focus::Kind::design,
+                           context, memory);
   const bool deep = !scene.depth_m.empty();
   if (scene.distance_m() && !deep) {
     MountedLens placed = lens;
@@ -200,29 +225,42 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   if (camera.sensor && detail == TableDetail::full)
     note_short_field(focused, camera.sensor->geometry, context);
   TableOptions table = table_options(camera, scene, detail);
-  table.max_image_height_mm = image_height_mm(scene, focused, camera.sensor);
+  const double pitch_um = pixel_um(scene, focused, camera.sensor);
+  table.max_image_height_mm = image_height_mm(scene, pitch_um, camera.sensor);
   if (camera.sensor) table.half_frame_mm = half_frame_mm(camera.sensor->geometry);
+  if (deep && memory != nullptr) memory->set_lens_key(lens_key(focused, table, pitch_um));
   if (deep)
     return {std::move(scene),
             facts_alone(focused),
             DepthCamera{focused, table, std::make_shared<std::map<std::string, LensDataTable>>()},
             {},
             std::move(options)};
-  LensDataTable built = result_within(context, [&](const ProgressCallback& progress) {
-    return build_lens_data_table(focused, table, progress);
-  });
+  const auto build = [&] {
+    return result_within(context, [&](const ProgressCallback& progress) {
+      if (options.imaging.method != BlurMethod::product || detail == TableDetail::outline)
+        return build_lens_data_table(focused, table, progress);
+      constexpr int cells_a_pixel = 2;  // as many or more
+      const double pitch_um =
+          camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, first_order(focused));
+      return build_image_table(focused, table, {pitch_um / cells_a_pixel, options.imaging.product.tolerance},
+                               progress);
+    });
+  };
+  LensDataTable built =
+      memory != nullptr ? memory->table(lens_key(focused, table, pitch_um), build) : build();
   return {std::move(scene), std::move(built), {}, {}, std::move(options)};
 }
 
 /// A stored table is what it is: the scene stands where it was made for.
 ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, TableDetail,
-                 const Context& context) {
+                 const Context& context, ImagingMemory* memory) {
+  if (memory != nullptr) memory->set_lens_key({});
   std::optional<double> distance_m;
   if (const std::optional<double> distance_mm = object_to_sensor_mm(camera.table))
     distance_m = *distance_mm / mm_per_m;
   Scene scene = std::holds_alternative<Scene>(input)
                     ? std::get<Scene>(std::move(input))
-                    : read(*std::get<const SceneRequest*>(input), distance_m, true, context);
+                    : read(*std::get<const SceneRequest*>(input), distance_m, true, context, memory);
   if (!scene.depth_m.empty())
     send_note(
         context,
@@ -239,7 +277,7 @@ double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
 /// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
 /// the scene.
 void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest* request,
-                       const Context& context) {
+                       const Context& context, ImagingMemory* memory) {
   const std::optional<Sensor>& sensor = sensor_of(optics);
   if (!sensor) {
     plan.frame = plan.depth
@@ -259,7 +297,9 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
     return plan.scene.set_horizontal_angle_deg(angle_deg);
   SceneRequest drawn = *request;
   drawn.options.horizontal_angle_deg = angle_deg;
-  plan.scene = read(drawn, plan.scene.distance_m(), true, context);
+  const std::optional<double> distance_m = plan.scene.distance_m();
+  if (memory != nullptr) memory->give_back(plan.scene);
+  plan.scene = read(drawn, distance_m, true, context, memory);
 }
 
 ImageOptions with_photosite(ImageOptions options, const Optics& optics) {
@@ -269,7 +309,8 @@ ImageOptions with_photosite(ImageOptions options, const Optics& optics) {
   return options;
 }
 
-ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, const Context& context) {
+ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, const Context& context,
+               ImagingMemory* memory = nullptr) {
   const SceneRequest* const request =
       std::holds_alternative<Scene>(input) ? nullptr : std::get<const SceneRequest*>(input);
   if (options.least_scene_angle_deg && !(request && fills_frame(*request, optics, options)))
@@ -278,11 +319,14 @@ ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, con
         "`scene.horizontal_angle_deg` would be right");
   const ImageOptions wanted = with_photosite(options, optics);
   ImagePlan result = std::visit(
-      [&](auto& camera) { return source(std::move(input), camera, wanted, TableDetail::full, context); },
+      [&](auto& camera) {
+        return source(std::move(input), camera, wanted, TableDetail::full, context, memory);
+      },
       optics);
   if (!result.depth && wanted.depth.layers != 0)
     throw InputError("`layers` is for scenes with depth; this one is a plane (`scene.depth` gives it a map)");
-  run_within(context, [&](const ProgressCallback&) { fit_to_each_other(result, optics, request, context); });
+  run_within(context,
+             [&](const ProgressCallback&) { fit_to_each_other(result, optics, request, context, memory); });
   return result;
 }
 
@@ -298,6 +342,17 @@ ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options, co
   return plan(std::move(scene), std::move(optics), options, context);
 }
 
+ImagePlan plan_image(const SceneRequest& scene, Optics optics, const ImageOptions& options,
+                     const Context& context, ImagingMemory& memory) {
+  return plan(&scene, std::move(optics), options, context, &memory);
+}
+
+ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options, const Context& context,
+                     ImagingMemory& memory) {
+  scene.validate();
+  return plan(std::move(scene), std::move(optics), options, context, &memory);
+}
+
 bool fills_frame(const SceneRequest& scene, const Optics& optics, const ImageOptions& options) {
   return sensor_of(optics) && is_open(scene) && !has_width(scene) &&
          options.imaging.surround == Surround::error;
@@ -310,7 +365,8 @@ std::optional<double> filling_angle_deg(const SceneRequest& scene, const Optics&
   return result_within(context, [&](const ProgressCallback&) {
     Optics copy = optics;
     const ImagePlan outline = std::visit(
-        [&](auto& camera) { return source(&scene, camera, wanted, TableDetail::outline, context); }, copy);
+        [&](auto& camera) { return source(&scene, camera, wanted, TableDetail::outline, context, nullptr); },
+        copy);
     return filling_angle_deg(outline, sensor_of(optics)->geometry);
   });
 }

@@ -14,10 +14,39 @@ namespace petzval {
 
 namespace {
 
+/// What ISET calls the variables that hold a rayTrace structure, or are one.
+const std::vector<std::string> usual_names{"optics", "rayTrace", "oi", "opticalimage", "rt"};
+
+bool is_ray_trace(const MatValue& variable) {
+  return variable.is_struct() && variable.find("geometry") && variable.find("relIllum") &&
+         variable.find("psf");
+}
+
+/// The variable that holds the table, or is it: one of the usual names, or else the first that looks so.
+/// \param file  is read with the names of all where none is usual.
+MatValue table_variable(const std::string& path, std::optional<MatFile>& file) {
+  const auto first_of = [&](const std::vector<std::string>& names) -> std::optional<MatValue> {
+    for (const std::string& name : names)
+      if (const std::optional<MatValue> variable = file->find(name)) return variable;
+    return std::nullopt;
+  };
+  file.emplace(path, usual_names);
+  if (const auto usual = first_of(usual_names)) return *usual;
+  const std::vector<std::string> names = mat_variable_names(path);
+  if (!names.empty()) file.emplace(path, names);
+  for (const std::string& name : names)
+    if (const std::optional<MatValue> variable = file->find(name); variable && variable->is_struct())
+      if (is_ray_trace(*variable) || variable->find("rayTrace") || variable->find("optics")) return *variable;
+  file.emplace(path, usual_names);
+  return file->first();  // says what would be right
+}
+
 /// The optics structure, or nothing where the file holds a rayTrace structure alone.
 std::optional<MatValue> optics_of(const MatValue& variable) {
+  if (variable.name() == "rayTrace" || is_ray_trace(variable)) return std::nullopt;
   if (variable.name() == "oi" || variable.name() == "opticalimage") return variable.at("optics");
-  return variable.name() == "rayTrace" ? std::nullopt : std::optional(variable);
+  if (variable.name() == "optics" || variable.find("rayTrace")) return variable;
+  return variable.find("optics") ? variable.find("optics") : std::nullopt;
 }
 
 /// What ISET multiplies the light by: linear between its wavelengths, 1 beyond. Empty if it is 1 throughout.
@@ -209,9 +238,10 @@ MatItem clear_glass(const std::vector<double>& wavelengths_nm) {
 }  // namespace
 
 RayTraceFile read_iset_mat_table(const std::string& path, const PsfLie& lie) {
-  const MatFile mat(path, {"optics", "rayTrace", "oi", "opticalimage"});
-  const std::optional<MatValue> optics = optics_of(mat.first());
-  const MatValue trace = optics ? optics->at("rayTrace") : mat.first();
+  std::optional<MatFile> mat;
+  const MatValue variable = table_variable(path, mat);
+  const std::optional<MatValue> optics = optics_of(variable);
+  const MatValue trace = optics ? optics->at("rayTrace") : variable;
   RayTraceFile file;
   RayTraceData& data = file.data;
   data.program = text_or_nothing(trace, "program");

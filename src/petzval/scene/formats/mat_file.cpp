@@ -172,6 +172,23 @@ void MatFile::read_matio() {
     throw InputError(path_, fmt::format("is damaged: matio says \"{}\"", matio_message));
 }
 
+std::vector<std::string> mat_variable_names(const std::string& path) {
+  if (is_mat_hdf5(path)) return {};
+  {
+    const std::string bytes = read_whole_file(path);
+    check_mat_structure(std::as_bytes(std::span(bytes)), path);
+  }
+  const std::lock_guard lock(matio_mutex);
+  const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
+  std::vector<std::string> names;
+  std::size_t count = 0;
+  if (!file) return names;
+  char* const* const list = Mat_GetDir(file.get(), &count);
+  for (std::size_t i = 0; list != nullptr && i < count; ++i)
+    if (list[i] != nullptr) names.emplace_back(list[i]);
+  return names;
+}
+
 void MatFile::read_hdf5() {
   const MappedRecords mapped = mat_hdf5_records(path_, names_);
   records_ = mapped.memory;

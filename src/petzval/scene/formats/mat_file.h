@@ -89,4 +89,8 @@ class MatFile {
   std::map<std::string, std::unique_ptr<matvar_t, Free>> variables_;
 };
 
+/// What the variables of a file of version 5 or 7 are called. Empty for one of version 7.3.
+/// \throws InputError for a damaged file.
+std::vector<std::string> mat_variable_names(const std::string& path);
+
 }  // namespace petzval

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/height_kernels.h>
+#include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/image_table.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+/// PSFs at first: both ends and two between, for cubics.
+constexpr std::size_t first_intervals = 3;
+
+/// The PSFs of one wavelength of a table at some of its fields.
+LensDataTable one_wavelength(const LensDataTable& table, std::size_t wavelength,
+                             const std::vector<std::size_t>& fields) {
+  LensDataTable part;
+  part.wavelengths_nm = {table.wavelengths_nm[wavelength]};
+  for (const std::size_t field : fields) {
+    const std::size_t entry = table.index(field, wavelength);
+    part.fields.push_back(table.fields[field]);
+    part.real_image_height_mm.push_back(table.real_image_height_mm[entry]);
+    part.psf.push_back(table.psf[entry]);
+  }
+  return part;
+}
+
+/// Of light whose chief ray lands at a height, and about it, by the PSFs of a table of one wavelength.
+Kernel kernel_about_chief(const LensDataTable& table, double height_mm, double cell_um) {
+  return HeightKernels(table, table.wavelengths_nm[0], cell_um, PsfInterpolation::psf, {},
+                       LatticeSteps::coarse)
+      .lone_kernel(height_mm);
+}
+
+/// √(Σd²/(1 + Σh²)), as ProductPlan::estimated_error.
+double difference(const Kernel& few, const Kernel& more) {
+  const int radius = std::max(few.radius, more.radius);
+  const auto weight = [](const Kernel& kernel, int row, int column) {
+    const bool inside = std::abs(row) <= kernel.radius && std::abs(column) <= kernel.radius;
+    return inside ? kernel.at(row, column) : 0.0;
+  };
+  double squares = 0, light = 0;
+  for (int row = -radius; row <= radius; ++row)
+    for (int column = -radius; column <= radius; ++column) {
+      const double here = weight(more, row, column);
+      squares += std::pow(weight(few, row, column) - here, 2);
+      light += here * here;
+    }
+  return std::sqrt(squares / (1 + light));
+}
+
+/// An interval between two fields with PSFs.
+struct Interval {
+  std::size_t from, to;
+  std::size_t middle() const { return (from + to) / 2; }
+};
+
+/// How much of a frame lies between two heights.
+class FrameRings {
+ public:
+  explicit FrameRings(const TableOptions& options) {
+    const double side_mm = options.max_image_height_mm / std::sqrt(2.0);
+    const std::array<double, 2> half_mm = options.half_frame_mm.value_or(std::array{side_mm, side_mm});
+    for (int row = 0; row < places; ++row)
+      for (int column = 0; column < places; ++column)
+        height_mm_.push_back(
+            std::hypot((column + 0.5) / places * half_mm[0], (row + 0.5) / places * half_mm[1]));
+    std::sort(height_mm_.begin(), height_mm_.end());
+  }
+  double share(double from_mm, double to_mm) const {
+    const auto below = [&](double mm) {
+      return std::lower_bound(height_mm_.begin(), height_mm_.end(), mm) - height_mm_.begin();
+    };
+    return double(below(to_mm) - below(from_mm)) / double(height_mm_.size());
+  }
+
+ private:
+  static constexpr int places = 32;  ///< along a side of a quadrant
+  std::vector<double> height_mm_;
+};
+
+/// Finds the fields that an image needs.
+class FieldChoice {
+ public:
+  FieldChoice(HeightTable& parts, const TableOptions& options, const SpreadWanted& wanted)
+      : parts_(parts),
+        frame_(options),
+        wanted_(wanted),
+        wavelength_(parts.table().wavelengths_nm.size() / 2) {
+    const std::size_t last = parts.table().fields.size() - 1;
+    for (std::size_t i = 0; i <= first_intervals; ++i) taken_.push_back(i * last / first_intervals);
+  }
+
+  /// All of which, and no others, have PSFs of the middle wavelength then.
+  const std::vector<std::size_t>& fields(const ProgressCallback& progress) {
+    parts_.add_psfs(taken_, std::array{wavelength_}, progress);
+    std::vector<Interval> open;
+    for (std::size_t i = 0; i + 1 < taken_.size(); ++i) open.push_back({taken_[i], taken_[i + 1]});
+    while (true) {
+      std::erase_if(open, [](const Interval& interval) { return interval.to - interval.from < 2; });
+      if (open.empty()) return taken_;
+      open = refined(open, progress);
+    }
+  }
+  std::size_t wavelength() const { return wavelength_; }
+
+ private:
+  /// The halves of those that are too wide.
+  std::vector<Interval> refined(const std::vector<Interval>& open, const ProgressCallback& progress) {
+    std::vector<std::size_t> middles;
+    for (const Interval& interval : open) middles.push_back(interval.middle());
+    parts_.add_psfs(middles, std::array{wavelength_}, progress);
+    std::vector<char> enough(open.size());
+    parallel_for(open.size(), [&](std::size_t i) { enough[i] = says_enough(open[i]) ? 1 : 0; });
+    std::vector<Interval> halves;
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Interval& interval = open[i];
+      if (enough[i] != 0) {
+        parts_.remove_psf(interval.middle(), wavelength_);
+        continue;
+      }
+      taken_.push_back(interval.middle());
+      halves.push_back({interval.from, interval.middle()});
+      halves.push_back({interval.middle(), interval.to});
+    }
+    std::sort(taken_.begin(), taken_.end());
+    return halves;
+  }
+
+  /// Those between which an interval lies, and one more on either side: what cubics go through.
+  std::vector<std::size_t> about(const Interval& interval) const {
+    const auto from = std::lower_bound(taken_.begin(), taken_.end(), interval.from);
+    return {from == taken_.begin() ? from : from - 1, std::min(from + 3, taken_.end())};
+  }
+
+  bool says_enough(const Interval& interval) const {
+    constexpr double of_tolerance = 0.3, most_at_rim = 4;
+    const LensDataTable& table = parts_.table();
+    const auto height_mm = [&](std::size_t field) {
+      return table.real_image_height_mm[table.index(field, wavelength_)];
+    };
+    const double from_mm = height_mm(interval.from), to_mm = height_mm(interval.to),
+                 at_mm = height_mm(interval.middle());
+    const double evenly = 1 / std::sqrt((first_intervals + 1) * frame_.share(from_mm, to_mm));
+    const double allowed = of_tolerance * wanted_.tolerance * std::clamp(evenly, 1.0, most_at_rim);
+    const auto kernel_by = [&](const std::vector<std::size_t>& fields) {
+      return kernel_about_chief(one_wavelength(table, wavelength_, fields), at_mm, wanted_.cell_um);
+    };
+    const Kernel said = kernel_by(about(interval)), own = kernel_by({interval.middle()});
+    // A bump of the centre's height in an interval moves light together by four times its slope.
+    const double moved_mm =
+        std::abs(said.moments().mean[1] - own.moments().mean[1]) * wanted_.cell_um * mm_per_um;
+    return 4 * moved_mm <= allowed * (to_mm - from_mm) && difference(said, own) <= allowed;
+  }
+
+  HeightTable& parts_;
+  const FrameRings frame_;
+  const SpreadWanted wanted_;
+  std::size_t wavelength_;
+  std::vector<std::size_t> taken_;  ///< increasing
+};
+
+}  // namespace
+
+LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
+                                const ProgressCallback& progress) {
+  const bool over_frame =
+      options.places == TableOptions::Places::over_frame ||
+      (options.places == TableOptions::Places::automatic && needs_places_over_frame(lens));
+  constexpr std::size_t least_fields = 2 * first_intervals + 1;
+  constexpr double samples_a_cell = 6;
+  if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview ||
+      static_cast<std::size_t>(options.field_count) < least_fields)
+    return build_lens_data_table(lens, options, progress);
+  TableOptions coarse = options;
+  coarse.coarsest_sample_um = wanted.cell_um / samples_a_cell;
+  HeightTable parts(lens, coarse);
+  FieldChoice choice(parts, coarse, wanted);
+  const std::vector<std::size_t>& fields = choice.fields({});
+  std::vector<std::size_t> others;
+  for (std::size_t w = 0; w < parts.table().wavelengths_nm.size(); ++w)
+    if (w != choice.wavelength()) others.push_back(w);
+  parts.add_psfs(fields, others, progress);
+  return std::move(parts).finished();
+}
+
+}  // namespace petzval

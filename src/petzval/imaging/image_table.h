@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lens data table of one image: PSFs where they are needed.
+#pragma once
+
+#include <petzval/optics/build.h>
+
+namespace petzval {
+
+/// How closely a table must say how light spreads.
+struct SpreadWanted {
+  double cell_um = 0;    ///< of the cells that the image will be formed on
+  double tolerance = 0;  ///< ProductOptions::tolerance
+};
+
+/// The table of a lens as one image needs it. From a tolerance of 3·10⁻³ on, that of a preview, PSFs are made
+/// for as few fields as serve; chief rays and illumination are those of all. A PSF in the middle between two
+/// is compared with what they say of it (HeightKernels), at the middle wavelength. Where it differs by more
+/// than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to four
+/// times as much), in kernels or in the centre of light, it is taken too, and the halves are looked at. Light
+/// is then sampled no finer than a sixth of a cell asks for. Finer pictures, and places over the frame, have
+/// the table of build_lens_data_table(). \throws InputError as that.
+LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
+                                const ProgressCallback& progress = {});
+
+}  // namespace petzval
