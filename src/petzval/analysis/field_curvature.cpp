@@ -2,6 +2,7 @@
 #include <petzval/analysis/field_curvature.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <cmath>
@@ -31,9 +32,28 @@ struct Vergence {
   }
 };
 
+/// Where the chief ray's neighbours cross it, for lenses without surfaces to walk.
+AstigmaticFoci foci_of_neighbours(const FieldTracer& tracer, const ChiefRay& chief) {
+  const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
+  // So small that third order is not seen, and so large that rounding is not.
+  constexpr double nudge_share = 1e-3;
+  const double stop_mm = tracer.tracer().stop_radius_mm();
+  const double nudge = nudge_share * (pencil.v_through(stop_mm) - pencil.v_through(0));
+  const auto at = [&](double u, double v) {
+    return tracer.tracer().trace(pencil.ray(u, chief.v + v).value_or(Ray{}), Tracer::Clip::none);
+  };
+  const auto focus_mm = [&](const Ray& high, const Ray& low, std::size_t axis) {
+    const double apart = high.point_mm[axis] - low.point_mm[axis];
+    const double slopes = high.direction[axis] / high.direction[2] - low.direction[axis] / low.direction[2];
+    return -apart / slopes / chief.at_image.direction[2];
+  };
+  return {focus_mm(at(0, nudge), at(0, -nudge), 1), focus_mm(at(nudge, 0), at(-nudge, 0), 0)};
+}
+
 }  // namespace
 
 AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief) {
+  if (is_ray_transfer(tracer.lens())) return foci_of_neighbours(tracer, chief);
   const Tracer& glass = tracer.tracer();
   const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
   const Ray launched = *pencil.ray(0, chief.v);
@@ -80,9 +100,10 @@ std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const Fie
         row.tangential_mm = foci.tangential_mm * chief.at_image.direction[2];
         row.sagittal_mm = foci.sagittal_mm * chief.at_image.direction[2];
         const bool has_height = lens.object_distance_mm || std::abs(chief.object_field) < 90;
-        row.petzval_mm = has_height ? paraxial.paraxial_image_mm - lens.surfaces.back().thickness_mm +
-                                          height * height / (2 * paraxial.petzval_radius_mm)
-                                    : std::numeric_limits<double>::quiet_NaN();
+        row.petzval_mm = has_height && !is_ray_transfer(lens)
+                             ? paraxial.paraxial_image_mm - lens.surfaces.back().thickness_mm +
+                                   height * height / (2 * paraxial.petzval_radius_mm)
+                             : std::numeric_limits<double>::quiet_NaN();
         return row;
       });
 }

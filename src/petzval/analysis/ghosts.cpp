@@ -3,6 +3,7 @@
 #include <petzval/analysis/ghosts.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/trace/tracer.h>
 
@@ -189,6 +190,7 @@ void check(const Lens& lens, const GhostOptions& options) {
 }  // namespace
 
 std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options) {
+  require_glass(lens, "ghosts need");
   lens.validate();
   check(lens, options);
   std::vector<Ghost> all;

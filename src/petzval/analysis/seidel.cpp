@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
@@ -125,6 +126,7 @@ SeidelTerms& SeidelTerms::operator+=(const SeidelTerms& other) {
 }
 
 SeidelSums seidel_sums(const Lens& lens) {
+  require_glass(lens, "Seidel sums need");
   require_centred(lens, "Seidel sums belong to centred lenses");
   const ParaxialLens paraxial(lens);
   const TracedRay marginal = paraxial.marginal(), chief = paraxial.chief();

@@ -3,11 +3,13 @@
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/paraxial_system.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace petzval {
 
@@ -160,9 +162,20 @@ FirstOrder first_order(const Lens& lens, std::optional<double> wavelength_nm) {
 ParaxialRay trace_paraxial(const Lens& lens, double height_mm, double slope, double wavelength_nm) {
   ParaxialRay ray;
   double height = height_mm, u = slope, index = 1;
+  std::optional<double> leaving;
   for (const Surface& surface : lens.surfaces) {
     const double index_after = surface.material.index(wavelength_nm);
     ray.height_mm.push_back(height);
+    if (surface.transfer) {
+      // Straight across the box, out of it with the slope that the transfer gives: two steps of one table.
+      const RayTransfer::Paraxial transfer = surface.transfer->paraxial(wavelength_nm);
+      const double behind = transfer.a * height + transfer.b * u;
+      leaving = transfer.c * height + transfer.d * u;
+      ray.slope.push_back((behind - height) / surface.thickness_mm);
+      height = behind;
+      continue;
+    }
+    if (leaving) u = *std::exchange(leaving, std::nullopt);
     u = (index * u - height * (index_after - index) * vertex_curvature_per_mm(surface)) / index_after;
     ray.slope.push_back(u);
     height += surface.thickness_mm * u;

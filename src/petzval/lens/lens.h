@@ -9,11 +9,14 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace petzval {
+
+struct RayTransfer;
 
 /// A kind of surface beyond conics and powers of r (lens/surface_kind.h), by name, with its parameters by
 /// name.
@@ -35,6 +38,8 @@ struct Surface {
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
   Pose pose = {};                               ///< where it stands, if not on its place
+  /// Carries rays from this plane to the next surface, in place of refraction (lens/ray_transfer.h).
+  std::shared_ptr<const RayTransfer> transfer = {};
 
   /// A sphere by its radius (infinite: a plane), the gap behind it, what fills that, and how wide it is
   /// clear.

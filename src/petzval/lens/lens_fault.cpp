@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
@@ -122,6 +123,33 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
   return surface.shape ? shape_fault(surface, at("shape")) : Fault();
 }
 
+/// A ray transfer stands at the first surface, and the next one is its rear plane.
+Fault transfer_fault(const Lens& lens, std::size_t index) {
+  const Surface& surface = lens.surfaces[index];
+  if (!surface.transfer) return {};
+  const std::string path = fmt::format("surfaces[{}]", index);
+  if (index != 0 || lens.surfaces.size() < 2)
+    return LensFault{path + ".transfer", "must stand at surfaces[0], with its rear plane as surfaces[1]"};
+  if (!surface.stop) return LensFault{path + ".stop", "must be true: the stop is inside the ray transfer"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Surface& plane = lens.surfaces[i];
+    if (plane.curvature_per_mm != 0 || plane.shape || !plane.asphere.empty() || !plane.material.is_air() ||
+        !plane.pose.is_none())
+      return LensFault{fmt::format("surfaces[{}]", i),
+                       "must be a plane in air in its place: a ray transfer goes from plane to plane"};
+  }
+  for (std::size_t i = 0; i < lens.groups.size(); ++i)
+    if ((lens.groups[i].first == 0) != (lens.groups[i].first <= 1 && lens.groups[i].last >= 1) ||
+        (lens.groups[i].first == 0 && lens.groups[i].last == 0))
+      return LensFault{fmt::format("groups[{}].surfaces", i),
+                       "must hold both planes of the ray transfer, 0 and 1, or neither"};
+  if (!(std::abs(surface.thickness_mm - surface.transfer->length_mm) <= 1e-9 * surface.transfer->length_mm))
+    return LensFault{
+        path + ".thickness_mm",
+        fmt::format("must be {:.15g}, from plane to plane of the ray transfer", surface.transfer->length_mm)};
+  return {};
+}
+
 Fault surfaces_fault(const Lens& lens) {
   if (lens.surfaces.empty()) return LensFault{"surfaces", "is empty; a lens has at least its stop surface"};
   if (lens.surfaces.size() > most_surfaces)
@@ -130,6 +158,7 @@ Fault surfaces_fault(const Lens& lens) {
   std::optional<std::size_t> stop;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     if (Fault fault = surface_fault(lens.surfaces[i], fmt::format("surfaces[{}]", i))) return fault;
+    if (Fault fault = transfer_fault(lens, i)) return fault;
     if (!lens.surfaces[i].stop) continue;
     if (stop)
       return LensFault{

@@ -7,12 +7,14 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/iset.h>
+#include <petzval/lens/formats/iset_transfer.h>
 #include <petzval/lens/formats/lens_table.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/ray_transfer.h>
 
 #include <filesystem>
 
@@ -35,6 +37,7 @@ LensFile without_glasses(LensFile file, const std::string& path, const LensReadO
 
 LensFile read_json(const std::string& text, const std::string& path, const LensReadOptions& options) {
   const JsonDocument document(text, path);
+  if (is_iset_transfer(document)) return without_glasses(read_iset_transfer(document), path, options);
   if (is_iset(document)) return without_glasses(read_iset(document), path, options);
   return {read_native(document, options), {}};
 }
@@ -60,6 +63,7 @@ LensText writer_for(const std::string& path) {
   const std::string extension = extension_of(path);
   if (extension == ".json") {
     const std::string inner = extension_of(std::filesystem::path(path).stem().string());
+    if (inner == ".raytransfer") return iset_transfer_text;
     return inner == ".iset" ? iset_text : lens_to_json;
   }
   if (extension == ".dat") return pbrt_text;
@@ -96,6 +100,8 @@ std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
   std::string text;
   try {
     if (text_of != lens_to_json) require_designed(lens);
+    if (text_of != lens_to_json && text_of != iset_transfer_text)
+      require_glass(lens, "files of this kind hold");
     text = text_of(lens);
   } catch (const InputError& error) {
     throw InputError(path, error.what());

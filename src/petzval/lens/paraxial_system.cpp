@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/lens/paraxial_system.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 
 namespace petzval {
@@ -14,6 +15,26 @@ void ParaxialMatrix::transfer(double reduced_distance_mm) {
   b += reduced_distance_mm * d;
 }
 
+namespace {
+
+/// A after B.
+ParaxialMatrix product(const ParaxialMatrix& a, const ParaxialMatrix& b) {
+  return {a.a * b.a + a.b * b.c, a.a * b.b + a.b * b.d, a.c * b.a + a.d * b.c, a.c * b.b + a.d * b.d};
+}
+
+/// A ray transfer stands in front of everything else, and is the stop. Its Petzval sum is not known.
+void include_transfer(const RayTransfer::Paraxial& transfer, ParaxialSystem& system) {
+  const ParaxialMatrix whole{transfer.a, transfer.b, transfer.c, transfer.d};
+  // From the rear plane to the stop; what the slope becomes there is free, but for the determinant.
+  const double h1 = transfer.h1, h2 = transfer.h2, norm = h1 * h1 + h2 * h2;
+  const ParaxialMatrix to_stop{h1, h2, -h2 / norm, h1 / norm};
+  system.whole = product(whole, system.whole);
+  system.to_stop = product(to_stop, product(whole, system.to_stop));
+  system.from_stop = product({to_stop.d, -to_stop.b, -to_stop.c, to_stop.a}, system.from_stop);
+}
+
+}  // namespace
+
 ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {
   ParaxialSystem system;
   const std::size_t stop = lens.stop_index(), last = lens.surfaces.size() - 1;
@@ -21,6 +42,10 @@ ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {
   for (std::size_t i = 0; i <= last; ++i) {
     const Surface& surface = lens.surfaces[i];
     const double index_after = surface.material.index(wavelength_nm);
+    if (surface.transfer) {
+      include_transfer(surface.transfer->paraxial(wavelength_nm), system);
+      continue;
+    }
     const double power = (index_after - index_before) * vertex_curvature_per_mm(surface);
     const double gap = i == last ? 0 : surface.thickness_mm / index_after;
     for (ParaxialMatrix* part : {&system.whole, i < stop ? &system.to_stop : &system.from_stop}) {

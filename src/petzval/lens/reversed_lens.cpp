@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/reversed_lens.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@ namespace petzval {
 
 Lens reversed_lens(const Lens& lens) {
   lens.validate();
+  require_glass(lens, "turning it round needs");
   require_centred(lens, "centred lenses can be turned round");
   if (!lens.surfaces.back().material.is_air())
     throw InputError(

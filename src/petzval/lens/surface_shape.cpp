@@ -149,6 +149,7 @@ Surface scaled_surface(Surface surface, double factor) {
 }
 
 std::vector<std::string> shape_remarks(const Surface& surface) {
+  if (surface.transfer) return {"ray transfer to the next"};
   std::vector<std::string> remarks;
   if (surface.conic != 0) remarks.push_back(fmt::format("conic {:g}", surface.conic));
   for (const auto& [power, coefficient] : surface.asphere)

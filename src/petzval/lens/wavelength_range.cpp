@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/wavelength_range.h>
 
 #include <algorithm>
@@ -17,6 +18,8 @@ LensWavelengths wavelength_range(const Lens& lens) {
       narrow((*glass)->shortest_nm, (*glass)->longest_nm);
     if (const auto* table = std::get_if<Material::Table>(&kind))
       narrow(table->front().first, table->back().first);
+    if (surface.transfer && surface.transfer->bands.size() > 1)
+      narrow(surface.transfer->bands.front().wavelength_nm, surface.transfer->bands.back().wavelength_nm);
   }
   return range;
 }

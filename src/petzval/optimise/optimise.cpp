@@ -5,6 +5,7 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/stop.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/numeric/random.h>
 #include <petzval/optimise/optimise.h>
@@ -261,6 +262,7 @@ std::vector<LensVariable> usual_variables(const Lens& lens) {
 }
 
 void check(const Lens& lens, const OptimiseRequest& request) {
+  require_glass(lens, "optimising needs");
   lens.validate();
   require_centred(lens, "centred lenses can be optimised");
   for (std::size_t i = 0; i < request.variables.size(); ++i)

@@ -159,7 +159,8 @@ View make_view(const Scene& scene, const LensDrawingOptions& options) {
 void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
   const auto& surfaces = scene.lens.surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (!surfaces[i].material.is_air()) {
+    // Of a ray transfer, what lies between its planes is a box.
+    if (!surfaces[i].material.is_air() || surfaces[i].transfer) {
       const auto outline = element_outline(scene.profiles[i], scene.profiles[i + 1]);
       xml.leaf("path", {{"class", "pz-glass"},
                         {"d", path_of(view, outline, true)},
@@ -179,7 +180,8 @@ void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
 void draw_stop(XmlWriter& xml, const Scene& scene, const View& view, double azimuth_deg) {
   constexpr double foot_px = 5;
   for (std::size_t i = 0; i < scene.lens.surfaces.size(); ++i) {
-    if (!scene.lens.surfaces[i].stop) continue;
+    // That of a ray transfer is somewhere in its box.
+    if (!scene.lens.surfaces[i].stop || scene.lens.surfaces[i].transfer) continue;
     StopBlades blades = scene.lens.surfaces[i].blades;
     blades.rotation_deg -= azimuth_deg;
     const auto& [bottom, top] = std::pair{scene.profiles[i].front(), scene.profiles[i].back()};
@@ -307,9 +309,12 @@ std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<
     const Surface& surface = lens.surfaces[i];
     const bool asked = i < options.semi_diameters_mm.size() && options.semi_diameters_mm[i] > 0;
     double height = surface.semi_diameter_mm.value_or(asked ? options.semi_diameters_mm[i] : 0);
-    if (height <= 0) height = ray_height_mm(surface, z[i], rays) * (surface.stop ? 1 : margin);
+    const bool box = surface.transfer || (i > 0 && lens.surfaces[i - 1].transfer);
+    if (box || height <= 0) height = ray_height_mm(surface, z[i], rays) * (surface.stop && !box ? 1 : margin);
     heights.push_back(std::isfinite(height) ? height : 0);
   }
+  for (std::size_t i = 0; i + 1 < heights.size(); ++i)
+    if (lens.surfaces[i].transfer) heights[i] = heights[i + 1] = std::max(heights[i], heights[i + 1]);
   fill_from_neighbours(heights, std::max(std::abs(z.back()) / 6, 1e-9));
   for (std::size_t i = 0; i < heights.size(); ++i)
     heights[i] = std::min(heights[i], just_inside_rim * rim_mm(shape_of(lens.surfaces[i])));

@@ -7,6 +7,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/report/analysis_plots.h>
 #include <petzval/report/colours.h>
@@ -316,6 +317,10 @@ class LensSections {
     section("Seidel sums", "Seidel");
     if (largest_angle_deg() >= 90 || !has_field) {
       page_.add(html::paragraph("Third-order theory needs a largest field between 0° and 90°."));
+      return;
+    }
+    if (is_ray_transfer(lens_)) {
+      page_.add(html::paragraph("A ray transfer has no surfaces that third-order theory could sum over."));
       return;
     }
     const SeidelSums sums = seidel_sums(lens_);

@@ -9,6 +9,7 @@
 // clang-format off
 #include <hwy/foreach_target.h>
 #include <petzval/trace/surface_kernel-inl.h>
+#include <petzval/trace/transfer_kernel-inl.h>
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -48,7 +49,10 @@ HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, meas
   for (RayVector<T, measures>& ray : rays) ray.z = hn::Add(ray.z, to_vertex);
   if (surface.posed)
     for (RayVector<T, measures>& ray : rays) into_frame(surface.frame, ray);
-  step_surface(surface, rays);
+  if (surface.transfer)
+    for (RayVector<T, measures>& ray : rays) step_transfer(surface, ray);
+  else
+    step_surface(surface, rays);
   if (surface.posed)
     for (RayVector<T, measures>& ray : rays) out_of_frame(surface.frame, ray);
 }

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <petzval/lens/shapes/shape_data.h>
+#include <petzval/lens/transfer_data.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace petzval {
@@ -36,6 +38,10 @@ struct KernelSurface {
   T edge_distance = 0, per_edge_distance = 0;
   bool posed = false;
   KernelFrame<T> frame;  ///< counts where `posed`
+  /// Carries rays between the planes of this surface and of the one behind it; then nothing else above counts
+  /// but the clip, in the coordinates of the transfer's stop.
+  std::shared_ptr<const TransferData<T>> transfer;
+  bool clips_others = false;  ///< at the transfer's other apertures
 };
 
 /// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.

@@ -78,6 +78,15 @@ KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backwa
   return surface;
 }
 
+std::shared_ptr<const TransferData<double>> kernel_transfer(
+    const std::shared_ptr<const TransferData<double>>& from, double) {
+  return from;
+}
+std::shared_ptr<const TransferData<float>> kernel_transfer(
+    const std::shared_ptr<const TransferData<double>>& from, float) {
+  return std::make_shared<const TransferData<float>>(in_float(*from));
+}
+
 template <class T>
 void set_edges(const Tracer& tracer, KernelSurface<T>& stop) {
   const double distance = tracer.stop_radius_mm() * tracer.stop_blades().apothem();
@@ -110,6 +119,10 @@ KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip
     surface.to_vertex_mm = static_cast<T>(vertex_z - next);
     vertex_z = next;
     if (i == tracer.stop_index() && clip != Tracer::Clip::none) set_edges(tracer, surface);
+    if (surfaces[i].transfer) {
+      surface.transfer = kernel_transfer(surfaces[i].transfer, T(0));
+      surface.clips_others = clip == Tracer::Clip::apertures;
+    }
     path.surfaces.push_back(std::move(surface));
   }
   path.last_vertex_z_mm = static_cast<T>(vertex_z);

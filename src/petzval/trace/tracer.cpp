@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
+#include <petzval/trace/transfer_step.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +53,17 @@ void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
   ray.opl_mm = from.opl;
 }
 
-/// Walks the surfaces in the sense of travel. `visit(index, ray at the surface, normal)` is called after each
-/// intersection, before refraction, in the surface's own axes, and ends the walk by returning false;
-/// `after(index, ray, normal)` after refraction, in lens space but for the normal.
+/// Turns a ray towards another's place.
+void aim_at(const SurfaceRay& target, SurfaceRay& ray) {
+  const double x = target.x - ray.x, y = target.y - ray.y, z = target.z - ray.z;
+  const double length = std::sqrt(x * x + y * y + z * z);
+  ray.l = x / length, ray.m = y / length, ray.n = z / length;
+}
+
+/// Walks the surfaces in the sense of travel. `visit(index, ray at the surface, (r/r_clear)² of other
+/// apertures there)` is called after each intersection, before refraction, in the surface's own axes, and
+/// ends the walk by returning false; `after(index, ray, normal)` after refraction, in lens space but for the
+/// normal.
 template <class Visit, class After>
 void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, Ray& ray, Visit&& visit,
           After&& after) {
@@ -69,21 +79,38 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     vertex_z = surface.vertex_z_mm;
     const double before = backward ? surface.index_after : surface.index_before;
     const double behind = backward ? surface.index_before : surface.index_after;
-    double normal[3];
+    double normal[3] = {0, 0, 1};
     if (surface.posed) into(surface.frame, at);
-    if (!intersect(surface, sense, before, at, normal)) {
+    SurfaceRay met = at;
+    if (surface.transfer) {
+      TransferCrossing crossing;
+      if (!carry(*surface.transfer, backward, at, crossing)) {
+        ray.status = RayStatus::missed;
+      } else {
+        // Clipped where it meets the stop, and seen on the front plane, on its way straight across.
+        SurfaceRay at_stop = crossing.front;
+        at_stop.x = crossing.stop_x, at_stop.y = crossing.stop_y;
+        if (!visit(i, at_stop, crossing.others_sq)) ray.status = RayStatus::vignetted;
+        met = crossing.front;
+        if (!backward) aim_at(at, met);
+      }
+    } else if (!intersect(surface, sense, before, at, normal)) {
       ray.status = RayStatus::missed;
-    } else if (visit(i, at, normal)) {
+    } else if (visit(i, at, 0.0)) {
       if (!refract(before / behind, sense, at, normal)) ray.status = RayStatus::tir;
+      met = at;
     } else {
       ray.status = RayStatus::vignetted;
     }
-    if (surface.posed) out_of(surface.frame, at);
+    if (surface.posed) {
+      out_of(surface.frame, at);
+      out_of(surface.frame, met);
+    }
     if (ray.status != RayStatus::ok) {
       ray.failed_at = static_cast<int>(i);
       break;
     }
-    after(i, at, normal);
+    after(i, met, normal);
   }
   store(at, vertex_z, ray);
 }
@@ -135,6 +162,7 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     prepared.index_after = index = surface.material.index(wavelength_nm);
     prepared.clear_radius_sq =
         surface.semi_diameter_mm ? *surface.semi_diameter_mm * *surface.semi_diameter_mm : infinity;
+    if (surface.transfer) prepared.transfer = surface.transfer->at(wavelength_nm);
     surfaces_.push_back(std::move(prepared));
     z += surface.thickness_mm;
   }
@@ -200,8 +228,9 @@ void trace_one(const Tracer& tracer, bool backward, Tracer::Clip clip, Ray& ray,
   if (backward) leave_image(tracer, ray);
   walk(
       tracer.surfaces(), backward, ray,
-      [&](std::size_t i, const SurfaceRay& at, const double*) {
-        return tracer.clip_share_sq(i, at.x, at.y, clip) <= 1;
+      [&](std::size_t i, const SurfaceRay& at, double others_sq) {
+        return tracer.clip_share_sq(i, at.x, at.y, clip) <= 1 &&
+               (clip != Tracer::Clip::apertures || others_sq <= 1 + Tracer::rim_tolerance);
       },
       [&](std::size_t i, const SurfaceRay& at, const double* normal) {
         if (path)
@@ -272,8 +301,10 @@ Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) co
   result.worst = -infinity;
   walk(
       surfaces_, backward, result.ray,
-      [&](std::size_t i, const SurfaceRay& at, const double*) {
-        const double excess = clip_share_sq(i, at.x, at.y, clip) * (1 + rim_tolerance) - 1;
+      [&](std::size_t i, const SurfaceRay& at, double others_sq) {
+        const double share = std::max(clip_share_sq(i, at.x, at.y, clip) * (1 + rim_tolerance),
+                                      clip == Clip::apertures ? others_sq : 0.0);
+        const double excess = share - 1;
         if (excess > result.worst) {
           result.worst = excess;
           result.surface = static_cast<int>(i);

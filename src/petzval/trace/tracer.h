@@ -5,10 +5,12 @@
 #include <petzval/lens/lens.h>
 #include <petzval/lens/shapes/shape_data.h>
 #include <petzval/lens/stop_blades.h>
+#include <petzval/lens/transfer_data.h>
 #include <petzval/trace/ray_batch.h>
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace petzval {
@@ -108,6 +110,7 @@ class Tracer {
     double clear_radius_sq;  ///< infinity when unbounded
     Frame frame;             ///< against the vertex at vertex_z_mm on the axis
     bool posed = false;      ///< whether the frame is any
+    std::shared_ptr<const TransferData<double>> transfer = {};  ///< carries rays to the next surface
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
   const Frame& sensor_frame() const { return sensor_frame_; }

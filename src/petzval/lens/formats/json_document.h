@@ -44,6 +44,7 @@ class JsonEntry {
   const std::string& path() const { return path_; }
   bool is_null() const { return value_->is_null(); }
   bool is_text() const { return value_->is_string(); }
+  bool is_list() const { return value_->is_array(); }
   bool is_object() const { return value_->is_object(); }
 
   // Each throws InputError if the entry is of another type. `meaning` completes "must be …".

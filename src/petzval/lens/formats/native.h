@@ -5,6 +5,7 @@
 
 #include <petzval/lens/formats/json_document.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/ray_transfer.h>
 
 namespace petzval {
 
@@ -19,5 +20,9 @@ inline constexpr const char* field_types[] = {"angle_deg", "object_height_mm", "
 
 /// \throws InputError for whatever is not exactly in the format, or not a valid lens.
 Lens read_native(const JsonDocument& document, const LensReadOptions& options);
+
+/// The ray transfer of a surface.
+std::shared_ptr<const RayTransfer> read_transfer(const JsonEntry& entry);
+std::string transfer_text(const RayTransfer& transfer);
 
 }  // namespace petzval

@@ -171,7 +171,7 @@ SurfaceGroup read_group(const JsonEntry& entry) {
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "shape",
-                    "stop", "blades", "pose", "melt"});
+                    "stop", "blades", "pose", "melt", "transfer"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
@@ -188,6 +188,8 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   if (const auto blades = entry.find("blades"); blades && !blades->is_null())
     surface.blades = read_blades(*blades);
   if (const auto pose = entry.find("pose"); pose && !pose->is_null()) surface.pose = read_pose(*pose);
+  if (const auto transfer = entry.find("transfer"); transfer && !transfer->is_null())
+    surface.transfer = read_transfer(*transfer);
   return surface;
 }
 

@@ -87,6 +87,7 @@ std::string surface_text(const Surface& surface) {
   }
   if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
   if (!surface.pose.is_none()) text += ", \"pose\": " + pose_text(surface.pose);
+  if (surface.transfer) text += ", \"transfer\": " + transfer_text(*surface.transfer);
   return text + "}";
 }
 

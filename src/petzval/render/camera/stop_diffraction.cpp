@@ -31,6 +31,8 @@ StopDiffraction::StopDiffraction(const Tracer& tracer, double wavelength_nm)
       edges_(tracer.stop_blades().normals()) {
   if (!std::isfinite(radius_mm_))
     throw InputError("diffraction needs a stop with a radius; an aperture of the lens would give one");
+  if (tracer.surfaces()[tracer.stop_index()].transfer)
+    throw InputError("diffraction bends rays at a stop, and that of a ray transfer is not to be reached");
   if (tracer.surfaces()[tracer.stop_index()].posed)
     throw InputError("diffraction bends rays at a stop on the axis, and this one has a pose");
   apothem_mm_ = radius_mm_ * tracer.stop_blades().apothem();
