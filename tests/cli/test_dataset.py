@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""petzval dataset: processes that share a folder, are killed, or find the disk full; archives that others read."""
+
+import json
+import random
+import resource
+import signal
+import subprocess
+import tarfile
+import time
+import unittest
+
+from petzval_cli import PROGRAM, ProgramTest
+
+RECIPE = {
+    "format": "petzval-dataset/1", "items": 12, "items_per_part": 2, "seed": 9,
+    "parameters": {"lens": {"choose": ["edmund-54852", "dgauss-50mm"]}, "stop_down_ev": {"uniform": [0, 2]},
+                   "scene": "grid", "sensor": "example-vga"},
+    "sensor_set": ["columns=48", "rows=32"], "wavelengths_nm": "500,600", "tolerance": 0.02, "truth": ["raw", "rays"]}
+
+
+class Dataset(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "recipe.json").write_text(json.dumps(RECIPE))
+
+    def files(self, name):
+        return {path.name: path.read_bytes() for path in (self.folder / name).iterdir()}
+
+    def test_a_worker_killed_among_others_costs_nothing(self):
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
+        command = [PROGRAM, "dataset", "make", "recipe.json", "-o", "shared", "--quiet"]
+        workers = [subprocess.Popen(command, cwd=self.folder) for _ in range(3)]
+        time.sleep(random.uniform(0.2, 2))
+        workers[1].send_signal(signal.SIGKILL)
+        self.assertEqual([workers[0].wait(), workers[2].wait()], [0, 0])
+        workers[1].wait()
+        # What the killed one was at may be left over: the next process makes it.
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "shared", "--threads", 1)
+        self.assertEqual(self.files("shared"), self.files("alone"))
+        self.assertIn("6 of 6 parts are there and whole: 12 items",
+                      self.assert_succeeds("dataset", "verify", "shared"))
+
+    def test_an_interrupted_run_keeps_whole_parts(self):
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
+        worker = subprocess.Popen([PROGRAM, "dataset", "make", "recipe.json", "-o", "set"], cwd=self.folder,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(0.7)
+        worker.send_signal(signal.SIGINT)
+        _, told = worker.communicate()
+        if worker.returncode != 0:  # it may have been done
+            self.assertEqual(worker.returncode, 130, told)
+            self.assertIn("goes on with the rest", told)
+        self.assertFalse([name for name in self.files("set") if name.startswith(".")])
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "set")
+        self.assertEqual(self.files("set"), self.files("alone"))
+
+    def test_a_full_disk_leaves_nothing_half_written(self):
+        # Files that may not grow stand for a disk that is full.
+        def narrow():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (12000, 12000))
+
+        done = self.petzval("dataset", "make", "recipe.json", "-o", "set", preexec_fn=narrow)
+        self.assert_error(done, 1, "is the disk full?")
+        self.assertEqual(list(self.files("set")), ["dataset.json"])
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "set")
+
+    def test_others_read_the_archives(self):
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "set")
+        lines = [json.loads(line) for line in (self.folder / "set" / "part-00003.jsonl").read_text().splitlines()]
+        with tarfile.open(self.folder / "set" / "part-00003.tar") as archive:
+            names = archive.getnames()
+            for line in lines:
+                for extension, file in line["files"].items():
+                    self.assertEqual(archive.getmember(f"{line['key']}.{extension}").size, file["bytes"])
+            facts = json.load(archive.extractfile(f"{lines[0]['key']}.json"))
+        # WebDataset takes neighbours with one key for one sample.
+        keys = [name.partition(".")[0] for name in names]
+        self.assertEqual(keys, sorted(keys))
+        self.assertEqual(facts["parameters"], lines[0]["parameters"])
+
+    def test_bad_input_is_one_line(self):
+        for words, message in ((["make", "recipe.json", "-o", "set", "--shard", "5/4"], "1/16 to 16/16"),
+                               (["make", "recipe.json", "-o", "set", "--shard", "x"], "1/16 to 16/16"),
+                               (["make", "none.json", "-o", "set"], "none.json"),
+                               (["info", "."], "dataset.json"), (["verify", "none"], "dataset.json")):
+            self.assert_error(self.petzval("dataset", *words), 2, message)
+
+
+if __name__ == "__main__":
+    unittest.main()
