@@ -25,16 +25,20 @@ std::vector<Exercise> all_exercises() {
         {a_plot,
          "lens mtf achromat-50mm --fields 0 --wavelengths 588 --frequencies 5,10,20 --through-focus 0.5",
          "Contrast against the place of the sensor: fine detail goes first."},
-        {a_picture, "image studio --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650",
+        {a_picture,
+         "image studio --surround extend --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650",
          "In focus, f/4."},
         {a_picture,
-         "image studio --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 --defocus 0.2",
+         "image studio --surround extend --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 "
+         "--defocus 0.2",
          "0.2 mm behind the focus: a disc of 0.2 mm / 4 = 50 µm."},
         {a_picture,
-         "image studio --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 --defocus 0.5",
+         "image studio --surround extend --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 "
+         "--defocus 0.5",
          "0.5 mm: 125 µm, six pixels."},
         {a_picture,
-         "image studio --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 --defocus 0.5 "
+         "image studio --surround extend --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:50:650 "
+         "--defocus 0.5 "
          "--f-number 8",
          "0.5 mm at f/8: half the disc."}}},
       {"spherical-aberration",
@@ -46,17 +50,22 @@ std::vector<Exercise> all_exercises() {
          "Rays of the rim cross the axis before the others."},
         {a_plot, "lens fans plano-convex --fields 0 --wavelengths 588",
          "Where a ray meets the sensor grows as the cube of its height at the stop."},
-        {a_picture, "image studio --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus paraxial",
+        {a_picture,
+         "image studio --surround extend --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus "
+         "paraxial",
          "Curved side to the chart, in the paraxial focus."},
         {a_picture,
-         "image studio --lens plano-convex-reversed --sensor 240x180@20 --wavelengths 588 --focus paraxial",
+         "image studio --surround extend --lens plano-convex-reversed --sensor 240x180@20 --wavelengths 588 "
+         "--focus paraxial",
          "Flat side to the chart."},
         {a_picture,
-         "image studio --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus paraxial --defocus "
+         "image studio --surround extend --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus "
+         "paraxial --defocus "
          "-0.6",
          "Curved side to the chart, 0.6 mm nearer to the lens: the least blur is not in the paraxial focus."},
         {a_picture,
-         "image studio --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus paraxial --f-number "
+         "image studio --surround extend --lens plano-convex --sensor 240x180@20 --wavelengths 588 --focus "
+         "paraxial --f-number "
          "8",
          "In the paraxial focus at f/8: an eighth of the blur."}}},
       {"coma",
@@ -74,7 +83,8 @@ std::vector<Exercise> all_exercises() {
          "image points:7 --lens coma-singlet --sensor 240x180@25 --wavelengths 588 "
          "--f-number 8",
          "f/8: coma goes with the square of the stop, to a quarter."},
-        {a_picture, "image studio --lens coma-singlet --sensor 240x180@25 --wavelengths 450:50:650",
+        {a_picture,
+         "image studio --surround extend --lens coma-singlet --sensor 240x180@25 --wavelengths 450:50:650",
          "The middle is sharp but for colour; towards the corners detail grows tails."}}},
       {"field-curvature",
        "Astigmatism and field curvature",
@@ -85,15 +95,18 @@ std::vector<Exercise> all_exercises() {
         {a_plot, "lens field-curvature plano-convex --fields 0:4:16 --wavelengths 588",
          "Tangential (solid) and sagittal (dashed) foci, and Petzval's curve."},
         {a_picture,
-         "image grid:12 --lens plano-convex --sensor 240x180@100 --wavelengths 588 --f-number 8 --focus "
+         "image grid:12 --surround extend --lens plano-convex --sensor 240x180@100 --wavelengths 588 "
+         "--f-number 8 --focus "
          "infinity",
          "Focused for the middle."},
         {a_picture,
-         "image grid:12 --lens plano-convex --sensor 240x180@100 --wavelengths 588 --f-number 8 --focus "
+         "image grid:12 --surround extend --lens plano-convex --sensor 240x180@100 --wavelengths 588 "
+         "--f-number 8 --focus "
          "infinity --defocus -2.5",
          "2.5 mm nearer: the middle blurs, the zone beside it is sharp."},
         {a_picture,
-         "image grid:12 --lens landscape-lens --sensor 240x180@100 --wavelengths 588 --focus infinity",
+         "image grid:12 --surround extend --lens landscape-lens --sensor 240x180@100 --wavelengths 588 "
+         "--focus infinity",
          "A meniscus behind a stop, f/11: its tangential field is flat."}}},
       {"distortion",
        "Distortion",
@@ -102,9 +115,11 @@ std::vector<Exercise> all_exercises() {
         {a_plot, "lens distortion landscape-lens --fields 0:5:25 --wavelengths 588",
          "Distortion about the centre, against the height in the image."},
         {a_lens, "lens reverse landscape-lens", ""},
-        {a_picture, "image grid:12 --lens landscape-lens --sensor 240x180@150 --wavelengths 588",
+        {a_picture,
+         "image grid:12 --surround extend --lens landscape-lens --sensor 240x180@150 --wavelengths 588",
          "Stop in front: barrel."},
-        {a_picture, "image grid:12 --lens distortion-3.json --sensor 240x180@150 --wavelengths 588",
+        {a_picture,
+         "image grid:12 --surround extend --lens distortion-3.json --sensor 240x180@150 --wavelengths 588",
          "The same lens turned round, stop behind: pincushion."}}},
       {"colour",
        "Axial and lateral colour",
@@ -115,13 +130,16 @@ std::vector<Exercise> all_exercises() {
         {a_plot, "lens colour plano-convex --wavelengths 450,550,650",
          "Left: where zones of the stop focus. Right: how high chief rays come, against the reference."},
         {a_picture,
-         "image studio --lens plano-convex --sensor 240x180@20 --wavelengths 450:25:650 --focus infinity",
+         "image studio --surround extend --lens plano-convex --sensor 240x180@20 --wavelengths 450:25:650 "
+         "--focus infinity",
          "The singlet, f/4: coloured haze."},
         {a_picture,
-         "image studio --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:25:650 --focus infinity",
+         "image studio --surround extend --lens achromat-50mm --sensor 240x180@20 --wavelengths 450:25:650 "
+         "--focus infinity",
          "The achromat, f/4: blue and red have one focus."},
         {a_picture,
-         "image grid:24 --lens landscape-lens --sensor 240x180@100 --wavelengths 450:25:650 --focus infinity",
+         "image grid:24 --surround extend --lens landscape-lens --sensor 240x180@100 --wavelengths "
+         "450:25:650 --focus infinity",
          "A stop away from the lens: fringes that grow towards the border, lateral colour."}}},
       {"vignetting",
        "Vignetting",

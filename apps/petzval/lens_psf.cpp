@@ -117,7 +117,7 @@ PsfMoments moments(const Psf& psf) {
 void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields::Kind kind) {
   const std::string extension = std::filesystem::path(path).extension().string();
   const Psf& first = rows.front().psf;
-  if (extension == ".svg") {
+  if (extension == ".svg" || extension == ".pdf" || (extension == ".png" && rows.size() > 1)) {
     std::vector<DrawnPsf> drawn;
     for (const PsfRow& row : rows)
       drawn.push_back(
@@ -127,13 +127,11 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
     const auto same_field = [&](const PsfRow& row) { return row.field == rows.front().field; };
     const auto wavelengths = std::ranges::count_if(rows, same_field);
     constexpr int a_few = 4;
-    return write_whole_file(path,
-                            psf_strip_svg(drawn, wavelengths > 1 ? static_cast<int>(wavelengths) : a_few));
+    return write_drawing(path, psf_strip_svg(drawn, wavelengths > 1 ? static_cast<int>(wavelengths) : a_few));
   }
   if (rows.size() > 1)
-    throw InputError(
-        fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, an .npz or an .svg", path,
-                    rows.size()));
+    throw InputError(fmt::format("{}: holds one PSF, not {}; give one field and one wavelength, or an .npz",
+                                 path, rows.size()));
   const auto size = static_cast<std::size_t>(first.size);
   if (extension == ".npy") {
     const std::size_t shape[] = {size, size};
@@ -191,7 +189,8 @@ void write_map(const PsfCommand& options, const Lens& lens, const FieldTableRequ
 
 void psf(const PsfCommand& options, const Shared& shared) {
   if (!options.map.empty()) require_drawing(options.map, "a map of PSFs");
-  if (!options.output.empty()) require_extension(options.output, {".svg", ".png", ".npy", ".npz"}, "a PSF");
+  if (!options.output.empty())
+    require_extension(options.output, {".svg", ".png", ".pdf", ".npy", ".npz"}, "a PSF");
   const Lens read = options.fields.prepare(options.lens.read(shared), shared);
   const Lens lens = options.camera.used(read, options.fields.request(read), shared);
   FieldTableRequest request = options.fields.request(lens);
@@ -270,7 +269,7 @@ void add_lens_psf(CLI::App& lens, Shared& shared) {
   options->losses.add_to(*command);
   command
       ->add_option("-o,--output", options->output,
-                   "Picture or data to write: .svg, .png, .npy of one PSF, .npz of all with their axes")
+                   "Picture or data to write: .svg, .png, .pdf, .npy of one PSF, .npz of all with their axes")
       ->check(output_file());
   command
       ->add_option(

@@ -40,10 +40,12 @@ std::string label_of(const SweepPoint& point) {
 
 /// What was measured over what was varied.
 std::string plot_svg(const SweepCommand& options, const std::vector<SweptParameter>& parameters,
-                     const Table& table) {
-  std::vector<std::string> varied;
+                     const Table& table, const Shared& shared) {
+  std::vector<std::string> varied, left_out;
   for (const SweptParameter& parameter : parameters) varied.push_back(parameter.key);
-  return plot_grid_svg(sweep_plots(table, varied, options.plot_of), 1, "");
+  const std::vector<Plot> plots = sweep_plots(table, varied, options.plot_of, &left_out);
+  for (const std::string& text : left_out) note(shared, fmt::format("{}: {}", options.plot, text));
+  return plot_grid_svg(plots, 1, "");
 }
 
 /// \throws InputError if a plot is asked for that cannot be.
@@ -68,7 +70,9 @@ void check_plot(const SweepCommand& options, const std::vector<SweptParameter>& 
 /// point. \param results  of which the last was made.
 void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results) {
   if (options.plot_of.empty()) return;
-  const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), {});
+  std::vector<std::string> varied;
+  for (const auto& [key, value] : results.back().point) varied.push_back(key);
+  const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), varied);
   for (const std::string& key : options.plot_of) {
     if (std::ranges::find(measured, key) != measured.end()) continue;
     std::error_code ignored;
@@ -191,7 +195,7 @@ std::set<std::string> write_summary(const SweepCommand& options, const std::vect
                                brightening));
     names.insert("contact-sheet.png");
   }
-  const std::string plot = options.plot.empty() ? "" : plot_svg(options, parameters, table);
+  const std::string plot = options.plot.empty() ? "" : plot_svg(options, parameters, table, shared);
   if (!plot.empty()) write_drawing(options.plot, plot);
   write_page(options, results, table, plot, pictures);
   return names;

@@ -255,11 +255,16 @@ void bind_picture(nb::module_& module) {
           "them: for imshow.")
       .def(
           "save",
-          [](const PictureInPython& p, const std::string& path, int bits) {
-            write_picture(path, p.picture(), bits);
+          [](const PictureInPython& p, const std::string& path, int bits,
+             const std::vector<std::string>& insets) {
+            std::vector<PictureInset> places;
+            for (const std::string& text : insets) places.push_back(PictureInset::parse(text));
+            write_picture(path, places.empty() ? p.picture() : with_insets(p.picture(), places), bits);
           },
-          nb::arg("path"), nb::arg("bits") = 8,
-          "Writes .png or .tif (8 or 16 bits, with the display's profile), or linear as .exr or .npy.")
+          nb::arg("path"), nb::arg("bits") = 8, nb::arg("insets") = std::vector<std::string>(),
+          "Writes .png or .tif (8 or 16 bits, with the display's profile), or linear as .exr or .npy. "
+          "`insets` are "
+          "parts enlarged beside it: \"310,20,8\" (about a pixel, eight times), \"top-right\", \"centre,6\".")
       .def(
           "to_xarray", [](nb::handle self) { return call_python("petzval._xarray", "picture", self); },
           "As xarray.DataArray (y, x, channel), sharing the memory.")

@@ -49,6 +49,14 @@ def test_raw_image_and_picture(program, camera, light, tmp_path):
     assert (tmp_path / "python.png").read_bytes() == (tmp_path / "shot.png").read_bytes()
 
 
+def test_insets_beside_a_picture(program, camera, light, tmp_path):
+    raw = camera.expose(light, seed=7)
+    raw.save(str(program.folder / "shot.dng"))
+    program.run("develop", "shot.dng", "--inset", "centre,4", "--inset", "3,5", "-o", "beside.png")
+    pz.develop(pz.Raw.load(str(program.folder / "shot.dng"))).save(str(tmp_path / "python.png"), insets=["centre,4", "3,5"])
+    assert (tmp_path / "python.png").read_bytes() == (program.folder / "beside.png").read_bytes()
+
+
 def test_exposure_options(program, camera, light, tmp_path):
     light.save(str(tmp_path / "light.exr"))
     program.run("sense", "light.exr", *SENSOR, "--exposure", 0.02, "--without", "read,dark", "--frames", 3, "--gain", 1.5,

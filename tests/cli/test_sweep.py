@@ -240,7 +240,7 @@ class Sweep(ProgramTest):
         self.assert_nothing_made(*IMAGE[1:], *good, "--f-number", "3", words=["f-number", "fixed", "varied"])
         self.assert_nothing_made(*IMAGE[1:], "--set", "surfaces[4].thickness_mm=0.5", "--vary", "surfaces[4].thickness_mm=0.5,0.6",
                                  words=["surfaces[4].thickness_mm", "fixed", "varied"])
-        self.assert_nothing_made("lens", "mtf", "edmund-54852", *good, "--plot", "mtf.svg", words=["--plot", "same file"])
+        self.assert_nothing_made("lens", "mtf", "edmund-54852", *good, "--csv", "mtf.csv", words=["--csv", "same file"])
         for option in ("help", "output", "threads", "quiet", "json", "vary"):
             self.assert_nothing_made(*IMAGE[1:], "--vary", f"{option}=1,2", words=[f"--vary {option}", f"--{option}"])
 

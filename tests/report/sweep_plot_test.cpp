@@ -81,9 +81,27 @@ TEST(SweepPlot, LeavesAGapWhereAPointFailed) {
   EXPECT_EQ(plot.x.unit, "m");
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].x, (std::vector<double>{1, 3}));
-  Table many = table_of_keys({"f-number", "radius_um", "encircled_energy"});
-  for (int i = 0; i < 100; ++i) many.rows.push_back({i < 50 ? 4.0 : 8.0, double(i), double(i)});
-  EXPECT_THROW(sweep_plots(many, {"f-number"}), InputError) << "nobody reads a hundred curves";
+}
+
+TEST(SweepPlot, LeavesOutWhatNobodyCouldRead) {
+  Table many = table_of_keys({"f-number", "field", "wavelength_nm", "frequency_cpmm", "tangential"});
+  for (const double stop : {4.0, 8.0})
+    for (const double field : {0.0, 7.0, 14.0})
+      for (const double nm : {486.0, 588.0, 656.0})
+        for (int frequency = 0; frequency <= 100; frequency += 10)
+          many.rows.push_back({stop, field, nm, double(frequency), 1 - frequency / 200.0});
+  std::vector<std::string> left_out;
+  const std::vector<Plot> plots = sweep_plots(many, {"f-number"}, {}, &left_out);
+  ASSERT_LE(plots.at(0).series.size(), 24u);
+  EXPECT_EQ(plots[0].series.front().label, "field 0, 588 nm, 20/mm");
+  ASSERT_EQ(left_out.size(), 2u);
+  EXPECT_EQ(left_out[0], "of wavelength_nm only 588 are drawn");
+  EXPECT_EQ(left_out[1], "of frequency_cpmm only 20, 50, 100 are drawn");
+  // What was varied is never left out.
+  Table lenses = table_of_keys({"lens", "f-number", "efl_mm"});
+  for (int lens = 0; lens < 61; ++lens)
+    for (const double stop : {4.0, 8.0}) lenses.rows.push_back({"lens " + std::to_string(lens), stop, stop});
+  EXPECT_THROW(sweep_plots(lenses, {"lens", "f-number"}), InputError);
 }
 
 }  // namespace

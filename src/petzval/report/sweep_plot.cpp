@@ -133,14 +133,26 @@ struct Curve {
   std::vector<std::pair<double, std::size_t>> points;  ///< x and the row
 };
 
+/// The values of a column that are drawn, as text; all where it is not named.
+using DrawnValues = std::map<std::size_t, std::vector<std::string>>;
+
+bool is_drawn(const Table& rows, std::size_t row, const std::vector<std::size_t>& by,
+              const DrawnValues& drawn) {
+  return std::ranges::all_of(by, [&](std::size_t column) {
+    const std::string text = text_of(rows.rows[row][column]);
+    const auto some = drawn.find(column);
+    // A point that failed has no places.
+    return !text.empty() &&
+           (some == drawn.end() || std::ranges::find(some->second, text) != some->second.end());
+  });
+}
+
 std::vector<Curve> curves_of(const Table& rows, const std::vector<double>& x,
-                             const std::vector<std::size_t>& by) {
+                             const std::vector<std::size_t>& by, const DrawnValues& drawn) {
   std::vector<Curve> curves;
   std::map<std::string, std::size_t> known;
   for (std::size_t row = 0; row < rows.rows.size(); ++row) {
-    // A point that failed has no places.
-    if (std::ranges::any_of(by, [&](std::size_t column) { return text_of(rows.rows[row][column]).empty(); }))
-      continue;
+    if (!is_drawn(rows, row, by, drawn)) continue;
     const auto [entry, fresh] = known.emplace(curve_label(rows, row, by), curves.size());
     if (fresh) curves.push_back({entry->first, {}});
     curves[entry->second].points.emplace_back(x[row], row);
@@ -148,6 +160,35 @@ std::vector<Curve> curves_of(const Table& rows, const std::vector<double>& x,
   for (Curve& curve : curves)
     std::ranges::stable_sort(curve.points, {}, &std::pair<double, std::size_t>::first);
   return curves;
+}
+
+/// Leaves out values of the place that has most of them: three of many stay, then one of three; wavelengths
+/// go first. \returns false if there is none to leave out.
+bool thin_out(const Table& rows, const std::vector<std::size_t>& by, DrawnValues& drawn) {
+  const auto values_of = [&](std::size_t column) {
+    if (const auto some = drawn.find(column); some != drawn.end()) return some->second;
+    std::vector<std::string> values;
+    for (const std::string& text : texts_of(rows, column))
+      if (!text.empty() && std::ranges::find(values, text) == values.end()) values.push_back(text);
+    return values;
+  };
+  std::optional<std::size_t> chosen;
+  std::size_t most = 1;
+  for (const char* wavelengths_first : {"wavelength_nm", ""})
+    for (const std::size_t column : by) {
+      const std::string& key = rows.columns[column].key;
+      const std::size_t count = values_of(column).size();
+      if (!is_place(key) || count <= most || (*wavelengths_first != 0 && key != wavelengths_first)) continue;
+      chosen = column;
+      most = count;
+    }
+  if (!chosen) return false;
+  const std::vector<std::string> all = values_of(*chosen);
+  const std::size_t n = all.size();
+  // The lowest of many frequencies is 0, which shows nothing.
+  const std::size_t low = rows.columns[*chosen].key == "frequency_cpmm" ? n / 4 : 0;
+  drawn[*chosen] = n > 3 ? std::vector{all[low], all[n / 2], all[n - 1]} : std::vector{all[n / 2]};
+  return true;
 }
 
 void add_quantity(Plot& plot, const Table& rows, const std::vector<Curve>& curves, std::size_t column,
@@ -216,7 +257,7 @@ std::vector<std::string> measured_columns(const Table& rows, const std::vector<s
 }
 
 std::vector<Plot> sweep_plots(const Table& rows, const std::vector<std::string>& varied,
-                              const std::vector<std::string>& of) {
+                              const std::vector<std::string>& of, std::vector<std::string>* left_out) {
   rows.validate();
   std::optional<SweptAxis> axis;
   std::string over;
@@ -235,12 +276,18 @@ std::vector<Plot> sweep_plots(const Table& rows, const std::vector<std::string>&
     const bool tells = is_place(key) || std::ranges::find(varied, key) != varied.end();
     if (tells && key != over && changes(rows, i)) by.push_back(i);
   }
-  const std::vector<Curve> curves = curves_of(rows, axis->values, by);
-  constexpr std::size_t most_curves = 60;
+  constexpr std::size_t readable = 24, most_curves = 60;
+  DrawnValues drawn;
+  std::vector<Curve> curves = curves_of(rows, axis->values, by, drawn);
+  while (curves.size() > readable && thin_out(rows, by, drawn))
+    curves = curves_of(rows, axis->values, by, drawn);
   if (curves.size() > most_curves)
-    throw InputError(fmt::format(
-        "a plot of {} curves; fewer fields, wavelengths or frequencies (at most {} curves) would be right",
-        curves.size(), most_curves));
+    throw InputError(fmt::format("a plot of {} curves; fewer values of {} (at most {} curves) would be right",
+                                 curves.size(), fmt::join(varied, ", "), most_curves));
+  for (const auto& [column, values] : drawn)
+    if (left_out != nullptr)
+      left_out->push_back(
+          fmt::format("of {} only {} are drawn", rows.columns[column].key, fmt::join(values, ", ")));
 
   std::vector<Plot> plots;
   for (const std::string& key : chosen_quantities(rows, measured_columns(rows, varied), of)) {

@@ -32,9 +32,12 @@ std::vector<std::string> measured_columns(const Table& rows, const std::vector<s
 ///                varied are numbers, or text as it was written.
 /// \param varied  keys of the parameters, in their order
 /// \param of      keys of the quantities; empty: what such a table is looked at for
+/// Of more than 24 curves, some wavelengths, frequencies and fields are left out.
+/// \param left_out  if not null, gains a line for each column of which only some values are drawn
 /// \throws InputError if no parameter is an axis, for a key that is no measured column, and for more than 60
-/// curves, saying what would be right.
+/// curves all the same, saying what would be right.
 std::vector<Plot> sweep_plots(const Table& rows, const std::vector<std::string>& varied,
-                              const std::vector<std::string>& of = {});
+                              const std::vector<std::string>& of = {},
+                              std::vector<std::string>* left_out = nullptr);
 
 }  // namespace petzval

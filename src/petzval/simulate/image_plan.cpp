@@ -268,14 +268,24 @@ ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, Ta
   return {std::move(scene), std::move(camera.table), {}, {}, std::move(options)};
 }
 
+/// Where the scene may end in the margin of the PSFs, the frame alone is filled.
+bool may_end_in_margin(const ImagePlan& plan) {
+  return !plan.depth && plan.options.imaging.surround != Surround::error;
+}
+
 double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
+  if (may_end_in_margin(plan)) {
+    ImagingOptions without_margin = plan.options.imaging;
+    without_margin.method = BlurMethod::none;
+    return covering_angle_deg(plan.scene, plan.table, sensor, without_margin);
+  }
   return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, plan.options.imaging,
                                                plan.options.depth)
                     : covering_angle_deg(plan.scene, plan.table, sensor, plan.options.imaging);
 }
 
-/// A chart or a photograph without an angle of its own fills the frame; without a sensor the frame follows
-/// the scene.
+/// A chart or a photograph without an angle of its own fills the frame, with the margin of the PSFs or (where
+/// it may end there) alone; without a sensor the frame follows the scene.
 void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest* request,
                        const Context& context, ImagingMemory* memory) {
   const std::optional<Sensor>& sensor = sensor_of(optics);
@@ -290,7 +300,8 @@ void fit_to_each_other(ImagePlan& plan, const Optics& optics, const SceneRequest
                     plan.frame.columns, plan.frame.rows, plan.frame.pitch_um));
   }
   plan.frame = sensor->geometry;
-  if (!request || !fills_frame(*request, optics, plan.options)) return;
+  if (!request || !is_open(*request) || has_width(*request)) return;
+  if (!may_end_in_margin(plan) && !fills_frame(*request, optics, plan.options)) return;
   const double fills_deg = filling_angle_deg(plan, plan.frame);
   const double angle_deg = std::max(fills_deg, plan.options.least_scene_angle_deg.value_or(0));
   if (!is_drawn_to_angle(request->name, request->options))
