@@ -43,14 +43,6 @@ SharpestPlace sharpest_place(std::span<const SharpnessAt> edges) {
   }
   const Eigen::Matrix3d inverse = normal.inverse();
   const Eigen::Vector3d p = inverse * right;
-  if (!p.allFinite() || !(p[2] > 0))
-    throw InputError(
-        "sharpness does not fall to both sides along the chart: the place of focus is not among its "
-        "edges");
-  const double u = -p[1] / (2 * p[2]);
-  if (std::abs(u) > 1)
-    throw InputError(
-        "sharpness is greatest beyond the edges along the chart: the place of focus is not among them");
   double scatter = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double v = (near[i].place - middle) / half;
@@ -59,6 +51,15 @@ SharpestPlace sharpest_place(std::span<const SharpnessAt> edges) {
   }
   // Few edges may agree by chance: never less than what they state.
   scatter = std::max(1.0, scatter / static_cast<double>(near.size() - 3));
+  constexpr double significant = 4;
+  if (!p.allFinite() || !(p[2] > significant * std::sqrt(scatter * inverse(2, 2))))
+    throw InputError(
+        "sharpness does not fall to both sides along the chart: the place of focus is not among its "
+        "edges");
+  const double u = -p[1] / (2 * p[2]);
+  if (std::abs(u) > 1)
+    throw InputError(
+        "sharpness is greatest beyond the edges along the chart: the place of focus is not among them");
   const Eigen::Vector3d slope(0, -1 / (2 * p[2]), -u / p[2]);
   SharpestPlace result;
   result.place = middle + half * u;
