@@ -65,40 +65,19 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
   return json;
 }
 
-/// A tilted chart's place of focus in each channel.
-struct ChannelFocus {
-  std::string channel;
-  SharpestPlace sharpest;
-  std::optional<double> depth_mm;  ///< towards where x or y grows, from the middle of the chart
-};
-
-/// By the edges that run across the axis, each of which is at one depth.
 std::vector<ChannelFocus> focus_of(const SfrReport& report, const FocusQuestion& question) {
-  std::map<std::string, std::vector<SharpnessAt>> by_channel;
-  for (const MeasuredEdge& edge : report.edges) {
-    const double normal = edge.exact.line.normal_rad;
-    const double along = question.along == 'x' ? std::cos(normal) : std::sin(normal);
-    if (std::abs(along) < std::cos(radians(30))) continue;
-    const EdgeLine& line = edge.exact.line;
-    const double scale = edge.on_chart ? edge.on_chart->per_mm : 1;
-    const double place = edge.on_chart ? (question.along == 'x' ? edge.on_chart->x_mm : edge.on_chart->y_mm)
-                                       : (question.along == 'x' ? line.centre_x : line.centre_y);
-    by_channel[edge.channel].push_back(
-        {place, edge.mtf50() * scale, edge.iso ? 0 : edge.exact.mtf50().deviation_cpp * scale});
+  try {
+    return focus_along(report.edges, question.along == 'x' ? ChartAxis::x : ChartAxis::y);
+  } catch (const InputError& error) {
+    throw InputError(report.image, error.what());
   }
-  std::vector<ChannelFocus> result;
-  if (by_channel.empty())
-    throw InputError(report.image, "no edge runs across the axis of --focus-along within 30 degrees");
-  for (const auto& [channel, edges] : by_channel) try {
-      ChannelFocus focus{channel, sharpest_place(edges), {}};
-      if (question.tilt_deg && report.chart_mm)
-        focus.depth_mm = (focus.sharpest.place - 0.5 * (*report.chart_mm)[question.along == 'x' ? 0 : 1]) *
-                         std::sin(radians(*question.tilt_deg));
-      result.push_back(focus);
-    } catch (const InputError& error) {
-      throw InputError(report.image, error.what());
-    }
-  return result;
+}
+
+/// Of a place on a tilted chart, from its middle; where both are known.
+std::optional<double> depth_of(const SfrReport& report, const FocusQuestion& question, double place_mm) {
+  if (!question.tilt_deg || !report.chart_mm) return std::nullopt;
+  return depth_on_tilted_chart(place_mm, (*report.chart_mm)[question.along == 'x' ? 0 : 1],
+                               *question.tilt_deg);
 }
 
 nlohmann::ordered_json focus_json(const SfrReport& report, const FocusQuestion& question) {
@@ -110,7 +89,7 @@ nlohmann::ordered_json focus_json(const SfrReport& report, const FocusQuestion& 
     one["along"] = std::string(1, question.along);
     one["place_" + unit] = focus.sharpest.place;
     one["deviation_" + unit] = focus.sharpest.deviation;
-    if (focus.depth_mm) one["depth_mm"] = *focus.depth_mm;
+    if (const auto depth = depth_of(report, question, focus.sharpest.place)) one["depth_mm"] = *depth;
     one["edges"] = focus.sharpest.edges;
     json.push_back(one);
   }
@@ -123,7 +102,8 @@ void print_focus(const SfrReport& report, const FocusQuestion& question) {
     fmt::print("{}{}{}sharpest at {} = {:.2f} +- {:.2f} {}, by {} edges", report.image, ": ",
                focus.channel.empty() ? "" : focus.channel + " ", question.along, focus.sharpest.place,
                focus.sharpest.deviation, unit, focus.sharpest.edges);
-    if (focus.depth_mm) fmt::print("; {:+.2f} mm in depth from the middle of the chart", *focus.depth_mm);
+    if (const auto depth = depth_of(report, question, focus.sharpest.place))
+      fmt::print("; {:+.2f} mm in depth from the middle of the chart", *depth);
     fmt::print("\n");
   }
 }

@@ -5,7 +5,10 @@
 #include <petzval/measure/colour_chart.h>
 #include <petzval/measure/photon_transfer.h>
 #include <petzval/measure/picture_comparison.h>
+#include <petzval/measure/sfr/frame_sharpness.h>
 #include <petzval/measure/sfr/measure_picture.h>
+#include <petzval/measure/sfr/sharpest_place.h>
+#include <petzval/report/sfr_page.h>
 
 #include <cmath>
 
@@ -65,7 +68,7 @@ PicturePlanes planes_of(const DoublesIn& values) {
   return result;
 }
 
-PicturePlanes planes_from(const nb::object& picture, const std::string& transfer) {
+PicturePlanes planes_from(const nb::object& picture, const std::string& transfer, bool demosaic) {
   if (nb::isinstance<PictureInPython>(picture)) return planes_of(nb::cast<const PictureInPython&>(picture));
   if (nb::isinstance<SpectralImage>(picture)) return planes_of(nb::cast<const SpectralImage&>(picture));
   if (nb::isinstance<RawImage>(picture)) return planes_of(nb::cast<const RawImage&>(picture));
@@ -74,17 +77,31 @@ PicturePlanes planes_from(const nb::object& picture, const std::string& transfer
                                choice<PictureTransfer>("transfer", transfer,
                                                        {{"stated", PictureTransfer::stated},
                                                         {"srgb", PictureTransfer::srgb},
-                                                        {"linear", PictureTransfer::linear}}));
+                                                        {"linear", PictureTransfer::linear}}),
+                               demosaic);
   return planes_of(nb::cast<DoublesIn>(picture));
 }
 
 struct Edges {
   std::vector<MeasuredEdge> all;
+  int columns = 0, rows = 0;  ///< of the picture
+
+  /// As places in the frame, of one direction or of all.
+  std::vector<EdgeInFrame> in_frame(const std::string& direction) const {
+    const auto wanted = choice<std::optional<EdgeDirection>>("direction", direction,
+                                                             {{"all", std::nullopt},
+                                                              {"meridional", EdgeDirection::meridional},
+                                                              {"sagittal", EdgeDirection::sagittal}});
+    std::vector<EdgeInFrame> edges = edges_in_frame(all, columns, rows);
+    if (wanted) std::erase_if(edges, [&](const EdgeInFrame& e) { return e.direction != *wanted; });
+    return edges;
+  }
 };
 
 Edges measured(const nb::object& picture, const nb::object& roi, const std::string& channel,
                const std::string& bayer, int edge_order, const std::string& method,
-               const std::string& transfer, int threads, const nb::object& progress) {
+               const std::string& transfer, bool demosaic, Maybe<std::array<double, 2>> chart_mm, int threads,
+               const nb::object& progress) {
   SfrRequest request{
       {}, channel, bayer, edge_order, choice<bool>("method", method, {{"exact", false}, {"iso", true}})};
   if (!roi.is_none()) {
@@ -92,10 +109,13 @@ Edges measured(const nb::object& picture, const nb::object& roi, const std::stri
     if (!nb::try_cast(roi, boxes)) boxes = {nb::cast<std::array<int, 4>>(roi)};
     for (const auto& [x, y, width, height] : boxes) request.rois.push_back({x, y, width, height});
   }
-  const PicturePlanes planes = planes_from(picture, transfer);
+  request.chart_mm = chart_mm;
+  const PicturePlanes planes = planes_from(picture, transfer, demosaic);
   const std::string name = nb::isinstance<nb::str>(picture) ? nb::cast<std::string>(picture) : "the picture";
   Call call({threads, 1, progress});
-  return call([&](const Context& context) { return Edges{measure_sfr(planes, request, name, context)}; });
+  return call([&](const Context& context) {
+    return Edges{measure_sfr(planes, request, name, context), planes.columns, planes.rows};
+  });
 }
 
 /// Of all edges, the middle one; an edge whose SFR stays above one half has none.
@@ -138,6 +158,13 @@ void bind_sfr(nb::module_& module) {
       .def_prop_ro("notes", [](const Edge& e) { return e.exact.notes; })
       .def_ro("lateral_offset_px", &Edge::lateral_offset_px,
               "From green along the normal, with all channels; else None.")
+      .def_prop_ro(
+          "on_chart",
+          [](const Edge& e) -> nb::object {
+            if (!e.on_chart) return nb::none();
+            return nb::make_tuple(e.on_chart->x_mm, e.on_chart->y_mm, e.mtf50() * e.on_chart->per_mm);
+          },
+          "With `chart_mm`: x and y of its middle on the chart [mm] and MTF50 there [cycles/mm]; else None.")
       .def("__repr__", [](const Edge& e) {
         return fmt::format("<Edge{}{} at {:.3f} degrees: MTF50 {:.4f} cycles/pixel>",
                            e.channel.empty() ? "" : " ", e.channel, e.angle_deg(), e.mtf50());
@@ -152,20 +179,62 @@ void bind_sfr(nb::module_& module) {
              return e.all[static_cast<std::size_t>(i)];
            })
       .def_prop_ro("mtf50", median_mtf50, "Median of the edges' [cycles/pixel].")
+      .def(
+          "map",
+          [](const Edges& e, const std::string& direction) {
+            SharpnessSurface surface = sharpness_surface(e.in_frame(direction), e.columns, e.rows);
+            return array_of(std::move(surface.mtf50_cpp), {static_cast<std::size_t>(surface.rows),
+                                                           static_cast<std::size_t>(surface.columns)});
+          },
+          nb::arg("direction") = "all",
+          "MTF50 over the frame [cycles/pixel], rows from the top, on a coarse grid; NaN where no edges are "
+          "near. "
+          "`direction`: all, meridional or sagittal.")
+      .def(
+          "over_height",
+          [](const Edges& e, const std::vector<double>& heights_px, const std::string& direction) {
+            return array_of(sharpness_over_height(e.in_frame(direction), heights_px));
+          },
+          nb::arg("heights_px"), nb::arg("direction") = "all",
+          "MTF50 at distances from the middle of the frame [pixels]; NaN where no edges are near.")
+      .def(
+          "map_svg",
+          [](const Edges& e) {
+            return sharpness_map_svg({"", e.columns, e.rows, {}, e.all, ""});
+          },
+          "The maps drawn, as `petzval sfr --map` does.")
+      .def(
+          "sharpest_along",
+          [](const Edges& e, const std::string& axis) {
+            const auto all = focus_along(
+                e.all, choice<ChartAxis>("axis", axis, {{"x", ChartAxis::x}, {"y", ChartAxis::y}}));
+            nb::dict result;
+            for (const ChannelFocus& focus : all)
+              result[nb::str(focus.channel.c_str())] =
+                  nb::make_tuple(focus.sharpest.place, focus.sharpest.deviation);
+            return result;
+          },
+          nb::arg("axis"),
+          "Where a tilted chart is sharpest along x or y: place and deviation of each channel, in mm with "
+          "`chart_mm`, "
+          "else in pixels.")
       .def("__repr__", [](const Edges& e) {
         return fmt::format("<Edges: {}, median MTF50 {:.4f} cycles/pixel>", e.all.size(), median_mtf50(e));
       });
-  module.def("sfr", measured, nb::arg("picture"), nb::arg("roi").none() = nb::none(), nb::kw_only(),
-             nb::arg("channel") = "luminance", nb::arg("bayer") = "", nb::arg("edge_order") = 0,
-             nb::arg("method") = "exact", nb::arg("transfer") = "stated", nb::arg("threads") = 0,
-             nb::arg("progress").none() = nb::none(),
-             "Spatial frequency response of slanted edges. `picture`: a Picture, SpectralImage, Raw (with "
-             "`bayer`), an array of linear light (row, column) or "
-             "(row, column, channel), or a file. `roi`: (x, y, width, height) of an edge, or a list of them; "
-             "None: every straight edge that stands out. "
-             "`channel`: luminance, red, green, blue or all. `edge_order`: 0, bent as far as the pixels "
-             "show, 1, straight, up to 5. `method`: "
-             "exact or iso.");
+  module.def(
+      "sfr", measured, nb::arg("picture"), nb::arg("roi").none() = nb::none(), nb::kw_only(),
+      nb::arg("channel") = "luminance", nb::arg("bayer") = "", nb::arg("edge_order") = 0,
+      nb::arg("method") = "exact", nb::arg("transfer") = "stated", nb::arg("demosaic") = false,
+      nb::arg("chart_mm").none() = nb::none(), nb::arg("threads") = 0,
+      nb::arg("progress").none() = nb::none(),
+      "Spatial frequency response of slanted edges. `picture`: a Picture, SpectralImage, Raw (with "
+      "`bayer`), an array of linear light (row, column) or "
+      "(row, column, channel), or a file. `roi`: (x, y, width, height) of an edge, or a list of them; "
+      "None: every straight edge that stands out. "
+      "`channel`: luminance, red, green, blue or all. `edge_order`: 0, bent as far as the pixels "
+      "show, 1, straight, up to 5. `method`: "
+      "exact or iso. `demosaic`: full planes of a raw file, not each colour for itself. `chart_mm`: width "
+      "and height of the printed chart that the picture shows.");
 }
 
 // ---- pictures

@@ -149,6 +149,22 @@ def test_target_and_its_sharpness(program, tmp_path):
     assert [edge.sfr.tolist() for edge in edges] == [edge["sfr"] for edge in told]
 
 
+def test_sharpness_over_the_frame(program, tmp_path):
+    program.run("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "chart.svg")
+    program.run("target", "--polygons", "chart.svg", "--size", "756x567", "--f-number", 8, "--wavelength", 550, "-o", "photo.npy")
+    told = program.json("sfr", "photo.npy", "--chart-size", "200x150")["edges"]
+    edges = pz.sfr(str(tmp_path / "photo.npy"), chart_mm=(200, 150))
+    assert [edge.on_chart for edge in edges] == [tuple(edge["on_chart"].values()) for edge in told]
+    # Every edge is as sharp: so is the surface through them.
+    middle = edges.map()[20:40, 20:40]
+    assert np.nanmax(np.abs(middle - edges.mtf50)) < 1e-3
+    assert np.abs(edges.over_height([100, 200]) - edges.mtf50).max() < 1e-3
+    program.run("sfr", "photo.npy", "--map", "map.svg")
+    assert "meridional" in edges.map_svg() and "meridional" in (tmp_path / "map.svg").read_text()
+    with pytest.raises(pz.InputError, match="beyond the edges|does not fall"):
+        edges.sharpest_along("x")
+
+
 def test_table(program, tmp_path):
     program.run("optics", "build", "edmund-54852", "--wavelengths", "450,550,650", *SENSOR[:1], "96x64@40", "-o", "table.h5")
     program.run("image", "studio", "--optics", "table.h5", "--sensor", "96x64@40", "--wavelengths", "450,550,650", "-o",

@@ -248,6 +248,15 @@ class Sfr(ProgramTest):
         for edge in edges:
             self.assertLess(abs(edge["lateral_offset_px"]), 2e-3)
 
+    def test_iso_on_found_edges_at_any_angle(self):
+        """Its box holds one edge alone; the method's own taper and bins cost up to 3 %."""
+        for angle in (5, 15, 30, 42):
+            self.assert_succeeds("target", "--rectangle", f"100x100@{angle}", *OPTICS, "-o", "t.npy")
+            exact, iso = (self.json_of("sfr", "t.npy", "--method", method)["edges"] for method in ("exact", "iso"))
+            self.assertEqual(len(iso), 4)
+            for a, b in zip(exact, iso):
+                self.assertAlmostEqual(b["mtf50_cpp"] / a["mtf50_cpp"], 1, delta=0.03)
+
     def test_files(self):
         self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "300x300", *OPTICS, "--bits", 16, "-o", "t.png")
         self.assert_succeeds("sfr", "t.png", "--csv", "s.csv", "--plot", "s.svg", "--profile", "p.csv", "--annotate", "a.svg")

@@ -8,7 +8,6 @@
 #include <petzval/measure/sfr/sharpest_place.h>
 #include <petzval/target/printed_chart.h>
 #include <petzval/target/render_target.h>
-#include <petzval/wave/radial_pupil.h>
 
 #include <cmath>
 #include <random>

@@ -38,6 +38,10 @@ struct BoardShot {
   SensorGeometry sensor;
 };
 
+void PrintTo(const BoardShot& shot, std::ostream* out) {
+  *out << shot.lens;
+}
+
 /// Whether a place of the board [pixels] is bright.
 bool on_bright_square(double x, double y) {
   const double c = std::cos(radians(board_tilt_deg)), s = std::sin(radians(board_tilt_deg));

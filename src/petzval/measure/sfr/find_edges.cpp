@@ -38,8 +38,10 @@ Axis axis_of(const FoundEdge& e) {
 
 /// How far from the ends samples are taken: corners round off over the blur, and the PSF's tail looks round
 /// them.
-double trim_of(const FoundEdge& edge) {
-  return std::clamp(0.12 * edge.length_px(), 3.0, 20.0);
+double trim_of(const FoundEdge& edge, double noise) {
+  // Half as much where noise hides what is left of the corners, 1e-3 of the SFR.
+  constexpr double noisy = 0.005;
+  return std::clamp((noise < noisy ? 0.12 : 0.06) * edge.length_px(), 3.0, 20.0);
 }
 
 /// Sets how far the edge is free on either side, over the part of it that is sampled.
@@ -61,9 +63,9 @@ void limit_reach(FoundEdge& edge) {
 }
 
 /// Samples over all of the edge, or, where it runs into another edge at one end, over the part that is free.
-void choose_part(FoundEdge& edge, double greatest_reach) {
+void choose_part(FoundEdge& edge, double greatest_reach, double noise) {
   constexpr double enough = 10;
-  const double half = 0.5 * edge.length_px() - trim_of(edge);
+  const double half = 0.5 * edge.length_px() - trim_of(edge, noise);
   struct Part {
     double from = 0, to = 0, dark = 0, bright = 0;
   } best;
@@ -141,6 +143,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
   constexpr std::size_t least_points = 24;
   constexpr double tolerance_px = 0.75, least_reach_px = 4;
   const Plane drawn = quiet(plane);
+  const double noise = noise_share(plane);
   std::vector<Outline> outlines;
   for (const LevelContour& contour : level_contours(drawn, halfway_level(drawn), least_points)) {
     std::vector<ContourPoint> corners = straightened(contour, tolerance_px);
@@ -161,7 +164,7 @@ FoundEdges find_edges(const Plane& plane, const EdgeSearchOptions& options) {
       for (const auto& [other, side] : grid.within(near_px + axis.half, axis.middle))
         if (other != o || (side + sides - stretch.first) % sides >= stretch.count)
           edge.neighbours.push_back(outlines[other].side(side));
-      choose_part(edge, options.greatest_reach_px);
+      choose_part(edge, options.greatest_reach_px, noise);
       if (std::min(edge.reach_dark_px, edge.reach_bright_px) >= least_reach_px)
         found.edges.push_back(std::move(edge));
     }

@@ -75,6 +75,37 @@ PixelBox box_around(const std::vector<EdgeSample>& samples) {
   return {x, y, static_cast<int>(right) - x + 1, static_cast<int>(bottom) - y + 1};
 }
 
+/// The upright box about the middle of a found edge's samples that holds none but them, and the edge well
+/// inside: that of their bounds would hold other edges, too, where the edge is turned by more than a few
+/// degrees.
+PixelBox box_within(const FoundEdge& edge, const Plane& plane) {
+  const EdgeLine line = edge.line();
+  const double along = 0.5 * (edge.sampled_from + edge.sampled_to),
+               half = 0.5 * (edge.sampled_to - edge.sampled_from);
+  const double reach = std::min(edge.reach_dark_px, edge.reach_bright_px);
+  // The direction of the edge is its normal turned by -90 degrees (FoundEdge::line).
+  const double c = std::cos(line.normal_rad), s = std::sin(line.normal_rad);
+  const double middle_x = line.centre_x + along * s, middle_y = line.centre_y - along * c;
+  const double cosine = std::max(std::abs(c), std::abs(s)), sine = std::min(std::abs(c), std::abs(s));
+  // Half sizes along and across the edge's nearer axis; the edge leaves the axis by `down` times its tangent.
+  constexpr double margin_px = 6, wide_px = 40;
+  double best_down = 0, best_across = 0;
+  for (int i = 20; i <= 100; ++i) {
+    const double down = 0.01 * i * half;
+    const double across =
+        std::min({(reach - down * sine) / cosine, (half - down * cosine) / std::max(1e-6, sine), wide_px});
+    if (across > down * sine / cosine + margin_px && down * across > best_down * best_across)
+      best_down = down, best_across = across;
+  }
+  const bool upright = std::abs(c) > std::abs(s);
+  const double half_width = upright ? best_across : best_down,
+               half_height = upright ? best_down : best_across;
+  const int left = std::max(0, static_cast<int>(std::ceil(middle_x - half_width))),
+            top = std::max(0, static_cast<int>(std::ceil(middle_y - half_height)));
+  return {left, top, std::min(plane.columns, static_cast<int>(middle_x + half_width)) - left,
+          std::min(plane.rows, static_cast<int>(middle_y + half_height)) - top};
+}
+
 class Measurement {
  public:
   Measurement(const SfrRequest& request, const PicturePlanes& picture, const std::vector<Channel>& channels,
@@ -193,7 +224,7 @@ class Measurement {
           channel, [&](const PixelLattice& lattice) { return samples_about(channel.plane, found, lattice); });
       if (samples.size() < 64) throw InputError("an edge with fewer than 64 pixels about it");
       MeasuredEdge edge{channel.name, box_around(samples), measure(channel, samples, &found, true), {}, {}};
-      if (request_.iso) edge.iso = iso_esfr(channel.plane, edge.roi);
+      if (request_.iso) edge.iso = iso_esfr(channel.plane, box_within(found, channel.plane));
       edges.push_back(std::move(edge));
     }
     compare_channels(edges);

@@ -9,8 +9,6 @@ namespace petzval {
 
 namespace {
 
-/// Standard deviation of the noise, from how far pixels lie from the mean of their neighbours to the left and
-/// right.
 double noise_of(const Plane& plane) {
   std::vector<double> rest;
   const std::size_t most = 100'000, pixels = plane.values.size(), step = 1 + pixels / most;
@@ -46,9 +44,13 @@ Plane smoothed(const Plane& plane) {
 
 }  // namespace
 
-Plane quiet(const Plane& plane) {
+double noise_share(const Plane& plane) {
   const auto [low, high] = std::minmax_element(plane.values.begin(), plane.values.end());
-  const double share = noise_of(plane) / std::max(1e-300, *high - *low);
+  return noise_of(plane) / std::max(1e-300, *high - *low);
+}
+
+Plane quiet(const Plane& plane) {
+  const double share = noise_share(plane);
   const int passes = share < 0.005 ? 0 : share < 0.02 ? 1 : share < 0.05 ? 3 : 6;
   Plane result = plane;
   for (int i = 0; i < passes; ++i) result = smoothed(result);

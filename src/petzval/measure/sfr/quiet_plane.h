@@ -6,6 +6,10 @@
 
 namespace petzval {
 
+/// The standard deviation of the noise, over the range of the values: from how far pixels lie from the mean
+/// of their neighbours to the left and right.
+double noise_share(const Plane& plane);
+
 /// What contours are drawn through: with noise of a hundredth of the contrast and more, smoothed.
 Plane quiet(const Plane& plane);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/measure/sfr/sharpest_place.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 namespace petzval {
@@ -41,14 +43,6 @@ SharpestPlace sharpest_place(std::span<const SharpnessAt> edges) {
   }
   const Eigen::Matrix3d inverse = normal.inverse();
   const Eigen::Vector3d p = inverse * right;
-  if (!p.allFinite() || !(p[2] > 0))
-    throw InputError(
-        "sharpness does not fall to both sides along the chart: the place of focus is not among its "
-        "edges");
-  const double u = -p[1] / (2 * p[2]);
-  if (std::abs(u) > 1)
-    throw InputError(
-        "sharpness is greatest beyond the edges along the chart: the place of focus is not among them");
   double scatter = 0;
   for (std::size_t i = 0; i < near.size(); ++i) {
     const double v = (near[i].place - middle) / half;
@@ -57,6 +51,15 @@ SharpestPlace sharpest_place(std::span<const SharpnessAt> edges) {
   }
   // Few edges may agree by chance: never less than what they state.
   scatter = std::max(1.0, scatter / static_cast<double>(near.size() - 3));
+  constexpr double significant = 4;
+  if (!p.allFinite() || !(p[2] > significant * std::sqrt(scatter * inverse(2, 2))))
+    throw InputError(
+        "sharpness does not fall to both sides along the chart: the place of focus is not among its "
+        "edges");
+  const double u = -p[1] / (2 * p[2]);
+  if (std::abs(u) > 1)
+    throw InputError(
+        "sharpness is greatest beyond the edges along the chart: the place of focus is not among them");
   const Eigen::Vector3d slope(0, -1 / (2 * p[2]), -u / p[2]);
   SharpestPlace result;
   result.place = middle + half * u;
@@ -64,6 +67,29 @@ SharpestPlace sharpest_place(std::span<const SharpnessAt> edges) {
   result.mtf50 = 1 / std::sqrt(std::max(1e-12, p[0] + p[1] * u + p[2] * u * u));
   result.edges = near.size();
   return result;
+}
+
+std::vector<ChannelFocus> focus_along(std::span<const MeasuredEdge> edges, ChartAxis axis) {
+  const bool along_x = axis == ChartAxis::x;
+  std::map<std::string, std::vector<SharpnessAt>> by_channel;
+  for (const MeasuredEdge& edge : edges) {
+    const EdgeLine& line = edge.exact.line;
+    const double along = along_x ? std::cos(line.normal_rad) : std::sin(line.normal_rad);
+    if (std::abs(along) < std::cos(radians(30))) continue;
+    const double scale = edge.on_chart ? edge.on_chart->per_mm : 1;
+    const double x = edge.on_chart ? edge.on_chart->x_mm : line.centre_x,
+                 y = edge.on_chart ? edge.on_chart->y_mm : line.centre_y;
+    by_channel[edge.channel].push_back(
+        {along_x ? x : y, edge.mtf50() * scale, edge.iso ? 0 : edge.exact.mtf50().deviation_cpp * scale});
+  }
+  if (by_channel.empty()) throw InputError("no edge runs across the axis of the tilt within 30 degrees");
+  std::vector<ChannelFocus> result;
+  for (const auto& [channel, sharpness] : by_channel) result.push_back({channel, sharpest_place(sharpness)});
+  return result;
+}
+
+double depth_on_tilted_chart(double place_mm, double length_mm, double tilt_deg) {
+  return (place_mm - 0.5 * length_mm) * std::sin(radians(tilt_deg));
 }
 
 }  // namespace petzval

@@ -2,7 +2,11 @@
 // Where a tilted chart is in focus.
 #pragma once
 
+#include <petzval/measure/sfr/measure_picture.h>
+
 #include <span>
+#include <string>
+#include <vector>
 
 namespace petzval {
 
@@ -24,5 +28,20 @@ struct SharpestPlace {
 /// InputError for fewer than four edges, where sharpness does not fall to both sides, or is greatest beyond
 /// the edges.
 SharpestPlace sharpest_place(std::span<const SharpnessAt> edges);
+
+enum class ChartAxis { x, y };
+
+struct ChannelFocus {
+  std::string channel;
+  SharpestPlace sharpest;  ///< in mm of the chart where edges say where they are on it, else in pixels
+};
+
+/// Where a tilted chart is sharpest along an axis, in each channel, by the edges that run across it within 30
+/// degrees: each of these is at one depth. \throws InputError without such edges, and as sharpest_place().
+std::vector<ChannelFocus> focus_along(std::span<const MeasuredEdge> edges, ChartAxis axis);
+
+/// How far behind or before the middle of a chart of `length_mm` a place along it stands, tilted by an angle:
+/// positive towards its far end in x or y.
+double depth_on_tilted_chart(double place_mm, double length_mm, double tilt_deg);
 
 }  // namespace petzval
