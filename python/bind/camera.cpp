@@ -301,7 +301,7 @@ void bind_plan(nb::module_& module) {
       module, "ImagingSession",
       "One flat scene through one camera after the other. Keeps what an alteration leaves valid: the scene, "
       "the table of the last lens, the last image. Gives the bytes of Camera.image().")
-      .def(nb::new_(session_of), nb::arg("scene"), nb::kw_only(), nb::arg("method") = "product",
+      .def(nb::new_(&session_of), nb::arg("scene"), nb::kw_only(), nb::arg("method") = "product",
            nb::arg("tolerance").none() = nb::none(), nb::arg("supersample") = 0,
            nb::arg("surround") = "error", nb::arg("interpolate") = "psf", nb::arg("fit") = "monotone",
            nb::arg("section").none() = nb::none(), nb::arg("layers") = 0,
