@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/optics/table_file.h>
+#include <petzval/simulate/imaging_session.h>
 
 #include "call.h"
 #include "scene.h"
@@ -157,6 +158,18 @@ ImagePlan plan_of(Optics optics, const nb::object& scene, const ImageOptions& op
   });
 }
 
+ImagingSession session_of(const nb::object& scene, const std::string& method, Maybe<double> tolerance,
+                          int supersample, const std::string& surround, const std::string& interpolate,
+                          const std::string& fit, Maybe<int> section, int layers,
+                          Maybe<double> least_scene_angle_deg) {
+  ImageOptions options = image_options(method, tolerance, supersample, surround, interpolate, fit, section,
+                                       layers, least_scene_angle_deg);
+  SceneChoice chosen = scene_from(scene);
+  if (auto* request = std::get_if<SceneRequest>(&chosen))
+    return ImagingSession(std::move(*request), std::move(options));
+  return ImagingSession(std::get<Scene>(std::move(chosen)), std::move(options));
+}
+
 Optics optics_of(const CameraInPython& camera) {
   if (!camera.lens)
     throw InputError(
@@ -166,6 +179,13 @@ Optics optics_of(const CameraInPython& camera) {
 
 Optics optics_of(const TableCamera& camera) {
   return camera;
+}
+
+template <typename Self>
+SpectralImage session_image(ImagingSession& session, const Self& optics, int threads,
+                            const nb::object& progress) {
+  Call call({threads, 1, progress});
+  return call([&](const Context& context) { return session.image(optics_of(optics), context); });
 }
 
 template <auto make, typename Self>
@@ -277,6 +297,19 @@ void bind_plan(nb::module_& module) {
            nb::arg("table"), nb::arg("sensor").none() = nb::none())
       .def("image", with_image_options<image_of, TableCamera>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS,
            image_text);
+  nb::class_<ImagingSession>(
+      module, "ImagingSession",
+      "One flat scene through one camera after the other. Keeps what an alteration leaves valid: the scene, "
+      "the table of the last lens, the last image. Gives the bytes of Camera.image().")
+      .def(nb::new_(&session_of), nb::arg("scene"), nb::kw_only(), nb::arg("method") = "product",
+           nb::arg("tolerance").none() = nb::none(), nb::arg("supersample") = 0,
+           nb::arg("surround") = "error", nb::arg("interpolate") = "psf", nb::arg("fit") = "monotone",
+           nb::arg("section").none() = nb::none(), nb::arg("layers") = 0,
+           nb::arg("least_scene_angle_deg").none() = nb::none(), "Keywords are those of Camera.image().")
+      .def("image", session_image<CameraInPython>, nb::arg("camera"), nb::kw_only(), nb::arg("threads") = 0,
+           nb::arg("progress").none() = nb::none(), "The light on the sensor.")
+      .def("image", session_image<TableCamera>, nb::arg("camera"), nb::kw_only(), nb::arg("threads") = 0,
+           nb::arg("progress").none() = nb::none());
 }
 
 }  // namespace

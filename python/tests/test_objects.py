@@ -232,3 +232,11 @@ def test_optional_packages_are_not_imported():
               "pz.Camera('edmund-54852').spots()\n"
               "assert 'numpy' in sys.modules and not {'xarray', 'matplotlib', 'torch', 'pandas'} & set(sys.modules)\n")
     subprocess.run([sys.executable, "-c", script], check=True)
+
+
+def test_imaging_session_has_the_bytes_of_single_images(camera):
+    scene = pz.SceneRequest("studio", wavelengths_nm=[500, 600])
+    session = pz.ImagingSession(scene, tolerance=1e-2)
+    for f_number in (4, 4, 5.6):
+        camera.f_number = f_number
+        assert np.array_equal(session.image(camera).values, camera.image(scene, tolerance=1e-2).values)

@@ -16,6 +16,7 @@
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
+#include <petzval/simulate/imaging_session.h>
 #include <petzval/simulate/outputs.h>
 #include <petzval/simulate/psf_stack.h>
 #include <petzval/simulate/render.h>

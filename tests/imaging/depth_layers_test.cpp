@@ -117,6 +117,35 @@ TEST(DepthLayers, AreAsManyAsWasAskedFor) {
       std::string::npos);
 }
 
+// Between a thing at 0.7 m and a wall at 3 m lie one or two samples of depths where nothing is. They belong
+// to either; a slope as steep, of more samples, is a slope.
+TEST(DepthLayers, HaveNoBeadsWhereASilhouetteRunsThroughSamples) {
+  const Lens lens = focused("dgauss-50mm", 3.0);
+  const DefocusLaw law(lens);
+  for (const std::vector<float>& between :
+       {std::vector<float>{1.2F}, {0.9F, 2.0F}, {0.75F, 0.82F, 0.9F, 1.0F, 1.2F, 1.5F, 1.9F, 2.4F}}) {
+    for (const bool upright : {false, true}) {
+      std::vector<float> line;
+      for (int i = 0; i < 20; ++i) line.push_back(0.7F + 1e-4F * static_cast<float>(i));
+      line.insert(line.end(), between.begin(), between.end());
+      for (int i = 0; i < 20; ++i) line.push_back(3 + 1e-3F * static_cast<float>(i));
+      const auto length = static_cast<int>(line.size());
+      Scene scene(upright ? 1 : length, upright ? length : 1, {550}, 1, 1.0);
+      scene.depth_m = line;
+      const DepthLayers layers = lay_depth_layers(scene, lens, law, 40, {});
+      const double near = double(layers.place[19]), far = double(layers.place[line.size() - 20]);
+      ASSERT_GT(std::abs(near - far), 4);
+      for (std::size_t i = 0; i < between.size(); ++i) {
+        const double place = double(layers.place[20 + i]), off = std::abs(place - near);
+        if (between.size() <= 2)
+          EXPECT_LT(off, 0.1) << between.size() << ' ' << i;
+        else if (i == 3 || i == 4)
+          EXPECT_GT(off, 1) << i;
+      }
+    }
+  }
+}
+
 TEST(DepthLayers, RefuseDepthsWithinTheLens) {
   const Lens lens = focused("dgauss-50mm", 1.0);
   Scene scene = ramp(0.7, 4);

@@ -102,6 +102,42 @@ void lay_by_blur(const std::vector<double>& marks, double pixel_um, const Defocu
   }
 }
 
+/// A sample that a silhouette runs through has a depth between what is before and what is behind, where
+/// nothing is. Along a line of samples it lies, alone or with one other, between two that go on on either
+/// side, and is taken to be part of what is before. As it is it would be a bead: a piece of a layer by
+/// itself, sharper than what it belongs to; and so it would be on what is behind if that is sharp.
+double settled_blur(const std::vector<double>& blurs, std::size_t sample, std::size_t step,
+                    std::size_t before, std::size_t behind, double pixel_um) {
+  constexpr double least_pixels = 2, going_on = 0.1, least = 0.005;
+  const double here = blurs[sample];
+  for (const auto& [back, on] : {std::pair<std::size_t, std::size_t>{1, 1}, {1, 2}, {2, 1}}) {
+    if (before < back + 1 || behind < on + 1) continue;
+    const double first = blurs[sample - back * step], last = blurs[sample + on * step],
+                 jump = std::abs(last - first);
+    // How far either side goes on from sample to sample: its own samples are no farther off.
+    const double of_first = std::abs(blurs[sample - (back + 1) * step] - first),
+                 of_last = std::abs(blurs[sample + (on + 1) * step] - last);
+    const bool between = (here - first) * (last - here) > 0 &&
+                         std::abs(here - first) > 2 * of_first + least * jump &&
+                         std::abs(here - last) > 2 * of_last + least * jump;
+    if (between && jump > least_pixels * pixel_um && of_first <= going_on * jump &&
+        of_last <= going_on * jump)
+      return std::max(first, last);  // before the focus blur is positive
+  }
+  return here;
+}
+
+std::vector<double> settled_blurs(const std::vector<double>& blurs, std::size_t columns, double pixel_um) {
+  std::vector<double> settled(blurs.size());
+  const std::size_t rows = blurs.size() / columns;
+  for (std::size_t i = 0; i < blurs.size(); ++i) {
+    const std::size_t row = i / columns, column = i % columns;
+    settled[i] = settled_blur(blurs, i, 1, column, columns - 1 - column, pixel_um);
+    if (settled[i] == blurs[i]) settled[i] = settled_blur(blurs, i, columns, row, rows - 1 - row, pixel_um);
+  }
+  return settled;
+}
+
 void place_samples(const std::vector<double>& blurs, DepthLayers& result) {
   std::vector<DepthLayer>& layers = result.layers;
   for (const double blur : blurs) {
@@ -162,7 +198,7 @@ DepthLayers lay_depth_layers(const Scene& scene, const Lens& lens, const Defocus
   const std::size_t most =
       options.layers > 0 ? static_cast<std::size_t>(options.layers) : std::max(few_depths, marks.size());
   if (!lay_by_depth(depth_m, blurs, most, result.layers)) lay_by_blur(marks, pixel_um, law, result.layers);
-  place_samples(blurs, result);
+  place_samples(settled_blurs(blurs, static_cast<std::size_t>(scene.columns()), pixel_um), result);
   return result;
 }
 

@@ -140,7 +140,7 @@ class FieldChoice {
   }
 
   bool says_enough(const Interval& interval) const {
-    constexpr double of_tolerance = 0.3, most_at_rim = 4;
+    constexpr double of_tolerance = 0.3, of_centre = 0.1, most_at_rim = 4;
     const LensDataTable& table = parts_.table();
     const auto height_mm = [&](std::size_t field) {
       return table.real_image_height_mm[table.index(field, wavelength_)];
@@ -156,7 +156,8 @@ class FieldChoice {
     // A bump of the centre's height in an interval moves light together by four times its slope.
     const double moved_mm =
         std::abs(said.moments().mean[1] - own.moments().mean[1]) * wanted_.cell_um * mm_per_um;
-    return 4 * moved_mm <= allowed * (to_mm - from_mm) && difference(said, own) <= allowed;
+    return 4 * moved_mm <= of_centre * wanted_.tolerance * (to_mm - from_mm) &&
+           difference(said, own) <= allowed;
   }
 
   HeightTable& parts_;

@@ -14,11 +14,11 @@ struct SpreadWanted {
 
 /// The table of a lens as one image needs it. From a tolerance of 3·10⁻³ on, that of a preview, PSFs are made
 /// for as few fields as serve; chief rays and illumination are those of all. A PSF in the middle between two
-/// is compared with what they say of it (HeightKernels), at the middle wavelength. Where it differs by more
-/// than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to four
-/// times as much), in kernels or in the centre of light, it is taken too, and the halves are looked at. Light
-/// is then sampled no finer than a sixth of a cell asks for. Finer pictures, and places over the frame, have
-/// the table of build_lens_data_table(). \throws InputError as that.
+/// is compared with what they say of it (HeightKernels), at the middle wavelength. Where its kernel differs
+/// by more than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to
+/// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at. Light is
+/// then sampled no finer than a sixth of a cell asks for. Finer pictures, and places over the frame, have the
+/// table of build_lens_data_table(). \throws InputError as that.
 LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
                                 const ProgressCallback& progress = {});
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/camera/mounted_lens.h>
+#include <petzval/imaging/image_table.h>
 #include <petzval/imaging/layer_plan.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/trace/tracer.h>
@@ -62,7 +63,11 @@ LensDataTable layer_table(const DepthCamera& camera, const DepthLayers& layers, 
   const LayerLens own = layer_lens(camera, layers, layer, pixel_um);
   if (camera.made)
     if (auto made = camera.made->extract(own.key())) return std::move(made.mapped());
-  return build_lens_data_table(own.lens, own.options, progress);
+  if (layers.layers.size() == 1) return build_lens_data_table(own.lens, own.options, progress);
+  // Layers lie a pixel of blur apart: what lies between two is farther from either than this.
+  constexpr double tolerance = 1e-2;
+  constexpr int cells_a_pixel = 2;
+  return build_image_table(own.lens, own.options, {pixel_um / cells_a_pixel, tolerance}, progress);
 }
 
 void keep_layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
