@@ -4,6 +4,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/iset.h>
+#include <petzval/lens/formats/iset_transfer.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
@@ -63,6 +64,10 @@ Lens read_iset_text(const std::string& text) {
   return read_iset(JsonDocument(text, "fuzz")).lens;
 }
 
+Lens read_iset_transfer_text(const std::string& text) {
+  return read_iset_transfer(JsonDocument(text, "fuzz")).lens;
+}
+
 }  // namespace
 
 bool try_native(std::string_view bytes) {
@@ -76,6 +81,9 @@ bool try_seq(std::string_view bytes) {
 }
 bool try_pbrt(std::string_view bytes) {
   return try_lens(bytes, read_pbrt_text, pbrt_text);
+}
+bool try_iset_transfer(std::string_view bytes) {
+  return try_lens(bytes, read_iset_transfer_text, iset_transfer_text);
 }
 bool try_iset(std::string_view bytes) {
   return try_lens(bytes, read_iset_text, iset_text);

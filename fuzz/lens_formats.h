@@ -14,5 +14,6 @@ bool try_zmx(std::string_view bytes);
 bool try_seq(std::string_view bytes);
 bool try_pbrt(std::string_view bytes);
 bool try_iset(std::string_view bytes);
+bool try_iset_transfer(std::string_view bytes);
 
 }  // namespace petzval::fuzz

@@ -19,6 +19,7 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_match(*lens, shared);
   add_lens_new(*lens, shared);
   add_lens_reverse(*lens, shared);
+  add_lens_transfer(*lens, shared);
   add_lens_optimise(*lens, shared);
   add_lens_tolerance(*lens, shared);
   add_lens_convert(*lens, shared);

@@ -22,6 +22,7 @@ void add_lens_for_sensor(CLI::App& lens, Shared& shared);
 void add_lens_match(CLI::App& lens, Shared& shared);
 void add_lens_new(CLI::App& lens, Shared& shared);
 void add_lens_reverse(CLI::App& lens, Shared& shared);
+void add_lens_transfer(CLI::App& lens, Shared& shared);
 void add_lens_optimise(CLI::App& lens, Shared& shared);
 void add_lens_tolerance(CLI::App& lens, Shared& shared);
 

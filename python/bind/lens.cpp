@@ -2,6 +2,7 @@
 #include "lens.h"
 
 #include <petzval/analysis/field_values.h>
+#include <petzval/analysis/transfer_fit.h>
 
 #include <cmath>
 
@@ -230,6 +231,25 @@ void bind_lens(nb::module_& module) {
           nb::arg("path"),
           "Writes .json, .iset.json, .dat, .zmx or .seq, whole or not at all. A warning tells what a format "
           "leaves out.")
+      .def(
+          "transfer",
+          [](const Lens& self, double tolerance_mm, std::optional<int> degree,
+             std::optional<double> film_radius_mm, const Numbers& wavelengths_nm) {
+            TransferFitRequest request;
+            request.tolerance_mm = tolerance_mm;
+            request.degree = degree;
+            request.film_radius_mm = film_radius_mm;
+            request.wavelengths_nm = wavelengths_nm;
+            return std::make_shared<Lens>(fit_transfer(self, request).lens);
+          },
+          nb::kw_only(), nb::arg("tolerance_mm") = TransferFitRequest().tolerance_mm,
+          nb::arg("degree").none() = nb::none(), nb::arg("film_radius_mm").none() = nb::none(),
+          nb::arg("wavelengths_nm") = Numbers(),
+          "What the lens does to rays, in place of its surfaces: a Lens of two planes. `tolerance_mm`: what "
+          "rays "
+          "held out may be off by in front, and in direction by this over the focal length. Raises "
+          "InputError "
+          "where no degree up to 7 meets it.")
       .def(
           "to_json",
           [](const Lens& self) {

@@ -4,6 +4,7 @@
 #include <petzval/lens/lens.h>
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/transfer-inl.h>
+#include <petzval/numeric/quadrature.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -118,6 +119,44 @@ void fit_start(TransferData<double>& data, double largest_radius_mm) {
                 static_cast<Eigen::Index>(o / 2));
 }
 
+/// The integral ∫ f·dg/dt by Gauss-Legendre nodes, dg/dt that of the polynomial through g.
+void set_path_weights(TransferData<double>& data) {
+  constexpr std::size_t count = transfer_path_nodes;
+  const QuadratureRule rule = gauss_legendre(static_cast<int>(count), 0, 1);
+  data.path_at = rule.nodes;
+  data.path_weights.assign(count * count, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < count; ++k) {
+      // The derivative at node i of the polynomial that is 1 at node k and 0 at the others.
+      double slope = 0;
+      for (std::size_t m = 0; m < count; ++m) {
+        if (m == k) continue;
+        double product = 1 / (rule.nodes[k] - rule.nodes[m]);
+        for (std::size_t n = 0; n < count; ++n)
+          if (n != k && n != m) product *= (rule.nodes[i] - rule.nodes[n]) / (rule.nodes[k] - rule.nodes[n]);
+        slope += product;
+      }
+      data.path_weights[i * count + k] = rule.weights[i] * slope;
+    }
+}
+
+/// About where in front the light of a direction has its middle.
+void fit_centre(TransferData<double>& data, double largest_radius_mm) {
+  constexpr int terms = 4;
+  const std::vector<TransferRay> rays = domain_rays(data, largest_radius_mm, check_radii, check_across);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(rays.size()), terms);
+  Eigen::VectorXd wanted(rows.rows());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const TransferRay front = carried_back(data, rays[i]).front;
+    const double square = front.l * front.l + front.m * front.m;
+    const auto row = static_cast<Eigen::Index>(i);
+    for (int k = 0; k < terms; ++k) rows(row, k) = front.m * std::pow(square, k);
+    wanted(row) = front.y;
+  }
+  const Eigen::VectorXd found = rows.colPivHouseholderQr().solve(wanted);
+  data.centre.assign(found.data(), found.data() + terms);
+}
+
 /// What turned polynomials leave undecided on the axis, where they should turn with the ray.
 void find_jump(TransferData<double>& data) {
   if (data.back.variables == TransferVariables::invariants) return;
@@ -187,18 +226,21 @@ TransferData<double> data_at(const RayTransfer& transfer, double nm) {
   data.length_mm = transfer.length_mm;
   const std::vector<Powers> all = closed(transfer.terms);
   const std::size_t outputs = outputs_of(transfer);
-  data.back = made_of(transfer.variables, transfer.unit_mm, outputs, all);
+  const std::size_t room = outputs == 4 ? 4 : outputs <= 8 ? 8 : 4 + 2 * most_transfer_apertures;
+  data.back = made_of(transfer.variables, transfer.unit_mm, room, all);
   for (std::size_t t = 0; t < transfer.terms.size(); ++t) {
     const auto k =
         static_cast<std::size_t>(std::find(all.begin(), all.end(), transfer.terms[t]) - all.begin());
     for (std::size_t o = 0; o < outputs; ++o)
       for (std::size_t b = 0; b < weights.size(); ++b)
-        data.back.coefficients[k * outputs + o] += weights[b] * transfer.bands[b].coefficients[o][t];
+        data.back.coefficients[k * room + o] += weights[b] * transfer.bands[b].coefficients[o][t];
   }
   data.ellipses = ellipses_at(transfer, nm);
   data.stop_radius = transfer.aperture_radii_mm.front();
   for (std::size_t i = 1; i < transfer.aperture_radii_mm.size(); ++i)
     data.other_radii_sq.push_back(transfer.aperture_radii_mm[i] * transfer.aperture_radii_mm[i]);
+  // Apertures that there is room for and that are not there let all light through, at their middle.
+  while (room > 4 && data.other_radii_sq.size() + 1 < (room - 4) / 2) data.other_radii_sq.push_back(1);
   return data;
 }
 
@@ -291,8 +333,12 @@ void check_folds(const RayTransfer& t, const TransferData<double>& data, double 
     // On the axis itself turned polynomials have no slope.
     if (ray.y < 0.05 * t.largest_radius_mm && t.variables == TransferVariables::turned) continue;
     const TransferRay front = carried_back(data, ray).front;
+    if (!(front.l * front.l + front.m * front.m < 1))
+      throw InputError(fmt::format("its polynomials at {:g} nm turn a ray {:.3g} mm from the axis round: "
+                                   "direction cosines beyond 1",
+                                   nm, ray.y));
     const double kept = etendue_at(data, ray, t.largest_radius_mm);
-    if (!(kept > least_etendue && kept < 1 / least_etendue && front.l * front.l + front.m * front.m < 1))
+    if (!(kept > least_etendue && kept < 1 / least_etendue))
       throw InputError(
           fmt::format("its polynomials at {:g} nm fold {:.3g} mm from the axis: of the light there, {:.3g} "
                       "arrives where all of it should",
@@ -315,6 +361,8 @@ std::shared_ptr<const TransferData<double>> RayTransfer::at(double wavelength_nm
     auto data = std::make_shared<TransferData<double>>(data_at(*this, nm));
     find_jump(*data);
     fit_start(*data, largest_radius_mm);
+    fit_centre(*data, largest_radius_mm);
+    set_path_weights(*data);
     kept = data;
   }
   return kept;
@@ -447,6 +495,9 @@ TransferData<float> in_float(const TransferData<double>& from) {
                  floats(from.ellipses.centre_y)};
   to.stop_radius = static_cast<float>(from.stop_radius);
   to.other_radii_sq = floats(from.other_radii_sq);
+  to.centre = floats(from.centre);
+  to.path_at = floats(from.path_at);
+  to.path_weights = floats(from.path_weights);
   to.jump_mm = static_cast<float>(from.jump_mm);
   to.jump = static_cast<float>(from.jump);
   return to;

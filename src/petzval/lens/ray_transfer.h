@@ -83,6 +83,10 @@ TransferredRay carried_back(const TransferData<double>& data, const TransferRay&
 std::vector<TransferRay> domain_rays(const TransferData<double>& data, double largest_radius_mm,
                                      std::size_t radii, std::size_t across);
 
+/// A transfer in invariants written in r, dx and dy, its domain by ellipses, as ISET has it: the same rays, and
+/// at each place an ellipse as high and as wide. Others are returned as they are.
+RayTransfer turned_form(const RayTransfer& transfer);
+
 /// Of a lens that has no glass to speak of.
 bool is_ray_transfer(const Lens& lens);
 /// \throws InputError "<what> need(s) the surfaces of a lens, and <name> is known by its ray transfer alone".

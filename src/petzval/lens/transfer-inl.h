@@ -172,23 +172,23 @@ HWY_INLINE CarriedRay<V> carry_back(const TransferData<T>& data, const PlaneRay<
   switch (data.back.outputs) {
     case 4:
       return carry_with<0>(data, ray);
-    case 6:
-      return carry_with<1>(data, ray);
     case 8:
       return carry_with<2>(data, ray);
     default:
-      return carry_with<3>(data, ray);
+      return carry_with<6>(data, ray);
   }
 }
 
 /// The ray of the rear plane that goes to a ray in front, with what it meets. The target is moved by what the
 /// start misses until that lands on it: the map and its start undo each other nearly, so each turn gains
-/// digits. \returns by how much the last one still missed, relative to what may be left.
+/// digits. \returns by how much the last one still missed, relative to what polynomials that jump leave open.
 template <class V, class T>
 HWY_INLINE V carry_forth(const TransferData<T>& data, const PlaneRay<V>& front, PlaneRay<V>& rear,
                          CarriedRay<V>& carried) {
   const double least = std::is_same_v<T, float> ? 2e-6 : 1e-13;
-  const V per_mm = constant<V>(1 / (static_cast<double>(data.jump_mm) + least * (1 + data.length_mm)));
+  const double least_mm = least * (1 + static_cast<double>(data.length_mm));
+  const V close_mm = constant<V>(1 / least_mm), close = constant<V>(1 / least);
+  const V per_mm = constant<V>(1 / (static_cast<double>(data.jump_mm) + least_mm));
   const V per_one = constant<V>(1 / (static_cast<double>(data.jump) + least));
   PlaneRay<V> target = front;
   V miss = constant<V>(0);
@@ -200,25 +200,25 @@ HWY_INLINE V carry_forth(const TransferData<T>& data, const PlaneRay<V>& front, 
     carried = carry_back(data, rear);
     const V x = carried.front.x - front.x, y = carried.front.y - front.y;
     const V l = carried.front.l - front.l, m = carried.front.m - front.m;
-    miss = at_least(at_least(magnitude(x), magnitude(y)) * per_mm,
-                    at_least(magnitude(l), magnitude(m)) * per_one);
+    const V place = at_least(magnitude(x), magnitude(y)), slope = at_least(magnitude(l), magnitude(m));
+    miss = at_least(place * per_mm, slope * per_one);
+    const V left = at_least(place * close_mm, slope * close);
     if constexpr (std::is_floating_point_v<V>) {
-      if (!(miss > 1)) break;
+      if (!(left > 1)) break;
     } else {
-      if (hn::AllFalse(hn::DFromV<V>(), hn::Gt(miss, constant<V>(1)))) break;
+      if (hn::AllFalse(hn::DFromV<V>(), hn::Gt(left, constant<V>(1)))) break;
     }
     target = {target.x - x, target.y - y, target.l - l, target.m - m};
   }
   return miss;
 }
 
-/// The optical path of a ray from front plane to rear plane [mm], that along the axis being the length. It is
+/// The optical path of a ray from front plane to rear plane [mm], that along the axis being the length,
 /// integrated over rays (tq, tp) of the rear plane, 0 ≤ t ≤ 1: dV = p_rear·dq_rear − p_front·dq_front of a
-/// point characteristic V (Hamilton; Born & Wolf 4.1). Parts of one degree n in t are t^n times a number
-/// each, so the integral is a sum. What it is worth: the polynomials', which give a little more or less along
-/// other ways than this where they break étendue.
+/// point characteristic V (Hamilton; Born & Wolf 4.1). Parts of one degree n in t are t^n times a number each,
+/// so the integral is a sum.
 template <class V, class T>
-HWY_INLINE V transfer_path(const TransferData<T>& data, const PlaneRay<V>& ray) {
+HWY_INLINE V path_from_axis(const TransferData<T>& data, const PlaneRay<V>& ray) {
   const TransferPolynomials<T>& p = data.back;
   const TransferArguments<V> arguments = arguments_of(p, ray);
   V term[most_transfer_terms];
@@ -246,6 +246,39 @@ HWY_INLINE V transfer_path(const TransferData<T>& data, const PlaneRay<V>& ray) 
       path = mul_add(constant<V>(static_cast<double>(degrees[q]) / (degrees[q] + degrees[n])),
                      mul_add(part[n].l, part[q].x, part[n].m * part[q].y), path);
   }
+  return path;
+}
+
+/// The optical path of a ray: from the axis to the middle of the light that comes in with its direction, and
+/// from there straight across the pupil. Ways differ where polynomials break étendue; on this one the waves of
+/// an object far away have the slopes of its rays, whatever the polynomials are worth elsewhere.
+template <class V, class T>
+HWY_INLINE V transfer_path(const TransferData<T>& data, const PlaneRay<V>& front, const PlaneRay<V>& ray) {
+  const V square = mul_add(front.l, front.l, front.m * front.m);
+  V place = constant<V>(0);
+  for (std::size_t k = data.centre.size(); k-- > 0;)
+    place = mul_add(place, square, constant<V>(static_cast<double>(data.centre[k])));
+  const PlaneRay<V> middle{front.l * place, front.m * place, front.l, front.m};
+  V out[4];
+  const TransferArguments<V> arguments = arguments_of(data.start, middle);
+  evaluate_terms(data.start, arguments, out);
+  const PlaneRay<V> base = combined(data.start, arguments, middle, out);
+  const PlaneRay<V> way{ray.x - base.x, ray.y - base.y, ray.l - base.l, ray.m - base.m};
+  PlaneRay<V> at[transfer_path_nodes];
+  for (std::size_t i = 0; i < transfer_path_nodes; ++i) {
+    const V t = constant<V>(static_cast<double>(data.path_at[i]));
+    const PlaneRay<V> rear{mul_add(t, way.x, base.x), mul_add(t, way.y, base.y), mul_add(t, way.l, base.l),
+                           mul_add(t, way.m, base.m)};
+    const TransferArguments<V> of = arguments_of(data.back, rear);
+    evaluate_terms(data.back, of, out);
+    at[i] = combined(data.back, of, rear, out);
+  }
+  const V half = constant<V>(-0.5);
+  V path = half * mul_add(base.l + ray.l, way.x, (base.m + ray.m) * way.y) + path_from_axis(data, base);
+  for (std::size_t i = 0; i < transfer_path_nodes; ++i)
+    for (std::size_t k = 0; k < transfer_path_nodes; ++k)
+      path = mul_add(constant<V>(static_cast<double>(data.path_weights[i * transfer_path_nodes + k])),
+                     mul_add(at[i].l, at[k].x, at[i].m * at[k].y), path);
   return path;
 }
 

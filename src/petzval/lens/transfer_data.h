@@ -53,6 +53,10 @@ struct TransferData {
   TransferEllipses<T> ellipses;   ///< of the stop, whose coordinates they scale
   T stop_radius = 1;              ///< in the stop's coordinates [mm]
   std::vector<T> other_radii_sq;  ///< of the apertures beside the stop [mm²]
+  /// About the front place of the middle of the light that travels with p: p Σ centre[k] (p·p)^k.
+  std::vector<T> centre;
+  /// ∫ f·dg/dt over 0 ≤ t ≤ 1 is Σ path_weights[i·n + k] f(path_at[i])·g(path_at[k]).
+  std::vector<T> path_at, path_weights;
   /// What the inverse may leave of a ray: the polynomials of ISET jump at the axis by so much.
   T jump_mm = 0, jump = 0;
 };

@@ -7,11 +7,13 @@
 namespace petzval {
 
 /// Terms with those that they are made of.
-constexpr std::size_t most_transfer_terms = 256;
+constexpr std::size_t most_transfer_terms = 512;
 /// Powers of a ray's length.
 constexpr std::size_t most_transfer_degree = 24;
-constexpr std::size_t most_transfer_apertures = 3;
+constexpr std::size_t most_transfer_apertures = 6;
 constexpr std::size_t most_transfer_bands = 64;
+/// Nodes of the integral over a pupil that gives optical paths: exact for terms of the fifteenth degree.
+constexpr std::size_t transfer_path_nodes = 8;
 /// Turns of the iteration that inverts it.
 constexpr int most_transfer_turns = 60;
 /// Beyond so many radii of the stop, squared, polynomials say nothing any more.

@@ -42,6 +42,7 @@ struct KernelSurface {
   /// but the clip, in the coordinates of the transfer's stop.
   std::shared_ptr<const TransferData<T>> transfer;
   bool clips_others = false;  ///< at the transfer's other apertures
+  bool counts_path = true;    ///< through the transfer; costs ten times the way itself
 };
 
 /// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.

@@ -27,13 +27,14 @@ bool carry(const TransferData<double>& transfer, bool backward, SurfaceRay& ray,
   if (backward ? !(ray.n < 0) : !(ray.n > 0)) return false;
   if (!step_to_plane(backward ? length : 0, ray)) return false;
   Plane rear{ray.x, ray.y, ray.l, ray.m};
+  Plane in_front{};
   HWY_NAMESPACE::CarriedRay<double> carried;
   if (backward) {
     carried = HWY_NAMESPACE::carry_back(transfer, rear);
   } else {
     const Plane front{ray.x, ray.y, -ray.l, -ray.m};
     if (!(HWY_NAMESPACE::carry_forth(transfer, front, rear, carried) <= transfer_found_within)) return false;
-    carried.front = front;
+    in_front = front;
   }
   const double share = (carried.stop_x * carried.stop_x + carried.stop_y * carried.stop_y) /
                        (transfer.stop_radius * transfer.stop_radius);
@@ -41,7 +42,7 @@ bool carry(const TransferData<double>& transfer, bool backward, SurfaceRay& ray,
   const Plane& end = backward ? carried.front : rear;
   const double cosine_sq = 1 - end.l * end.l - end.m * end.m;
   if (!(cosine_sq > 0)) return false;
-  const double opl = ray.opl + HWY_NAMESPACE::transfer_path(transfer, rear);
+  const double opl = ray.opl + HWY_NAMESPACE::transfer_path(transfer, backward ? carried.front : in_front, rear);
   crossing = {ray, carried.stop_x, carried.stop_y, carried.others_sq};
   if (backward)
     ray = {end.x, end.y, 0, end.l, end.m, -std::sqrt(cosine_sq), opl};

@@ -118,17 +118,10 @@ std::vector<std::array<int, 3>> terms_of(const std::vector<IsetBand>& bands) {
   return terms;
 }
 
-/// One more step at the end of the table: the film's corner often lies just beyond it.
-RayTransfer::Ellipses extended(RayTransfer::Ellipses ellipses) {
-  const auto extend = [](std::vector<double>& list) {
-    list.push_back(2 * list.back() - list[list.size() - 2]);
-  };
-  for (std::vector<double>* list :
-       {&ellipses.positions_mm, &ellipses.radius_x_mm, &ellipses.radius_y_mm, &ellipses.centre_y_mm})
-    if (list->size() > 1) extend(*list);
-  for (std::vector<double>* list : {&ellipses.radius_x_mm, &ellipses.radius_y_mm})
-    for (double& radius : *list) radius = std::max(radius, 0.0);
-  return ellipses;
+/// The table goes on for one more step: the film's corner often lies just beyond it.
+double reach_mm(const RayTransfer::Ellipses& ellipses) {
+  const std::vector<double>& at = ellipses.positions_mm;
+  return 2 * at.back() - at[at.size() - 2];
 }
 
 std::shared_ptr<const RayTransfer> transfer_of(std::vector<IsetBand> bands, double length_mm) {
@@ -140,18 +133,22 @@ std::shared_ptr<const RayTransfer> transfer_of(std::vector<IsetBand> bands, doub
   transfer.terms = terms_of(bands);
   transfer.aperture_radii_mm = {
       bands.front().ellipses.radius_x_mm.empty() ? 0.0 : bands.front().ellipses.radius_x_mm.front()};
+  if (!(transfer.aperture_radii_mm.front() > 0))
+    throw InputError("its domain is empty: no ray of the axis passes");
   for (const IsetBand& from : bands) {
-    RayTransfer::Band band{from.wavelength_nm, {}, extended(from.ellipses)};
+    RayTransfer::Band band{from.wavelength_nm, {}, from.ellipses};
     for (const char* name : {"outx", "outy", "outdx", "outdy"}) {
       std::vector<double> coefficients;
       const Polynomial& polynomial = from.polynomials.at(name);
       for (const Powers& powers : transfer.terms) {
         const auto found = polynomial.find(powers);
-        coefficients.push_back(found == polynomial.end() ? 0 : found->second);
+        // The ray along the axis stays there, whatever constant a fit has left.
+        const bool constant = powers == Powers{0, 0, 0};
+        coefficients.push_back(found == polynomial.end() || constant ? 0 : found->second);
       }
       band.coefficients.push_back(std::move(coefficients));
     }
-    transfer.largest_radius_mm = std::max(transfer.largest_radius_mm, band.ellipses->positions_mm.back());
+    transfer.largest_radius_mm = std::max(transfer.largest_radius_mm, reach_mm(from.ellipses));
     transfer.bands.push_back(std::move(band));
   }
   return made_ready(std::move(transfer));
@@ -176,7 +173,7 @@ Lens lens_of(const std::shared_ptr<const RayTransfer>& transfer) {
   lens.wavelengths_nm.clear();
   for (const RayTransfer::Band& band : transfer->bands) lens.wavelengths_nm.push_back(band.wavelength_nm);
   lens.reference_wavelength_nm = lens.wavelengths_nm[lens.wavelengths_nm.size() / 2];
-  const double edge_mm = transfer->bands.front().ellipses->positions_mm.end()[-2];
+  const double edge_mm = transfer->bands.front().ellipses->positions_mm.back();
   lens.fields = {Fields::Kind::paraxial_image_height_mm, {0, 0.5 * edge_mm, 0.7 * edge_mm, 0.9 * edge_mm}};
   return lens;
 }

@@ -57,21 +57,19 @@ std::string iset_band_text(const RayTransfer& transfer, const RayTransfer::Band&
 }  // namespace
 
 std::string iset_transfer_text(const Lens& lens) {
-  const RayTransfer* transfer = lens.surfaces.front().transfer.get();
-  if (!transfer || transfer->variables != TransferVariables::turned || !transfer->bands.front().ellipses)
+  if (!lens.surfaces.front().transfer)
     throw InputError(
-        "ISET's ray-transfer files hold polynomials in r, dx and dy with ellipses; a ray transfer fitted in "
-        "those "
-        "would be right");
+        "ISET's ray-transfer files hold a lens known by its ray transfer; one fitted to this lens would be right");
+  const RayTransfer transfer = turned_form(*lens.surfaces.front().transfer);
   std::vector<std::string> bands;
-  for (const RayTransfer::Band& band : transfer->bands) bands.push_back(iset_band_text(*transfer, band));
+  for (const RayTransfer::Band& band : transfer.bands) bands.push_back(iset_band_text(transfer, band));
   // The planes are ours to choose: the lens lies between them, and they touch it.
   return fmt::format(
       "{{\"description\": {},\n \"name\": {},\n \"thickness\": {},\n \"planeoffsetoutput\": 0,\n "
       "\"planeoffsetinput\": 0,\n \"useDZpolynomial\": false,\n \"polynomials\": [\n{}]}}\n",
       nlohmann::json(lens.source).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
       nlohmann::json(lens.name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-      number_text(transfer->length_mm), fmt::join(bands, ",\n"));
+      number_text(transfer.length_mm), fmt::join(bands, ",\n"));
 }
 
 }  // namespace petzval

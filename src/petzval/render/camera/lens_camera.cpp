@@ -54,6 +54,7 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   for (const Tracer& tracer : tracers_) {
     const Tracer bladed = tracer.with_blades(blades);
     to_scene_.push_back(kernel_path<double>(bladed, true, Tracer::Clip::apertures));
+    for (KernelSurface<double>& surface : to_scene_.back().surfaces) surface.counts_path = false;
     if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
   if (options.diffraction)
