@@ -68,6 +68,20 @@ void expect_same(const LensDataTable& a, const LensDataTable& b) {
   }
 }
 
+// Tables that were made for one image leave out PSFs between fields; a file would not say what stands for
+// them.
+TEST_F(TableFileTest, HoldsAllPsfs) {
+  LensDataTable lean = analytic_table(5);
+  lean.psf[lean.index(2, 0)] = {};
+  EXPECT_NO_THROW(lean.validate());
+  EXPECT_THROW(write_table(lean, path("lean.h5")), InputError);
+  for (const std::size_t end : {std::size_t{0}, lean.fields.size() - 1}) {
+    LensDataTable open = analytic_table(5);
+    open.psf[open.index(end, 0)] = {};
+    EXPECT_THROW(open.validate(), InputError);
+  }
+}
+
 TEST_F(TableFileTest, ReturnsWhatWasWrittenToTheLastBit) {
   for (const bool finite : {false, true}) {
     LensDataTable table = analytic_table(7, {480, 550, 620});

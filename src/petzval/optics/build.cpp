@@ -20,7 +20,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <ranges>
 #include <utility>
 
 namespace petzval {
@@ -268,8 +267,9 @@ void HeightTable::remove_psf(std::size_t field, std::size_t wavelength) {
 LensDataTable HeightTable::finished() && {
   const std::size_t fields = table_.fields.size();
   parallel_for(table_.wavelengths_nm.size(), [&](std::size_t w) {
-    const auto complete = [&](std::size_t f) { return table_.has_psf(table_.index(f, w)); };
-    if (std::ranges::all_of(std::views::iota(std::size_t{0}, fields), complete)) return;
+    std::size_t made = 0;
+    for (std::size_t f = 0; f < fields; ++f) made += table_.has_psf(table_.index(f, w)) ? 1 : 0;
+    if (made == fields) return;
     FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
     tracer.set_losses(options_.losses);
     // By the boundary of the pupil, times what a fitted pupil's flux is to that about there.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/optics/table_file.h>

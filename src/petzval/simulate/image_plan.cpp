@@ -237,7 +237,9 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
             std::move(options)};
   const auto build = [&] {
     return result_within(context, [&](const ProgressCallback& progress) {
-      if (options.imaging.method != BlurMethod::product || detail == TableDetail::outline)
+      const bool mixes_psfs = options.imaging.method == BlurMethod::product &&
+                              options.imaging.interpolation == PsfInterpolation::psf;
+      if (!mixes_psfs || detail == TableDetail::outline)
         return build_lens_data_table(focused, table, progress);
       constexpr int cells_a_pixel = 2;  // as many or more
       const double pitch_um =
