@@ -92,6 +92,7 @@ TEST(TransferFit, RefusesWhatItCannotFit) {
   TransferFitRequest request;
   request.tolerance_mm = 0;
   EXPECT_THROW(fit_transfer(stopped_down(), request), InputError);
+  request.wavelengths_nm = {550};
   request.tolerance_mm = 1e-13;
   EXPECT_THROW(fit_transfer(stopped_down(), request), InputError);
 }

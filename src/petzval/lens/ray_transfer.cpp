@@ -334,9 +334,10 @@ void check_folds(const RayTransfer& t, const TransferData<double>& data, double 
     if (ray.y < 0.05 * t.largest_radius_mm && t.variables == TransferVariables::turned) continue;
     const TransferRay front = carried_back(data, ray).front;
     if (!(front.l * front.l + front.m * front.m < 1))
-      throw InputError(fmt::format("its polynomials at {:g} nm turn a ray {:.3g} mm from the axis round: "
-                                   "direction cosines beyond 1",
-                                   nm, ray.y));
+      throw InputError(
+          fmt::format("its polynomials at {:g} nm turn a ray {:.3g} mm from the axis round: "
+                      "direction cosines beyond 1",
+                      nm, ray.y));
     const double kept = etendue_at(data, ray, t.largest_radius_mm);
     if (!(kept > least_etendue && kept < 1 / least_etendue))
       throw InputError(
