@@ -189,8 +189,9 @@ std::vector<double> weights_at(const std::vector<RayTransfer::Band>& bands, doub
   if (bands.size() == 1) return weights;
   constexpr double rounding_nm = 1e-6;
   if (nm < bands.front().wavelength_nm - rounding_nm || nm > bands.back().wavelength_nm + rounding_nm)
-    throw InputError(fmt::format("its ray transfer is known from {:g} to {:g} nm, and {:g} nm is outside",
-                                 bands.front().wavelength_nm, bands.back().wavelength_nm, nm));
+    throw InputError(
+        fmt::format("the ray transfer of the lens is known from {:g} to {:g} nm, and {:g} nm is outside",
+                    bands.front().wavelength_nm, bands.back().wavelength_nm, nm));
   const bool linear = bands.size() == 2;
   const auto at = [&](double each) { return linear ? each : 1e6 / (each * each); };
   for (std::size_t i = 0; i < bands.size(); ++i)
