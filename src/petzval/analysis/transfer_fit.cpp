@@ -32,7 +32,7 @@ constexpr double least_share = 0.05;
 /// One ray at the rear plane and what the lens makes of it.
 struct Sample {
   TransferRay rear, front;
-  std::vector<std::array<double, 2>> at_apertures;
+  std::vector<std::array<double, 2>> at_apertures;  ///< and on the film, last
 };
 
 std::vector<Powers> powers_up_to(int degree) {
@@ -111,6 +111,7 @@ class SampledLens {
       const auto& point = path[tracer_.surface_count() - 1 - surface].point_mm;
       sample.at_apertures.push_back({point[0], point[1]});
     }
+    sample.at_apertures.push_back({launched->point_mm[0], launched->point_mm[1]});
     to.push_back(std::move(sample));
   }
 
@@ -320,7 +321,7 @@ std::vector<std::size_t> limiting(const Lens& lens, const Fitting& fitting, doub
     throw InputError(fmt::format("{}: no light reaches the film within {:g} mm", lens.name, film_radius_mm));
   counts.erase(lens.stop_index());
   std::vector<std::size_t> apertures{lens.stop_index()};
-  while (apertures.size() < most_transfer_apertures && !counts.empty()) {
+  while (apertures.size() + 1 < most_transfer_apertures && !counts.empty()) {
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     apertures.push_back(most->first);
@@ -409,6 +410,8 @@ TransferFit fit_transfer(const Lens& lens, const TransferFitRequest& request) {
   for (const std::size_t surface : apertures)
     transfer.aperture_radii_mm.push_back(
         std::sqrt(tracer.clip_radius_sq(surface, Tracer::Clip::apertures) / (1 + Tracer::rim_tolerance)));
+  // Light that goes elsewhere than to the film was not fitted, and does not pass.
+  transfer.aperture_radii_mm.push_back(film_radius_mm);
   for (std::size_t b = 0; b < bands.size(); ++b)
     transfer.bands.push_back({fitting.wavelengths_nm[b], bands[b], {}});
   TransferFit fit;

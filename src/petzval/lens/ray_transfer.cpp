@@ -189,8 +189,9 @@ std::vector<double> weights_at(const std::vector<RayTransfer::Band>& bands, doub
   if (bands.size() == 1) return weights;
   constexpr double rounding_nm = 1e-6;
   if (nm < bands.front().wavelength_nm - rounding_nm || nm > bands.back().wavelength_nm + rounding_nm)
-    throw InputError(fmt::format("its ray transfer is known from {:g} to {:g} nm, and {:g} nm is outside",
-                                 bands.front().wavelength_nm, bands.back().wavelength_nm, nm));
+    throw InputError(
+        fmt::format("the ray transfer of the lens is known from {:g} to {:g} nm, and {:g} nm is outside",
+                    bands.front().wavelength_nm, bands.back().wavelength_nm, nm));
   const bool linear = bands.size() == 2;
   const auto at = [&](double each) { return linear ? each : 1e6 / (each * each); };
   for (std::size_t i = 0; i < bands.size(); ++i)
@@ -334,9 +335,10 @@ void check_folds(const RayTransfer& t, const TransferData<double>& data, double 
     if (ray.y < 0.05 * t.largest_radius_mm && t.variables == TransferVariables::turned) continue;
     const TransferRay front = carried_back(data, ray).front;
     if (!(front.l * front.l + front.m * front.m < 1))
-      throw InputError(fmt::format("its polynomials at {:g} nm turn a ray {:.3g} mm from the axis round: "
-                                   "direction cosines beyond 1",
-                                   nm, ray.y));
+      throw InputError(
+          fmt::format("its polynomials at {:g} nm turn a ray {:.3g} mm from the axis round: "
+                      "direction cosines beyond 1",
+                      nm, ray.y));
     const double kept = etendue_at(data, ray, t.largest_radius_mm);
     if (!(kept > least_etendue && kept < 1 / least_etendue))
       throw InputError(

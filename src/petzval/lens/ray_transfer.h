@@ -83,8 +83,8 @@ TransferredRay carried_back(const TransferData<double>& data, const TransferRay&
 std::vector<TransferRay> domain_rays(const TransferData<double>& data, double largest_radius_mm,
                                      std::size_t radii, std::size_t across);
 
-/// A transfer in invariants written in r, dx and dy, its domain by ellipses, as ISET has it: the same rays, and
-/// at each place an ellipse as high and as wide. Others are returned as they are.
+/// A transfer in invariants written in r, dx and dy, its domain by ellipses, as ISET has it: the same rays,
+/// and at each place an ellipse as high and as wide. Others are returned as they are.
 RayTransfer turned_form(const RayTransfer& transfer);
 
 /// Of a lens that has no glass to speak of.

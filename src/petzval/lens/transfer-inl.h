@@ -215,8 +215,8 @@ HWY_INLINE V carry_forth(const TransferData<T>& data, const PlaneRay<V>& front, 
 
 /// The optical path of a ray from front plane to rear plane [mm], that along the axis being the length,
 /// integrated over rays (tq, tp) of the rear plane, 0 ≤ t ≤ 1: dV = p_rear·dq_rear − p_front·dq_front of a
-/// point characteristic V (Hamilton; Born & Wolf 4.1). Parts of one degree n in t are t^n times a number each,
-/// so the integral is a sum.
+/// point characteristic V (Hamilton; Born & Wolf 4.1). Parts of one degree n in t are t^n times a number
+/// each, so the integral is a sum.
 template <class V, class T>
 HWY_INLINE V path_from_axis(const TransferData<T>& data, const PlaneRay<V>& ray) {
   const TransferPolynomials<T>& p = data.back;
@@ -250,8 +250,8 @@ HWY_INLINE V path_from_axis(const TransferData<T>& data, const PlaneRay<V>& ray)
 }
 
 /// The optical path of a ray: from the axis to the middle of the light that comes in with its direction, and
-/// from there straight across the pupil. Ways differ where polynomials break étendue; on this one the waves of
-/// an object far away have the slopes of its rays, whatever the polynomials are worth elsewhere.
+/// from there straight across the pupil. Ways differ where polynomials break étendue; on this one the waves
+/// of an object far away have the slopes of its rays, whatever the polynomials are worth elsewhere.
 template <class V, class T>
 HWY_INLINE V transfer_path(const TransferData<T>& data, const PlaneRay<V>& front, const PlaneRay<V>& ray) {
   const V square = mul_add(front.l, front.l, front.m * front.m);

@@ -51,12 +51,13 @@ HWY_ATTR HWY_INLINE void step_transfer(const KernelSurface<T>& surface, RayVecto
   if (backward) {
     carried = carry_back(transfer, rear);
   } else {
-    ray.alive = hn::And(
-        ray.alive, hn::Le(carry_forth(transfer, in_front, rear, carried), hn::Set(d, T(transfer_found_within))));
+    ray.alive = hn::And(ray.alive, hn::Le(carry_forth(transfer, in_front, rear, carried),
+                                          hn::Set(d, T(transfer_found_within))));
   }
   clip_transfer(surface, carried, ray);
   if constexpr (has_path<T> && !measures)
-    if (surface.counts_path) ray.opl = hn::Add(ray.opl, transfer_path(transfer, backward ? carried.front : in_front, rear));
+    if (surface.counts_path)
+      ray.opl = hn::Add(ray.opl, transfer_path(transfer, backward ? carried.front : in_front, rear));
   const PlaneRay<V>& end = backward ? carried.front : rear;
   ray.x = end.x, ray.y = end.y;
   ray.l = backward ? end.l : hn::Neg(end.l), ray.m = backward ? end.m : hn::Neg(end.m);

@@ -42,7 +42,8 @@ bool carry(const TransferData<double>& transfer, bool backward, SurfaceRay& ray,
   const Plane& end = backward ? carried.front : rear;
   const double cosine_sq = 1 - end.l * end.l - end.m * end.m;
   if (!(cosine_sq > 0)) return false;
-  const double opl = ray.opl + HWY_NAMESPACE::transfer_path(transfer, backward ? carried.front : in_front, rear);
+  const double opl =
+      ray.opl + HWY_NAMESPACE::transfer_path(transfer, backward ? carried.front : in_front, rear);
   crossing = {ray, carried.stop_x, carried.stop_y, carried.others_sq};
   if (backward)
     ray = {end.x, end.y, 0, end.l, end.m, -std::sqrt(cosine_sq), opl};

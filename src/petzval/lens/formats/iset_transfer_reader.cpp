@@ -62,10 +62,11 @@ RayTransfer::Ellipses read_ellipses(const JsonEntry& entry) {
   if (ellipses.positions_mm.size() < 2)
     entry.at("positions").fail("has fewer than two places; the domain is empty");
   // A round lens has its ellipses on the meridian, and on the axis a circle about it.
-  ellipses.centre_y_mm.front() = 0;
-  if (!ellipses.radius_x_mm.empty() && !ellipses.radius_y_mm.empty())
-    ellipses.radius_x_mm.front() = ellipses.radius_y_mm.front() =
-        std::sqrt(std::abs(ellipses.radius_x_mm.front() * ellipses.radius_y_mm.front()));
+  if (!ellipses.centre_y_mm.empty()) ellipses.centre_y_mm.front() = 0;
+  if (!ellipses.radius_x_mm.empty() && !ellipses.radius_y_mm.empty()) {
+    double &x = ellipses.radius_x_mm.front(), &y = ellipses.radius_y_mm.front();
+    if (x > 0 && y > 0) x = y = std::sqrt(x * y);
+  }
   return ellipses;
 }
 

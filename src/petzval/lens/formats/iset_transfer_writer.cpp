@@ -59,7 +59,8 @@ std::string iset_band_text(const RayTransfer& transfer, const RayTransfer::Band&
 std::string iset_transfer_text(const Lens& lens) {
   if (!lens.surfaces.front().transfer)
     throw InputError(
-        "ISET's ray-transfer files hold a lens known by its ray transfer; one fitted to this lens would be right");
+        "ISET's ray-transfer files hold a lens known by its ray transfer; one fitted to this lens would be "
+        "right");
   const RayTransfer transfer = turned_form(*lens.surfaces.front().transfer);
   std::vector<std::string> bands;
   for (const RayTransfer::Band& band : transfer.bands) bands.push_back(iset_band_text(transfer, band));
