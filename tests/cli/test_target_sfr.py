@@ -317,6 +317,7 @@ class Sfr(ProgramTest):
         for edge in edges:
             self.assertAlmostEqual(edge["on_chart"]["mtf50_cpmm"] / edge["mtf50_cpp"], 96 / 25.4, delta=0.01)
         self.assert_refused("sfr", "photo.npy", "--chart-size", "200", words=["--chart-size"])
+        self.assert_refused("sfr", "photo.npy", "--chart-size=-200x150", words=["-200 x 150 mm", "above 0"])
         self.assert_refused("target", "--chart", "slanted-edges", "--size", "200x150mm", "-o", "t.npy", words=["t.npy", ".svg"])
         self.assert_refused("target", "--rectangle", "9x9", "--size", "200x150mm", "-o", "t.svg", words=["--chart"])
         self.assert_refused("target", "--chart", "slanted-edges", "--size", "20x15mm", "-o", "t.svg", words=["60"])

@@ -264,6 +264,39 @@ TEST(MeasureEdge, LightOfVignettingIsToldFromEdgesAlongTheGrid) {
     }
 }
 
+// What a board through a wide lens shows in its middle: a ramp of 1.56 pixels, as lines between the samples
+// of a scene are, averaged over pixels, exactly along the grid, in light that falls as cos⁴. Its response is
+// sinc(f) sinc(1.56 f).
+TEST(MeasureEdge, LinesAlongTheGridStayThereUnderTheLightOfAWideLens) {
+  constexpr double ramp = 1.5625;
+  // The integral of the ramp from 0 to 1 between ±ramp/2.
+  const auto integral = [](double x) {
+    const double u = std::clamp(x, -ramp / 2, ramp / 2) + ramp / 2;
+    return u * u / (2 * ramp) + std::max(0.0, x - ramp / 2);
+  };
+  double low = 0.1, high = 0.5;
+  const auto sinc = [](double x) { return std::sin(M_PI * x) / (M_PI * x); };
+  for (int i = 0; i < 40; ++i) {
+    const double f = 0.5 * (low + high);
+    (sinc(f) * sinc(ramp * f) > 0.5 ? low : high) = f;
+  }
+  for (const double place : {0.0, 0.35})
+    for (const auto& [width, height] : {std::pair{30, 60}, {96, 152}}) {
+      Plane plane{width, height, {}};
+      for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column) {
+          const double x = column - width / 2 - place, r = std::hypot(x + 20, row + 10) / 1100;
+          plane.values.push_back((integral(x + 1) - integral(x)) / std::pow(1 + r * r, 2));
+        }
+      const EdgeMeasurement m = measure_edge(samples_in(plane, {0, 0, width, height}), 1, {});
+      EXPECT_NEAR(m.line.angle_deg(), 0, 0.03) << place << " of " << width;
+      // Rows a pixel apart do not tell what lies between them, and it is stated by how much.
+      EXPECT_LT(std::abs(m.mtf50().frequency_cpp - low), 2 * m.mtf50().deviation_cpp)
+          << place << " of " << width;
+      EXPECT_LT(m.mtf50().deviation_cpp, 0.4 * low) << place << " of " << width;
+    }
+}
+
 TEST(MeasureEdge, IsoMethodIsNearAndLow) {
   // The taper and the box of the bin cost some per cent, no more, on a compact PSF.
   const EdgeShot shot = shoot({5, 8, 0, 0});

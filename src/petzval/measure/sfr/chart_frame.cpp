@@ -96,6 +96,9 @@ Eigen::Matrix3d homography(const std::array<ChartMark, 4>& from, const std::arra
 }  // namespace
 
 ChartFrame::ChartFrame(const Plane& plane, double width_mm, double height_mm) {
+  if (!(width_mm > 0 && height_mm > 0 && std::isfinite(width_mm) && std::isfinite(height_mm)))
+    throw InputError(fmt::format("a chart of {:g} x {:g} mm: its width and height in mm, above 0, are right",
+                                 width_mm, height_mm));
   std::vector<SeenMark> marks = seen_marks(plane);
   if (marks.size() < 4)
     throw InputError(

@@ -14,8 +14,8 @@ namespace petzval {
 /// in the picture [pixels] by a homography. Distortion of the lens is not a part of it.
 class ChartFrame {
  public:
-  /// By the four marks of chart_marks(), which are looked for in the picture. \throws InputError where not
-  /// all of them are seen.
+  /// By the four marks of chart_marks(), which are looked for in the picture. \throws InputError for
+  /// sizes that are not positive, and where not all of them are seen.
   ChartFrame(const Plane& plane, double width_mm, double height_mm);
 
   /// \returns x and y on the chart [mm].
