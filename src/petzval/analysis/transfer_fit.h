@@ -42,7 +42,7 @@ struct TransferFit {
 /// Fits one to rays from film points through the pupil that each of them sees, and a little beyond its rim.
 /// Method: place and direction in front are a q + b p with a, b polynomials in q·q, q·p and p·p of the ray at
 /// the rear plane, which makes them round and mirror symmetric; by least squares, the first order fixed to
-/// the paraxial matrix, so that its determinant is 1. Apertures that limit light, five at most, have
+/// the paraxial matrix, so that its determinant is 1. Apertures that limit light, six at most, have
 /// polynomials of the place in them, and their own radii; light beyond the film radius does not pass. Terms
 /// that move no ray by a twentieth of the tolerance are left out, if the tolerance is still met. \throws
 /// InputError for a lens with poses, blades at the stop, glass up to the film, and where no degree meets the

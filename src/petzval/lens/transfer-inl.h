@@ -175,7 +175,7 @@ HWY_INLINE CarriedRay<V> carry_back(const TransferData<T>& data, const PlaneRay<
     case 8:
       return carry_with<2>(data, ray);
     default:
-      return carry_with<6>(data, ray);
+      return carry_with<7>(data, ray);
   }
 }
 

@@ -10,7 +10,7 @@ namespace petzval {
 constexpr std::size_t most_transfer_terms = 512;
 /// Powers of a ray's length.
 constexpr std::size_t most_transfer_degree = 24;
-constexpr std::size_t most_transfer_apertures = 6;
+constexpr std::size_t most_transfer_apertures = 7;
 constexpr std::size_t most_transfer_bands = 64;
 /// Nodes of the integral over a pupil that gives optical paths: exact for terms of the fifteenth degree.
 constexpr std::size_t transfer_path_nodes = 8;
