@@ -137,10 +137,11 @@ TEST(DepthLayers, HaveNoBeadsWhereASilhouetteRunsThroughSamples) {
       ASSERT_GT(std::abs(near - far), 4);
       for (std::size_t i = 0; i < between.size(); ++i) {
         const double place = double(layers.place[20 + i]), off = std::abs(place - near);
-        if (between.size() <= 2)
+        if (between.size() <= 2) {
           EXPECT_LT(off, 0.1) << between.size() << ' ' << i;
-        else if (i == 3 || i == 4)
+        } else if (i == 3 || i == 4) {
           EXPECT_GT(off, 1) << i;
+        }
       }
     }
   }

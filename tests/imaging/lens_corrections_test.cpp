@@ -48,7 +48,9 @@ TEST(LensCorrections, UndoDistortionAndFallOff) {
       gain.insert(gain.end(), facts.vignetting.begin(), facts.vignetting.end());
       EXPECT_NEAR(light * even_sum(gain, real), 1, 0.001) << third_order << " at " << r;
     }
-    if (third_order > 0) EXPECT_NEAR(even_sum(facts.warp, 1), 1, 1e-3);
+    if (third_order > 0) {
+      EXPECT_NEAR(even_sum(facts.warp, 1), 1, 1e-3);
+    }
   }
 }
 
