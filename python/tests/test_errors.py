@@ -64,9 +64,10 @@ def test_notes_are_warnings(camera):
             camera.image(pz.SceneRequest("studio", wavelengths_nm=[550]), method="none")
 
 
-# Of parts of the library that the package does not have: tables of other programs, and their making.
-NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "port", "psf_away", "relative_illumination", "resample",
-                 "vertex_to_sensor_mm"}
+# Of parts of the library that the package does not have: tables of other programs and their making, and plans of image
+# formation by hand.
+NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "nodes", "port", "psf_away", "relative_illumination",
+                 "resample", "tile", "vertex_to_sensor_mm"}
 
 
 def keywords(scope):
