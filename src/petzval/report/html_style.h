@@ -67,7 +67,7 @@ section{border:0;padding:0;margin:0 0 1.2rem}h2{break-after:avoid}figure,table,.
 .wipe>b:last-of-type{right:.5rem}
 .sheet{font-size:8.5pt;line-height:1.3}.sheet h1{font-size:16pt}.sheet h2{font-size:10.5pt;margin-bottom:.2rem}
 .sheet section{margin:0 0 .5rem}.sheet p,.sheet figure{margin:.15rem 0;max-width:none}.sheet figcaption{font-size:7.5pt;margin-top:.15rem}
-.sheet .row{grid-template-columns:1fr 1fr;gap:.3rem 1rem}.sheet .row svg{height:4.8cm;width:auto}.sheet .row img{height:5.5cm;width:auto}
+.sheet .row{grid-template-columns:1fr 1fr;gap:.3rem 1rem}.sheet .row svg{height:4.2cm;width:auto}.sheet .row img{height:4.9cm;width:auto}
 .sheet pre{font-size:6.3pt;white-space:pre-wrap;padding:.2rem .4rem}.sheet footer{margin-top:.4rem;font-size:7pt}}
 )css";
 

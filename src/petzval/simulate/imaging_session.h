@@ -12,7 +12,7 @@ namespace petzval {
 /// as it was read or drawn, the lens data table of the last lens, the last image. What comes of it has the
 /// bytes of image().
 ///
-///     ImagingSession session({.name = "studio"}, options);
+///     ImagingSession session(SceneRequest{.name = "studio"});
 ///     for (const double gap_mm : {6.0, 6.5, 7.0}) {
 ///       camera.lens.surfaces[4].thickness_mm = gap_mm;
 ///       const SpectralImage light = session.image(camera);
