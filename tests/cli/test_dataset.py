@@ -45,7 +45,9 @@ class Dataset(ProgramTest):
         self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
         worker = subprocess.Popen([PROGRAM, "dataset", "make", "recipe.json", "-o", "set"], cwd=self.folder,
                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        time.sleep(0.7)
+        while not (self.folder / "set" / "dataset.json").exists() and worker.poll() is None:
+            time.sleep(0.01)
+        time.sleep(random.uniform(0, 1))
         worker.send_signal(signal.SIGINT)
         _, told = worker.communicate()
         if worker.returncode != 0:  # it may have been done
@@ -56,10 +58,10 @@ class Dataset(ProgramTest):
         self.assertEqual(self.files("set"), self.files("alone"))
 
     def test_a_full_disk_leaves_nothing_half_written(self):
-        # Files that may not grow stand for a disk that is full.
+        # Files that may not grow stand for a disk that is full: here the archive, larger than any file in it.
         def narrow():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (12000, 12000))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
 
         done = self.petzval("dataset", "make", "recipe.json", "-o", "set", preexec_fn=narrow)
         self.assert_error(done, 1, "is the disk full?")
