@@ -62,10 +62,11 @@ void open_folder(const Recipe& recipe, const std::string& folder) {
   const std::string path = head_path(folder);
   if (!fs::exists(path)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      if (entry.path().filename().string().starts_with("part-"))
+      // Unless another process has begun in the meantime.
+      if (entry.path().filename().string().starts_with("part-") && !fs::exists(path))
         throw InputError(
             folder, "holds parts of a data set without its dataset.json; an empty folder would be right");
-    return write_whole_file(path, head_text(this_program(), recipe));
+    if (!fs::exists(path)) return write_whole_file(path, head_text(this_program(), recipe));
   }
   const DatasetState state = dataset_state(folder);
   if (state.made_by != this_program())
