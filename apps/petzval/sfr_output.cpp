@@ -243,16 +243,8 @@ NamedCurve read_sfr_table(const std::string& path) {
   require_extension(path, {".csv"}, "an SFR to draw beside");
   constexpr std::size_t largest = std::size_t{64} << 20;
   const std::vector<TextLine> lines = text_lines(decoded_text(read_whole_file(path, largest)));
-  const auto fields = [](const std::string& text) {
-    std::vector<std::string> parts(1);
-    for (const char c : text)
-      if (c == ',')
-        parts.emplace_back();
-      else
-        parts.back() += c;
-    return parts;
-  };
-  const std::vector<std::string> names = lines.empty() ? std::vector<std::string>{} : fields(lines[0].text);
+  const std::vector<std::string> names =
+      lines.empty() ? std::vector<std::string>{} : split_at(lines[0].text, ',');
   const auto frequency = std::find(names.begin(), names.end(), "frequency_cpp"),
              sfr = std::find(names.begin(), names.end(), "sfr");
   if (frequency == names.end() || sfr == names.end())
@@ -260,7 +252,7 @@ NamedCurve read_sfr_table(const std::string& path) {
   NamedCurve curve{std::filesystem::path(path).stem().string(), {}, {}};
   for (std::size_t i = 1; i < lines.size(); ++i) {
     if (lines[i].words.empty()) continue;
-    const std::vector<std::string> parts = fields(lines[i].text);
+    const std::vector<std::string> parts = split_at(lines[i].text, ',');
     const auto number = [&](std::ptrdiff_t column) {
       double value = 0;
       const std::string text =

@@ -17,16 +17,6 @@ namespace {
 constexpr std::array<std::pair<std::string_view, double>, 5> units_a_metre{
     {{"mm", 1e3}, {"cm", 1e2}, {"um", 1e6}, {"km", 1e-3}, {"m", 1}}};
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t to = std::min(text.find(separator, from), text.size());
-    parts.push_back(text.substr(from, to - from));
-    from = to + 1;
-  }
-  return parts;
-}
-
 bool divides(double step, double start, double stop) {
   const double steps = (stop - start) / step;
   constexpr double rounding = 1e-9;
@@ -82,10 +72,10 @@ std::string distance_text(double distance_m) {
 
 std::vector<double> parse_number_list(std::string_view text, std::string_view parameter) {
   std::vector<double> numbers;
-  for (const std::string_view part : split(text, ',')) {
+  for (const std::string& part : split_at(text, ',')) {
     const std::string said = fmt::format("`{}` {}: \"{}\"", parameter, quotable(text), quotable(part));
     std::vector<double> values;
-    for (const std::string_view word : split(part, ':')) {
+    for (const std::string& word : split_at(part, ':')) {
       const std::optional<double> value = parse_number(trimmed(word));
       if (!value)
         throw InputError(fmt::format(
@@ -103,7 +93,7 @@ std::vector<double> parse_number_list(std::string_view text, std::string_view pa
 }
 
 GridSize parse_grid_size(std::string_view text, std::string_view parameter) {
-  const std::vector<std::string_view> sides = split(text, 'x');
+  const std::vector<std::string> sides = split_at(text, 'x');
   const auto columns = sides.size() == 2 ? parse_integer(sides[0]) : std::nullopt;
   const auto rows = sides.size() == 2 ? parse_integer(sides[1]) : std::nullopt;
   if (!columns || !rows || *columns < 1 || *rows < 1)

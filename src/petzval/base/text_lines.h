@@ -21,6 +21,8 @@ std::string decoded_text(std::string_view bytes);
 std::vector<TextLine> text_lines(std::string_view text);
 
 std::vector<std::string> split_words(std::string_view text);
+/// The parts between marks, empty ones too; one for a text without a mark.
+std::vector<std::string> split_at(std::string_view text, char mark);
 /// Without blanks at either end.
 std::string trimmed(std::string_view text);
 /// A text from a file, fit to stand in an error message: at most 60 characters, none of them for control.

@@ -33,16 +33,6 @@ constexpr std::array<NamedPlace, 9> named_places = {{{"centre", 0.5, 0.5},
                                                      {"bottom-left", 0, 1},
                                                      {"bottom-right", 1, 1}}};
 
-std::vector<std::string> parts_of(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
-
 [[noreturn]] void refuse_inset(const std::string& text) {
   throw InputError(
       fmt::format("inset {}: a place in pixels such as 310,20, or centre, top-right, bottom and the "
@@ -59,7 +49,7 @@ int factor_of(const std::string& part, const std::string& text) {
 }  // namespace
 
 PictureInset PictureInset::parse(const std::string& text) {
-  const std::vector<std::string> parts = parts_of(text);
+  const std::vector<std::string> parts = split_at(text, ',');
   PictureInset inset;
   for (const NamedPlace& place : named_places)
     if (parts[0] == place.name) {
