@@ -50,6 +50,8 @@ nb::object column_of(const Table& table, std::size_t c) {
   return values;
 }
 
+}  // namespace
+
 nb::object table_of(const AnalysisTable& each) {
   nb::dict columns, units;
   for (std::size_t c = 0; c < each.table.columns.size(); ++c) {
@@ -60,8 +62,6 @@ nb::object table_of(const AnalysisTable& each) {
   }
   return call_python("petzval._tables", "Table", columns, units, each.heading, to_text(each.table));
 }
-
-}  // namespace
 
 nb::object python_of(const std::string& name, const AnalysisResult& result) {
   nb::dict tables, facts;

@@ -6,6 +6,9 @@
 
 namespace petzval::python {
 
+/// A petzval.Table.
+nb::object table_of(const AnalysisTable& each);
+
 /// A petzval.Analysis.
 nb::object python_of(const std::string& name, const AnalysisResult& result);
 

@@ -441,6 +441,7 @@ void bind_camera(nb::module_& module) {
       nb::arg().none(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none(),
       nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
   bind_render(c, module);
+  bind_selection(c, module);
 }
 
 }  // namespace petzval::python

@@ -35,5 +35,6 @@ std::shared_ptr<Sensor> sensor_from(const nb::object& sensor);
 Lens lens_to_look_at(const nb::object& lens_or_camera);
 
 void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module);
+void bind_selection(nb::class_<CameraInPython>& camera, nb::module_& module);
 
 }  // namespace petzval::python

@@ -253,7 +253,18 @@ ComparablePicture comparable_from(const nb::object& picture, const char* name) {
     result.values = LargeFloats(std::vector<float>(image.values().begin(), image.values().end()));
     return result;
   }
-  const auto values = nb::cast<DoublesIn>(picture);
+  if (nb::isinstance<PictureInPython>(picture)) {
+    const auto& developed = nb::cast<const PictureInPython&>(picture);
+    result.rows = developed.rows, result.columns = developed.columns;
+    result.bands = developed.channels;
+    result.interleaved = true;
+    result.values = std::vector<double>(developed.values.begin(), developed.values.end());
+    return result;
+  }
+  DoublesIn values;
+  if (!nb::try_cast(picture, values))
+    throw InputError(fmt::format(
+        "`{}` is no picture; a SpectralImage, a Picture, an array or a file would be right", name));
   if (values.ndim() != 2 && values.ndim() != 3)
     throw InputError(
         fmt::format("`{}` of {} dimensions; (row, column) or (row, column, channel) would be right", name,
@@ -286,8 +297,9 @@ void bind_comparison(nb::module_& module) {
         return compare_pictures(a, b).all;
       },
       nb::arg("picture"), nb::arg("reference"),
-      "How far a picture is from a reference, both a SpectralImage, an array or a file. Raises InputError "
-      "saying what differs in kind.");
+      "How far a picture is from a reference, both a SpectralImage, a Picture (by its linear values), an "
+      "array "
+      "or a file. Raises InputError saying what differs in kind.");
 }
 
 // ---- sensors

@@ -136,6 +136,20 @@ void bind_raw_image(nb::module_& module) {
           },
           "A copy (row, column) of float64, proportional to light: (value - black level) / dn_per_e "
           "electrons.")
+      .def_prop_ro(
+          "electrons",
+          [](const RawImage& raw) {
+            if (!(raw.dn_per_e > 0))
+              throw InputError(
+                  "the raw image does not say how many steps an electron is; one of `expose` would be right");
+            std::vector<double> electrons;
+            for (int row = 0; row < raw.rows; ++row)
+              for (int column = 0; column < raw.columns; ++column)
+                electrons.push_back((raw.pixel(row, column) - raw.black_level) / raw.dn_per_e);
+            return array_of(std::move(electrons),
+                            {static_cast<std::size_t>(raw.rows), static_cast<std::size_t>(raw.columns)});
+          },
+          "A copy (row, column) of float64: what each pixel recorded, noise included.")
       .def_ro("columns", &RawImage::columns)
       .def_ro("rows", &RawImage::rows)
       .def_ro("channels", &RawImage::channels, "Names of the colours.")

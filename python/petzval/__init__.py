@@ -13,10 +13,11 @@ from pathlib import Path as _Path
 
 from ._errors import Cancelled, Error, Failure, InputError, Note
 from ._petzval import (Camera, Edge, Edges, FirstOrder, FocusRun, Frame, GainMode, Glass, GlassCatalogue, ImagePlan,
-                       ImagingSession, Lens, LensDataTable, LensFacts, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
+                       ImagingSession, Lens, LensDataTable, LensFacts,
+                       LensOnSensor, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
                        Scene, SceneRequest, Sensor, SensorTest, SpectralImage, Surface, SurfaceList, TableCamera,
-                       analyses, bundled_names, chart_names, compare, data_directory, develop,
-                       list_unsupported, measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
+                       analyses, bundled_names, chart_names, compare, compare_lenses, data_directory, develop,
+                       list_unsupported, match_lenses, measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
 from ._petzval import _set_default_data_directory, _version
 from ._sweep import sweep
 from ._tables import Analysis, Table, TracedRays

@@ -2,10 +2,13 @@
 """The examples of docs/PYTHON.md and of examples/ do what they say."""
 
 import doctest
+import importlib.util
 import os
 import pathlib
 import re
 import runpy
+import subprocess
+import sys
 import warnings
 
 import pytest
@@ -34,8 +37,22 @@ def test_readme(tmp_path, monkeypatch):
     assert (tmp_path / "studio.png").stat().st_size > 10000
 
 
+def run_as_notebook(source, folder):
+    """As Jupyter runs it, cell by cell, with what each cell shows."""
+    notebook = os.fspath(folder / f"{source.stem}.ipynb")
+    subprocess.run([sys.executable, "-m", "jupytext", "--quiet", "--to", "ipynb", "--output", notebook, source], check=True)
+    run = subprocess.run([sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--nbmake", "--nbmake-timeout=1200",
+                          notebook], cwd=folder, capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
 @pytest.mark.parametrize("script", sorted(path.name for path in (ROOT / "examples" / "python").glob("*.py")))
 def test_example(script, tmp_path, monkeypatch):
+    """As a notebook where jupytext and nbmake are there, else as a plain script."""
+    source = ROOT / "examples" / "python" / script
+    for package in re.findall(r"^(?:import|from) (\w+)", source.read_text(), re.MULTILINE):
+        pytest.importorskip(package)
+    if all(importlib.util.find_spec(each) for each in ("jupytext", "nbmake", "ipykernel")):
+        return run_as_notebook(source, tmp_path)
     monkeypatch.chdir(tmp_path)
-    pytest.importorskip("scipy")
-    runpy.run_path(os.fspath(ROOT / "examples" / "python" / script), run_name="__main__")
+    runpy.run_path(os.fspath(source), run_name="__main__")

