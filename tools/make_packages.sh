@@ -35,6 +35,7 @@ bare() {
 in_bare() {
   local root=$folder/bare/$1
   shift
+  mountpoint --quiet "$root/proc" || mount -t proc proc "$root/proc"
   chroot "$root" env -i PATH=/usr/local/bin:/usr/bin:/usr/sbin:/bin:/sbin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
 }
 
@@ -93,6 +94,8 @@ print(sys.version.split()[0], light, pz.develop(camera.expose(light)))'
   done
 }
 
+unmount() { umount --quiet "$folder"/bare/*/proc || true; }
+trap unmount EXIT
 for kind in "${kinds[@]}"; do
   "make_$kind"
   if $try; then "try_$kind"; fi

@@ -103,6 +103,14 @@ TEST(NearestNames, RankByEditDistanceWithoutCase) {
   EXPECT_EQ(nearest_names("x", {}, 3), std::vector<std::string>{});
 }
 
+TEST(NearestNames, KnowNamesByAPartOrTheirBeginning) {
+  const std::vector<std::string> options = {"--bits",        "--at",       "--black",
+                                            "--pixel-pitch", "--variable", "--help"};
+  EXPECT_EQ(nearest_names("--pitch", options, 1), std::vector<std::string>{"--pixel-pitch"});
+  EXPECT_EQ(nearest_names("--vary", options, 1), std::vector<std::string>{"--variable"});
+  EXPECT_EQ(nearest_names("--a", options, 1), std::vector<std::string>{"--at"});  // too short to be a part
+}
+
 TEST(DataFiles, ArePathsOrBundledNames) {
   EXPECT_NE(find_data_file("lenses", ".json", "edmund-54852", "lens").find("lenses/edmund-54852.json"),
             std::string::npos);

@@ -35,6 +35,26 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+/// Without what options begin with, in small letters.
+std::string bare(const std::string& name) {
+  std::string bare = name.substr(std::min(name.find_first_not_of('-'), name.size()));
+  std::transform(bare.begin(), bare.end(), bare.begin(), [](unsigned char c) { return std::tolower(c); });
+  return bare;
+}
+
+/// How far a name is from what was written. People also remember a part of a name, as --pitch of
+/// --pixel-pitch, or its beginning, as --vary of --variable: these count as one and two letters wrong.
+std::size_t distance_between(const std::string& written, const std::string& name) {
+  const std::size_t letters = edit_distance(written, name);
+  const std::string part = bare(written), whole = bare(name);
+  constexpr std::size_t short_part = 3;
+  if (part.size() < short_part) return letters;
+  if (whole.find(part) != whole.npos) return std::min(letters, std::size_t{1});
+  const std::size_t same = static_cast<std::size_t>(
+      std::mismatch(part.begin(), part.end(), whole.begin(), whole.end()).first - part.begin());
+  return same >= short_part && 4 * same >= 3 * part.size() ? std::min(letters, std::size_t{2}) : letters;
+}
+
 /// What was said of the folder by whoever may say it.
 struct DataFolders {
   std::string set, usual;
@@ -101,7 +121,7 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
                                        std::size_t count) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   for (const std::string& candidate : candidates)
-    ranked.emplace_back(edit_distance(name, candidate), candidate);
+    ranked.emplace_back(distance_between(name, candidate), candidate);
   count = std::min(count, ranked.size());
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
   std::vector<std::string> nearest;
