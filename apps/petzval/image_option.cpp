@@ -143,9 +143,10 @@ void ImageChoice::add_light_to(CLI::App& command) {
 void ImageChoice::add_to(CLI::App& command) {
   add_light_to(command);
   command
-      .add_option("-o,--output", outputs,
-                  "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
-                  "may be given several times")
+      .add_option(
+          "-o,--output", outputs,
+          "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png, .jpg or .tif; "
+          "may be given several times")
       ->check(output_file())
       ->required()
       ->allow_extra_args(false);

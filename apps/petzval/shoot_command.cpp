@@ -56,7 +56,7 @@ void write_frame(const ClipFolder& folder, int frame, const RawImage& raw, const
   StagedFiles files;
   for (const std::string& format : command.formats) {
     const std::string path = files.stage(folder.path(frame, format));
-    if (format == "png" || format == "tif")
+    if (format != "dng")
       write_picture(path, petzval::develop(raw, development, context), command.bits);
     else
       write_raw(path, raw);
@@ -175,9 +175,10 @@ void add_shoot_command(CLI::App& app, Shared& shared) {
       ->check(output_folder())
       ->required();
   command
-      ->add_option("--format", options->formats, "Of the frames: png, tif, dng; several with commas between")
+      ->add_option("--format", options->formats,
+                   "Of the frames: png, jpg, tif, dng; several with commas between")
       ->delimiter(',')
-      ->check(CLI::IsMember({"png", "tif", "dng"}))
+      ->check(CLI::IsMember({"png", "jpg", "tif", "dng"}))
       ->capture_default_str();
   command->add_option("--bits", options->bits, "Of pictures: 8 or 16")
       ->check(CLI::IsMember({8, 16}))

@@ -6,7 +6,8 @@
 #include <petzval/simulate/clip.h>
 
 #include <cmath>
-#include <fstream>
+
+#include "scratch.h"
 
 namespace petzval {
 namespace {
@@ -156,11 +157,8 @@ TEST(MotionPath, IsStraightBetweenItsInstants) {
 }
 
 TEST(MotionPath, IsReadFromAFileAndSaysWhatIsWrongWithIt) {
-  const std::string name = testing::TempDir() + "/motion_path_test.csv";
-  const auto read = [&](const std::string& text) {
-    std::ofstream(name) << text;
-    return MotionPath::read(name);
-  };
+  const test::Scratch scratch;
+  const auto read = [&](const std::string& text) { return MotionPath::read(scratch.with("path.csv", text)); };
   const MotionPath path = read("t_s, pan_deg,up_m\n0,0,0\n0.5,1,2\n");
   EXPECT_DOUBLE_EQ(path.at(0.25).pan_deg, 0.5);
   EXPECT_DOUBLE_EQ(path.at(0.25).up_m, 1);
