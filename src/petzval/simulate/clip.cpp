@@ -204,9 +204,9 @@ ImagePlan plan_clip(const SceneRequest& scene, Optics optics, const ImageOptions
       }
   }
   if (widening == 1) return plan;
-  constexpr double rounding = 1e-6;
-  const double angle_deg = degrees(
-      2 * std::atan((widening + rounding) * std::tan(radians(plan.scene.horizontal_angle_deg()) / 2)));
+  constexpr double room = 5e-3;  // of a wider plane the sides are seen a little farther out
+  const double angle_deg =
+      degrees(2 * std::atan((widening + room) * std::tan(radians(plan.scene.horizontal_angle_deg()) / 2)));
   send_note(context, fmt::format("the scene is {:.4g} degrees wide, so that it fills the frame all the way",
                                  angle_deg));
   SceneRequest wider = scene;
