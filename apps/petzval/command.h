@@ -102,6 +102,7 @@ void add_scene_commands(CLI::App& app, Shared& shared);
 void add_optics_commands(CLI::App& app, Shared& shared);
 void add_image_command(CLI::App& app, Shared& shared);
 void add_render_command(CLI::App& app, Shared& shared);
+void add_shoot_command(CLI::App& app, Shared& shared);
 void add_focus_command(CLI::App& app, Shared& shared);
 void add_compare_command(CLI::App& app, Shared& shared);
 void add_target_command(CLI::App& app, Shared& shared);

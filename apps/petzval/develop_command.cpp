@@ -88,7 +88,7 @@ void add_develop_command(CLI::App& app, Shared& shared) {
   options->choice.add_to(*command);
   command
       ->add_option("-o,--output", options->outputs,
-                   "PICTURE.png, .tif, .exr (linear), .npy (linear) or .dng (linear raw, for other "
+                   "PICTURE.png, .jpg, .tif, .exr (linear), .npy (linear) or .dng (linear raw, for other "
                    "programs); may be given several times")
       ->check(output_file())
       ->required()

@@ -120,7 +120,7 @@ void ImageChoice::add_method_options(CLI::App& command) {
       ->capture_default_str();
 }
 
-void ImageChoice::add_to(CLI::App& command) {
+void ImageChoice::add_light_to(CLI::App& command) {
   scene.add_to(command);
   command
       .add_option(
@@ -138,10 +138,15 @@ void ImageChoice::add_to(CLI::App& command) {
                      "Layers that a scene with depth is cut into; 0: as many as its defocus needs");
   camera.add_sensor(command, "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
   add_method_options(command);
+}
+
+void ImageChoice::add_to(CLI::App& command) {
+  add_light_to(command);
   command
-      .add_option("-o,--output", outputs,
-                  "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
-                  "may be given several times")
+      .add_option(
+          "-o,--output", outputs,
+          "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png, .jpg or .tif; "
+          "may be given several times")
       ->check(output_file())
       ->required()
       ->allow_extra_args(false);

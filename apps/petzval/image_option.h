@@ -23,6 +23,8 @@ struct ImageChoice {
   std::vector<std::string> outputs;
 
   void add_to(CLI::App& command);
+  /// What makes the light alone: the scene, the lens, the sensor, the method.
+  void add_light_to(CLI::App& command);
   /// The lens or the stored table, with the sensor. \throws InputError for an output of no known format or in
   /// no folder, and for options of a lens together with a stored table.
   Optics read_optics(const Shared& shared) const;

@@ -33,6 +33,7 @@ void add_all_commands(CLI::App& program, Shared& shared) {
   add_optics_commands(program, shared);
   add_image_command(program, shared);
   add_render_command(program, shared);
+  add_shoot_command(program, shared);
   add_focus_command(program, shared);
   add_compare_command(program, shared);
   add_target_command(program, shared);

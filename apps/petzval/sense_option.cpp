@@ -7,11 +7,13 @@
 
 namespace petzval::app {
 
-void SenseChoice::add_to(CLI::App& command, bool after_light) {
+void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
   command
-      .add_option("--exposure", exposure,
-                  "auto, a time (0.01, 10ms, 1/100), or an exposure value at ISO 100 (ev:12)" +
-                      std::string(after_light ? "; of a .png of the light: as on a sensor of ISO 100" : ""))
+      .add_option(
+          "--exposure", exposure,
+          "auto, a time (0.01, 10ms, 1/100), or an exposure value at ISO 100 (ev:12)" +
+              std::string(after_light && !of_clip ? "; of a .png of the light: as on a sensor of ISO 100"
+                                                  : ""))
       ->capture_default_str();
   command
       .add_option("--metering", metering,
@@ -30,7 +32,8 @@ void SenseChoice::add_to(CLI::App& command, bool after_light) {
   command.add_option("--temperature", given.temperature_c,
                      "Of the sensor [degrees C]; default: that of its dark current");
   command.add_option("--serial", given.serial, "Another copy of the sensor, with other fixed patterns");
-  command.add_option("--frames", given.frames, "Average this many exposures")->capture_default_str();
+  if (!of_clip)
+    command.add_option("--frames", given.frames, "Average this many exposures")->capture_default_str();
   command
       .add_option("--bracket", given.bracket_ev, "Merge exposures that differ by these stops: -2,0,2 [EV]")
       ->delimiter(',');

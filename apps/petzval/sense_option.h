@@ -18,8 +18,8 @@ struct SenseChoice {
   ExposeOptions given;  ///< what the options fill in directly
 
   /// \param after_light  of a command that makes the light, which has an --f-number and an --illuminant of
-  /// its own.
-  void add_to(CLI::App& command, bool after_light = false);
+  /// its own. \param of_clip  whose --frames are not averaged.
+  void add_to(CLI::App& command, bool after_light = false, bool of_clip = false);
   /// \throws InputError for words that are wrong.
   ExposeOptions options() const;
 };

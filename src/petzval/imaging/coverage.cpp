@@ -9,10 +9,33 @@
 
 namespace petzval {
 
+namespace {
+
+/// What a turned camera sees, from the middle of the scene: a rectangle becomes a quadrangle, whose corners
+/// lie farthest.
+SeenExtent aimed(SeenExtent seen, const AimedPlane& plane) {
+  if (plane.is_straight()) return seen;
+  SeenExtent turned;
+  for (const double right : {-seen.columns, seen.columns})
+    for (const double down : {-seen.rows, seen.rows}) {
+      const AimedPlane::Place place = plane.at(right, down);
+      if (std::isnan(place.right))
+        throw InputError(
+            "the camera turns away from the plane of the scene; a panorama, or a smaller turn, would be "
+            "right");
+      turned.columns = std::max(turned.columns, std::abs(place.right));
+      turned.rows = std::max(turned.rows, std::abs(place.down));
+      turned.radius = std::max(turned.radius, std::hypot(place.right, place.down));
+    }
+  return turned;
+}
+
+}  // namespace
+
 void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
-                    Surround surround, std::vector<std::string>& notes) {
+                    Surround surround, std::vector<std::string>& notes, const SceneAim& aim) {
   if (scene.is_panorama()) return;  // it is everywhere
-  const SeenExtent seen = seen_extent(plans, frame);
+  const SeenExtent seen = aimed(seen_extent(plans, frame), {aim, scene});
   int margin = 0;
   for (const BandPlan& plan : plans) margin = std::max(margin, plan.margin);
   constexpr double rounding = 1 + 1e-9;

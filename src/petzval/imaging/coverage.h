@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/imaging/band_plan.h>
+#include <petzval/imaging/scene_aim.h>
 
 #include <string>
 #include <vector>
@@ -12,7 +13,7 @@ namespace petzval {
 /// Adds a note of how far the scene falls short of the field, margin included. A panorama never does.
 /// \throws InputError if it does and nothing was said about its surroundings.
 void check_coverage(const Scene& scene, const std::vector<BandPlan>& plans, const SensorGeometry& frame,
-                    Surround surround, std::vector<std::string>& notes);
+                    Surround surround, std::vector<std::string>& notes, const SceneAim& aim = {});
 
 /// Adds a note if the lens data table ends before the corners of the frame, or before what lights them.
 void note_dark_corners(const std::vector<BandPlan>& plans, const SensorGeometry& frame,

@@ -66,7 +66,8 @@ class BandByBand {
  public:
   BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
              const ImagingOptions& options, const std::vector<BandPlan>& plans, const LightPath& path,
-             const ProgressCallback& progress, ImagingReport& report, const TakeBand& take)
+             const ProgressCallback& progress, ImagingReport& report, std::span<const SceneAim> aims,
+             const TakeBand& take)
       : scene_(scene),
         table_(table),
         centres_(table),
@@ -77,6 +78,7 @@ class BandByBand {
         taps_(pixel_taps(options.photosite, options.cells_per_pixel(), path)),
         progress_(scene.bands(), progress),
         report_(report),
+        aims_(aims),
         take_(take) {}
 
   void form() {
@@ -99,7 +101,7 @@ class BandByBand {
         : blur(table, centres, options, says) {}
     ImagingReport says;
     BandBlur blur;
-    CellPlane pixels;
+    std::vector<CellPlane> pixels;  ///< of each aim
     double seconds = 0;
   };
 
@@ -126,25 +128,30 @@ class BandByBand {
   void work(std::size_t band, Place& place) {
     const BandPlan& plan = plans_[band];
     const auto start = std::chrono::steady_clock::now();
-    CellPlane ideal = source_light(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
-                                   path_.source, options_.surround);
-    place.says.distortion_seconds = seconds_since(start);
-
-    const auto start_of_blur = std::chrono::steady_clock::now();
     place.blur.make_kernels();
-    CellPlane blurred = place.blur(std::move(ideal), [&](double fraction, const std::string& what) {
-      progress_.tell(band, fraction, what);
-    });
-    place.says.blur_seconds += seconds_since(start_of_blur);
-    place.pixels = without_negative_light(gathered(std::move(blurred), taps_));
+    place.says.blur_seconds += seconds_since(start);
+    for (std::size_t i = 0; i < aims_.size(); ++i) {
+      const auto start_of_light = std::chrono::steady_clock::now();
+      CellPlane ideal = source_light(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
+                                     path_.source, options_.surround, aims_[i]);
+      place.says.distortion_seconds += seconds_since(start_of_light);
+      const auto start_of_blur = std::chrono::steady_clock::now();
+      CellPlane blurred = place.blur(std::move(ideal), [&](double fraction, const std::string& what) {
+        progress_.tell(band, (double(i) + fraction) / double(aims_.size()), what);
+      });
+      place.says.blur_seconds += seconds_since(start_of_blur);
+      place.pixels.push_back(without_negative_light(gathered(std::move(blurred), taps_)));
+    }
     place.seconds += seconds_since(start);
   }
 
   void end(std::size_t band, Place& place) {
     const auto start = std::chrono::steady_clock::now();
-    note_extremes(place.pixels, static_cast<int>(band), report_);
-    take_(place.pixels.values);
-    place.pixels = {};
+    for (const CellPlane& pixels : place.pixels) {
+      note_extremes(pixels, static_cast<int>(band), report_);
+      take_(pixels.values);
+    }
+    place.pixels.clear();
     scene_.release_memory();
     place.says.margin_cells = plans_[band].margin;
     place.says.least_captured = plans_[band].least_captured;
@@ -169,6 +176,7 @@ class BandByBand {
   const PixelTaps taps_;
   BandProgress progress_;
   ImagingReport& report_;
+  std::span<const SceneAim> aims_;
   const TakeBand& take_;
   std::deque<Place> places_;
   std::optional<ProductPlan> last_plan_;
@@ -201,9 +209,12 @@ void ImagingOptions::validate() const {
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
 
-void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                const ImagingOptions& asked, const TakeBand& take, const ProgressCallback& progress,
-                ImagingReport* report) {
+namespace {
+
+/// \param take  is handed each band of every aim, then the next band.
+void form_aimed_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                      const ImagingOptions& asked, std::span<const SceneAim> aims, const TakeBand& take,
+                      const ProgressCallback& progress, ImagingReport* report) {
   ImagingReport own;
   ImagingReport& says = report != nullptr ? *report : own;
   says = {};
@@ -213,6 +224,7 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
   scene.validate();
   table.validate();
   check_distances(scene, table);
+  for (const SceneAim& aim : aims) aim.check(scene);
   SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
   const CellChoice choice = choose_cells(scene, table, sensor, asked);
   ImagingOptions options = asked;
@@ -220,13 +232,13 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
   says.sampling_error = choice.error;
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
-  check_coverage(scene, plans, frame, options.surround, says.notes);
+  for (const SceneAim& aim : aims) check_coverage(scene, plans, frame, options.surround, says.notes, aim);
   note_dark_corners(plans, sensor, says.notes);
   says.scene_points_per_cell = points_per_cell(plans, frame);
 
   says.cells_per_pixel = options.cells_per_pixel();
   const LightPath path = options.light_path(says.scene_points_per_cell);
-  BandByBand(scene, table, frame, options, plans, path, progress, says, take).form();
+  BandByBand(scene, table, frame, options, plans, path, progress, says, aims, take).form();
   note_result(says);
   const ProductPlan& product = says.product;
   if ((asked.product.nodes != 0 || asked.product.tile != 0) && product.tile != 0 && !product.direct &&
@@ -236,6 +248,33 @@ void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeom
         "PSFs, or "
         "serve the tolerance; sections of {0} x {0} cells that fade into each other took their place",
         product.tile));
+}
+
+}  // namespace
+
+void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
+                ImagingReport* report) {
+  const SceneAim straight;
+  form_aimed_bands(scene, table, sensor, options, std::span(&straight, 1), take, progress, report);
+}
+
+std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataTable& table,
+                                             const SensorGeometry& sensor, const ImagingOptions& options,
+                                             std::span<const SceneAim> aims, ImagingReport* report) {
+  std::vector<SpectralImage> images;
+  std::size_t planes = 0;
+  const auto put = [&](std::span<const float> pixels) {
+    if (images.empty()) images.assign(aims.size(), blank_image(scene, sensor, options));
+    images[planes % aims.size()].store_band(static_cast<int>(planes / aims.size()), pixels);
+    ++planes;
+  };
+  form_aimed_bands(scene, table, sensor, options, aims, put, {}, report);
+  for (SpectralImage& image : images) {
+    image.lens = lens_facts(table.lens_name, table.first_order);
+    add_corrections(*image.lens, table, sensor);
+  }
+  return images;
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,

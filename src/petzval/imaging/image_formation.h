@@ -8,6 +8,7 @@
 #include <petzval/imaging/pixel_gather.h>
 #include <petzval/imaging/product_plan.h>
 #include <petzval/imaging/psf_kernel.h>
+#include <petzval/imaging/scene_aim.h>
 #include <petzval/imaging/section_blur.h>
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/optics/table_interpolation.h>
@@ -113,6 +114,13 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
 
 /// What is done with the pixels of a band, row by row.
 using TakeBand = std::function<void(std::span<const float> pixels)>;
+
+/// Several images of one scene, the camera turned or the scene moved: the kernels of each band are made once.
+/// \param aims  one an image; of a panorama added to its own view. \throws InputError as form_image(), and as
+/// SceneAim::check().
+std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataTable& table,
+                                             const SensorGeometry& sensor, const ImagingOptions& options,
+                                             std::span<const SceneAim> aims, ImagingReport* report = nullptr);
 
 /// The same without keeping the bands: each is handed over as it is ready, in order.
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,

@@ -32,14 +32,14 @@ void widen(std::span<const float> row, double width, std::span<float> out) {
 
 }  // namespace
 
-PanoramaBand::PanoramaBand(const Scene& panorama, int band)
+PanoramaBand::PanoramaBand(const Scene& panorama, int band, PanoramaView view)
     : columns_(panorama.columns()),
       rows_(panorama.rows()),
       angle_per_sample_(2 * std::numbers::pi / panorama.columns()),
-      cos_yaw_(std::cos(radians(panorama.view().yaw_deg))),
-      sin_yaw_(std::sin(radians(panorama.view().yaw_deg))),
-      cos_pitch_(std::cos(radians(panorama.view().pitch_deg))),
-      sin_pitch_(std::sin(radians(panorama.view().pitch_deg))),
+      cos_yaw_(std::cos(radians(view.yaw_deg))),
+      sin_yaw_(std::sin(radians(view.yaw_deg))),
+      cos_pitch_(std::cos(radians(view.pitch_deg))),
+      sin_pitch_(std::sin(radians(view.pitch_deg))),
       values_(panorama.band_size()) {
   const auto width = static_cast<std::size_t>(columns_);
   const std::span<const float> stored = panorama.band(band);

@@ -16,7 +16,7 @@ namespace petzval {
 /// radiance is bilinear, round the circle and over the poles.
 class PanoramaBand {
  public:
-  PanoramaBand(const Scene& panorama, int band);
+  PanoramaBand(const Scene& panorama, int band, PanoramaView view);
 
   /// Radiance at a place of the azimuthal equidistant map about the optical axis: its distance from the
   /// middle is the angle from the axis. \param right, down  in samples of the equator (SceneMap::Place less

@@ -40,9 +40,18 @@ struct Stretch {
 }  // namespace
 
 SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
-                     Surround surround)
-    : scene_(scene), map_(map), grid_(grid), parts_(parts), surround_(surround), radiance_(scene.band(band)) {
-  if (scene.is_panorama()) panorama_ = std::make_unique<PanoramaBand>(scene, band);
+                     Surround surround, const SceneAim& aim)
+    : scene_(scene),
+      map_(map),
+      grid_(grid),
+      parts_(parts),
+      surround_(surround),
+      aimed_(aim, scene),
+      radiance_(scene.band(band)) {
+  if (scene.is_panorama())
+    panorama_ = std::make_unique<PanoramaBand>(
+        scene, band,
+        PanoramaView{scene.view().yaw_deg + aim.pan_deg, scene.view().pitch_deg + aim.pitch_deg});
 }
 
 SceneRows::~SceneRows() = default;
@@ -74,7 +83,13 @@ double SceneRows::cell(double x_mm, double y_mm) const {
     }
     constexpr double least = 1e-9;  // a length to divide by
     const auto side = [&](double samples) { return std::clamp(samples, least, 1.0); };
-    sum += place.g_source_sr * mean_radiance({place.column, place.row, side(part.width), side(part.height)});
+    const AimedPlane::Place seen =
+        aimed_.at(place.column - scene_.columns() / 2.0, place.row - scene_.rows() / 2.0);
+    if (std::isnan(seen.right)) continue;
+    const double column = aimed_.is_straight() ? place.column : scene_.columns() / 2.0 + seen.right;
+    const double row = aimed_.is_straight() ? place.row : scene_.rows() / 2.0 + seen.down;
+    sum += place.g_source_sr * mean_radiance({column, row, side(part.width * seen.widening),
+                                              side(part.height * seen.heightening)});
   }
   return sum / double(parts.size());
 }
@@ -85,7 +100,10 @@ void SceneRows::write(std::size_t row, float* irradiance) const {
   // From a cell's middle to the farthest sample that it needs, and one more for rounding.
   const PlaneView view{radiance_.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
   RowView cells;
-  if (!panorama_) map_.look().look({pitch_mm, y_mm, columns}, cells);
+  if (!panorama_) {
+    map_.look().look({pitch_mm, y_mm, columns}, cells);
+    aimed_.turn(cells);
+  }
   const std::size_t at_once = sampled_at_once();
   for (std::size_t column = 0; column < columns;) {
     if (!panorama_) column = sample_row(view, cells, 1, column, irradiance);

@@ -4,6 +4,7 @@
 
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/scene_aim.h>
 
 #include <cstddef>
 #include <memory>
@@ -26,7 +27,7 @@ class SceneRows {
   /// \param parts  a cell is cut into at most parts × parts. \param surround  what lies beyond the scene;
   /// `error` here means zero (form_image() looks before). Everything given must outlive the rows.
   SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
-            Surround surround);
+            Surround surround, const SceneAim& aim = {});
   ~SceneRows();
   SceneRows(const SceneRows&) = delete;
   SceneRows& operator=(const SceneRows&) = delete;
@@ -48,6 +49,7 @@ class SceneRows {
   SensorGeometry grid_;
   int parts_;
   Surround surround_;
+  AimedPlane aimed_;
   std::span<const float> radiance_;
   std::unique_ptr<PanoramaBand> panorama_;
 };

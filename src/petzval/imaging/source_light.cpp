@@ -81,9 +81,9 @@ double SourceFilter::transform(double frequency) const {
 }
 
 CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                       const SourceFilter& filter, Surround surround) {
+                       const SourceFilter& filter, Surround surround, const SceneAim& aim) {
   const SensorGeometry parts = grown(subdivided(grid, filter.parts), filter.reach());
-  const SceneRows rows(scene, band, map, parts, most_points, surround);
+  const SceneRows rows(scene, band, map, parts, most_points, surround, aim);
   CellPlane plane = CellPlane::unset(grid);
   constexpr std::size_t rows_at_once = 16;
   parallel_for((plane.rows() + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {

@@ -4,6 +4,7 @@
 
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/scene_aim.h>
 
 #include <vector>
 
@@ -27,6 +28,6 @@ struct SourceFilter {
 
 /// The light of source cells: SceneRows on parts of cells, filtered.
 CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                       const SourceFilter& filter, Surround surround);
+                       const SourceFilter& filter, Surround surround, const SceneAim& aim = {});
 
 }  // namespace petzval

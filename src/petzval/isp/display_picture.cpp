@@ -78,6 +78,17 @@ void write_png_picture(const std::string& path, const Planes& planes, int bits, 
   write_png(path, image);
 }
 
+void write_jpeg_picture(const std::string& path, const Planes& planes, int bits, const std::string& icc,
+                        const JpegOptions& options) {
+  constexpr int jpeg_bits = 8;
+  if (bits != jpeg_bits)
+    throw InputError(path, "a .jpg has 8 bits; `bits` 8, or a .png or .tif, would be right");
+  const std::vector<std::uint16_t> samples = codes(planes, bits);
+  JpegImage image{planes.columns, planes.rows, static_cast<int>(planes.values.size()), {}, icc};
+  image.samples.assign(samples.begin(), samples.end());
+  write_jpeg(path, image, options);
+}
+
 void write_dng_picture(const std::string& path, const Planes& planes, DisplaySpace space,
                        const std::string& provenance) {
   LinearPicture picture{planes.columns, planes.rows, {}, {}, "linear picture", provenance};
@@ -106,12 +117,13 @@ std::vector<float> interleaved(const Planes& planes) {
 }  // namespace
 
 const std::vector<std::string>& display_picture_extensions() {
-  static const std::vector<std::string> extensions = {".png", ".tif", ".tiff", ".exr", ".npy", ".dng"};
+  static const std::vector<std::string> extensions = {".png",  ".jpg", ".jpeg", ".tif",
+                                                      ".tiff", ".exr", ".npy",  ".dng"};
   return extensions;
 }
 
 void write_display_picture(const std::string& path, const Planes& planes, DisplaySpace space, int bits,
-                           const std::string& provenance) {
+                           const std::string& provenance, const CameraFacts& facts) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -135,11 +147,15 @@ void write_display_picture(const std::string& path, const Planes& planes, Displa
   const std::string icc = channels == 3 ? icc_profile(space) : std::string();
   if (extension == ".png")
     return write_png_picture(path, planes, bits, icc, space == DisplaySpace::srgb, provenance);
+  if (extension == ".jpg" || extension == ".jpeg")
+    return write_jpeg_picture(
+        path, planes, bits, icc,
+        {.facts = facts, .description = provenance, .srgb = space == DisplaySpace::srgb});
   if (extension == ".tif" || extension == ".tiff")
     return write_tiff_picture(path, planes, bits, icc, provenance);
   if (extension == ".dng" && channels == 3) return write_dng_picture(path, planes, space, provenance);
-  throw InputError(path, channels == 3 ? "a picture is written as .png, .tif, .exr, .npy or .dng"
-                                       : "one plane is written as .png, .tif, .exr or .npy");
+  throw InputError(path, channels == 3 ? "a picture is written as .png, .jpg, .tif, .exr, .npy or .dng"
+                                       : "one plane is written as .png, .jpg, .tif, .exr or .npy");
 }
 
 }  // namespace petzval

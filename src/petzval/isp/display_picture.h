@@ -2,6 +2,7 @@
 // Developed pictures in files.
 #pragma once
 
+#include <petzval/image/formats/jpeg_output.h>
 #include <petzval/isp/colour_rendering.h>
 
 #include <string>
@@ -13,12 +14,12 @@ namespace petzval {
 const std::vector<std::string>& display_picture_extensions();
 
 /// Writes linear light of a display's primaries: .png and .tif with its transfer curve and ICC profile
-/// (values outside [0, 1] are cut; 8 or 16 bits); .exr (R, G, B) and .npy (rows × columns × 3, float32)
-/// linear and uncut; .dng (LinearRaw of 16 bits, which programs that do not know the sensor's mosaic read)
-/// linear, cut at 0 and 1. One plane is written as grey, without profile; other numbers of planes
-/// than one and three only as .exr and .npy. \throws InputError for another extension,
-/// and as the writers; Failure.
+/// (values outside [0, 1] are cut; 8 or 16 bits); .jpg the same in 8 bits, with EXIF; .exr (R, G, B) and .npy
+/// (rows × columns × 3, float32) linear and uncut; .dng (LinearRaw of 16 bits, which programs that do not
+/// know the sensor's mosaic read) linear, cut at 0 and 1. One plane is written as grey, without profile;
+/// other numbers of planes than one and three only as .exr and .npy. \throws InputError for another
+/// extension, and as the writers; Failure.
 void write_display_picture(const std::string& path, const Planes& planes, DisplaySpace space, int bits,
-                           const std::string& provenance);
+                           const std::string& provenance, const CameraFacts& facts = {});
 
 }  // namespace petzval

@@ -25,7 +25,7 @@ enum Purpose : std::uint32_t {
   row_offsets = 7
 };
 constexpr int frame_shift = 8;
-constexpr int max_frames = 1 << 16;
+constexpr int max_frames = 1 << 16, last_frame = 1 << 24;
 
 std::uint32_t of_frame(Purpose purpose, int frame) {
   return static_cast<std::uint32_t>(purpose) | static_cast<std::uint32_t>(frame) << frame_shift;
@@ -231,6 +231,9 @@ void check(const SensorElectronics& electronics, double exposure_s, const Captur
     throw InputError(fmt::format("an exposure of {:g} s; 0 to {:g} would be right", exposure_s, longest_s));
   if (options.frames < 1 || options.frames > max_frames)
     throw InputError(fmt::format("{} frames; 1 to {} would be right", options.frames, max_frames));
+  if (options.first_frame < 0 || options.first_frame > last_frame - options.frames)
+    throw InputError(fmt::format("frame {} of a clip; 0 to {} would be right", options.first_frame,
+                                 last_frame - options.frames));
   constexpr double coldest_c = -273.15, hottest_c = 300;
   if (options.temperature_c && !(*options.temperature_c >= coldest_c && *options.temperature_c <= hottest_c))
     throw InputError(fmt::format("a temperature of {:g} degrees; {} to {} would be right",
@@ -303,7 +306,7 @@ RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double expos
   parallel_for(static_cast<std::size_t>(current.rows), [&](std::size_t row) {
     std::vector<std::uint32_t> sums(columns);
     for (int frame = 0; frame < options.frames; ++frame)
-      exposure.expose_row(static_cast<int>(row), frame, sums);
+      exposure.expose_row(static_cast<int>(row), options.first_frame + frame, sums);
     const double factor = static_cast<double>(steps) / options.frames;
     for (std::size_t c = 0; c < columns; ++c)
       raw.samples[row * columns + c] = static_cast<std::uint16_t>(std::floor(sums[c] * factor + 0.5));

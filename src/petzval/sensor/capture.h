@@ -41,7 +41,8 @@ struct CaptureOptions {
   std::uint64_t seed = 1;                    ///< of the noise that is new in each exposure
   std::optional<std::uint64_t> serial = {};  ///< another copy of the sensor, with other fixed patterns
   std::set<NoiseSource> without = {};
-  int frames = 1;  ///< exposures that are averaged
+  int frames = 1;       ///< exposures that are averaged
+  int first_frame = 0;  ///< of those: frames of a clip have noise of their own
 
   bool has(NoiseSource source) const { return !without.contains(source); }
 };

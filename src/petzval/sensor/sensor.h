@@ -4,6 +4,7 @@
 
 #include <petzval/colour/spectrum.h>
 #include <petzval/sensor/mosaic.h>
+#include <petzval/sensor/shutter.h>
 #include <petzval/wave/photosite.h>
 
 #include <array>
@@ -74,6 +75,7 @@ struct SensorElectronics {
   double row_noise_e = 0;       ///< rms over rows of an offset drawn anew in each exposure
   double hot_pixels_per_million = 0, hot_current_e_per_s = 0, dead_pixels_per_million = 0;
   std::uint64_t serial = 1;  ///< what its fixed patterns grow from
+  Shutter shutter = {};      ///< global unless the sensor says otherwise
 
   std::vector<std::string> channel_names() const;
   /// Electrons per second and pixel at a temperature: doubled every dark_doubling_c.

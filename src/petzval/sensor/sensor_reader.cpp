@@ -274,6 +274,22 @@ void read_defects(const JsonEntry& entry, SensorElectronics& electronics) {
   electronics.dead_pixels_per_million = number_in(entry, "dead_pixels_per_million", 0, most, "", 0);
 }
 
+Shutter read_shutter(const JsonEntry& entry) {
+  entry.allow_only({"kind", "row_time_us"});
+  const std::string kind = entry.at("kind").text("\"global\" or \"rolling\"");
+  if (kind != "global" && kind != "rolling")
+    entry.at("kind").fail(fmt::format("is \"{}\"; \"global\" or \"rolling\" would be right", kind));
+  Shutter shutter;
+  if (kind == "global") {
+    if (const auto time = entry.find("row_time_us")) time->fail("is for a rolling shutter");
+    return shutter;
+  }
+  constexpr double least_us = 1e-3, most_us = 1e6, s_per_us = 1e-6;
+  shutter.kind = Shutter::Kind::rolling;
+  shutter.row_time_s = s_per_us * number_in(entry.at("row_time_us"), least_us, most_us, "µs");
+  return shutter;
+}
+
 SensorElectronics read_electronics(const JsonEntry& root) {
   SensorElectronics electronics;
   electronics.channels = read_channels(root.at("channels"));
@@ -294,6 +310,7 @@ SensorElectronics read_electronics(const JsonEntry& root) {
   read_adc(root.at("adc"), electronics);
   if (const auto dark = root.find("dark")) read_dark(*dark, electronics);
   if (const auto defects = root.find("defects")) read_defects(*defects, electronics);
+  if (const auto shutter = root.find("shutter")) electronics.shutter = read_shutter(*shutter);
   electronics.dsnu_e = number_in(root, "dsnu_e", 0, 1e6, "electrons", 0);
   electronics.prnu = number_in(root, "prnu_percent", 0, 50, "percent", 0) / 100;
   electronics.column_pattern_e = number_in(root, "column_pattern_e", 0, 1e6, "electrons", 0);
@@ -324,7 +341,7 @@ Sensor parse_sensor(const JsonDocument& document) {
   root.allow_only({"format",      "name",        "source",   "columns", "rows",         "pitch_um",
                    "photosite",   "low_pass_um", "channels", "mosaic",  "microlens",    "crosstalk",
                    "gain_modes",  "adc",         "dark",     "dsnu_e",  "prnu_percent", "column_pattern_e",
-                   "row_noise_e", "defects",     "serial"});
+                   "row_noise_e", "defects",     "shutter",  "serial"});
   if (const std::string format = root.at("format").text("\"petzval-sensor/1\""); format != "petzval-sensor/1")
     root.at("format").fail("is another format; \"petzval-sensor/1\" would be right");
   Sensor sensor;
@@ -338,8 +355,9 @@ Sensor parse_sensor(const JsonDocument& document) {
   if (root.find("channels")) {
     sensor.electronics = read_electronics(root);
   } else {
-    for (const char* key : {"mosaic", "microlens", "crosstalk", "gain_modes", "adc", "dark", "dsnu_e",
-                            "prnu_percent", "column_pattern_e", "row_noise_e", "defects", "serial"})
+    for (const char* key :
+         {"mosaic", "microlens", "crosstalk", "gain_modes", "adc", "dark", "dsnu_e", "prnu_percent",
+          "column_pattern_e", "row_noise_e", "defects", "shutter", "serial"})
       if (root.find(key)) root.at(key).fail("needs \"channels\" beside it: what the sensor sees");
   }
   return sensor;

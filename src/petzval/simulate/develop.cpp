@@ -82,6 +82,8 @@ Picture develop(const RawImage& raw, const Development& development, const Conte
     picture.space = options.space;
     picture.planes = develop_planes(raw, options, &picture.report, step);
     picture.provenance = fmt::format("petzval {} develop: {}", version(), raw.provenance);
+    picture.facts = {raw.exposure_s, raw.lens.f_number, raw.lens.focal_length_mm,
+                     raw.iso,        raw.sensor_name,   raw.lens.name};
     return picture;
   });
 }
@@ -113,7 +115,7 @@ Picture with_insets(const Picture& picture, const std::vector<PictureInset>& ins
 }
 
 void write_picture(const std::string& path, const Picture& picture, int bits) {
-  write_display_picture(path, picture.planes, picture.space, bits, picture.provenance);
+  write_display_picture(path, picture.planes, picture.space, bits, picture.provenance, picture.facts);
 }
 
 }  // namespace petzval

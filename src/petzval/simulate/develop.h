@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/colour/spectrum.h>
+#include <petzval/image/formats/jpeg_output.h>
 #include <petzval/image/picture_inset.h>
 #include <petzval/isp/develop.h>
 #include <petzval/sensor/raw_image.h>
@@ -47,6 +48,7 @@ struct Picture {
   DisplaySpace space = DisplaySpace::srgb;
   DevelopReport report = {};
   std::string provenance = {};
+  CameraFacts facts = {};  ///< what the raw file says of its exposure
 };
 
 /// Develops a raw image.
@@ -63,8 +65,8 @@ Picture develop(const RawImage& raw, const Development& development = {}, const 
 /// The picture with parts of it enlarged beside it, on white. \throws InputError as InsetSheet.
 Picture with_insets(const Picture& picture, const std::vector<PictureInset>& insets);
 
-/// Writes it as .png or .tif (8 or 16 bits, with the display's profile), or linear as .exr or .npy.
-/// \throws InputError for another extension; Failure.
+/// Writes it as .png or .tif (8 or 16 bits, with the display's profile), .jpg (8 bits, with EXIF too), or
+/// linear as .exr or .npy. \throws InputError for another extension; Failure.
 void write_picture(const std::string& path, const Picture& picture, int bits = 8);
 
 }  // namespace petzval

@@ -8,9 +8,12 @@
 #include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/expose.h>
+#include <petzval/simulate/prepared_exposure.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 namespace petzval {
 
@@ -87,44 +90,66 @@ void note_unmeasured_light(const SpectralImage& light, const Sensor& sensor, con
                     sensor.name, shortest_nm, longest_nm, beyond));
 }
 
-RawImage captured(const ExposeOptions& options, const Sensor& sensor, const PhotoCurrent& current,
-                  double seconds, std::uint64_t seed) {
+/// White balance and colours of a sensor without crosstalk are those of its channels.
+Sensor altered(Sensor sensor, const ExposeOptions& options) {
+  if (options.without.contains(NoiseSource::crosstalk))
+    sensor.electronics->crosstalk = SensorElectronics().crosstalk;
+  return sensor;
+}
+
+PhotoCurrentOptions current_options(const ExposeOptions& options) {
+  return {!options.without.contains(NoiseSource::crosstalk),
+          !options.without.contains(NoiseSource::microlens), options.exit_pupil_mm};
+}
+
+RawImage captured(const ExposeOptions& options, const Sensor& sensor, std::span<const PhotoCurrent> currents,
+                  double seconds, std::uint64_t seed, int first_frame) {
   CaptureOptions capturing{options.gain_mode, options.analog_gain, options.temperature_c, seed,
-                           options.serial,    options.without,     options.frames};
-  if (options.bracket_ev.empty()) return capture(current, sensor, seconds, capturing);
+                           options.serial,    options.without,     options.frames,        first_frame};
+  if (options.bracket_ev.empty()) return capture(currents.front(), sensor, seconds, capturing);
   std::vector<RawImage> exposures;
-  for (const double ev : options.bracket_ev) {
-    exposures.push_back(capture(current, sensor, seconds * std::exp2(ev), capturing));
+  for (std::size_t i = 0; i < options.bracket_ev.size(); ++i) {
+    exposures.push_back(capture(currents[std::min(i, currents.size() - 1)], sensor,
+                                seconds * std::exp2(options.bracket_ev[i]), capturing));
     ++capturing.seed;  // noise of its own
   }
   return merge_bracket(exposures);
 }
 
-RawImage exposed(const SpectralImage& light, Sensor sensor, const ExposeOptions& options,
-                 const Context& context) {
-  const auto counts = [&](NoiseSource source) { return !options.without.contains(source); };
-  SensorElectronics& electronics = *sensor.electronics;
-  note_unmeasured_light(light, sensor, context);
-  // White balance and colours are then those of a sensor without it.
-  if (!counts(NoiseSource::crosstalk)) electronics.crosstalk = SensorElectronics().crosstalk;
-  const GainMode& mode = electronics.gain_mode(options.gain_mode);
-  const PhotoCurrent current = photo_current(
-      light, sensor, {counts(NoiseSource::crosstalk), counts(NoiseSource::microlens), options.exit_pupil_mm});
-  const double seconds =
-      exposure_s(options, light, current, electronics.saturation_e(mode, options.analog_gain));
+}  // namespace
 
-  RawImage raw = captured(options, sensor, current, seconds, context.seed);
-  raw.calibrations = standard_calibrations(sensor);
-  raw.as_shot_neutral = neutral(options, light, sensor, current, context);
+PreparedExposure::PreparedExposure(const SpectralImage& light, Sensor sensor, const ExposeOptions& options,
+                                   const Context& context)
+    : sensor_(altered(std::move(sensor), options)), options_(options) {
+  const SensorElectronics& electronics = *sensor_.electronics;
+  note_unmeasured_light(light, sensor_, context);
+  const GainMode& mode = electronics.gain_mode(options.gain_mode);
+  current_ = current(light);
+  seconds_ = exposure_s(options, light, current_, electronics.saturation_e(mode, options.analog_gain));
+
+  facts_.calibrations = standard_calibrations(sensor_);
+  facts_.as_shot_neutral = neutral(options, light, sensor_, current_, context);
   constexpr const char* daylight = "D55";
-  raw.iso = saturation_speed(sensor, mode, options.analog_gain, illuminant(daylight));
-  if (light.lens) raw.lens = *light.lens;
-  if (options.f_number) raw.lens.f_number = *options.f_number;
-  raw.provenance = fmt::format("petzval {} sense: {}; {}", version(), sensor.name, light.provenance);
-  return raw;
+  facts_.iso = saturation_speed(sensor_, mode, options.analog_gain, illuminant(daylight));
+  if (light.lens) facts_.lens = *light.lens;
+  if (options.f_number) facts_.lens.f_number = *options.f_number;
+  facts_.provenance = fmt::format("petzval {} sense: {}; {}", version(), sensor_.name, light.provenance);
 }
 
-}  // namespace
+PhotoCurrent PreparedExposure::current(const SpectralImage& light) const {
+  return photo_current(light, sensor_, current_options(options_));
+}
+
+RawImage PreparedExposure::raw(std::span<const PhotoCurrent> currents, std::uint64_t seed,
+                               int first_frame) const {
+  RawImage raw = captured(options_, sensor_, currents, seconds_, seed, first_frame);
+  raw.calibrations = facts_.calibrations;
+  raw.as_shot_neutral = facts_.as_shot_neutral;
+  raw.iso = facts_.iso;
+  raw.lens = facts_.lens;
+  raw.provenance = facts_.provenance;
+  return raw;
+}
 
 Exposure Exposure::parse(std::string_view text) {
   if (text == "auto") return automatic();
@@ -141,8 +166,10 @@ Exposure Exposure::parse(std::string_view text) {
 RawImage expose(const SpectralImage& light, const Sensor& sensor, const ExposeOptions& options,
                 const Context& context) {
   sensor.require_electronics();
-  return result_within(context,
-                       [&](const ProgressCallback&) { return exposed(light, sensor, options, context); });
+  return result_within(context, [&](const ProgressCallback&) {
+    const PreparedExposure exposure(light, sensor, options, context);
+    return exposure.raw(std::span(&exposure.first_current(), 1), context.seed);
+  });
 }
 
 }  // namespace petzval

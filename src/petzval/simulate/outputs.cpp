@@ -155,7 +155,8 @@ bool is_raw_name(const std::string& path) {
 
 bool is_picture_name(const std::string& path) {
   const std::string extension = extension_of(path);
-  return extension == ".png" || extension == ".tif" || extension == ".tiff";
+  return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".tif" ||
+         extension == ".tiff";
 }
 
 bool develops(const OutputOptions& options, const std::optional<Sensor>& sensor) {
@@ -172,13 +173,15 @@ void check_outputs(const std::vector<std::string>& paths, const std::optional<Se
   for (const std::string& path : paths) {
     if (!is_raw_name(path) && !is_picture_name(path) && !is_irradiance_name(path))
       throw InputError(
-          path, "irradiance is written as .exr, .npy or .npz, a raw file as .dng, a picture as .png or .tif");
+          path,
+          "irradiance is written as .exr, .npy or .npz, a raw file as .dng, a picture as .png, .jpg or .tif");
     raw = raw || is_raw_name(path);
     pictures = pictures || is_picture_name(path);
     if (!develop_pictures && is_picture_name(path) && extension_of(path) != ".png")
-      throw InputError(path,
-                       "a .tif is a developed picture, and needs `sensor` with a sensor that turns light "
-                       "into numbers; the light itself is shown by a .png");
+      throw InputError(
+          path,
+          "a .tif or .jpg is a developed picture, and needs `sensor` with a sensor that turns light "
+          "into numbers; the light itself is shown by a .png");
   }
   if (options.picture == OutputOptions::Shows::developed && !pictures)
     throw InputError(

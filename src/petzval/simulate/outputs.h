@@ -39,7 +39,7 @@ struct Outputs {
   std::optional<Picture> picture;  ///< if there is a developed picture
 };
 
-/// Whether a file holds the raw image of a sensor (.dng), or a picture (.png, .tif).
+/// Whether a file holds the raw image of a sensor (.dng), or a picture (.png, .jpg, .tif).
 bool is_raw_name(const std::string& path);
 bool is_picture_name(const std::string& path);
 /// Whether pictures are developed.

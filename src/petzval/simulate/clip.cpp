@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/simulate/clip.h>
+#include <petzval/simulate/prepared_exposure.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+constexpr int most_frames = 1 << 20;
+constexpr double fastest_fps = 1e6;
+
+/// How far the picture moves between two aims, at most [pixels].
+double moved_px(const SceneAim& a, const SceneAim& b, const ImagePlan& plan) {
+  const FirstOrder& lens = plan.table.first_order;
+  const double turn = radians(std::hypot(b.pan_deg - a.pan_deg, b.pitch_deg - a.pitch_deg));
+  // Of a plane that is drawn by central projection, towards the corners more than in the middle.
+  const double corner = plan.frame.half_diagonal_mm() / std::abs(lens.efl_mm);
+  const double way_mm = mm_per_m * std::hypot(b.right_m - a.right_m, b.up_m - a.up_m);
+  return (turn * std::abs(lens.efl_mm) * (1 + corner * corner) + way_mm * std::abs(lens.magnification)) /
+         (plan.frame.pitch_um * mm_per_um);
+}
+
+/// Instants between which no more time passes than this.
+std::vector<double> finer(const std::vector<double>& instants, double step_s) {
+  std::vector<double> at{instants.front()};
+  for (std::size_t k = 1; k < instants.size(); ++k) {
+    const double a = instants[k - 1], b = instants[k], steps = std::ceil((b - a) / step_s);
+    for (double i = 1; i < steps; ++i) at.push_back(a + (b - a) * i / steps);
+    at.push_back(b);
+  }
+  return at;
+}
+
+/// Work that tells nothing of its own.
+Context quiet(const Context& context) {
+  Context inner;
+  inner.threads = context.threads;
+  inner.seed = context.seed;
+  return inner;
+}
+
+}  // namespace
+
+void ClipOptions::validate() const {
+  if (frames < 1 || frames > most_frames)
+    throw InputError(fmt::format("a clip of {} frames; 1 to {} would be right", frames, most_frames));
+  if (!(fps > 0 && fps <= fastest_fps))
+    throw InputError(
+        fmt::format("{:g} frames a second; above 0 and up to {:g} would be right", fps, fastest_fps));
+  constexpr double finest_px = 1e-3, coarsest_px = 16;
+  if (!(step_px >= finest_px && step_px <= coarsest_px))
+    throw InputError(
+        fmt::format("steps of {:g} pixels; {:g} to {:g} would be right", step_px, finest_px, coarsest_px));
+  if (expose.frames != 1)
+    throw InputError("frames of a clip are single exposures; averages of them would be made afterwards");
+}
+
+/// What is settled of a clip, and the light that was looked at last.
+struct Clip::Impl {
+  Impl(ImagePlan planned, const Sensor& sensor, const ClipOptions& asked, const Context& context)
+      : plan(std::move(planned)),
+        options(asked),
+        seed(context.seed),
+        shutter(options.shutter.value_or(sensor.electronics->shutter)),
+        exposure(first_light(context), sensor, options.expose, context) {
+    const double readout_s = shutter.row_delay_s(plan.frame.rows);
+    if (readout_s > options.frame_s() * (1 + rounding))
+      throw InputError(
+          fmt::format("the rolling shutter reads {} rows in {:.4g} s, which is longer than a frame at {:g} "
+                      "frames a second; "
+                      "a lower `fps`, or fewer rows, would be right",
+                      plan.frame.rows, readout_s, options.fps));
+    const double whole_s = staggered_s(options.expose.bracket_ev.size());
+    if (whole_s <= options.frame_s() * (1 + rounding)) return;
+    if (options.expose.exposure.kind != Exposure::Kind::automatic)
+      throw InputError(
+          fmt::format("an exposure of {:.4g} s is longer than a frame at {:g} frames a second, {:.4g} s; a "
+                      "shorter one, or "
+                      "a lower `fps`, would be right",
+                      whole_s, options.fps, options.frame_s()));
+    exposure.set_seconds(exposure.seconds() * options.frame_s() / whole_s);
+    send_note(context,
+              fmt::format("automatic exposure would take {:.4g} s; a frame lasts {:.4g} s, and so does "
+                          "the exposure",
+                          whole_s, options.frame_s()));
+  }
+
+  static constexpr double rounding = 1e-9;
+
+  SpectralImage first_light(const Context& context) const {
+    const SceneAim aim = options.motion.at(0);
+    ImagingReport report;
+    SpectralImage light = std::move(form(std::span(&aim, 1), &report).front());
+    for (const std::string& line : report.notes) send_note(context, line);
+    light.provenance = fmt::format("{} through {}", plan.scene.name, plan.table.lens_name);
+    return light;
+  }
+  std::vector<SpectralImage> form(std::span<const SceneAim> aims, ImagingReport* report = nullptr) const {
+    if (plan.depth) {  // which is at rest
+      ImageReport whole;
+      SpectralImage light = image(plan, {}, &whole);
+      if (report) *report = std::move(whole.imaging);
+      return std::vector<SpectralImage>(1, std::move(light));
+    }
+    return form_aimed_images(plan.scene, plan.table, plan.frame, plan.options.imaging, aims, report);
+  }
+
+  double exposed_s(std::size_t index) const {
+    const std::vector<double>& ev = options.expose.bracket_ev;
+    return exposure.seconds() * (ev.empty() ? 1 : std::exp2(ev[index]));
+  }
+  /// All exposures before this one.
+  double staggered_s(std::size_t index) const {
+    if (options.expose.bracket_ev.empty()) return exposure.seconds();
+    double sum = 0;
+    for (std::size_t i = 0; i < index; ++i) sum += exposed_s(i);
+    return sum;
+  }
+  FrameTiming timing(int frame, std::size_t index) const {
+    const double after = options.expose.bracket_ev.empty() ? 0 : staggered_s(index);
+    return {frame * options.frame_s() + after, exposed_s(index), shutter};
+  }
+
+  /// From one instant to the next the picture moves by no more than a step.
+  std::vector<double> instants(double from_s, double to_s) const {
+    std::vector<double> corners{from_s};
+    for (const MotionPath::Key& key : options.motion.keys())
+      if (key.t_s > from_s && key.t_s < to_s) corners.push_back(key.t_s);
+    corners.push_back(to_s);
+    std::vector<double> at{from_s};
+    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      const double a = corners[i], b = corners[i + 1];
+      const double steps = std::max(
+          1.0,
+          std::ceil(moved_px(options.motion.at(a), options.motion.at(b), plan) / options.step_px - rounding));
+      for (double k = 1; k <= steps; ++k) at.push_back(k == steps ? b : a + (b - a) * k / steps);
+    }
+    return at;
+  }
+
+  /// Walks through instants with the light at each; light is formed for many instants at once, which share
+  /// their kernels.
+  template <typename See>
+  void walk(const std::vector<double>& instants, const See& see) const {
+    constexpr double most_bytes = 5e8;
+    constexpr std::size_t most = 64;
+    const double bytes =
+        double(plan.frame.columns) * double(plan.frame.rows) * plan.scene.bands() * sizeof(float);
+    const auto at_once = static_cast<std::size_t>(std::clamp(most_bytes / bytes, 1.0, double(most)));
+    std::shared_ptr<const PhotoCurrent> current;
+    std::optional<SceneAim> current_aim;
+    for (std::size_t from = 0; from < instants.size();) {
+      // Instants of one aim share one light.
+      std::vector<SceneAim> aims;
+      std::size_t to = from;
+      for (; to < instants.size(); ++to) {
+        const SceneAim aim = options.motion.at(instants[to]);
+        if (aims.empty() ? current_aim == aim : aims.back() == aim) continue;
+        if (aims.size() == at_once) break;
+        aims.push_back(aim);
+      }
+      const std::vector<SpectralImage> images = aims.empty() ? std::vector<SpectralImage>() : form(aims);
+      std::size_t next = 0;
+      for (; from < to; ++from) {
+        const SceneAim aim = options.motion.at(instants[from]);
+        if (current_aim != aim) {
+          current = std::make_shared<const PhotoCurrent>(exposure.current(images[next++]));
+          current_aim = aim;
+        }
+        see(from, current);
+      }
+    }
+  }
+
+  ImagePlan plan;
+  ClipOptions options;
+  std::uint64_t seed;
+  Shutter shutter;
+  PreparedExposure exposure;
+};
+
+ImagePlan plan_clip(const SceneRequest& scene, Optics optics, const ImageOptions& options,
+                    const MotionPath& motion, const Context& context) {
+  ImagePlan plan = plan_image(scene, optics, options, context);
+  if (plan.scene.is_panorama() || !fills_frame(scene, optics, options)) return plan;
+  const double half = plan.scene.columns() / 2.0, high = plan.scene.rows() / 2.0;
+  double widening = 1;
+  for (const MotionPath::Key& key : motion.keys()) {
+    key.aim.check(plan.scene);
+    const AimedPlane aimed(key.aim, plan.scene);
+    for (const double right : {-half, half})
+      for (const double down : {-high, high}) {
+        const AimedPlane::Place corner = aimed.at(right, down);
+        if (std::isnan(corner.right))
+          throw InputError("the camera turns away from the plane of the scene; a panorama would be right");
+        widening = std::max({widening, std::abs(corner.right) / half, std::abs(corner.down) / high});
+      }
+  }
+  if (widening == 1) return plan;
+  constexpr double room = 5e-3;  // of a wider plane the sides are seen a little farther out
+  const double angle_deg =
+      degrees(2 * std::atan((widening + room) * std::tan(radians(plan.scene.horizontal_angle_deg()) / 2)));
+  send_note(context, fmt::format("the scene is {:.4g} degrees wide, so that it fills the frame all the way",
+                                 angle_deg));
+  SceneRequest wider = scene;
+  wider.options.horizontal_angle_deg = angle_deg;
+  return plan_image(wider, std::move(optics), options, quiet(context));
+}
+
+Clip::Clip(ImagePlan plan, const Sensor& sensor, const ClipOptions& options, const Context& context) {
+  options.validate();
+  sensor.require_electronics();
+  for (const MotionPath::Key& key : options.motion.keys()) key.aim.check(plan.scene);
+  impl_ = result_within(context, [&](const ProgressCallback&) {
+    return std::make_unique<Impl>(std::move(plan), sensor, options, context);
+  });
+}
+
+Clip::~Clip() = default;
+
+double Clip::exposure_s() const {
+  return impl_->exposure.seconds();
+}
+
+const Shutter& Clip::shutter() const {
+  return impl_->shutter;
+}
+
+FrameTiming Clip::timing(int frame, std::size_t exposure) const {
+  return impl_->timing(frame, exposure);
+}
+
+std::size_t Clip::instants(int frame) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, impl_->options.expose.bracket_ev.size()); ++i) {
+    const FrameTiming timing = impl_->timing(frame, i);
+    count += impl_->instants(timing.start_s, timing.end_s(impl_->plan.frame.rows)).size();
+  }
+  return count;
+}
+
+RawImage Clip::frame(int index, const Context& context) const {
+  if (index < 0 || index >= impl_->options.frames)
+    throw InputError(fmt::format("frame {} of a clip of {}; 0 to {} would be right", index,
+                                 impl_->options.frames, impl_->options.frames - 1));
+  return result_within(context, [&](const ProgressCallback& progress) {
+    std::vector<PhotoCurrent> currents;
+    const std::size_t exposures = std::max<std::size_t>(1, impl_->options.expose.bracket_ev.size());
+    for (std::size_t i = 0; i < exposures; ++i) {
+      const FrameTiming timing = impl_->timing(index, i);
+      const std::vector<double> at = impl_->instants(timing.start_s, timing.end_s(impl_->plan.frame.rows));
+      TimedExposure exposure(timing, impl_->options.flicker);
+      std::shared_ptr<const PhotoCurrent> before;
+      impl_->walk(at, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
+        if (k > 0) exposure.add(at[k - 1], *before, at[k], *now);
+        before = now;
+        if (progress) progress((double(i) + double(k + 1) / double(at.size())) / double(exposures), "frame");
+      });
+      currents.push_back(exposure.mean_current());
+    }
+    return impl_->exposure.raw(currents, impl_->seed, index);
+  });
+}
+
+void Clip::events(const EventCameraOptions& options, const TakeEvents& take, const Context& context) const {
+  run_within(context, [&](const ProgressCallback& progress) {
+    const LampFlicker& flicker = impl_->options.flicker;
+    const double end_s = impl_->options.duration_s();
+    EventCamera camera(options);
+    std::vector<double> at = impl_->instants(0, end_s);
+    if (!flicker.is_steady()) at = finer(at, 1 / (flicker.frequency_hz() * flicker_steps));
+    impl_->walk(at, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
+      PhotoCurrent lit = *now;
+      if (!flicker.is_steady())
+        for (float& value : lit.e_per_s) value *= static_cast<float>(flicker.at(at[k]));
+      if (const std::vector<Event> events = camera.see(at[k], lit); !events.empty()) take(events);
+      if (progress) progress(at[k] / end_s, "events");
+    });
+  });
+}
+
+void shoot(const ImagePlan& plan, const Sensor& sensor, const ClipOptions& options,
+           const std::function<void(int, const RawImage&)>& take, const Context& context) {
+  const Clip clip(plan, sensor, options, context);
+  for (int frame = 0; frame < options.frames; ++frame) take(frame, clip.frame(frame, context));
+}
+
+}  // namespace petzval
