@@ -164,6 +164,10 @@ TEST(SeqDecentres, AreLeftHandedAboutXAndY) {
   }
 }
 
+Pose frame_pose_of(const Lens& lens, std::size_t surface) {
+  return pose_of(frames_of(lens)[surface]);
+}
+
 TEST(SeqDecentres, ComeBackBendOrGoOn) {
   const Lens back = read_text("a.seq", seq_of("S 0 5.\n ADE 10; DAR\nS 0 7.\n")).lens;
   EXPECT_DOUBLE_EQ(back.surfaces[1].pose.tilt_x_deg, -10);
@@ -175,7 +179,19 @@ TEST(SeqDecentres, ComeBackBendOrGoOn) {
                        .lens;
   EXPECT_TRUE(bent.surfaces[1].mirror);
   expect_same_places(bent, zmx, 1e-12);
-  EXPECT_NE(error_of([&] { read_text("c.seq", seq_of("S 0 5.\n ADE 10; REV\n")); }).find("REV"),
+  // What REV undoes behind a surface is what XDE, ADE … do in front of it.
+  const Lens undone = read_text("c.seq", seq_of("S 0 0.\n XDE 1; YDE -2; ADE 10; BDE 5; CDE 7\nS 0 0.\n XDE "
+                                                "1; YDE -2; ADE 10; BDE 5; CDE 7; REV\nS 0 5.\n"))
+                          .lens;
+  expect_same_places(
+      undone,
+      [&] {
+        Lens lens = as_designed(undone);
+        lens.surfaces[1].pose = lens.surfaces[2].pose = frame_pose_of(undone, 1);
+        return lens;
+      }(),
+      1e-12);
+  EXPECT_NE(error_of([&] { read_text("c.seq", seq_of("S 0 5.\n ADE 10; RET S1\n")); }).find("RET"),
             std::string::npos);
 }
 

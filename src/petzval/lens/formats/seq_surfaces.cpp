@@ -177,7 +177,7 @@ void SeqSurfaces::apply_aperture(SeqSurface& surface, const SeqCommand& command,
     const std::string word = upper_case(command.words[i]);
     if (word == "EDG") is_edge = true;
     if (word == "OBS") obscures = true;
-    if (word == "HOL") context.fail(command, "HOL (a hole) is not modelled", where());
+    if (word == "HOL") surface.has_hole = obscures = true;
     if (!parse_number(word)) continue;
     if (is_edge) return;
     const double value = *parse_number(word);
@@ -214,6 +214,8 @@ void SeqSurfaces::put_apertures(const SeqSurface& from, double mm_per_unit, cons
     add(ApertureFigure::Kind::rectangle, figure.rectangle_x, figure.rectangle_y, "REX and REY");
     add(ApertureFigure::Kind::ellipse, figure.ellipse_x, figure.ellipse_y, "ELX and ELY");
   }
+  if (from.has_hole && !from.mirror)
+    context.fail(from.command, "has a hole (HOL) and is no mirror, which is not modelled");
   // A round aperture off its middle is a figure.
   if (!surface.semi_diameter_mm || (from.clear.x == 0 && from.clear.y == 0)) return;
   const double radius_mm = *surface.semi_diameter_mm;
@@ -264,7 +266,9 @@ bool SeqSurfaces::apply_decentre(SeqSurface& surface, const SeqCommand& command,
     surface.axes = SeqSurface::Axes::come_back;
   else if (command.name == "BEN")
     surface.axes = SeqSurface::Axes::bend;
-  else if (command.name == "REV" || command.name == "RET" || command.name == "GLB")
+  else if (command.name == "REV")
+    surface.axes = SeqSurface::Axes::turn_back;
+  else if (command.name == "RET" || command.name == "GLB")
     surface.axes = SeqSurface::Axes::other;
   else
     return false;
@@ -273,7 +277,8 @@ bool SeqSurfaces::apply_decentre(SeqSurface& surface, const SeqCommand& command,
 
 /// CODE V turns left-handed about x and y and right-handed about z, after it has moved (CODE V Reference
 /// Manual, "Tilted and Decentered Systems"). BEN: the axes are turned a second time behind the surface, so
-/// that a mirror throws the axis where they point.
+/// that a mirror throws the axis where they point. REV: the surface stands as it is, and behind it the axes
+/// move and turn the other way round.
 void SeqSurfaces::put_poses(Lens& lens, double mm_per_unit, const SeqContext& context) const {
   std::vector<AxisBreak> breaks;
   const bool any = std::any_of(surfaces_.begin(), surfaces_.end(), [](const SeqSurface& surface) {
@@ -284,7 +289,7 @@ void SeqSurfaces::put_poses(Lens& lens, double mm_per_unit, const SeqContext& co
       context.fail(
           surfaces_[i].command,
           fmt::format(
-              "S{} refers its axes to others (REV, RET or GLB), which is not modelled; DAR and BEN are", i));
+              "S{} refers its axes to others (RET or GLB), which is not modelled; DAR, REV and BEN are", i));
     const auto& [xde, yde, zde, ade, bde, cde] = surfaces_[i].decentre;
     const Pose pose{xde * mm_per_unit, yde * mm_per_unit, zde * mm_per_unit, -ade, -bde, cde};
     if (pose.is_none()) continue;
@@ -292,6 +297,10 @@ void SeqSurfaces::put_poses(Lens& lens, double mm_per_unit, const SeqContext& co
     const std::size_t surface = i - 1, sensor = lens.surfaces.size();
     if (surface < sensor && surfaces_[i].axes == SeqSurface::Axes::come_back) {
       lens.surfaces[surface].pose = pose;
+      continue;
+    }
+    if (surface < sensor && surfaces_[i].axes == SeqSurface::Axes::turn_back) {
+      breaks.push_back({surface + 1, inverse(frame_of(pose)), -lens.surfaces[surface].thickness_mm});
       continue;
     }
     breaks.push_back({surface, frame_of(pose), 0});

@@ -29,9 +29,10 @@ struct SeqSurface {
     double x = 0, y = 0, turn_deg = 0;
   };
   Figure clear, obscuring;
+  bool has_hole = false;               ///< HOL, in `obscuring`
   bool solves_image_distance = false;  ///< PIM
   /// XDE YDE ZDE, ADE BDE CDE, and what becomes of the axes behind the surface.
-  enum class Axes { go_on, come_back, bend, other };
+  enum class Axes { go_on, come_back, bend, turn_back, other };
   std::array<double, 6> decentre{};
   Axes axes = Axes::go_on;
 };

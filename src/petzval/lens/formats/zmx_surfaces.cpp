@@ -103,10 +103,20 @@ std::map<int, double> surface_parameters(const ZmxFile& file, const ZmxBlock& bl
   return parameters;
 }
 
+/// PARM 1 as a radius, 0 for none, with all its digits.
+double curvature_parameter_per_mm(const ZmxContext& context, const ZmxBlock& block) {
+  double curvature_per_mm = 0;
+  for (const ZmxRecord& record : block.records)
+    if (record.keyword == "PARM" && context.file.number(block, record, 0) == 1)
+      curvature_per_mm = context.file.number(block, record, 1) == 0
+                             ? 0
+                             : curvature_from_radius(record.values[1]) / context.mm_per_unit;
+  return curvature_per_mm;
+}
+
 void read_biconic(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
   auto parameters = surface_parameters(context.file, block);
-  const double radius_mm = parameters[1] * context.mm_per_unit;
-  surface.shape->parameters["curvature_x_per_mm"] = {radius_mm == 0 ? 0 : 1 / radius_mm};
+  surface.shape->parameters["curvature_x_per_mm"] = {curvature_parameter_per_mm(context, block)};
   surface.shape->parameters["conic_x"] = {parameters[2]};
 }
 
@@ -115,9 +125,8 @@ void read_toroid(const ZmxContext& context, const ZmxBlock& block, Surface& surf
   auto parameters = surface_parameters(context.file, block);
   if (extra_data(context.file, block)[1] != 0)
     context.file.fail(block, block.line, "a toroid with Zernike terms (XDAT) is not modelled");
-  const double radius_mm = parameters[1] * context.mm_per_unit;
   auto& shape = surface.shape->parameters;
-  shape["rotation_curvature_per_mm"] = {radius_mm == 0 ? 0 : 1 / radius_mm};
+  shape["rotation_curvature_per_mm"] = {curvature_parameter_per_mm(context, block)};
   shape["normalisation_radius_mm"] = {1};
   constexpr int most_coefficients = 7;
   std::vector<double> coefficients;
