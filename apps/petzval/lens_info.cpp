@@ -107,7 +107,7 @@ void print_surfaces(const Lens& lens) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Surface& surface = lens.surfaces[i];
     const double c = surface.curvature_per_mm;
-    std::string remark = surface.material.description();
+    std::string remark = surface.mirror ? "mirror" : surface.material.description();
     if (surface.stop) remark += "; stop";
     if (surface.blades.count > 0)
       remark +=

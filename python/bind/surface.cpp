@@ -71,6 +71,7 @@ std::string repr(SurfaceView& view) {
                   number_repr(s.thickness_mm));
   if (!s.material.is_air()) text += fmt::format(", glass='{}'", s.material.description());
   if (s.semi_diameter_mm) text += ", semi_diameter_mm=" + number_repr(*s.semi_diameter_mm);
+  if (s.mirror) text += ", mirror=True";
   if (s.stop) text += ", stop=True";
   if (s.conic != 0) text += ", conic=" + number_repr(s.conic);
   if (!s.asphere.empty()) text += ", asphere=" + nb::cast<std::string>(nb::repr(nb::cast(s.asphere)));
@@ -87,7 +88,8 @@ void bind_surface_itself(nb::module_& module) {
           "__init__",
           [](View* self, std::optional<double> radius_mm, double thickness_mm, const nb::object& glass,
              std::optional<double> semi_diameter_mm, bool stop, double conic,
-             const std::map<int, double>& asphere, const nb::object& shape, std::pair<int, double> blades) {
+             const std::map<int, double>& asphere, const nb::object& shape, std::pair<int, double> blades,
+             bool mirror) {
             Surface s;
             s.curvature_per_mm = curvature_of(radius_mm);
             s.thickness_mm = thickness_mm;
@@ -97,6 +99,7 @@ void bind_surface_itself(nb::module_& module) {
             s.conic = conic;
             s.asphere = asphere;
             s.blades = {blades.first, blades.second};
+            s.mirror = mirror;
             set_shape(s, shape);
             new (self) View(std::move(s));
           },
@@ -104,7 +107,7 @@ void bind_surface_itself(nb::module_& module) {
           nb::arg("glass").none() = nb::none(), nb::kw_only(),
           nb::arg("semi_diameter_mm").none() = nb::none(), nb::arg("stop") = false, nb::arg("conic") = 0.0,
           nb::arg("asphere") = std::map<int, double>(), nb::arg("shape").none() = nb::none(),
-          nb::arg("blades") = std::pair(0, 0.0))
+          nb::arg("blades") = std::pair(0, 0.0), nb::arg("mirror") = false)
       .def_prop_rw(
           "radius_mm", [](View& v) { return radius_of(v.get().curvature_per_mm); },
           [](View& v, std::optional<double> r) { v.get().curvature_per_mm = curvature_of(r); },
@@ -129,6 +132,10 @@ void bind_surface_itself(nb::module_& module) {
       .def_prop_rw(
           "stop", [](View& v) { return v.get().stop; }, [](View& v, bool stop) { v.get().stop = stop; })
       .def_prop_rw(
+          "mirror", [](View& v) { return v.get().mirror; },
+          [](View& v, bool mirror) { v.get().mirror = mirror; },
+          "Throws the light back; the thickness behind it is negative while light runs towards −z.")
+      .def_prop_rw(
           "conic", [](View& v) { return v.get().conic; }, [](View& v, double k) { v.get().conic = k; })
       .def_prop_rw(
           "asphere", [](View& v) { return read_only(nb::cast(v.get().asphere)); },
@@ -152,7 +159,7 @@ void bind_surface_itself(nb::module_& module) {
              return nb::make_tuple(
                  s.curvature_per_mm, s.thickness_mm, s.material, s.stop, s.blades.count,
                  s.blades.rotation_deg, s.semi_diameter_mm, s.conic, s.asphere,
-                 dict_of(shape_of(s).is_none() ? nb::object(nb::dict()) : dict_of(shape_of(s))));
+                 dict_of(shape_of(s).is_none() ? nb::object(nb::dict()) : dict_of(shape_of(s))), s.mirror);
            })
       .def("__setstate__", [](View& self, const nb::tuple& t) {
         Surface s;
@@ -166,6 +173,8 @@ void bind_surface_itself(nb::module_& module) {
         s.asphere = nb::cast<std::map<int, double>>(t[8]);
         const auto shape = nb::cast<nb::dict>(t[9]);
         set_shape(s, shape.size() == 0 ? nb::object(nb::none()) : nb::object(shape));
+        constexpr std::size_t at_mirror = 10;
+        s.mirror = t.size() > at_mirror && nb::cast<bool>(t[at_mirror]);
         new (&self) View(std::move(s));
       });
 }

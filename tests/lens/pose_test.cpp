@@ -116,7 +116,7 @@ TEST(Pose, SaysWhatWouldBeRight) {
 TEST(Pose, OtherFormatsAndReversedLensesAreRefused) {
   const Lens lens = triplet_set("surfaces[3].pose.tilt_x_deg=0.2");
   expect_mentions(error_of([&] { reversed_lens(lens); }), {"surfaces[3].pose", "as designed"});
-  expect_mentions(error_of([&] { write_lens(lens, "posed.zmx"); }), {"surfaces[3].pose", ".json"});
+  expect_mentions(error_of([&] { write_lens(lens, "posed.dat"); }), {"surfaces[3].pose", ".json"});
 }
 
 TEST(Pose, ScalesWithTheLens) {

@@ -260,15 +260,13 @@ TEST(ZmxReader, ReadsTheConfigurationThatIsWrittenOut) {
 TEST(ZmxReader, RefusesWhatItDoesNotModel) {
   const char* line = "  CONI -0.5\n";
   const auto with = [&](const std::string& record) { return zmx_complaint(line, "  " + record + "\n"); };
-  expect_mentions(zmx_complaint("CLAP 0 8.5 0", "CLAP 1 8.5 0"), {"SURF 1: CLAP", "ring"});
-  expect_mentions(with("OBDC 0.1 0"), {"lens.zmx:29: SURF 1: OBDC", "decentred"});
+  expect_mentions(with("OBSC 1 2"), {"lens.zmx:29: SURF 1: OBSC", "inner radius"});
   expect_mentions(with("SCBD 0 0 0 45"), {"SURF 1: SCBD", "tilted"});
-  for (const char* record : {"SQAP 1 2", "ELAP 1 2", "OBSC 0 1", "SPID 1 3", "UDAD 1", "IGNR 1", "NSCO 1"})
+  for (const char* record : {"SPID 1 300", "UDAD 1", "IGNR 1", "NSCO 1"})
     expect_mentions(with(record), {"SURF 1: ", std::string(record, 4).c_str()});
-  for (const char* type : {"COORDBRK", "DGRATING", "GRINSUR1", "BICONICX", "PARAXIAL", "USERSURF", ""})
+  for (const char* type : {"DGRATING", "GRINSUR1", "PARAXIAL", "USERSURF", ""})
     expect_mentions(zmx_complaint("TYPE EVENASPH", std::string("TYPE ") + type),
                     {"lens.zmx:22: SURF 1: TYPE", type, "EVENASPH"});
-  expect_mentions(zmx_complaint("GLAS F2", "GLAS MIRROR"), {"SURF 1: GLAS MIRROR"});
   expect_mentions(zmx_complaint("MODE SEQ", "MODE NSC"), {"lens.zmx:2: MODE NSC"});
   expect_mentions(zmx_complaint("ENVD 20 1 0", "ENVD 40 1 1"), {"lens.zmx:6: ", "temperature"});
   expect_mentions(zmx_complaint("ENVD 20 1 0", "PFIL 1 0 0"), {"lens.zmx:6: PFIL"});

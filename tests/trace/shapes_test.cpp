@@ -146,7 +146,8 @@ TEST(Shapes, RaysBesideTheRimMiss) {
   for (int round = 0; round < 40; ++round) {
     for (const auto& [name, surface] : surfaces_of_all_kinds(random)) {
       const double rim = rim_mm(shape_of(surface));
-      if (!std::isfinite(rim)) continue;
+      // The rims of these are no circles.
+      if (!std::isfinite(rim) || name == "biconic" || name == "toroid") continue;
       const double r = rim * beyond(random), angle = azimuth(random);
       for (const double n : {1.0, -1.0}) {
         const Ray start{{r * std::cos(angle), r * std::sin(angle), -3 * n}, {0, 0, n}};
@@ -192,12 +193,15 @@ TEST_P(ShapesOnTarget, VectorsOfRaysEqualSingleRays) {
           ASSERT_EQ(batch.status[i], single.status) << name << " ray " << i;
           ++of_status[static_cast<int>(single.status)];
           if (single.status != RayStatus::ok) continue;
-          // 70 mm of path, and 1e-12 mm at each surface that is met by Newton.
-          EXPECT_NEAR(batch.x_mm[i], single.point_mm[0], 3e-12) << name;
-          EXPECT_NEAR(batch.y_mm[i], single.point_mm[1], 3e-12) << name;
-          EXPECT_NEAR(batch.z_mm[i], single.point_mm[2], 3e-12) << name;
+          // 70 mm of path, and 1e-12 mm at each surface that is met by Newton; a ray that leaves along the
+          // image surface goes as many times farther.
+          const double way = std::hypot(single.point_mm[0], single.point_mm[1]),
+                       longer = std::max(1.0, way / 70);
+          EXPECT_NEAR(batch.x_mm[i], single.point_mm[0], 3e-12 * longer) << name;
+          EXPECT_NEAR(batch.y_mm[i], single.point_mm[1], 3e-12 * longer) << name;
+          EXPECT_NEAR(batch.z_mm[i], single.point_mm[2], 3e-12 * longer) << name;
           EXPECT_NEAR(batch.n[i], single.direction[2], 1e-13) << name;
-          EXPECT_NEAR(batch.opl_mm[i], single.opl_mm, 6e-12) << name;
+          EXPECT_NEAR(batch.opl_mm[i], single.opl_mm, 6e-12 * longer) << name;
         }
       }
     }

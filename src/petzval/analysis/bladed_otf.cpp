@@ -103,12 +103,13 @@ std::complex<double> overlap(const Chords& chords, const Wave& wave, bool tangen
 }  // namespace
 
 std::complex<double> bladed_otf(const std::vector<std::array<double, 2>>& outline, const Wave& wave,
-                                MtfDirection direction, double shift, int nodes, int panels) {
+                                MtfDirection direction, double shift, int nodes, int panels,
+                                int whole_nodes) {
   const bool tangential = direction == MtfDirection::tangential;
   const Chords chords(outline, tangential ? 1 : 0);
   const QuadratureRule along = gauss_legendre(nodes);
   return overlap(chords, wave, tangential, shift, panels, along) /
-         overlap(chords, wave, tangential, 0, panels, gauss_legendre(24)).real();
+         overlap(chords, wave, tangential, 0, panels, gauss_legendre(whole_nodes)).real();
 }
 
 }  // namespace petzval

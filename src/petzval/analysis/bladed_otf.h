@@ -15,10 +15,11 @@ namespace petzval {
 /// \param outline  of the pupil, once round in (α, β), convex.
 /// \param wave     (α, β) → complex amplitude inside the outline.
 /// \param shift    s, in direction cosines: λ times the frequency.
-/// \param nodes    along a chord. \param panels  of eight chords each, across: several hundred chords for
-/// corners.
+/// \param nodes    along a chord; `whole_nodes`, where there is no shift. \param panels  of eight chords
+/// each, across: several hundred chords for corners.
 std::complex<double> bladed_otf(const std::vector<std::array<double, 2>>& outline,
                                 const std::function<std::complex<double>(double, double)>& wave,
-                                MtfDirection direction, double shift, int nodes, int panels);
+                                MtfDirection direction, double shift, int nodes, int panels,
+                                int whole_nodes = 24);
 
 }  // namespace petzval

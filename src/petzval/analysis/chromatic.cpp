@@ -14,8 +14,7 @@ namespace petzval {
 namespace {
 
 double paraxial_focus_mm(const Lens& lens, double wavelength_nm) {
-  return paraxial_image_distance_mm(lens, lens.object_distance_mm, wavelength_nm) -
-         lens.surfaces.back().thickness_mm;
+  return paraxial_image_distance_mm(lens, lens.object_distance_mm, wavelength_nm) - lens.image_distance_mm();
 }
 
 /// Where a ray at height y on the image surface crosses the axis.

@@ -63,6 +63,7 @@ class ExitPupil {
   Chord along_alpha(double beta) const;
 
   const PupilDetail& detail() const { return detail_; }
+  const ChiefRay& chief() const { return chief_; }
   /// Whether the wave is even in α: the lens has no poses.
   bool mirrored() const { return boundary_.mirrored(); }
   /// The outline that the blades of the stop leave, or that a lens with poses has, once round in (α, β);

@@ -101,7 +101,7 @@ std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const Fie
         row.sagittal_mm = foci.sagittal_mm * chief.at_image.direction[2];
         const bool has_height = lens.object_distance_mm || std::abs(chief.object_field) < 90;
         row.petzval_mm = has_height && !is_ray_transfer(lens)
-                             ? paraxial.paraxial_image_mm - lens.surfaces.back().thickness_mm +
+                             ? paraxial.paraxial_image_mm - lens.image_distance_mm() +
                                    height * height / (2 * paraxial.petzval_radius_mm)
                              : std::numeric_limits<double>::quiet_NaN();
         return row;

@@ -50,7 +50,9 @@ FieldTracer::FieldTracer(const Lens& lens, double wavelength_nm, Tracer::Clip cl
       tracer_(turned_tracer(lens_, wavelength_nm, azimuth_deg)),
       designed_(designed_tracer(lens_, tracer_)),
       clip_(clip),
-      march_(lens_, designed_ ? *designed_ : tracer_) {}
+      march_(lens_, designed_ ? *designed_ : tracer_) {
+  set_losses({});
+}
 
 std::optional<ChiefRay> FieldTracer::chief_ray(double object_field) {
   const std::optional<double> v = march_.v_at(object_field);
@@ -168,7 +170,10 @@ double FieldTracer::g_source_sr(const ChiefRay& chief) {
 
 void FieldTracer::set_losses(const Losses& losses) {
   transmittance_.reset();
-  if (losses.any()) transmittance_.emplace(lens_, tracer_.wavelength_nm(), losses);
+  const bool obscured = clip_ == Tracer::Clip::apertures && has_obscurations(lens_);
+  if (!losses.any() && !obscured) return;
+  transmittance_.emplace(lens_, tracer_.wavelength_nm(), losses);
+  if (obscured) transmittance_->heed_obscurations(tracer_);
 }
 
 double FieldTracer::lit_area(const Pencil& pencil, const PupilBoundary& pupil) const {

@@ -42,6 +42,7 @@ struct UnfoldedRay {
 class UnfoldedLens {
  public:
   UnfoldedLens(const Lens& lens, double wavelength_nm, const GhostOptions& options) {
+    require_no_mirrors(lens, "ghosts are those of lenses without one");
     double before = 1;
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
       const Surface& given = lens.surfaces[i];

@@ -2,6 +2,7 @@
 #include <petzval/analysis/bladed_otf.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/mtf.h>
+#include <petzval/analysis/pupil_mask.h>
 #include <petzval/base/stop.h>
 #include <petzval/base/units.h>
 #include <petzval/numeric/quadrature.h>
@@ -144,22 +145,41 @@ void check(const FieldTableRequest& request, const MtfOptions& options) {
   if (!(sum > 0)) throw InputError("all weights are zero; at least one wavelength must count");
 }
 
-/// OTF by the overlap of the pupil with itself; `transverse_mm` is the reach of its rays.
+/// Where a pupil is dark inside, the waves end at edges that no rule knows: by so many nodes both ways an OTF
+/// is good to some 1e-4.
+constexpr int nodes_of_dark_edges = 400;
+
 template <class Wave>
-std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
-                                 double transverse_mm, MtfDirection direction, double frequency_cpmm) {
+std::complex<double> overlap_of_pupil(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
+                                      int nodes, int whole_nodes, MtfDirection direction,
+                                      double frequency_cpmm) {
   const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
   const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
   if (!pupil.whole_outline().empty())
     return bladed_otf(
         pupil.whole_outline(),
         [&](double alpha, double beta) { return wave(pupil.mirrored() ? std::abs(alpha) : alpha, beta); },
-        direction, shift, nodes_for(2 * frequency_cpmm * transverse_mm), pupil.detail().overlap_panels);
-  const Autocorrelation<Wave> pairs(pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm));
+        direction, shift, nodes, pupil.detail().overlap_panels, whole_nodes);
+  const Autocorrelation<Wave> pairs(pupil, wave, nodes);
   // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
-  const Autocorrelation<Wave> whole(pupil, wave, fewest_nodes);
+  const Autocorrelation<Wave> whole(pupil, wave, whole_nodes);
   return direction == MtfDirection::tangential ? pairs.tangential(shift) / whole.tangential(0).real()
                                                : pairs.sagittal(shift) / whole.sagittal(0).real();
+}
+
+/// OTF by the overlap of the pupil with itself; `transverse_mm` is the reach of its rays.
+template <class Wave>
+std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
+                                 double transverse_mm, MtfDirection direction, double frequency_cpmm) {
+  if (const std::optional<PupilMask> mask = PupilMask::of(tracer, pupil.chief())) {
+    const auto lit = [&](double alpha, double beta) {
+      return mask->is_dark(alpha, beta) ? std::complex<double>(0) : std::complex<double>(wave(alpha, beta));
+    };
+    return overlap_of_pupil(tracer, pupil, lit, nodes_of_dark_edges, nodes_of_dark_edges, direction,
+                            frequency_cpmm);
+  }
+  return overlap_of_pupil(tracer, pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm), fewest_nodes,
+                          direction, frequency_cpmm);
 }
 
 /// Both OTFs of a field and wavelength on one sensor, frequency by frequency.

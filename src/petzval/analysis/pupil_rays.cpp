@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/analysis/pupil_mask.h>
 #include <petzval/analysis/pupil_rays.h>
 #include <petzval/base/units.h>
 
@@ -25,6 +26,7 @@ class Launcher {
   static bool arrived(const Tracer::Clearance& traced) {
     return traced.reached_stop && traced.ray.status == RayStatus::ok && std::isfinite(traced.worst);
   }
+  bool is_dark(double u, double v) const { return is_obscured(tracer_, *pencil_.ray(u, v)); }
   PupilRay at_image(const Tracer::Clearance& traced) const {
     const Ray& ray = traced.ray;
     PupilRay result;
@@ -70,7 +72,7 @@ std::vector<PupilRay> node_rays(const Launcher& launcher, const PupilBoundary& p
   std::vector<PupilRay> rays;
   for (const PupilNode& node : pupil_nodes(pupil, radial_nodes)) {
     const Tracer::Clearance traced = launcher.trace(node.u, node.v);
-    if (!Launcher::arrived(traced)) continue;
+    if (!Launcher::arrived(traced) || launcher.is_dark(node.u, node.v)) continue;
     PupilRay ray = launcher.at_image(traced);
     ray.mirrored = pupil.mirrored();
     if (weigh(node, ray)) rays.push_back(ray);
@@ -165,9 +167,10 @@ std::vector<PupilRay> ring_rays(const FieldTracer& tracer, const ChiefRay& chief
     for (int i = 0; i < 6 * ring; ++i) {
       const auto [u, v] = rim.at((i + 0.5) / (6 * ring));
       const double share = (ring - 0.5) / (rings - 0.5);
-      const Tracer::Clearance traced =
-          launcher.trace(pupil->centre_u + share * u, pupil->centre_v + share * v);
-      if (Launcher::arrived(traced)) rays.push_back(launcher.at_image(traced));
+      const double at_u = pupil->centre_u + share * u, at_v = pupil->centre_v + share * v;
+      const Tracer::Clearance traced = launcher.trace(at_u, at_v);
+      if (Launcher::arrived(traced) && !launcher.is_dark(at_u, at_v))
+        rays.push_back(launcher.at_image(traced));
     }
   return rays;
 }

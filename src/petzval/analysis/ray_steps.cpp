@@ -74,10 +74,10 @@ std::vector<RayStep> ray_steps(const FieldTracer& tracer, const ChiefRay& chief,
 std::vector<RayStep> ray_steps_from_film(const Tracer& tracer, double height_mm, double stop_x,
                                          double stop_y) {
   const double image_z = tracer.image_z_mm(), radius = tracer.stop_radius_mm();
-  const double last_z = tracer.vertex_z_mm(tracer.surface_count() - 1);
+  const double to_last = -std::abs(image_z - tracer.vertex_z_mm(tracer.surface_count() - 1));
   // By the slopes to the plane through the last vertex, where Newton's method begins in the middle.
   const auto from_film = [&](double x_mm, double y_mm) {
-    const double dx = x_mm, dy = y_mm - height_mm, dz = last_z - image_z, length = std::hypot(dx, dy, dz);
+    const double dx = x_mm, dy = y_mm - height_mm, dz = to_last, length = std::hypot(dx, dy, dz);
     return Ray{{0, height_mm, image_z}, {dx / length, dy / length, dz / length}};
   };
   const auto miss = [&](double x_mm, double y_mm) -> std::optional<std::array<double, 2>> {
@@ -105,8 +105,9 @@ std::vector<RayStep> ray_steps_from_film(const Tracer& tracer, double height_mm,
   const Ray ray = from_film(x, y);
   if (tracer.trace_backward(ray, Tracer::Clip::none, &path).status != RayStatus::ok) return {};
   const Frame& sensor = tracer.sensor_frame();
-  return steps_along(tracer, path, sensor.point_to_lens(ray.point_mm, image_z), sensor.to_lens(ray.direction),
-                     true);
+  return steps_along(
+      tracer, path, sensor.point_to_lens(ray.point_mm, image_z),
+      sensor.to_lens({ray.direction[0], ray.direction[1], tracer.image_sense() * ray.direction[2]}), true);
 }
 
 std::string BlockedRay::text() const {

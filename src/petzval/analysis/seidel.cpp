@@ -135,15 +135,21 @@ SeidelSums seidel_sums(const Lens& lens) {
   sums.largest_field = paraxial.field();
   sums.lagrange_invariant_mm =
       chief.first_slope * marginal.height(0) - marginal.first_slope * chief.height(0);
+  // Behind a mirror, indices and slopes change their signs, as thicknesses do (Welford, Aberrations of
+  // Optical Systems, 1986, ch. 3).
+  double sense = 1;
   Media media{1, 1, 0, 0};
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Surface& surface = lens.surfaces[i];
-    media.after = surface.material.index(lens.reference_wavelength_nm);
-    media.dispersion_after = surface.material.index(lens.wavelengths_nm.front()) -
-                             surface.material.index(lens.wavelengths_nm.back());
+    const double before = sense;
+    if (surface.mirror) sense = -sense;
+    const Material& behind = lens.medium_behind(i);
+    media.after = sense * behind.index(lens.reference_wavelength_nm);
+    media.dispersion_after =
+        sense * (behind.index(lens.wavelengths_nm.front()) - behind.index(lens.wavelengths_nm.back()));
     const double c = vertex_curvature_per_mm(surface);
     const auto invariant = [&](const TracedRay& ray) {
-      return media.before * (ray.slope_before(i) + ray.height(i) * c);
+      return media.before * (before * ray.slope_before(i) + ray.height(i) * c);
     };
     sums.surfaces.push_back(surface_terms(surface, media, marginal.height(i), chief.height(i),
                                           invariant(marginal), invariant(chief), sums.lagrange_invariant_mm));

@@ -123,12 +123,12 @@ MountedLens::MountedLens(Lens lens) : prescription_(std::move(lens)) {
 }
 
 /// Rebuilds the lens in use from the prescription.
-void MountedLens::use(std::optional<double> object_distance_mm, double last_thickness_mm) {
+void MountedLens::use(std::optional<double> object_distance_mm, double image_distance_mm) {
   Lens lens = prescription_;
   if (object_distance_mm && as_good_as_infinite(prescription_, *object_distance_mm))
     object_distance_mm.reset();
   lens.object_distance_mm = object_distance_mm;
-  lens.surfaces.back().thickness_mm = last_thickness_mm;
+  lens.set_image_distance_mm(image_distance_mm);
   if (f_number_) lens.aperture = {Aperture::Kind::f_number, *f_number_};
   if (object_distance_mm != prescription_.object_distance_mm) keep_aperture_and_angles(prescription_, lens);
   lens_ = std::move(lens);
@@ -139,7 +139,7 @@ void MountedLens::focus_at_m(std::optional<double> distance_from_sensor_m) {
   const double reference_nm = prescription_.reference_wavelength_nm;
   const LensMatrix reference(prescription_, reference_nm);
   const LensMatrix matrix(prescription_, focus_wavelength_nm_.value_or(reference_nm));
-  const double design_mm = prescription_.surfaces.back().thickness_mm;
+  const double design_mm = prescription_.image_distance_mm();
   const double offset_mm = design_mm - reference.image_mm(prescription_.object_distance_mm);
   if (matrix.c == 0 || !std::isfinite(offset_mm))
     throw InputError(
@@ -185,11 +185,11 @@ void MountedLens::place_object_at_m(std::optional<double> distance_from_sensor_m
                     *distance_m, prescription_.name, track_mm / mm_per_m));
   std::optional<double> object_mm;
   if (distance_m) object_mm = *distance_m * mm_per_m - track_mm;
-  use(object_mm, prescription_.surfaces.back().thickness_mm);
+  use(object_mm, prescription_.image_distance_mm());
 }
 
 void MountedLens::focus_as_designed() {
-  use(prescription_.object_distance_mm, prescription_.surfaces.back().thickness_mm);
+  use(prescription_.object_distance_mm, prescription_.image_distance_mm());
 }
 
 void MountedLens::set_image_distance_mm(double distance_mm) {
@@ -201,7 +201,7 @@ void MountedLens::set_image_distance_mm(double distance_mm) {
 }
 
 void MountedLens::move_sensor_mm(double shift_mm) {
-  set_image_distance_mm(lens_.surfaces.back().thickness_mm + shift_mm);
+  set_image_distance_mm(lens_.image_distance_mm() + shift_mm);
 }
 
 void MountedLens::move_lens_mm(double towards_object_mm) {
@@ -210,7 +210,7 @@ void MountedLens::move_lens_mm(double towards_object_mm) {
   if (object_mm && !(*object_mm > 0))
     throw InputError(fmt::format("moved by {:g} mm, lens {} would touch its object, {:g} mm in front of it",
                                  towards_object_mm, prescription_.name, *lens_.object_distance_mm));
-  const double image_mm = lens_.surfaces.back().thickness_mm + towards_object_mm;
+  const double image_mm = lens_.image_distance_mm() + towards_object_mm;
   if (!(std::isfinite(image_mm) && image_mm > 0))
     throw InputError(fmt::format("moved by {:g} mm, lens {} would touch its sensor", towards_object_mm,
                                  prescription_.name));
@@ -232,7 +232,7 @@ void MountedLens::set_f_number(double f_number) {
     throw InputError(fmt::format("lens {} opens to f/{:.4g} only; f/{} asks for more", prescription_.name,
                                  open, f_number));
   f_number_ = std::max(f_number, open);
-  use(lens_.object_distance_mm, lens_.surfaces.back().thickness_mm);
+  use(lens_.object_distance_mm, lens_.image_distance_mm());
 }
 
 void MountedLens::set_blades(const StopBlades& blades) {

@@ -65,7 +65,7 @@ class MountedLens {
   void set_blades(const StopBlades& blades);
 
  private:
-  void use(std::optional<double> object_distance_mm, double last_thickness_mm);
+  void use(std::optional<double> object_distance_mm, double image_distance_mm);
 
   Lens prescription_, lens_;
   std::optional<double> f_number_;  ///< absent: as the prescription has it

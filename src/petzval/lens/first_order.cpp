@@ -126,7 +126,7 @@ void fill_pupils(FirstOrder& result, const Lens& lens, const ParaxialSystem& sys
   result.entrance_pupil.position_mm = distance_mm(front.b, front.a);
   result.entrance_pupil.diameter_mm = distance_mm(stop_diameter, std::abs(front.a));
   const double from_last_vertex = distance_mm(-system.image_index * rear.b, rear.d);
-  result.exit_pupil.position_mm = from_last_vertex - lens.surfaces.back().thickness_mm;
+  result.exit_pupil.position_mm = from_last_vertex - lens.image_distance_mm();
   result.exit_pupil.diameter_mm = distance_mm(stop_diameter, std::abs(rear.d));
 }
 
@@ -161,10 +161,10 @@ FirstOrder first_order(const Lens& lens, std::optional<double> wavelength_nm) {
 
 ParaxialRay trace_paraxial(const Lens& lens, double height_mm, double slope, double wavelength_nm) {
   ParaxialRay ray;
-  double height = height_mm, u = slope, index = 1;
+  double height = height_mm, u = slope, index = 1, sense = 1;
   std::optional<double> leaving;
   for (const Surface& surface : lens.surfaces) {
-    const double index_after = surface.material.index(wavelength_nm);
+    const double index_after = surface.mirror ? index : surface.material.index(wavelength_nm);
     ray.height_mm.push_back(height);
     if (surface.transfer) {
       // Straight across the box, out of it with the slope that the transfer gives: two steps of one table.
@@ -176,9 +176,11 @@ ParaxialRay trace_paraxial(const Lens& lens, double height_mm, double slope, dou
       continue;
     }
     if (leaving) u = *std::exchange(leaving, std::nullopt);
-    u = (index * u - height * (index_after - index) * vertex_curvature_per_mm(surface)) / index_after;
+    const double step = surface.mirror ? -2 * index : index_after - index;
+    u = (index * u - height * step * sense * vertex_curvature_per_mm(surface)) / index_after;
+    if (surface.mirror) sense = -sense;
     ray.slope.push_back(u);
-    height += surface.thickness_mm * u;
+    height += sense * surface.thickness_mm * u;
     index = index_after;
   }
   ray.height_mm.push_back(height);

@@ -15,8 +15,9 @@ struct PupilData {
   double diameter_mm = 0;
 };
 
-/// Signs and origins as in docs/CONVENTIONS.md. Lengths in mm, at one wavelength. What lies beyond 10^10 mm
-/// is given as infinite: nothing but rounding distinguishes it.
+/// Signs and origins as in docs/CONVENTIONS.md; behind mirrors distances count along the light, as in the
+/// lens unfolded, but for the track. Lengths in mm, at one wavelength. What lies beyond 10^10 mm is given as
+/// infinite: nothing but rounding distinguishes it.
 struct FirstOrder {
   double wavelength_nm = 0;
   double efl_mm = 0;             ///< 1/power, whatever the index behind the lens; infinite for an afocal lens

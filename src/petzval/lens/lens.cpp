@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/lens_fault.h>
@@ -24,9 +25,38 @@ std::size_t Lens::stop_index() const {
 }
 
 double Lens::total_track_mm() const {
-  double track = 0;
-  for (const Surface& surface : surfaces) track += surface.thickness_mm;
+  double track = 0, sense = 1;
+  for (const Surface& surface : surfaces) {
+    if (surface.mirror) sense = -sense;
+    track += sense * surface.thickness_mm;
+  }
   return track;
+}
+
+const Material& Lens::medium_behind(std::size_t surface) const {
+  static const Material air;
+  while (surfaces[surface].mirror)
+    if (surface-- == 0) return air;
+  return surfaces[surface].material;
+}
+
+double Lens::sense_behind(std::size_t surface) const {
+  double sense = 1;
+  for (std::size_t i = 0; i <= surface; ++i)
+    if (surfaces[i].mirror) sense = -sense;
+  return sense;
+}
+
+bool Lens::has_mirrors() const {
+  return std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.mirror; });
+}
+
+void require_no_mirrors(const Lens& lens, const char* what) {
+  const auto mirror =
+      std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& s) { return s.mirror; });
+  if (mirror == lens.surfaces.end()) return;
+  throw InputError(
+      fmt::format("{}: surfaces[{}] is a mirror, and {}", lens.name, mirror - lens.surfaces.begin(), what));
 }
 
 void Lens::validate() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/glass/material.h>
+#include <petzval/lens/aperture_figure.h>
 #include <petzval/lens/pose.h>
 #include <petzval/lens/stop_blades.h>
 #include <petzval/lens/tolerance.h>
@@ -30,10 +31,14 @@ struct AddedShape {
 struct Surface {
   double curvature_per_mm = 0;  ///< c = 1/radius, > 0 when the centre lies on the +z side; 0 = flat
   double thickness_mm = 0;      ///< to the next vertex; the last one reaches the image surface
-  Material material = {};       ///< fills the gap behind the surface
+  Material material = {};       ///< fills the gap behind the surface; a mirror has none of its own
+  /// Throws the light back into the medium it came from: the senses of travel, and with them the signs of
+  /// thicknesses, turn (docs/CONVENTIONS.md).
+  bool mirror = false;
   bool stop = false;
   StopBlades blades = {};                       ///< of the stop, inside its radius; none: round
   std::optional<double> semi_diameter_mm = {};  ///< clear semi-aperture; absent = unbounded
+  std::vector<ApertureFigure> apertures = {};   ///< that light must pass besides
   double conic = 0;                             ///< k
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
@@ -93,12 +98,27 @@ struct Lens {
   std::size_t stop_index() const;
   /// Of the stop surface.
   const StopBlades& stop_blades() const { return surfaces[stop_index()].blades; }
-  /// From vertex 1 to the image surface.
+  /// From vertex 1 to the image surface, along the light.
   double total_track_mm() const;
+  /// What fills the gap behind a surface: behind a mirror, what is in front of it.
+  const Material& medium_behind(std::size_t surface) const;
+  /// +1 where light runs towards +z in the gap behind a surface, −1 where it comes back: it turns at mirrors.
+  double sense_behind(std::size_t surface) const;
+  /// In the gap in front of the sensor.
+  double last_sense() const { return sense_behind(surfaces.size() - 1); }
+  /// From the last vertex to the sensor, along the light. And sets it.
+  double image_distance_mm() const { return last_sense() * surfaces.back().thickness_mm; }
+  void set_image_distance_mm(double distance_mm) {
+    surfaces.back().thickness_mm = last_sense() * distance_mm;
+  }
+  bool has_mirrors() const;
   /// \throws InputError saying which entry is wrong and what would be right: no surfaces, no stop or two,
   /// non-finite numbers, asphere powers below 1, negative semi-diameters, non-positive aperture or
   /// wavelengths…
   void validate() const;
 };
+
+/// \throws InputError if the lens has a mirror, saying what cannot be done with it.
+void require_no_mirrors(const Lens& lens, const char* what);
 
 }  // namespace petzval

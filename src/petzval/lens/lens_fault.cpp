@@ -48,14 +48,18 @@ Fault shape_fault(const Surface& surface, const std::string& path) {
 /// The largest tilt: beyond it a surface no longer faces the light.
 constexpr double most_tilt_deg = 60;
 
-Fault pose_fault(const Pose& pose, const std::string& path) {
+/// Mirrors fold: what comes behind them may stand at any angle.
+constexpr double most_folded_tilt_deg = 180;
+
+Fault pose_fault(const Pose& pose, const std::string& path, bool folds) {
+  const double most_deg = folds ? most_folded_tilt_deg : most_tilt_deg;
   for (const PoseNumber& number : pose_numbers) {
     const double value = pose.*number.value;
     const std::string at = fmt::format("{}.{}", path, number.name);
     if (!std::isfinite(value))
       return LensFault{at, fmt::format("must be a finite number of {}", number.is_length ? "mm" : "degrees")};
-    if (!number.is_length && number.value != &Pose::tilt_z_deg && std::abs(value) > most_tilt_deg)
-      return LensFault{at, fmt::format("must lie within {:g} degrees", most_tilt_deg)};
+    if (!number.is_length && number.value != &Pose::tilt_z_deg && std::abs(value) > most_deg)
+      return LensFault{at, fmt::format("must lie within {:g} degrees", most_deg)};
   }
   return {};
 }
@@ -70,15 +74,17 @@ Fault group_fault(const Lens& lens, std::size_t index) {
                     lens.surfaces.size(), lens.surfaces.size() - 1, lens.surfaces.size())};
   if (!std::isfinite(group.pivot_mm))
     return LensFault{path + ".pivot_mm", "must be a finite distance in mm behind the group's first vertex"};
-  return pose_fault(group.pose, path + ".pose");
+  return pose_fault(group.pose, path + ".pose", lens.has_mirrors());
 }
 
 Fault poses_fault(const Lens& lens) {
+  const bool folds = lens.has_mirrors();
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-    if (Fault fault = pose_fault(lens.surfaces[i].pose, fmt::format("surfaces[{}].pose", i))) return fault;
+    if (Fault fault = pose_fault(lens.surfaces[i].pose, fmt::format("surfaces[{}].pose", i), folds))
+      return fault;
   for (std::size_t i = 0; i < lens.groups.size(); ++i)
     if (Fault fault = group_fault(lens, i)) return fault;
-  return pose_fault(lens.sensor_pose, "sensor_pose");
+  return pose_fault(lens.sensor_pose, "sensor_pose", folds);
 }
 
 Fault tolerances_fault(const Lens& lens) {
@@ -102,6 +108,11 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
   if (surface.semi_diameter_mm && !positive(*surface.semi_diameter_mm))
     return LensFault{at("semi_diameter_mm"),
                      "must be positive, in mm; leave it out for an unbounded surface"};
+  for (std::size_t i = 0; i < surface.apertures.size(); ++i)
+    if (const std::string wrong = aperture_figure_fault(surface.apertures[i]); !wrong.empty())
+      return LensFault{fmt::format("{}.apertures[{}]", path, i), wrong};
+  if (surface.mirror && !surface.material.is_air())
+    return LensFault{at("glass"), "must be left out: behind a mirror is what is in front of it"};
   if (!std::isfinite(surface.conic)) return LensFault{at("conic"), "must be a finite number"};
   const StopBlades& blades = surface.blades;
   if (blades.count != 0 && !surface.stop)
@@ -109,6 +120,9 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
   if (blades.count != 0 && (blades.count < 3 || blades.count > StopBlades::most))
     return LensFault{at("blades.count"),
                      fmt::format("must be 3 to {}, or 0 for a round stop", StopBlades::most)};
+  if (blades.count != 0 && surface.shape)
+    if (const SurfaceKind* kind = find_surface_kind(surface.shape->kind); kind && !kind->is_round)
+      return LensFault{at("blades"), "must stand at a surface that is round itself"};
   if (!std::isfinite(blades.rotation_deg))
     return LensFault{at("blades.rotation_deg"), "must be a finite number of degrees"};
   for (const auto& [power, coefficient] : surface.asphere) {
@@ -138,6 +152,10 @@ Fault transfer_fault(const Lens& lens, std::size_t index) {
       return LensFault{fmt::format("surfaces[{}]", i),
                        "must be a plane in air in its place: a ray transfer goes from plane to plane"};
   }
+  for (std::size_t i = 0; i < 2; ++i)
+    if (lens.surfaces[i].mirror || !lens.surfaces[i].apertures.empty())
+      return LensFault{fmt::format("surfaces[{}]", i),
+                       "must be a plane in air in its place: a ray transfer goes from plane to plane"};
   for (std::size_t i = 0; i < lens.groups.size(); ++i)
     if ((lens.groups[i].first == 0) != (lens.groups[i].first <= 1 && lens.groups[i].last >= 1) ||
         (lens.groups[i].first == 0 && lens.groups[i].last == 0))

@@ -74,9 +74,10 @@ LensText writer_for(const std::string& path) {
                                      extension));
 }
 
-/// Other programs' files hold lenses as designed. \throws InputError for poses and melts.
-void require_designed(const Lens& lens) {
-  require_centred(lens, "Petzval writes poses into its own .json alone");
+/// Other programs' files hold lenses as designed. \throws InputError for melts, and for poses where the kind
+/// of file has none.
+void require_designed(const Lens& lens, bool holds_poses) {
+  if (!holds_poses) require_centred(lens, "Petzval writes poses into .json, .zmx and .seq");
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
     if (!lens.surfaces[i].material.melt().is_none())
       throw InputError(fmt::format(
@@ -99,7 +100,7 @@ std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
   const auto text_of = writer_for(path);
   std::string text;
   try {
-    if (text_of != lens_to_json) require_designed(lens);
+    if (text_of != lens_to_json) require_designed(lens, text_of == zmx_text || text_of == seq_text);
     if (text_of != lens_to_json && text_of != iset_transfer_text)
       require_glass(lens, "files of this kind hold");
     text = text_of(lens);

@@ -41,7 +41,8 @@ json& follow(json& root, const std::vector<JsonStep>& steps) {
 /// Optional entries that null or, for glass, "air" takes away.
 bool removes(const std::string& key, const json& value) {
   static const std::set<std::string> optional{
-      "glass", "semi_diameter_mm", "conic", "asphere", "shape", "stop", "pose", "melt"};
+      "glass", "mirror", "semi_diameter_mm", "apertures", "conic", "asphere", "shape", "stop",
+      "pose",  "melt"};
   const bool air = key == "glass" && value.is_string() && (value == "air" || value == "AIR");
   return (value.is_null() && optional.count(key)) || air;
 }
@@ -77,7 +78,7 @@ std::string with_numbers(const Lens& lens, const std::string& assignment) {
   if (place != last)
     throw InputError("`set` " + assignment,
                      fmt::format("only {}, the distance to the sensor, can be paraxial", last));
-  return fmt::format("{}={}", last, first_order(lens).paraxial_image_mm);
+  return fmt::format("{}={}", last, lens.last_sense() * first_order(lens).paraxial_image_mm);
 }
 
 }  // namespace

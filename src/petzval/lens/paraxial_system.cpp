@@ -38,21 +38,24 @@ void include_transfer(const RayTransfer::Paraxial& transfer, ParaxialSystem& sys
 ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {
   ParaxialSystem system;
   const std::size_t stop = lens.stop_index(), last = lens.surfaces.size() - 1;
-  double index_before = 1;
+  double index_before = 1, sense = 1;
   for (std::size_t i = 0; i <= last; ++i) {
     const Surface& surface = lens.surfaces[i];
-    const double index_after = surface.material.index(wavelength_nm);
+    const double index_after = surface.mirror ? index_before : surface.material.index(wavelength_nm);
     if (surface.transfer) {
       include_transfer(surface.transfer->paraxial(wavelength_nm), system);
       continue;
     }
-    const double power = (index_after - index_before) * vertex_curvature_per_mm(surface);
-    const double gap = i == last ? 0 : surface.thickness_mm / index_after;
+    // Along the light: curvatures and gaps are those of the lens unfolded.
+    const double curvature = sense * vertex_curvature_per_mm(surface);
+    const double power = (surface.mirror ? -2 * index_before : index_after - index_before) * curvature;
+    if (surface.mirror) sense = -sense;
+    const double gap = i == last ? 0 : sense * surface.thickness_mm / index_after;
     for (ParaxialMatrix* part : {&system.whole, i < stop ? &system.to_stop : &system.from_stop}) {
       part->refract(power);
       part->transfer(gap);
     }
-    system.petzval_sum_per_mm += power / (index_before * index_after);
+    system.petzval_sum_per_mm += (surface.mirror ? -power : power) / (index_before * index_after);
     index_before = index_after;
   }
   system.image_index = index_before;

@@ -17,7 +17,7 @@ struct ParaxialMatrix {
   void transfer(double reduced_distance_mm);
 };
 
-/// A lens at one wavelength, object in air.
+/// A lens at one wavelength, object in air. Mirrors are unfolded: all is counted along the light.
 struct ParaxialSystem {
   ParaxialMatrix whole;      ///< from vertex 1 (in front of it) to the last vertex (behind it)
   ParaxialMatrix to_stop;    ///< from vertex 1 to the vertex of the stop surface, in front of it

@@ -4,6 +4,7 @@
 #include <petzval/base/units.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/pose.h>
+#include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +120,17 @@ Frame Frame::mirrored() const {
   return result;
 }
 
+Frame Frame::turned_with_axes(double angle) const {
+  return {product(about_z(angle), offset_mm), product(about_z(angle), rows)};
+}
+
+Frame Frame::mirrored_with_axes() const {
+  Frame result = *this;
+  result.offset_mm[0] = -offset_mm[0];
+  for (double& entry : result.rows[0]) entry = -entry;
+  return result;
+}
+
 std::vector<Frame> frames_of(const Lens& lens) {
   const std::size_t sensor = lens.surfaces.size();
   std::vector<double> vertex_mm(sensor + 1, 0.0);
@@ -139,6 +151,24 @@ bool has_poses(const Lens& lens) {
   const auto group_has = [](const SurfaceGroup& group) { return !group.pose.is_none(); };
   return !lens.sensor_pose.is_none() || std::ranges::any_of(lens.surfaces, surface_has) ||
          std::ranges::any_of(lens.groups, group_has);
+}
+
+namespace {
+
+bool has_round_shape(const Surface& surface) {
+  return !surface.shape || surface_kind(surface.shape->kind).is_round;
+}
+
+bool has_round_apertures(const Surface& surface) {
+  return std::ranges::all_of(surface.apertures, &ApertureFigure::is_round);
+}
+
+}  // namespace
+
+bool is_round(const Lens& lens) {
+  return !has_poses(lens) && std::ranges::all_of(lens.surfaces, [](const Surface& surface) {
+    return has_round_shape(surface) && has_round_apertures(surface);
+  });
 }
 
 Lens as_designed(Lens lens) {
@@ -162,6 +192,16 @@ std::string first_pose(const Lens& lens) {
 }  // namespace
 
 void require_centred(const Lens& lens, const char* what) {
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (!has_round_shape(lens.surfaces[i]))
+      throw InputError(
+          fmt::format("{}: surfaces[{}].shape is not round about the axis, and {}", lens.name, i, what));
+    if (!has_round_apertures(lens.surfaces[i]))
+      throw InputError(
+          fmt::format("{0}: surfaces[{1}].apertures are not round, and {2}; set surfaces[{1}].apertures=null "
+                      "for round ones",
+                      lens.name, i, what));
+  }
   if (!has_poses(lens)) return;
   throw InputError(fmt::format("{}: {} is set, and {}; set {}=null for the lens as designed", lens.name,
                                first_pose(lens), what, first_pose(lens)));

@@ -62,6 +62,9 @@ struct Frame {
   Frame turned(double angle) const;
   /// Of the mirror image x → −x of the lens.
   Frame mirrored() const;
+  /// As turned() and mirrored(), the own axes taken along: for what is not round itself.
+  Frame turned_with_axes(double angle) const;
+  Frame mirrored_with_axes() const;
 };
 
 /// Of every surface, and of the sensor last: its own pose, then those of its groups, in the order in which
@@ -71,10 +74,15 @@ std::vector<Frame> frames_of(const Lens& lens);
 /// Whether a pose of any surface, group or of the sensor is set.
 bool has_poses(const Lens& lens);
 
+/// Whether nothing but the blades of its stop keeps the lens from being round about its axis: no poses, no
+/// surface and no aperture that is not round itself.
+bool is_round(const Lens& lens);
+
 /// The lens without any pose.
 Lens as_designed(Lens lens);
 
-/// \throws InputError if a pose is set, saying what knows centred lenses only and what would be right.
+/// \throws InputError if the lens is not round, naming the pose, surface or aperture, and saying what knows
+/// centred lenses only and what would be right.
 void require_centred(const Lens& lens, const char* what);
 
 }  // namespace petzval

@@ -15,6 +15,7 @@ Lens reversed_lens(const Lens& lens) {
   lens.validate();
   require_glass(lens, "turning it round needs");
   require_centred(lens, "centred lenses can be turned round");
+  require_no_mirrors(lens, "lenses without one can be turned round");
   if (!lens.surfaces.back().material.is_air())
     throw InputError(
         fmt::format("{}: glass reaches up to the sensor; a lens with air on both sides can be "
@@ -26,6 +27,10 @@ Lens reversed_lens(const Lens& lens) {
   const std::size_t last = lens.surfaces.size() - 1;
   for (std::size_t i = 0; i <= last; ++i) {
     Surface& surface = turned.surfaces[i];
+    if (!surface.apertures.empty())
+      throw InputError(
+          fmt::format("{}: surfaces[{}] has apertures that are not round; others can be turned round",
+                      lens.name, last - i));
     if (surface.shape)
       throw InputError(fmt::format("{}: surfaces[{}] is a {}; conics and aspheres can be turned round",
                                    lens.name, last - i, surface.shape->kind));

@@ -120,8 +120,11 @@ PrincipalCurvatures principal_curvatures(const ShapeData<double>& shape, double 
 VertexSeries vertex_series(const Surface& surface) {
   if (surface.shape) {
     using V = Dual<Dual<Dual<double>>>;
-    const V slope_x = point_of(shape_of(surface), variable<V>(0), HWY_NAMESPACE::constant<V>(0)).slope_x;
-    return {slope_x.value.value.slope, slope_x.slope.slope.slope / 3};
+    const V at = variable<V>(0), axis = HWY_NAMESPACE::constant<V>(0);
+    const bool round = surface_kind(surface.shape->kind).is_round;
+    const V slope =
+        round ? point_of(shape_of(surface), at, axis).slope_x : point_of(shape_of(surface), axis, at).slope_y;
+    return {slope.value.value.slope, slope.slope.slope.slope / 3};
   }
   const auto coefficient = [&](int power) {
     const auto term = surface.asphere.find(power);
@@ -139,6 +142,10 @@ Surface scaled_surface(Surface surface, double factor) {
   surface.curvature_per_mm /= factor;
   surface.thickness_mm *= factor;
   if (surface.semi_diameter_mm) *surface.semi_diameter_mm *= factor;
+  for (ApertureFigure& aperture : surface.apertures)
+    for (double* length : {&aperture.half_width_x_mm, &aperture.half_width_y_mm, &aperture.decentre_x_mm,
+                           &aperture.decentre_y_mm})
+      *length *= factor;
   for (auto& [power, coefficient] : surface.asphere) coefficient *= std::pow(factor, 1 - power);
   if (!surface.shape) return surface;
   for (const ShapeParameter& parameter : surface_kind(surface.shape->kind).parameters)

@@ -32,8 +32,8 @@ struct PrincipalCurvatures {
 };
 PrincipalCurvatures principal_curvatures(const ShapeData<double>& shape, double r_mm);
 
-/// The sag of a round surface near its vertex, C r²/2 + G r⁴/8. A term in r, a cone, has no paraxial limit
-/// and is left out, as other programs do.
+/// The sag of a surface near its vertex, of one that is not round along y, C r²/2 + G r⁴/8. A term in r, a
+/// cone, has no paraxial limit and is left out, as other programs do.
 struct VertexSeries {
   double curvature_per_mm, fourth_per_mm3;
 };

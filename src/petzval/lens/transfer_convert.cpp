@@ -9,8 +9,8 @@ namespace petzval {
 
 namespace {
 
-using Powers = std::array<int, 3>;
-using Polynomial = std::map<Powers, double>;
+using TermPowers = std::array<int, 3>;
+using Polynomial = std::map<TermPowers, double>;
 
 double binomial(int n, int k) {
   double result = 1;
@@ -19,7 +19,7 @@ double binomial(int n, int k) {
 }
 
 /// Adds c A^a B^b C^c r^i dx^j dy^k, where A = r²/u², B = r dy/u and C = dx² + dy².
-void add_expanded(const Powers& invariants, const Powers& times, double unit_mm, double coefficient,
+void add_expanded(const TermPowers& invariants, const TermPowers& times, double unit_mm, double coefficient,
                   Polynomial& to) {
   const auto [a, b, c] = invariants;
   const double scale = coefficient * std::pow(unit_mm, -(2 * a + b));
@@ -84,7 +84,7 @@ RayTransfer turned_form(const RayTransfer& transfer) {
   result.largest_radius_mm = transfer.largest_radius_mm;
   result.variables = TransferVariables::turned;
   std::vector<std::array<Polynomial, 4>> bands;
-  std::map<Powers, bool> all;
+  std::map<TermPowers, bool> all;
   for (const RayTransfer::Band& band : transfer.bands) {
     bands.push_back(expanded(transfer, band));
     for (const Polynomial& polynomial : bands.back())
@@ -95,7 +95,7 @@ RayTransfer turned_form(const RayTransfer& transfer) {
     RayTransfer::Band band{transfer.bands[b].wavelength_nm, {}, {}};
     for (const Polynomial& polynomial : bands[b]) {
       std::vector<double> coefficients;
-      for (const Powers& powers : result.terms) {
+      for (const TermPowers& powers : result.terms) {
         const auto found = polynomial.find(powers);
         coefficients.push_back(found == polynomial.end() ? 0 : found->second);
       }

@@ -201,7 +201,7 @@ LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
 }  // namespace
 
 bool needs_places_over_frame(const Lens& lens) {
-  return has_poses(lens) || lens.stop_blades().count > 0;
+  return !is_round(lens) || lens.stop_blades().count > 0;
 }
 
 HeightTable::HeightTable(const Lens& lens, const TableOptions& options)

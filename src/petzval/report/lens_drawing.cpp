@@ -140,7 +140,7 @@ View make_view(const Scene& scene, const LensDrawingOptions& options) {
       if (!std::isfinite(z)) continue;
       z_front = std::min(z_front, z);
       z_back = std::max(z_back, z);
-      y_most = std::max(y_most, y);
+      y_most = std::max(y_most, scene.lens.has_mirrors() ? std::abs(y) : y);
     }
   }
   const double length = std::max(z_back - z_front, smallest_mm);
@@ -160,6 +160,13 @@ void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
   const auto& surfaces = scene.lens.surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     // Of a ray transfer, what lies between its planes is a box.
+    if (surfaces[i].mirror) {
+      xml.leaf("path", {{"class", "pz-line"},
+                        {"d", path_of(view, scene.profiles[i], false)},
+                        {"fill", "none"},
+                        {"stroke-width", 3.0}});
+      continue;
+    }
     if (!surfaces[i].material.is_air() || surfaces[i].transfer) {
       const auto outline = element_outline(scene.profiles[i], scene.profiles[i + 1]);
       xml.leaf("path", {{"class", "pz-glass"},
@@ -167,8 +174,8 @@ void draw_elements(XmlWriter& xml, const Scene& scene, const View& view) {
                         {"stroke-width", 1.2},
                         {"stroke-linejoin", "round"}});
     }
-    const bool dummy =
-        surfaces[i].material.is_air() && (i == 0 || surfaces[i - 1].material.is_air()) && !surfaces[i].stop;
+    const bool dummy = surfaces[i].material.is_air() &&
+                       (i == 0 || scene.lens.medium_behind(i - 1).is_air()) && !surfaces[i].stop;
     if (dummy)
       xml.leaf("path", {{"class", "pz-frame"},
                         {"d", path_of(view, scene.profiles[i], false)},

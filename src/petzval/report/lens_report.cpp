@@ -75,7 +75,7 @@ html::Block first_order_facts(const Lens& lens, const FirstOrder& data) {
        {"magnification", fmt::format("{:.6f}", data.magnification)},
        {"back focal length", length_text(data.bfl_mm), "mm"},
        {"front focal length", length_text(data.ffl_mm), "mm"},
-       {"image distance", length_text(lens.surfaces.back().thickness_mm), "mm, last vertex to image"},
+       {"image distance", length_text(lens.image_distance_mm()), "mm, last vertex to image"},
        {"total track", length_text(data.total_track_mm), "mm"},
        {"entrance pupil", length_text(data.entrance_pupil.position_mm),
         fmt::format("mm from vertex 1, diameter {} mm", length_text(data.entrance_pupil.diameter_mm))},
@@ -106,8 +106,10 @@ Table prescription(const Lens& lens) {
     for (std::string& remark : shape_remarks(surface)) remarks.push_back(std::move(remark));
     table.rows.push_back({static_cast<double>(i), c == 0 ? std::string("flat") : cell_text(1 / c, 5),
                           surface.thickness_mm, surface.semi_diameter_mm.value_or(NAN),
-                          surface.material.is_air() ? std::string("air") : surface.material.description(),
-                          surface.material.index(lens.reference_wavelength_nm),
+                          surface.mirror              ? std::string("mirror")
+                          : surface.material.is_air() ? std::string("air")
+                                                      : surface.material.description(),
+                          lens.medium_behind(i).index(lens.reference_wavelength_nm),
                           fmt::format("{}", fmt::join(remarks, "; "))});
   }
   return table;

@@ -3,16 +3,25 @@
 #include <petzval/report/surface_profile.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace petzval {
 
 std::vector<PlanePoint> profile(const Surface& surface, double vertex_z_mm, double semi_diameter_mm) {
-  const int segments = is_flat(surface) ? 1 : 64;
+  const auto is_closed = [&](double y) {
+    return std::any_of(surface.apertures.begin(), surface.apertures.end(), [&](const ApertureFigure& figure) {
+      return figure.obscures && figure.reach_sq(0, y) < 1;
+    });
+  };
+  const bool has_holes = std::any_of(surface.apertures.begin(), surface.apertures.end(),
+                                     [](const ApertureFigure& figure) { return figure.obscures; });
+  const int segments = has_holes ? 256 : is_flat(surface) ? 1 : 64;
   const ShapeData<double> shape = shape_of(surface);
   std::vector<PlanePoint> points;
   for (int i = 0; i <= segments; ++i) {
     const double y = semi_diameter_mm * (2.0 * i / segments - 1);
-    points.push_back({vertex_z_mm + surface_point(shape, 0, y).sag, y});
+    const double z = vertex_z_mm + surface_point(shape, 0, y).sag;
+    points.push_back({has_holes && is_closed(y) ? std::nan("") : z, y});
   }
   return points;
 }

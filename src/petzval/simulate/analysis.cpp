@@ -293,7 +293,7 @@ AnalysisResult best_focus(const Lens& lens, const AnalysisRequest& request, cons
   const double frequency = request.focus_frequency_cpmm;
   const BestFocus spot = best_spot_focus(lens, request.at), mtf = best_mtf_focus(lens, request.at, frequency);
   const FirstOrder first = first_order(lens);
-  const double design_mm = lens.surfaces.back().thickness_mm;
+  const double design_mm = lens.image_distance_mm();
   const double paraxial_mm = first.paraxial_image_mm - design_mm;
   Table table{{{"focus", "", 0, "focus"},
                {"sensor shift", "mm", 5, "sensor_shift_mm"},

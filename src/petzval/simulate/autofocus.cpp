@@ -41,7 +41,7 @@ double infinity_focus_mm(const Lens& lens) {
   camera.focus_at_m({});
   FieldTableRequest axis = FieldTableRequest::of(camera.lens());
   axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};
-  const double film_mm = camera.lens().surfaces.back().thickness_mm;
+  const double film_mm = camera.lens().image_distance_mm();
   return std::min(paraxial_image_distance_mm(lens, {}, lens.reference_wavelength_nm),
                   film_mm + best_spot_focus(camera.lens(), axis).shift_mm);
 }
@@ -211,8 +211,8 @@ double best_spot_shift_mm(const Lens& lens) {
   Lens sharp = lens;
   const double distance_mm = distance_in_focus_m(lens) * mm_per_m - lens.total_track_mm();
   sharp.object_distance_mm = std::isfinite(distance_mm) ? std::optional(distance_mm) : std::nullopt;
-  sharp.surfaces.back().thickness_mm =
-      paraxial_image_distance_mm(sharp, sharp.object_distance_mm, lens.reference_wavelength_nm);
+  sharp.set_image_distance_mm(
+      paraxial_image_distance_mm(sharp, sharp.object_distance_mm, lens.reference_wavelength_nm));
   FieldTableRequest axis = FieldTableRequest::of(sharp);
   axis.field_kind = Fields::Kind::angle_deg, axis.fields = {0};
   if (sharp.object_distance_mm) axis.field_kind = Fields::Kind::object_height_mm;

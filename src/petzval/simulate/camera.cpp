@@ -87,7 +87,7 @@ void note_short_field(const Lens& lens, const SensorGeometry& frame, const Conte
 
 void note_unfocused_object(const Lens& before, const Lens& after, const Context& context) {
   const auto defocus_mm = [](const Lens& lens) {
-    return lens.surfaces.back().thickness_mm - first_order(lens).paraxial_image_mm;
+    return lens.image_distance_mm() - first_order(lens).paraxial_image_mm;
   };
   const double moved_mm = defocus_mm(after) - defocus_mm(before);
   const double n = first_order(after).working_f_number;

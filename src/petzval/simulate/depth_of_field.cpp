@@ -64,7 +64,7 @@ double distance_in_focus_m(const Lens& lens, double shift_mm) {
   Lens far = lens;
   far.object_distance_mm.reset();
   const double infinity_mm = paraxial_image_distance_mm(far, {}, lens.reference_wavelength_nm);
-  const double film_mm = lens.surfaces.back().thickness_mm - shift_mm;
+  const double film_mm = lens.image_distance_mm() - shift_mm;
   return (object_of_image_shift_mm(far, film_mm - infinity_mm) + lens.total_track_mm()) / mm_per_m;
 }
 

@@ -220,7 +220,7 @@ bool PreparedScene::wants_autofocus() const {
 }
 
 double PreparedScene::film_distance_mm() const {
-  return lens ? lens->surfaces.back().thickness_mm : 0;
+  return lens ? lens->image_distance_mm() : 0;
 }
 
 std::string camera_text(const PreparedScene& scene) {

@@ -220,7 +220,7 @@ Lens build_off_the_line(const Lens& lens, const ToleranceRequest& request, std::
   Lens built = built_lens(lens, tolerances, draw_build(tolerances, request.distribution, seed, index));
   JudgeRequest spots = request.judge;
   spots.merit = {};
-  built.surfaces.back().thickness_mm += judge(built, spots).refocus_mm;
+  built.set_image_distance_mm(built.image_distance_mm() + judge(built, spots).refocus_mm);
   built.name += fmt::format(", build {}", index);
   built.tolerances.clear();
   return built;

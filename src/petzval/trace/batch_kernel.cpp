@@ -53,8 +53,12 @@ HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, meas
     for (RayVector<T, measures>& ray : rays) step_transfer(surface, ray);
   else
     step_surface(surface, rays);
+  if (surface.mirror)
+    for (RayVector<T, measures>& ray : rays) turn_back(ray);
   if (surface.posed)
     for (RayVector<T, measures>& ray : rays) out_of_frame(surface.frame, ray);
+  if (surface.mirror)
+    for (RayVector<T, measures>& ray : rays) flip_z(ray);
 }
 
 /// To the image plane, and NaN is dead.

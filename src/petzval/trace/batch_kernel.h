@@ -21,6 +21,13 @@ struct KernelFrame {
   std::array<std::array<T, 3>, 3> rows{};
 };
 
+/// An ApertureFigure: a place (x, y) in its own axes is (ax + by + e, cx + dy + f), 1 at the edge.
+template <class T>
+struct KernelAperture {
+  bool rectangle = false, obscures = false;
+  T a = 1, b = 0, c = 0, d = 1, e = 0, f = 0;
+};
+
 /// One surface in the order of travel, with everything that does not depend on the ray worked out.
 template <class T>
 struct KernelSurface {
@@ -38,6 +45,9 @@ struct KernelSurface {
   T edge_distance = 0, per_edge_distance = 0;
   bool posed = false;
   KernelFrame<T> frame;  ///< counts where `posed`
+  bool mirror = false;   ///< throws light back; what comes next is seen in the mirror z → −z
+  std::vector<KernelAperture<T>> apertures;  ///< count where `clips`
+  T figure_tolerance = 0;                    ///< by so much, as a share, their edges give way
   /// Carries rays between the planes of this surface and of the one behind it; then nothing else above counts
   /// but the clip, in the coordinates of the transfer's stop.
   std::shared_ptr<const TransferData<T>> transfer;
@@ -45,7 +55,8 @@ struct KernelSurface {
   bool counts_path = true;    ///< through the transfer; costs ten times the way itself
 };
 
-/// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z.
+/// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z,
+/// and so is what follows a mirror.
 template <class T>
 struct KernelPath {
   std::vector<KernelSurface<T>> surfaces;

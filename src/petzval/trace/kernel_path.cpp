@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
 #include <petzval/trace/kernel_path.h>
 
 #include <algorithm>
@@ -56,15 +57,32 @@ KernelFrame<T> kernel_frame(const Frame& from, double flip) {
 }
 
 template <class T>
-KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backward, double clip_radius_sq) {
-  const double flip = backward ? -1 : 1;
+KernelAperture<T> kernel_aperture(const ApertureFigure& from) {
+  const double turn = radians(from.rotation_deg), c = std::cos(turn), s = std::sin(turn);
+  const double a = c / from.half_width_x_mm, b = s / from.half_width_x_mm;
+  const double e = -s / from.half_width_y_mm, f = c / from.half_width_y_mm;
+  return {from.kind == ApertureFigure::Kind::rectangle,
+          from.obscures,
+          static_cast<T>(a),
+          static_cast<T>(b),
+          static_cast<T>(e),
+          static_cast<T>(f),
+          static_cast<T>(-(a * from.decentre_x_mm + b * from.decentre_y_mm)),
+          static_cast<T>(-(e * from.decentre_x_mm + f * from.decentre_y_mm))};
+}
+
+/// \param flip  −1 where the sense of travel is against +z.
+template <class T>
+KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backward, double flip,
+                                double clip_radius_sq) {
   const double before = backward ? from.index_after : from.index_before;
-  const double ratio = before / (backward ? from.index_before : from.index_after);
+  const double ratio = from.mirror ? -1 : before / (backward ? from.index_before : from.index_after);
   KernelSurface<T> surface;
   surface.shape = kernel_shape<T>(from.shape);
   surface.flip = static_cast<T>(flip);
   surface.posed = from.posed;
   surface.frame = kernel_frame<T>(from.frame, flip);
+  surface.mirror = from.mirror;
   surface.clips = std::isfinite(clip_radius_sq);
   surface.clear_radius_sq = surface.clips ? static_cast<T>(clip_radius_sq) : T(0);
   // Boundaries are sought at the rim itself.
@@ -96,36 +114,57 @@ void set_edges(const Tracer& tracer, KernelSurface<T>& stop) {
   stop.per_edge_distance = static_cast<T>(1 / distance);
 }
 
+template <class T>
+void set_figures(const std::vector<ApertureFigure>& figures, Tracer::Clip clip, KernelSurface<T>& surface) {
+  if (clip != Tracer::Clip::apertures || figures.empty()) return;
+  for (const ApertureFigure& figure : figures) surface.apertures.push_back(kernel_aperture<T>(figure));
+  surface.figure_tolerance = static_cast<T>(Tracer::rim_tolerance);
+  if (surface.clips) return;
+  surface.clips = true;
+  surface.clear_radius_sq = std::numeric_limits<T>::infinity();
+  surface.per_clear_radius_sq = 0;
+}
+
 }  // namespace
 
 template <class T>
 KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip) {
   const std::vector<Tracer::PreparedSurface>& surfaces = tracer.surfaces();
-  const double flip = backward ? -1 : 1;
+  // The sense of travel at the sensor, and of a path where it begins, against +z.
+  const double sense = tracer.image_sense();
+  double flip = backward ? -sense : 1;
   KernelPath<T> path;
-  path.flip = static_cast<T>(flip);
+  path.flip = static_cast<T>(backward ? -1 : 1);
   path.to_image = !backward;
   path.image_z_mm = static_cast<T>(tracer.image_z_mm());
   path.image_index = static_cast<T>(tracer.image_index());
   double vertex_z = flip * (backward ? surfaces.back() : surfaces.front()).vertex_z_mm;
   path.first_vertex_z_mm = static_cast<T>(vertex_z);
   path.sensor_posed = tracer.sensor_posed();
-  path.sensor = kernel_frame<T>(tracer.sensor_frame(), flip);
+  path.sensor = kernel_frame<T>(tracer.sensor_frame(), backward ? flip : sense);
   path.sensor_to_first_mm = static_cast<T>(flip * tracer.image_z_mm() - vertex_z);
   for (std::size_t step = 0; step < surfaces.size(); ++step) {
     const std::size_t i = backward ? surfaces.size() - 1 - step : step;
-    KernelSurface<T> surface = kernel_surface<T>(surfaces[i], backward, tracer.clip_radius_sq(i, clip));
+    KernelSurface<T> surface = kernel_surface<T>(surfaces[i], backward, flip, tracer.clip_radius_sq(i, clip));
     const double next = flip * surfaces[i].vertex_z_mm;
     surface.to_vertex_mm = static_cast<T>(vertex_z - next);
     vertex_z = next;
     if (i == tracer.stop_index() && clip != Tracer::Clip::none) set_edges(tracer, surface);
+    set_figures(surfaces[i].apertures, clip, surface);
     if (surfaces[i].transfer) {
       surface.transfer = kernel_transfer(surfaces[i].transfer, T(0));
       surface.clips_others = clip == Tracer::Clip::apertures;
     }
     path.surfaces.push_back(std::move(surface));
+    if (surfaces[i].mirror) flip = -flip, vertex_z = -vertex_z;
   }
   path.last_vertex_z_mm = static_cast<T>(vertex_z);
+  if (sense < 0) {
+    // Image space is seen in the mirror that has the image surface where it is.
+    const double to_image = tracer.image_z_mm() - surfaces.back().vertex_z_mm;
+    (backward ? path.first_vertex_z_mm : path.last_vertex_z_mm) =
+        static_cast<T>((backward ? -1 : 1) * (tracer.image_z_mm() + to_image));
+  }
   return path;
 }
 

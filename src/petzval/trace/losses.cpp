@@ -91,7 +91,10 @@ void Losses::validate(const Lens& lens) const {
       throw InputError(fmt::format("a coating for surfaces[{}], but {} has surfaces[0] to surfaces[{}]",
                                    surface, lens.name, lens.surfaces.size() - 1));
     coating.validate();
-    const bool front_is_air = surface == 0 || lens.surfaces[surface - 1].material.is_air();
+    const bool front_is_air = surface == 0 || lens.medium_behind(surface - 1).is_air();
+    if (coating.has_films() && lens.surfaces[surface].mirror)
+      throw InputError(
+          fmt::format("films on surfaces[{}], which is a mirror; a reflectance would be right", surface));
     if (coating.has_films() && front_is_air == lens.surfaces[surface].material.is_air())
       throw InputError(fmt::format(
           "films on surfaces[{}], which does not lie between air and glass; a reflectance would be right",
@@ -104,8 +107,9 @@ LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, con
   losses.validate(lens);
   double before = 1;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-    const Material& material = lens.surfaces[i].material;
+    const Material& material = lens.medium_behind(i);
     Interface interface;
+    interface.mirror = lens.surfaces[i].mirror;
     interface.index_before = before;
     interface.index_after = material.index(wavelength_nm);
     before = interface.index_after;
@@ -125,8 +129,38 @@ LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, con
   }
 }
 
+void LensTransmittance::heed_obscurations(const Tracer& tracer) {
+  obscurations_.clear();
+  for (std::size_t i = 0; i < tracer.surface_count(); ++i) {
+    const Tracer::PreparedSurface& surface = tracer.surfaces()[i];
+    Obscuration closed{i, surface.vertex_z_mm, surface.frame, {}};
+    for (const ApertureFigure& figure : surface.apertures)
+      if (figure.obscures) closed.figures.push_back(figure);
+    if (!closed.figures.empty()) obscurations_.push_back(std::move(closed));
+  }
+}
+
+bool LensTransmittance::is_obscured(const std::vector<Intersection>& path, bool backward) const {
+  for (const Obscuration& closed : obscurations_) {
+    const std::size_t step = backward ? interfaces_.size() - 1 - closed.surface : closed.surface;
+    if (step >= path.size()) continue;
+    const Frame::Vector at = closed.frame.point_from_lens(path[step].point_mm, closed.vertex_z_mm);
+    for (const ApertureFigure& figure : closed.figures)
+      if (figure.share_sq(at[0], at[1]) > 1 + Tracer::rim_tolerance) return true;
+  }
+  return false;
+}
+
+bool has_obscurations(const Lens& lens) {
+  return std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](const Surface& surface) {
+    return std::any_of(surface.apertures.begin(), surface.apertures.end(),
+                       [](const ApertureFigure& figure) { return figure.obscures; });
+  });
+}
+
 double LensTransmittance::along(const Ray& start, const std::vector<Intersection>& path,
                                 bool backward) const {
+  if (is_obscured(path, backward)) return 0;
   Vec before = start.direction;
   Vec first = perpendicular(before), second = cross(before, first);
   double transmitted = 1;
@@ -144,7 +178,10 @@ double LensTransmittance::along(const Ray& start, const std::vector<Intersection
     const Incidence at = incidence(before, after, path[step].normal);
     Amplitudes through;
     if (interface.reflectance)
-      through.s = through.p = std::sqrt(1 - *interface.reflectance);
+      through.s = through.p =
+          std::sqrt(interface.mirror ? *interface.reflectance : 1 - *interface.reflectance);
+    else if (interface.mirror)
+      through = {};
     else if (!interface.films.empty())  // the same from both sides
       through = through_films(interface.index_before, interface.films, interface.index_after,
                               backward ? at.cosine_after : at.cosine_before, wavelength_nm_);

@@ -38,11 +38,15 @@ struct Losses {
 /// perpendicular polarisations are carried through the lens, and their powers averaged at its end: what one
 /// surface polarises, the next one feels. Films let through what film_power() says of each polarisation; by
 /// how much they delay one against the other is not followed. Absorption: Lambert's law,
-/// exp(−4πk·distance/λ), no gain where facing surfaces cross and a gap is walked backwards.
+/// exp(−4πk·distance/λ). A mirror throws back all, or the share that a coating of its own says. No gain where
+/// facing surfaces cross and a gap is walked backwards.
 class LensTransmittance {
  public:
   /// \throws InputError as Losses::validate, and where an index is not known.
   LensTransmittance(const Lens& lens, double wavelength_nm, const Losses& losses);
+
+  /// From now on what apertures close inside their outer edges takes light too: all of it.
+  void heed_obscurations(const Tracer& tracer);
 
   /// 0…1 for a ray that passed. \param start  the launched ray. \param path  what Tracer::trace or
   /// trace_backward recorded of it.
@@ -54,15 +58,29 @@ class LensTransmittance {
  private:
   struct Interface {
     double index_before = 1, index_after = 1;
+    bool mirror = false;                     ///< throws back what `reflectance` says, or all
     std::optional<double> reflectance = {};  ///< nothing: films, or Fresnel, if that counts
     std::vector<ThinFilm> films = {};        ///< from the front
     double absorption_per_mm = 0;            ///< of the gap behind the surface, 4πk/λ
   };
+  /// Figures that close a surface inside.
+  struct Obscuration {
+    std::size_t surface;
+    double vertex_z_mm;
+    Frame frame;
+    std::vector<ApertureFigure> figures;
+  };
+  bool is_obscured(const std::vector<Intersection>& path, bool backward) const;
+
   bool fresnel_;
   double wavelength_nm_;
   std::vector<Interface> interfaces_;
   std::vector<std::string> clear_;
+  std::vector<Obscuration> obscurations_;
 };
+
+/// Whether any surface has an aperture that is closed inside.
+bool has_obscurations(const Lens& lens);
 
 /// ∬ T du dv over the whole pupil of a pencil, in the unit of PupilBoundary::area().
 double transmitted_area(const Tracer& tracer, const Pencil& pencil, const PupilBoundary& pupil,

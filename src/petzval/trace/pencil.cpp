@@ -92,8 +92,10 @@ LabelRange label_range(const Tracer& tracer, const Pencil& pencil) {
   if (!pencil.object_at_infinity()) return {-1, 1};
   double size = std::abs(tracer.image_z_mm());
   if (std::isfinite(tracer.stop_radius_mm())) size += tracer.stop_radius_mm();
-  for (const Tracer::PreparedSurface& surface : tracer.surfaces())
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces()) {
+    if (surface.mirror) size = std::max(size, std::abs(surface.vertex_z_mm));  // a folded lens is short
     if (std::isfinite(surface.clear_radius_sq)) size = std::max(size, std::sqrt(surface.clear_radius_sq));
+  }
   double reach = size;
   for (const Tracer::PreparedSurface& surface : tracer.surfaces())
     if (surface.shape.curvature != 0)
@@ -178,9 +180,9 @@ ChiefRayMarch::ChiefRayMarch(const Lens& lens, const Tracer& tracer, From from)
     step_ = *lens.object_distance_mm / march_steps_per_tangent;
   } else {
     const double exit_pupil = std::abs(first_order(lens, tracer.wavelength_nm()).exit_pupil.position_mm);
-    step_ =
-        (std::isfinite(exit_pupil) ? std::max(exit_pupil, tracer.stop_radius_mm()) : tracer.image_z_mm()) /
-        march_steps_per_tangent;
+    step_ = (std::isfinite(exit_pupil) ? std::max(exit_pupil, tracer.stop_radius_mm())
+                                       : std::abs(tracer.image_z_mm())) /
+            march_steps_per_tangent;
   }
 }
 

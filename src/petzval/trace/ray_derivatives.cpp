@@ -114,16 +114,25 @@ DualPoint meet_derived(const ShapeData<DualNumber>& shape, double way_mm, double
   return point_at(shape, path.x, path.y);
 }
 
-void refract_derived(double ratio, const DualPoint& at, DerivedPath& path) {
+/// \param sense  −1: the light runs towards −z.
+void refract_derived(double sense, double ratio, const DualPoint& at, DerivedPath& path) {
   if (ratio == 1) return;
   const DualNumber scale =
-      fixed(1) / square_root(at.slope_x * at.slope_x + at.slope_y * at.slope_y + fixed(1));
+      fixed(sense) / square_root(at.slope_x * at.slope_x + at.slope_y * at.slope_y + fixed(1));
   const DualNumber nx = fixed(-1) * at.slope_x * scale, ny = fixed(-1) * at.slope_y * scale;
   const DualNumber cosine = path.l * nx + path.m * ny + path.n * scale, e = fixed(ratio);
   const DualNumber bend = square_root(fixed(1) - e * e * (fixed(1) - cosine * cosine)) - e * cosine;
   path.l = e * path.l + bend * nx;
   path.m = e * path.m + bend * ny;
   path.n = e * path.n + bend * scale;
+}
+
+void reflect_derived(const DualPoint& at, DerivedPath& path) {
+  const DualNumber square = at.slope_x * at.slope_x + at.slope_y * at.slope_y + fixed(1);
+  const DualNumber twice = fixed(2) * (path.n - path.l * at.slope_x - path.m * at.slope_y) / square;
+  path.l = path.l + twice * at.slope_x;
+  path.m = path.m + twice * at.slope_y;
+  path.n = path.n - twice;
 }
 
 /// At most `slopes_at_once` numbers. \param met  where the ray meets the surfaces, from the tracer.
@@ -139,7 +148,10 @@ DerivedPath derived(const Tracer& tracer, const Ray& ray, const std::vector<Inte
     const double way = (met[i].point_mm[2] - surface.vertex_z_mm - path.z.value) / path.n.value;
     const DualPoint at =
         meet_derived(seeded_shape(surface.shape, i, numbers), way, surface.index_before, path);
-    refract_derived(surface.index_before / surface.index_after, at, path);
+    if (surface.mirror)
+      reflect_derived(at, path);
+    else
+      refract_derived(surface.sense, surface.index_before / surface.index_after, at, path);
     const double next = i + 1 < count ? tracer.vertex_z_mm(i + 1) : tracer.image_z_mm();
     path.z = path.z - seeded(next - surface.vertex_z_mm, numbers, LensNumber::Kind::thickness_mm, i);
   }

@@ -99,6 +99,40 @@ HWY_ATTR HWY_INLINE void clip_by_edges(const KernelSurface<T>& surface, RayVecto
   }
 }
 
+/// Figures beside the round aperture. A trace that measures looks for the outer edge of a pupil: it passes
+/// over what is closed inside.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void clip_by_figures(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
+  const Lanes<T> d;
+  for (const KernelAperture<T>& figure : surface.apertures) {
+    if (measures && figure.obscures) continue;
+    const auto x = hn::MulAdd(hn::Set(d, figure.a), ray.x,
+                              hn::MulAdd(hn::Set(d, figure.b), ray.y, hn::Set(d, figure.e)));
+    const auto y = hn::MulAdd(hn::Set(d, figure.c), ray.x,
+                              hn::MulAdd(hn::Set(d, figure.d), ray.y, hn::Set(d, figure.f)));
+    const auto x_sq = hn::Mul(x, x), y_sq = hn::Mul(y, y);
+    const auto reach_sq = figure.rectangle ? hn::Max(x_sq, y_sq) : hn::Add(x_sq, y_sq);
+    if constexpr (measures) {
+      ray.worst = hn::Max(ray.worst, reach_sq);
+    } else {
+      const auto edge = hn::Set(d, T(1) + (figure.obscures ? T(-1) : T(1)) * surface.figure_tolerance);
+      ray.alive = hn::And(ray.alive, figure.obscures ? hn::Ge(reach_sq, edge) : hn::Le(reach_sq, edge));
+    }
+  }
+}
+
+/// What refraction with an index ratio of −1 has made is the ray thrown back, turned round.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void turn_back(RayVector<T, measures>& ray) {
+  ray.l = hn::Neg(ray.l), ray.m = hn::Neg(ray.m), ray.n = hn::Neg(ray.n);
+}
+
+/// Into the mirror image z → −z, in which the light goes on towards +z.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void flip_z(RayVector<T, measures>& ray) {
+  ray.z = hn::Neg(ray.z), ray.n = hn::Neg(ray.n);
+}
+
 template <class T, bool measures>
 HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
   if (!surface.clips) return;
@@ -108,6 +142,7 @@ HWY_ATTR HWY_INLINE void clip(const KernelSurface<T>& surface, RayVector<T, meas
   else
     ray.alive = hn::And(ray.alive, hn::Le(radius_sq, hn::Set(Lanes<T>(), surface.clear_radius_sq)));
   if (!surface.edges.empty()) clip_by_edges(surface, ray);
+  if (!surface.apertures.empty()) clip_by_figures(surface, ray);
 }
 
 template <class T, bool measures>

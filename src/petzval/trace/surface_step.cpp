@@ -131,6 +131,13 @@ bool intersect(const Prepared& surface, double sense, double index, SurfaceRay& 
                    : intersect_in_sense<false>(surface, index, ray, normal);
 }
 
+void reflect(SurfaceRay& ray, const double normal[3]) {
+  const double twice = 2 * (ray.l * normal[0] + ray.m * normal[1] + ray.n * normal[2]);
+  ray.l -= twice * normal[0];
+  ray.m -= twice * normal[1];
+  ray.n -= twice * normal[2];
+}
+
 bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]) {
   if (ratio == 1) return true;
   const double cos_in = sense * (ray.l * normal[0] + ray.m * normal[1] + ray.n * normal[2]);

@@ -20,6 +20,9 @@ struct SurfaceRay {
 bool intersect(const Tracer::PreparedSurface& surface, double sense, double index, SurfaceRay& ray,
                double normal[3]);
 
+/// Throws the ray back at a unit normal.
+void reflect(SurfaceRay& ray, const double normal[3]);
+
 /// Vector Snell at a unit normal; false on total internal reflection. `ratio` = n_before / n_after.
 bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]);
 

@@ -2,6 +2,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/ray_transfer.h>
+#include <petzval/lens/surface_kind.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/trace/kernel_path.h>
 #include <petzval/trace/surface_step.h>
@@ -67,7 +68,6 @@ void aim_at(const SurfaceRay& target, SurfaceRay& ray) {
 template <class Visit, class After>
 void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, Ray& ray, Visit&& visit,
           After&& after) {
-  const double sense = backward ? -1.0 : 1.0;
   const std::size_t count = surfaces.size();
   double vertex_z = surfaces[backward ? count - 1 : 0].vertex_z_mm;
   SurfaceRay at = relative_to_vertex(ray, vertex_z);
@@ -79,6 +79,8 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     vertex_z = surface.vertex_z_mm;
     const double before = backward ? surface.index_after : surface.index_before;
     const double behind = backward ? surface.index_before : surface.index_after;
+    // Light leaves a mirror in the other sense; a ray that goes back comes against that.
+    const double sense = backward ? (surface.mirror ? surface.sense : -surface.sense) : surface.sense;
     double normal[3] = {0, 0, 1};
     if (surface.posed) into(surface.frame, at);
     SurfaceRay met = at;
@@ -97,7 +99,10 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     } else if (!intersect(surface, sense, before, at, normal)) {
       ray.status = RayStatus::missed;
     } else if (visit(i, at, 0.0)) {
-      if (!refract(before / behind, sense, at, normal)) ray.status = RayStatus::tir;
+      if (surface.mirror)
+        reflect(at, normal);
+      else if (!refract(before / behind, sense, at, normal))
+        ray.status = RayStatus::tir;
       met = at;
     } else {
       ray.status = RayStatus::vignetted;
@@ -115,6 +120,13 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
   store(at, vertex_z, ray);
 }
 
+/// Image space of light that runs towards −z, seen in a mirror, and back.
+void flip_image_space(const Tracer& tracer, Ray& ray) {
+  if (tracer.image_sense() > 0) return;
+  ray.point_mm[2] = tracer.image_z_mm() - (ray.point_mm[2] - tracer.image_z_mm());
+  ray.direction[2] = -ray.direction[2];
+}
+
 /// Carries a ray that has passed all surfaces to the image plane, in the axes of the sensor.
 void reach_image(const Tracer& tracer, Ray& ray) {
   if (ray.status != RayStatus::ok) return;
@@ -123,6 +135,7 @@ void reach_image(const Tracer& tracer, Ray& ray) {
     into(tracer.sensor_frame(), at);
     store(at, tracer.image_z_mm(), ray);
   }
+  flip_image_space(tracer, ray);
   if (!(ray.direction[2] > 0)) {
     ray.status = RayStatus::missed;
     ray.failed_at = static_cast<int>(tracer.surface_count());
@@ -136,6 +149,7 @@ void reach_image(const Tracer& tracer, Ray& ray) {
 
 /// From the axes of the sensor into lens space.
 void leave_image(const Tracer& tracer, Ray& ray) {
+  flip_image_space(tracer, ray);
   if (!tracer.sensor_posed()) return;
   SurfaceRay at = relative_to_vertex(ray, tracer.image_z_mm());
   out_of(tracer.sensor_frame(), at);
@@ -149,7 +163,7 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm)
 
 Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     : wavelength_nm_(wavelength_nm), stop_index_(lens.stop_index()), stop_radius_mm_(stop_radius_mm) {
-  double z = 0, index = 1;
+  double z = 0, index = 1, sense = 1;
   const std::vector<Frame> frames = frames_of(lens);
   for (const Surface& surface : lens.surfaces) {
     PreparedSurface prepared;
@@ -159,7 +173,16 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     prepared.shape = shape_of(surface);
     prepared.vertex_z_mm = z;
     prepared.index_before = index;
-    prepared.index_after = index = surface.material.index(wavelength_nm);
+    prepared.mirror = surface.mirror;
+    prepared.sense = sense;
+    if (surface.mirror) sense = -sense;
+    if (!surface.mirror) index = surface.material.index(wavelength_nm);
+    prepared.index_after = index;
+    prepared.apertures = surface.apertures;
+    prepared.axes_count = surface.shape && !surface_kind(surface.shape->kind).is_round;
+    centred_ = centred_ && !prepared.axes_count &&
+               std::all_of(surface.apertures.begin(), surface.apertures.end(),
+                           [](const ApertureFigure& figure) { return figure.is_round(); });
     prepared.clear_radius_sq =
         surface.semi_diameter_mm ? *surface.semi_diameter_mm * *surface.semi_diameter_mm : infinity;
     if (surface.transfer) prepared.transfer = surface.transfer->at(wavelength_nm);
@@ -167,6 +190,7 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     z += surface.thickness_mm;
   }
   image_z_mm_ = z;
+  image_sense_ = sense;
   sensor_frame_ = frames.back();
   sensor_posed_ = !sensor_frame_.is_none();
   centred_ = centred_ && sensor_frame_.is_centred();
@@ -184,8 +208,13 @@ double Tracer::clip_radius_sq(std::size_t surface, Clip clip) const {
   return limit * (1 + rim_tolerance);
 }
 
-double Tracer::clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip) const {
+double Tracer::clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip,
+                             bool with_obscurations) const {
   double share = (x_mm * x_mm + y_mm * y_mm) / clip_radius_sq(surface, clip);
+  if (clip == Clip::apertures)
+    for (const ApertureFigure& figure : surfaces_[surface].apertures)
+      if (!figure.obscures || with_obscurations)
+        share = std::max(share, figure.share_sq(x_mm, y_mm) / (1 + rim_tolerance));
   if (blade_normals_.empty() || surface != stop_index_ || clip == Clip::none) return share;
   double farthest = 0;
   for (const auto& [nx, ny] : blade_normals_) farthest = std::max(farthest, nx * x_mm + ny * y_mm);
@@ -205,7 +234,12 @@ Tracer Tracer::with_blades(const StopBlades& blades) const {
 
 Tracer Tracer::turned(double angle) const {
   Tracer result = *this;
-  for (PreparedSurface& surface : result.surfaces_) surface.frame = surface.frame.turned(angle);
+  for (PreparedSurface& surface : result.surfaces_) {
+    for (ApertureFigure& figure : surface.apertures)
+      if (!surface.axes_count) figure = figure.turned(angle);
+    surface.frame = surface.axes_count ? surface.frame.turned_with_axes(angle) : surface.frame.turned(angle);
+    surface.posed = surface.posed || surface.axes_count;
+  }
   result.sensor_frame_ = sensor_frame_.turned(angle);
   result.blades_.rotation_deg += degrees(angle);
   result.blade_normals_ = result.blades_.normals();
@@ -214,7 +248,12 @@ Tracer Tracer::turned(double angle) const {
 
 Tracer Tracer::mirrored() const {
   Tracer result = *this;
-  for (PreparedSurface& surface : result.surfaces_) surface.frame = surface.frame.mirrored();
+  for (PreparedSurface& surface : result.surfaces_) {
+    for (ApertureFigure& figure : surface.apertures)
+      if (!surface.axes_count) figure = figure.mirrored();
+    surface.frame = surface.axes_count ? surface.frame.mirrored_with_axes() : surface.frame.mirrored();
+    surface.posed = surface.posed || surface.axes_count;
+  }
   result.sensor_frame_ = sensor_frame_.mirrored();
   result.blades_.rotation_deg = -blades_.rotation_deg;
   result.blade_normals_ = result.blades_.normals();
@@ -302,7 +341,7 @@ Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) co
   walk(
       surfaces_, backward, result.ray,
       [&](std::size_t i, const SurfaceRay& at, double others_sq) {
-        const double share = std::max(clip_share_sq(i, at.x, at.y, clip) * (1 + rim_tolerance),
+        const double share = std::max(clip_share_sq(i, at.x, at.y, clip, false) * (1 + rim_tolerance),
                                       clip == Clip::apertures ? others_sq : 0.0);
         const double excess = share - 1;
         if (excess > result.worst) {

@@ -37,9 +37,11 @@ struct Intersection {
 /// surface (a plane). Backward: a ray from image space is refracted at all surfaces in reverse order and left
 /// just in front of surface 0. Rays in image space are in the axes of the sensor, which stands at
 /// image_z_mm() and differs from lens space only if the sensor has a pose; where a ray crosses the stop is in
-/// the stop's. Optical path is signed, so surfaces that cross beyond their rims are no harm. Method: closed
-/// form for spheres and conics, Newton to 1e-12 mm for other shapes; refraction by vector Snell
-/// (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986, ch. 4).
+/// the stop's. Behind an odd number of mirrors image space is seen in a mirror, z → −z about the image
+/// surface, so that its light runs towards +z like any other. Optical path is signed, so surfaces that cross
+/// beyond their rims are no harm. Method: closed form for spheres and conics, Newton to 1e-12 mm for other
+/// shapes; refraction by vector Snell (docs/CONVENTIONS.md; Welford, Aberrations of Optical Systems, 1986,
+/// ch. 4).
 class Tracer {
  public:
   enum class Clip { apertures, stop_only, none };
@@ -60,7 +62,7 @@ class Tracer {
   Tracer turned(double angle) const;
   /// Its mirror image x → −x.
   Tracer mirrored() const;
-  /// Whether poses leave the lens round about its axis, but for its blades.
+  /// Whether the lens is round about its axis, but for its blades.
   bool is_centred() const { return centred_; }
 
   double wavelength_nm() const { return wavelength_nm_; }
@@ -88,12 +90,15 @@ class Tracer {
   Ray trace(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
   Ray trace_backward(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
 
-  /// (r/r_clear)² at a surface, of the worst of its limits; clips where above 1.
-  double clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip) const;
+  /// (r/r_clear)² at a surface, of the worst of its limits; clips where above 1. \param with_obscurations
+  /// whether what is closed inside counts, or the outer edges alone.
+  double clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip,
+                       bool with_obscurations = true) const;
 
-  /// As trace(), never clipped, and says by how much the ray clears the apertures: the largest over all
-  /// clipping surfaces of (r/r_clear)² − 1: negative inside, positive outside, +infinity if the ray was
-  /// missed or totally reflected; and where it crossed the stop surface.
+  /// As trace(), never clipped, and says by how much the ray clears the outer edges of the apertures (what
+  /// is closed inside them does not count): the largest over all clipping surfaces of (r/r_clear)² − 1:
+  /// negative inside, positive outside, +infinity if the ray was missed or totally reflected; and where it
+  /// crossed the stop surface.
   struct Clearance {
     double worst = 0;
     int surface = -1;  ///< which one clips first
@@ -107,20 +112,26 @@ class Tracer {
   struct PreparedSurface {
     ShapeData<double> shape;
     double vertex_z_mm, index_before, index_after;
-    double clear_radius_sq;  ///< infinity when unbounded
-    Frame frame;             ///< against the vertex at vertex_z_mm on the axis
-    bool posed = false;      ///< whether the frame is any
+    double clear_radius_sq;   ///< infinity when unbounded
+    Frame frame;              ///< against the vertex at vertex_z_mm on the axis
+    bool posed = false;       ///< whether the frame is any
+    bool axes_count = false;  ///< its shape is not round: own axes are not to be chosen
+    bool mirror = false;      ///< throws light back; both indices are that of the medium in front
+    double sense = 1;         ///< −1 where light comes to it from behind, thrown back by mirrors
+    std::vector<ApertureFigure> apertures = {};
     std::shared_ptr<const TransferData<double>> transfer = {};  ///< carries rays to the next surface
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
   const Frame& sensor_frame() const { return sensor_frame_; }
+  /// −1 where light reaches the sensor running towards −z, thrown back by an odd number of mirrors.
+  double image_sense() const { return image_sense_; }
   bool sensor_posed() const { return sensor_posed_; }
 
  private:
   double wavelength_nm_ = 0;
   std::vector<PreparedSurface> surfaces_;
   std::size_t stop_index_ = 0;
-  double image_z_mm_ = 0, stop_radius_mm_ = 0;
+  double image_z_mm_ = 0, stop_radius_mm_ = 0, image_sense_ = 1;
   Frame sensor_frame_;
   bool sensor_posed_ = false, centred_ = true;
   StopBlades blades_;

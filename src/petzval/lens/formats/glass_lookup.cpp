@@ -6,6 +6,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/packed_catalogue.h>
 #include <petzval/lens/formats/glass_lookup.h>
+#include <petzval/lens/formats/retired_glasses.h>
 
 #include <algorithm>
 
@@ -56,9 +57,74 @@ Material GlassLookup::of_catalogue(const std::string& name, const std::vector<st
 Material GlassLookup::find(const std::string& name, const std::vector<std::string>& preferred) {
   asked_.insert(name);
   const auto instead = substitute(name, options_);
+  if (!instead && notes_) return of_other_program(name, preferred);
   if (!instead) return of_catalogue(name, preferred);
   const auto model = model_glass(*instead);
   return model ? *model : of_catalogue(*instead, preferred);
+}
+
+void GlassLookup::note(const std::string& text) {
+  if (noted_.insert(text).second) notes_->push_back(file_ + ": " + text);
+}
+
+std::optional<Material> GlassLookup::successor(const std::string& name,
+                                               const std::vector<std::string>& preferred) {
+  const auto retired = notes_ ? find_retired_glass(name) : std::nullopt;
+  if (!retired) return {};
+  const std::string other(retired->successor);
+  if (other.empty() || !catalogue().contains(other)) {
+    note(fmt::format("glass {} is in no catalogue here; nd {:.5f} and Vd {:.2f} stand for it", name,
+                     retired->nd, retired->vd));
+    return Material(Material::Model{retired->nd, retired->vd});
+  }
+  const std::string maker = other.substr(0, other.find(':'));
+  const bool wanted =
+      preferred.empty() || std::any_of(preferred.begin(), preferred.end(),
+                                       [&](const std::string& each) { return upper_case(each) == maker; });
+  const Material taken(catalogue().find(other));
+  const auto& glass = std::get<std::shared_ptr<const Glass>>(taken.kind());
+  const auto abbe = glass->abbe();
+  note(fmt::format("glass {} is made no more: {} is taken{}{}", name, other,
+                   wanted ? "" : ", of another maker than the file names",
+                   abbe ? fmt::format(", nd {:+.5f} and Vd {:+.2f} from it", abbe->nd - retired->nd,
+                                      abbe->vd - retired->vd)
+                        : std::string()));
+  return taken;
+}
+
+/// The makers that a file names first; then the successor of a retired glass; then anybody's.
+Material GlassLookup::of_other_program(const std::string& name, const std::vector<std::string>& preferred) {
+  check_name(name);
+  const auto made_by = [&](const std::string& maker) { return catalogue().contains(maker + ":" + name); };
+  const bool full = name.find(':') != std::string::npos;
+  if (full || std::any_of(preferred.begin(), preferred.end(), made_by)) return of_catalogue(name, preferred);
+  if (const auto other = successor(name, preferred)) return *other;
+  Material taken = of_catalogue(name, preferred);
+  const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&taken.kind());
+  if (glass && !preferred.empty())
+    note(fmt::format("glass {} is taken from {}; {} has none of that name", name, (*glass)->full_name(),
+                     fmt::join(preferred, ", ")));
+  return taken;
+}
+
+Material GlassLookup::missing(const InputError& located, const std::string& name, const std::string& where) {
+  missing_.push_back({located, name, where});
+  return Material(Material::Constant{1.5});
+}
+
+void GlassLookup::require_all_found() const {
+  if (missing_.empty()) return;
+  std::vector<std::string> others;
+  std::set<std::string> named;
+  for (const Missing& each : missing_)
+    if (named.insert(upper_case(each.name)).second)
+      others.push_back(fmt::format("{} ({})", each.name, each.where));
+  if (named.size() == 1) throw missing_.front().error;
+  const ErrorParts& first = missing_.front().error.parts();
+  throw InputError(
+      first.file, first.line,
+      fmt::format("{} glasses are not to be found: {}; `substitute` {}=… takes another for one of them",
+                  named.size(), fmt::join(others, ", "), missing_.front().name));
 }
 
 Material GlassLookup::find_squeezed(const std::string& name, const std::string& holder) {
@@ -71,6 +137,8 @@ Material GlassLookup::find_squeezed(const std::string& name, const std::string& 
       return upper_case(full.substr(0, full.find(':'))) != upper_case(holder);
     });
   asked_.insert(as_written);
+  if (found.empty())
+    if (const auto other = successor(name, {})) return *other;
   if (found.empty()) return of_catalogue(holder.empty() ? name : holder + ":" + name, {});
   const auto bare = [](const std::string& full) { return full.substr(full.find(':') + 1); };
   const bool one_name = std::all_of(found.begin(), found.end(), [&](const std::string& full) {

@@ -218,7 +218,8 @@ class TableReader {
         if (!none) surface.thickness_mm = number(cell, "thickness in mm");
         break;
       case Column::glass:
-        surface.material = glass(cell);
+        surface.mirror = word == "mirror";
+        if (!surface.mirror) surface.material = glass(cell);
         break;
       case Column::nd:
         if (!none) nd_ = number(cell, "refractive index");
@@ -313,7 +314,7 @@ class TableReader {
     if (!(image_mm > 0 && std::isfinite(image_mm)))
       throw InputError(
           file_, "forms no real image; a thickness of the last surface, up to the sensor, would be right");
-    lens.surfaces.back().thickness_mm = image_mm;
+    lens.set_image_distance_mm(image_mm);
     usual.push_back(
         fmt::format("the sensor in the paraxial focus, {:.6g} mm behind the last surface", image_mm));
   }

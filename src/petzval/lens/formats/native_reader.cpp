@@ -118,6 +118,32 @@ StopBlades read_blades(const JsonEntry& entry) {
   return blades;
 }
 
+/// {"ellipse": [8, 5]} or {"rectangle": [8, 5]}: half the widths along x and y.
+ApertureFigure read_aperture_figure(const JsonEntry& entry) {
+  entry.allow_only({"ellipse", "rectangle", "decentre_mm", "rotation_deg", "obscures"});
+  const auto ellipse = entry.find("ellipse"), rectangle = entry.find("rectangle");
+  if (ellipse.has_value() == rectangle.has_value())
+    entry.fail("must have either \"ellipse\" or \"rectangle\", with half the widths along x and y in mm");
+  const auto two = [](const JsonEntry& pair, const char* meaning) {
+    const std::vector<double> numbers = read_numbers(pair, meaning, "a number of mm");
+    if (numbers.size() != 2) pair.fail(fmt::format("must be {}", meaning));
+    return numbers;
+  };
+  ApertureFigure shape;
+  shape.kind = rectangle ? ApertureFigure::Kind::rectangle : ApertureFigure::Kind::ellipse;
+  const std::vector<double> half =
+      two(rectangle ? *rectangle : *ellipse, "half the widths along x and y in mm, such as [8, 5]");
+  shape.half_width_x_mm = half[0], shape.half_width_y_mm = half[1];
+  if (const auto decentre = entry.find("decentre_mm")) {
+    const std::vector<double> middle = two(*decentre, "the place of its middle in mm, such as [0, 2]");
+    shape.decentre_x_mm = middle[0], shape.decentre_y_mm = middle[1];
+  }
+  if (const auto rotation = entry.find("rotation_deg"))
+    shape.rotation_deg = rotation->number("an angle in degrees");
+  if (const auto obscures = entry.find("obscures")) shape.obscures = obscures->truth();
+  return shape;
+}
+
 Material::Melt read_melt(const JsonEntry& entry) {
   entry.allow_only({"delta_nd", "delta_vd_percent"});
   Material::Melt melt;
@@ -170,17 +196,22 @@ SurfaceGroup read_group(const JsonEntry& entry) {
 
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
-  entry.allow_only({"radius_mm", "thickness_mm", "glass", "semi_diameter_mm", "conic", "asphere", "shape",
-                    "stop", "blades", "pose", "melt", "transfer"});
+  entry.allow_only({"radius_mm", "thickness_mm", "glass", "mirror", "semi_diameter_mm", "apertures", "conic",
+                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
     surface.thickness_mm = entry.at("thickness_mm").number("a distance in mm");
   if (const auto glass = entry.find("glass")) surface.material = read_glass(*glass, glasses);
+  if (const auto mirror = entry.find("mirror"); mirror && !mirror->is_null())
+    surface.mirror = mirror->truth();
   if (const auto melt = entry.find("melt"); melt && !melt->is_null())
     surface.material = located(*melt, [&] { return surface.material.melted(read_melt(*melt)); });
   if (const auto semi = entry.find("semi_diameter_mm"); semi && !semi->is_null())
     surface.semi_diameter_mm = semi->number("a semi-diameter in mm, or null for an unbounded surface");
+  if (const auto apertures = entry.find("apertures"); apertures && !apertures->is_null())
+    for (const JsonEntry& each : apertures->items("a list of apertures"))
+      surface.apertures.push_back(read_aperture_figure(each));
   if (const auto conic = entry.find("conic")) surface.conic = conic->number("a conic constant");
   if (const auto asphere = entry.find("asphere")) read_asphere(*asphere, surface);
   if (const auto shape = entry.find("shape"); shape && !shape->is_null()) surface.shape = read_shape(*shape);
@@ -230,8 +261,9 @@ void focus_paraxially(Lens& lens, const JsonDocument& document) {
   double& gap_mm = lens.surfaces.back().thickness_mm;
   gap_mm = 1;  // any
   if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
-  gap_mm = first_order(lens).paraxial_image_mm;
-  if (!(gap_mm > 0 && std::isfinite(gap_mm)))
+  const double image_mm = first_order(lens).paraxial_image_mm;
+  gap_mm = lens.last_sense() * image_mm;
+  if (!(image_mm > 0 && std::isfinite(image_mm)))
     document.fail(place, "forms no real image; \"thickness_mm\", the distance to the sensor, would be right");
 }
 

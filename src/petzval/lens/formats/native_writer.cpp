@@ -49,6 +49,17 @@ std::string shape_text(const AddedShape& shape) {
   return text + "}";
 }
 
+std::string aperture_figure_text(const ApertureFigure& shape) {
+  std::string text =
+      fmt::format("{{\"{}\": {}", shape.kind == ApertureFigure::Kind::rectangle ? "rectangle" : "ellipse",
+                  list({shape.half_width_x_mm, shape.half_width_y_mm}));
+  if (shape.decentre_x_mm != 0 || shape.decentre_y_mm != 0)
+    text += ", \"decentre_mm\": " + list({shape.decentre_x_mm, shape.decentre_y_mm});
+  if (shape.rotation_deg != 0) text += ", \"rotation_deg\": " + number_text(shape.rotation_deg);
+  if (shape.obscures) text += ", \"obscures\": true";
+  return text + "}";
+}
+
 std::string pose_text(const Pose& pose) {
   std::vector<std::string> entries;
   for (const PoseNumber& number : pose_numbers)
@@ -73,11 +84,17 @@ std::string surface_text(const Surface& surface) {
   if (const Material::Melt& melt = surface.material.melt(); !melt.is_none())
     text += fmt::format(", \"melt\": {{\"delta_nd\": {}, \"delta_vd_percent\": {}}}",
                         number_text(melt.delta_nd), number_text(melt.delta_vd_percent));
+  if (surface.mirror) text += ", \"mirror\": true";
   if (surface.stop) text += ", \"stop\": true";
   if (surface.blades.count != 0)
     text += fmt::format(R"(, "blades": {{"count": {}, "rotation_deg": {}}})", surface.blades.count,
                         number_text(surface.blades.rotation_deg));
   if (surface.semi_diameter_mm) text += ", \"semi_diameter_mm\": " + number_text(*surface.semi_diameter_mm);
+  if (!surface.apertures.empty()) {
+    std::vector<std::string> figures;
+    for (const ApertureFigure& each : surface.apertures) figures.push_back(aperture_figure_text(each));
+    text += fmt::format(", \"apertures\": [{}]", fmt::join(figures, ", "));
+  }
   if (surface.conic != 0) text += ", \"conic\": " + number_text(surface.conic);
   if (!surface.asphere.empty()) {
     std::vector<std::string> terms;

@@ -44,6 +44,8 @@ double single_index(const Lens& lens, std::size_t i, const RowRefusal& refuse) {
 
 LensRow row_of(const Lens& lens, std::size_t i, const RowRefusal& refuse) {
   const Surface& surface = lens.surfaces[i];
+  if (surface.mirror) refuse(i, "a mirror");
+  if (!surface.apertures.empty()) refuse(i, "apertures that are not round");
   const double index = single_index(lens, i, refuse), before = i == 0 ? 1 : single_index(lens, i - 1, refuse);
   const bool flat = surface.curvature_per_mm == 0;
   if (!is_spherical(surface)) refuse(i, "conics and aspheres");

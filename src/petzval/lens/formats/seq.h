@@ -4,7 +4,9 @@
 
 #include <petzval/lens/lens_file.h>
 
+#include <array>
 #include <string>
+#include <string_view>
 
 namespace petzval {
 
@@ -25,5 +27,8 @@ inline constexpr int seq_lowest_asphere_power = 4;
 /// The odd polynomial SPS ODD: SCO C1 is the conic K, C(p + 1) or ARp the coefficient of r^p, C33 the radius
 /// NRADIUS that r is divided by, 0 for none.
 inline constexpr int seq_highest_odd_power = 30, seq_odd_radius_term = 33;
+
+/// Where a surface stands in the axes of the one before, and the tilts.
+inline constexpr std::array<std::string_view, 6> seq_decentres{"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"};
 
 }  // namespace petzval

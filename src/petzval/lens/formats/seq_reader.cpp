@@ -37,14 +37,12 @@ const std::map<std::string, SeqKeyword, std::less<>>& keywords() {
     add(SeqRole::harmless,
         {"LEN", "GO",  "INI", "WTW", "WTF", "CWL", "DER", "SLB", "COM", "CON", "ASP", "CCY", "CCX", "THC",
          "GLC", "KC",  "AC",  "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
-         "ADC", "BDC", "CDC", "PFR", "MFL", "WID", "DAR", "REV", "RET", "SAV", "RES", "DOR", "UID", "SCC",
-         "FRZ", "VIE", "LIS", "CIN", "TOR", "UMY", "UMC", "UIY", "HMY", "HCY", "UCY", "CAI", "DLC", "DLT"},
+         "ADC", "BDC", "CDC", "PFR", "MFL", "WID", "SAV", "RES", "DOR", "UID", "SCC", "FRZ", "VIE", "LIS",
+         "CIN", "TOR", "UMY", "UMC", "UIY", "HMY", "HCY", "UCY", "CAI", "DLC", "DLT"},
         "");
     add(SeqRole::vignetting_factor, {"VUX", "VLX", "VUY", "VLY"}, "");
-    add(SeqRole::refused_unless_zero, {"XDE", "YDE", "ZDE", "ADE", "BDE", "CDE"}, "a tilt or a decentre");
-    add(SeqRole::refused_unless_zero, {"ADX", "ADY", "ARO"}, "a decentred aperture");
     add(SeqRole::refused_unless_zero, {"CUF"}, "a Fresnel surface");
-    add(SeqRole::refused, {"BEN", "NSS", "NSC"}, "a bent or non-sequential path");
+    add(SeqRole::refused, {"NSS", "NSC"}, "a non-sequential path");
     add(SeqRole::refused, {"XTO", "YTO", "CYL", "AAS", "RDX", "CUX"}, "a surface that is not round");
     add(SeqRole::refused, {"SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
     add(SeqRole::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
@@ -61,11 +59,6 @@ bool seq_all_zero(const SeqCommand& command) {
                      [](const std::string& word) { return parse_number(word).value_or(0) == 0; });
 }
 
-/// Apertures that are not round clip nothing where they are edges.
-bool is_rectangle_or_ellipse(const std::string& name) {
-  return name == "REX" || name == "REY" || name == "ELX" || name == "ELY";
-}
-
 struct SeqFindings {
   std::set<std::string> unknown;
   bool vignetting = false;
@@ -73,12 +66,6 @@ struct SeqFindings {
 
 void check_keyword(const SeqCommand& command, const SeqContext& context, const std::string& where,
                    SeqFindings& findings) {
-  if (is_rectangle_or_ellipse(command.name)) {
-    const bool edge = std::any_of(command.words.begin(), command.words.end(),
-                                  [](const std::string& word) { return upper_case(word) == "EDG"; });
-    if (!edge) context.fail(command, "(an aperture that is not round) is not modelled", where);
-    return;
-  }
   const auto keyword = keywords().find(command.name);
   if (keyword == keywords().end()) {
     findings.unknown.insert(quotable(command.name));
@@ -108,7 +95,8 @@ void place_image(Lens& lens, const SeqSurfaces& surfaces, double mm_per_unit, co
   double& last_mm = lens.surfaces.back().thickness_mm;
   if (surfaces.wants_image_distance()) {
     last_mm = 0;
-    last_mm = paraxial_image_distance_mm(lens, lens.object_distance_mm, lens.reference_wavelength_nm);
+    last_mm = lens.last_sense() *
+              paraxial_image_distance_mm(lens, lens.object_distance_mm, lens.reference_wavelength_nm);
     if (!std::isfinite(last_mm))
       throw InputError("PIM: the lens has no paraxial image to put the image surface at");
     context.notes.push_back(
@@ -167,7 +155,7 @@ LensFile read_seq(const std::string& text, const std::string& file, const LensRe
       check_keyword(command, context, surfaces.where(), findings);
   note_findings(findings, context);
   Lens& lens = result.lens;
-  GlassLookup glasses(options);
+  GlassLookup glasses(options, file, result.notes);
   surfaces.put_into(lens, system.mm_per_unit, context, glasses);
   system.put_into(lens, context);
   if (const auto fault = find_fault(lens)) fail_at(*fault, surfaces, file);

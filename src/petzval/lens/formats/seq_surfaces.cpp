@@ -5,6 +5,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/glass/packed_catalogue.h>
+#include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_surfaces.h>
 #include <petzval/lens/lens_fault.h>
@@ -15,6 +16,9 @@
 namespace petzval {
 
 namespace {
+
+constexpr std::array<std::string_view, 8> seq_aperture_words{"CIR", "REX", "REY", "ELX",
+                                                             "ELY", "ADX", "ADY", "ARO"};
 
 /// CODE V writes an infinite distance as 10^13 and takes any from 10^10 on for one.
 constexpr double seq_infinite_distance = 1e10;
@@ -142,8 +146,8 @@ bool SeqSurfaces::enter_surface(const SeqCommand& command, const SeqContext& con
   if (command.has(1)) surface.thickness = context.number(command, 1, where());
   for (std::size_t i = 2; i < command.words.size(); ++i) {
     const std::string word = upper_case(command.words[i]);
-    if (word == "REFL") context.fail(command, "is a mirror (REFL), which is not modelled", where());
-    if (word == "REFR") continue;
+    if (word == "REFL") surface.mirror = true;
+    if (word == "REFL" || word == "REFR") continue;
     if (i > 2) context.fail(command, fmt::format("has a \"{}\" that is not read", quotable(word)), where());
     surface.glass = SeqCommand{command.line, command.name, {command.words[i]}};
   }
@@ -164,22 +168,60 @@ std::size_t SeqSurfaces::target(const SeqCommand& command, std::size_t& first_wo
   return static_cast<std::size_t>(name->number);
 }
 
-/// CIR [EDG | OBS | HOL] radius: an edge is where the glass ends, and not clear aperture.
+/// CIR, REX, REY, ELX, ELY, ADX, ADY or ARO [EDG | OBS | HOL] number: an edge is where the glass ends, and
+/// not clear aperture.
 void SeqSurfaces::apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                                  const SeqContext& context) {
-  bool is_edge = false;
+  bool is_edge = false, obscures = false;
   for (std::size_t i = first; i < command.words.size(); ++i) {
     const std::string word = upper_case(command.words[i]);
     if (word == "EDG") is_edge = true;
-    if (word == "OBS" || word == "HOL")
-      context.fail(command, fmt::format("{} (an obscuration or a hole) is not modelled", word), where());
+    if (word == "OBS") obscures = true;
+    if (word == "HOL") surface.has_hole = obscures = true;
     if (!parse_number(word)) continue;
-    const double radius = *parse_number(word);
-    if (!(radius >= 0)) context.fail(command, "must be a radius that is not negative", where());
-    if (!is_edge && radius > 0) surface.semi_diameter = radius;
+    if (is_edge) return;
+    const double value = *parse_number(word);
+    const std::string& name = command.name;
+    SeqSurface::Figure& figure = obscures ? surface.obscuring : surface.clear;
+    if (name == "ADX") return void(figure.x = value);
+    if (name == "ADY") return void(figure.y = value);
+    if (name == "ARO") return void(figure.turn_deg = value);
+    if (!(value >= 0)) context.fail(command, "must be a radius or half a width, not negative", where());
+    if (value == 0) return;
+    if (name == "CIR" && !obscures) surface.semi_diameter = value;
+    if (name == "CIR" && obscures) figure.ellipse_x = figure.ellipse_y = value;
+    if (name == "REX") figure.rectangle_x = value;
+    if (name == "REY") figure.rectangle_y = value;
+    if (name == "ELX") figure.ellipse_x = value;
+    if (name == "ELY") figure.ellipse_y = value;
     return;
   }
-  context.fail(command, "must have a radius", where());
+  context.fail(command, "must have a radius or another number", where());
+}
+
+void SeqSurfaces::put_apertures(const SeqSurface& from, double mm_per_unit, const SeqContext& context,
+                                Surface& surface) const {
+  if (from.semi_diameter) surface.semi_diameter_mm = *from.semi_diameter * mm_per_unit;
+  for (const bool obscures : {false, true}) {
+    const SeqSurface::Figure& figure = obscures ? from.obscuring : from.clear;
+    const auto add = [&](ApertureFigure::Kind kind, const std::optional<double>& x,
+                         const std::optional<double>& y, const char* names) {
+      if (!x && !y) return;
+      if (!x || !y) context.fail(from.command, fmt::format("needs both of {} for its aperture", names));
+      surface.apertures.push_back({kind, *x * mm_per_unit, *y * mm_per_unit, figure.x * mm_per_unit,
+                                   figure.y * mm_per_unit, figure.turn_deg, obscures});
+    };
+    add(ApertureFigure::Kind::rectangle, figure.rectangle_x, figure.rectangle_y, "REX and REY");
+    add(ApertureFigure::Kind::ellipse, figure.ellipse_x, figure.ellipse_y, "ELX and ELY");
+  }
+  if (from.has_hole && !from.mirror)
+    context.fail(from.command, "has a hole (HOL) and is no mirror, which is not modelled");
+  // A round aperture off its middle is a figure.
+  if (!surface.semi_diameter_mm || (from.clear.x == 0 && from.clear.y == 0)) return;
+  const double radius_mm = *surface.semi_diameter_mm;
+  surface.semi_diameter_mm.reset();
+  surface.apertures.push_back({ApertureFigure::Kind::ellipse, radius_mm, radius_mm,
+                               from.clear.x * mm_per_unit, from.clear.y * mm_per_unit, 0, false});
 }
 
 void SeqSurfaces::apply_special(SeqSurface& surface, const SeqCommand& command, std::size_t first,
@@ -213,6 +255,63 @@ void SeqSurfaces::apply_coefficient(SeqSurface& surface, const SeqCommand& comma
     surface.asphere[term - 1] = value;
 }
 
+/// Decentres and tilts of a surface, and how they go on behind it.
+bool SeqSurfaces::apply_decentre(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                                 const SeqContext& context) {
+  const auto name = std::find(seq_decentres.begin(), seq_decentres.end(), command.name);
+  if (name != seq_decentres.end())
+    surface.decentre[static_cast<std::size_t>(name - seq_decentres.begin())] =
+        context.number(command, first, where());
+  else if (command.name == "DAR")
+    surface.axes = SeqSurface::Axes::come_back;
+  else if (command.name == "BEN")
+    surface.axes = SeqSurface::Axes::bend;
+  else if (command.name == "REV")
+    surface.axes = SeqSurface::Axes::turn_back;
+  else if (command.name == "RET" || command.name == "GLB")
+    surface.axes = SeqSurface::Axes::other;
+  else
+    return false;
+  return true;
+}
+
+/// CODE V turns left-handed about x and y and right-handed about z, after it has moved (CODE V Reference
+/// Manual, "Tilted and Decentered Systems"). BEN: the axes are turned a second time behind the surface, so
+/// that a mirror throws the axis where they point. REV: the surface stands as it is, and behind it the axes
+/// move and turn the other way round.
+void SeqSurfaces::put_poses(Lens& lens, double mm_per_unit, const SeqContext& context) const {
+  std::vector<AxisBreak> breaks;
+  const bool any = std::any_of(surfaces_.begin(), surfaces_.end(), [](const SeqSurface& surface) {
+    return surface.decentre != std::array<double, 6>{};
+  });
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (any && surfaces_[i].axes == SeqSurface::Axes::other)
+      context.fail(
+          surfaces_[i].command,
+          fmt::format(
+              "S{} refers its axes to others (RET or GLB), which is not modelled; DAR, REV and BEN are", i));
+    const auto& [xde, yde, zde, ade, bde, cde] = surfaces_[i].decentre;
+    const Pose pose{xde * mm_per_unit, yde * mm_per_unit, zde * mm_per_unit, -ade, -bde, cde};
+    if (pose.is_none()) continue;
+    if (i == 0) context.fail(surfaces_[i].command, "is a tilted or decentred object, which is not modelled");
+    const std::size_t surface = i - 1, sensor = lens.surfaces.size();
+    if (surface < sensor && surfaces_[i].axes == SeqSurface::Axes::come_back) {
+      lens.surfaces[surface].pose = pose;
+      continue;
+    }
+    if (surface < sensor && surfaces_[i].axes == SeqSurface::Axes::turn_back) {
+      breaks.push_back({surface + 1, inverse(frame_of(pose)), -lens.surfaces[surface].thickness_mm});
+      continue;
+    }
+    breaks.push_back({surface, frame_of(pose), 0});
+    if (surface == sensor || surfaces_[i].axes != SeqSurface::Axes::bend) continue;
+    Frame turn = frame_of(pose);
+    turn.offset_mm = {};
+    breaks.push_back({surface + 1, turn, -lens.surfaces[surface].thickness_mm});
+  }
+  put_axis_breaks(breaks, lens);
+}
+
 bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                               const SeqContext& context) {
   const std::string& name = command.name;
@@ -233,11 +332,14 @@ bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, st
     surface.asphere[power] = context.number(command, first, where());
   } else if (name == "GLA" || name == "GL1") {
     if (!command.has(first)) context.fail(command, "must have a glass", where());
-    if (upper_case(command.words[first]) == "REFL")
-      context.fail(command, "REFL: mirrors are not modelled", where());
+    surface.mirror = upper_case(command.words[first]) == "REFL";
+    if (surface.mirror) return true;
     surface.glass = SeqCommand{command.line, name, {command.words[first]}};
-  } else if (name == "CIR") {
+  } else if (std::find(seq_aperture_words.begin(), seq_aperture_words.end(), name) !=
+             seq_aperture_words.end()) {
     apply_aperture(surface, command, first, context);
+  } else if (apply_decentre(surface, command, first, context)) {
+    return true;
   } else if (name == "PIM") {
     surface.solves_image_distance = true;
   } else if (name == "SPH") {
@@ -245,9 +347,12 @@ bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, st
     surface.asphere.clear();
     surface.odd_polynomial = false;
   } else if (name == "RMD") {
-    if (command.has(first) && upper_case(command.words[first]).substr(0, 4) != "REFR")
-      context.fail(command, fmt::format("{} is not modelled; REFR is", quotable(command.words[first])),
+    const std::string mode = command.has(first) ? upper_case(command.words[first]).substr(0, 4) : "REFR";
+    if (mode != "REFR" && mode != "REFL")
+      context.fail(command,
+                   fmt::format("{} is not modelled; REFR and REFL are", quotable(command.words[first])),
                    where());
+    surface.mirror = mode == "REFL";
   } else {
     return false;
   }
@@ -261,9 +366,13 @@ bool SeqSurfaces::apply(const SeqCommand& command, const SeqContext& context) {
     return true;
   }
   if (enter_surface(command, context)) return true;
-  static const std::vector<std::string> names{"STO", "RDY", "CUY", "THI", "K",   "GLA", "GL1",
-                                              "CIR", "PIM", "SPH", "RMD", "SPS", "SCO"};
-  if (std::find(names.begin(), names.end(), command.name) == names.end() && !asphere_power(command.name))
+  static const std::vector<std::string> names{"STO", "RDY", "CUY", "THI", "K",   "GLA", "GL1", "PIM",
+                                              "SPH", "RMD", "SPS", "SCO", "XDE", "YDE", "ZDE", "ADE",
+                                              "BDE", "CDE", "DAR", "BEN", "REV", "RET", "GLB"};
+  if (std::find(names.begin(), names.end(), command.name) == names.end() &&
+      std::find(seq_aperture_words.begin(), seq_aperture_words.end(), command.name) ==
+          seq_aperture_words.end() &&
+      !asphere_power(command.name))
     return false;
   std::size_t first = 0;
   const std::size_t surface = target(command, first, context);
@@ -310,15 +419,20 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
       // One that is zero, or too small for a number in mm, is no term.
       if (const double scaled = value * mm_per_unit * std::pow(radius_mm, -power); scaled != 0)
         surface.asphere[power] = scaled;
-    if (from.semi_diameter) surface.semi_diameter_mm = *from.semi_diameter * mm_per_unit;
+    put_apertures(from, mm_per_unit, context, surface);
     surface.stop = i == stop;
-    if (from.glass) try {
+    surface.mirror = from.mirror;
+    if (from.glass && !from.mirror) try {
         surface.material = seq_glass(from.glass->words[0], private_, glasses);
       } catch (const InputError& error) {
-        throw InputError(context.file, from.glass->line, fmt::format("S{}: {}", i, error.what()));
+        surface.material = glasses.missing(
+            InputError(context.file, from.glass->line, fmt::format("S{}: {}", i, error.what())),
+            from.glass->words[0], fmt::format("S{}", i));
       }
     lens.surfaces.push_back(std::move(surface));
   }
+  glasses.require_all_found();
+  put_poses(lens, mm_per_unit, context);
 }
 
 }  // namespace petzval

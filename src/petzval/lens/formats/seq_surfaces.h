@@ -5,6 +5,7 @@
 #include <petzval/lens/formats/seq_glass.h>
 #include <petzval/lens/formats/seq_system.h>
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -19,9 +20,21 @@ struct SeqSurface {
   std::map<int, double> asphere;
   bool odd_polynomial = false;      ///< SPS ODD
   double odd_radius = 0;            ///< that r is divided by, 0 for none
+  bool mirror = false;              ///< REFL
   std::optional<SeqCommand> glass;  ///< the command whose first word names it
   std::optional<double> semi_diameter;
+  /// What REX REY, ELX ELY, ADX ADY and ARO say: of what passes light, and of what obscures.
+  struct Figure {
+    std::optional<double> rectangle_x, rectangle_y, ellipse_x, ellipse_y;
+    double x = 0, y = 0, turn_deg = 0;
+  };
+  Figure clear, obscuring;
+  bool has_hole = false;               ///< HOL, in `obscuring`
   bool solves_image_distance = false;  ///< PIM
+  /// XDE YDE ZDE, ADE BDE CDE, and what becomes of the axes behind the surface.
+  enum class Axes { go_on, come_back, bend, turn_back, other };
+  std::array<double, 6> decentre{};
+  Axes axes = Axes::go_on;
 };
 
 class SeqSurfaces {
@@ -52,6 +65,11 @@ class SeqSurfaces {
                          const SeqContext& context);
   void apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                       const SeqContext& context);
+  bool apply_decentre(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                      const SeqContext& context);
+  void put_apertures(const SeqSurface& from, double mm_per_unit, const SeqContext& context,
+                     Surface& surface) const;
+  void put_poses(Lens& lens, double mm_per_unit, const SeqContext& context) const;
   double curvature(const SeqCommand& command, std::size_t i, bool is_radius, const SeqContext& context) const;
   /// The surface that a command is for: that of its first word ("S3"), else the current one.
   std::size_t target(const SeqCommand& command, std::size_t& first_word, const SeqContext& context) const;

@@ -4,11 +4,13 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_glass.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace petzval {
 
@@ -105,18 +107,54 @@ std::string asphere_text(const Surface& surface, std::size_t i) {
   return text;
 }
 
+/// One figure that passes light, and one that obscures.
+std::string seq_apertures_text(const Surface& surface, std::size_t i) {
+  std::string text;
+  bool taken[2] = {};
+  for (const ApertureFigure& figure : surface.apertures) {
+    const bool moved = figure.decentre_x_mm != 0 || figure.decentre_y_mm != 0;
+    if (std::exchange(taken[figure.obscures], true) ||
+        (!figure.obscures && moved && surface.semi_diameter_mm))
+      refuse(i, "apertures",
+             "more than one aperture and one obscuration, or a round one beside one off the middle");
+    const std::string which = figure.obscures ? "OBS " : "";
+    const auto line = [&](const std::string& name, double value) {
+      text += fmt::format("  {} {}{}\n", name, which, number_text(value));
+    };
+    const std::string kind = figure.kind == ApertureFigure::Kind::rectangle ? "RE" : "EL";
+    line(kind + "X", figure.half_width_x_mm);
+    line(kind + "Y", figure.half_width_y_mm);
+    if (figure.decentre_x_mm != 0) line("ADX", figure.decentre_x_mm);
+    if (figure.decentre_y_mm != 0) line("ADY", figure.decentre_y_mm);
+    if (figure.rotation_deg != 0) line("ARO", figure.rotation_deg);
+  }
+  return text;
+}
+
+/// The axes in front of a surface, and from there on.
+std::string seq_break_text(const Frame& frame) {
+  const Pose pose = pose_of(frame);
+  const double values[] = {pose.decentre_x_mm, pose.decentre_y_mm, pose.shift_z_mm,
+                           -pose.tilt_x_deg,   -pose.tilt_y_deg,   pose.tilt_z_deg};
+  std::string text;
+  for (std::size_t i = 0; i < seq_decentres.size(); ++i)
+    if (values[i] != 0) text += fmt::format("  {} {}\n", seq_decentres[i], number_text(values[i]));
+  return text;
+}
+
 std::string surface_text(const Lens& lens, std::size_t i, std::string& private_glasses) {
   const Surface& surface = lens.surfaces[i];
   if (surface.blades.count != 0)
     throw InputError(fmt::format(
         "surfaces[{0}]: Petzval writes no blades into a .seq file; set surfaces[{0}].blades=null first", i));
-  std::string text =
-      fmt::format("S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
-                  std::visit(SeqGlassText{i, private_glasses}, surface.material.kind()));
+  std::string text = fmt::format(
+      "S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
+      surface.mirror ? " REFL" : std::visit(SeqGlassText{i, private_glasses}, surface.material.kind()));
   if (surface.stop) text += "  STO\n";
   if (surface.shape) refuse(i, "shape", fmt::format("the kind \"{}\"", surface.shape->kind));
   if (!is_spherical(surface)) text += asphere_text(surface, i);
   if (surface.semi_diameter_mm) text += fmt::format("  CIR {}\n", number_text(*surface.semi_diameter_mm));
+  text += seq_apertures_text(surface, i);
   return text;
 }
 
@@ -169,17 +207,23 @@ std::string seq_text(const Lens& lens) {
   if (lens.object_distance_mm && *lens.object_distance_mm >= farthest)
     throw InputError("object_distance_mm: in a .seq file a distance from 1e10 on is infinite");
   std::string private_glasses, surfaces;
+  AxisBreaks axis = axis_breaks_of(lens);
+  std::vector<std::string> breaks(lens.surfaces.size() + 1);
+  for (AxisBreak& each : axis.breaks) {
+    each.frame.offset_mm[2] = axis.gap_shift_mm[each.surface];
+    breaks[each.surface] = seq_break_text(each.frame);
+  }
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     if (!(std::abs(lens.surfaces[i].thickness_mm) < farthest))
       refuse(i, "thickness_mm", "a distance from 1e10 on: it is infinite");
-    surfaces += surface_text(lens, i, private_glasses);
+    surfaces += surface_text(lens, i, private_glasses) + breaks[i];
   }
   std::string text =
       fmt::format("RDM N\nLEN\nTITLE {}\nDIM M\n{}\n", title_text(lens.name), aperture_text(lens));
   text += seq_wavelengths_text(lens) + fields_text(lens.fields);
   if (!private_glasses.empty()) text += fmt::format("PRV\n{}END\n", private_glasses);
   text += fmt::format("SO 0.0 {}\n", number_text(lens.object_distance_mm.value_or(infinity)));
-  return text + surfaces + "SI 0.0 0.0\nGO\n";
+  return text + surfaces + "SI 0.0 0.0\n" + breaks.back() + "GO\n";
 }
 
 }  // namespace petzval

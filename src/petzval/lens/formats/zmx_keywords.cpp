@@ -53,17 +53,16 @@ const Keywords& header_keywords() {
 const Keywords& surface_keywords() {
   static const Keywords table = [] {
     Keywords k;
-    add(k, Role::known, {"TYPE", "CURV", "DISZ", "GLAS", "STOP", "CONI", "PARM", "DIAM", "CLAP", "FLAP"});
+    add(k, Role::known,
+        {"TYPE", "CURV", "DISZ", "GLAS", "STOP", "CONI", "PARM", "DIAM", "CLAP", "FLAP", "SQAP", "ELAP",
+         "OBSC", "SQOB", "ELOB", "SPID", "OBDC"});
     // Names, coatings, drawing, mechanics, physical optics, solves and pickups (their present values are
     // written out), and extra data that none of the surface types read here uses.
     add(k, Role::known,
         {"COMM", "COAT", "FIMP", "HIDE", "MIRR", "SLAB", "MEMA", "OEMA", "MAZH", "POPS", "SSID",
          "VDSZ", "PZUP", "PPAR", "PKUP", "PRAM", "GLCZ", "XDAT", "BLNK", "BRDF", "SCAT", "PRIN"});
-    add(k, Role::refused, {"SQAP", "ELAP"}, "an aperture that is not round");
     add(k, Role::refused, {"UDAD", "USAP", "UAPF"}, "a user-defined aperture");
-    add(k, Role::refused, {"OBSC", "SQOB", "ELOB", "SPID"}, "an obscuration");
     add(k, Role::refused, {"NSCS", "NSCO", "NSOA", "NSOO", "NSOP", "NSOD"}, "non-sequential objects");
-    add(k, Role::refused_unless_zero, {"OBDC"}, "a decentred aperture");
     add(k, Role::refused_unless_zero, {"SCBD"}, "a tilted or decentred surface");
     add(k, Role::refused_unless_zero, {"IGNR"}, "a surface that is to be ignored");
     return k;

@@ -158,7 +158,7 @@ int line_of(const ZmxFile& file, const std::string& path) {
   const std::string prefix = "surfaces[";
   if (path.compare(0, prefix.size(), prefix) != 0) return file.surfaces.front().line;
   const auto i = static_cast<std::size_t>(std::atoi(path.c_str() + prefix.size()));
-  return file.surfaces[std::min(i + 1, file.surfaces.size() - 1)].line;
+  return file.surfaces[zmx_block_of(file, i)].line;
 }
 
 void note_unbounded(const ZmxFile& file, const Lens& lens, std::vector<std::string>& notes) {
@@ -177,13 +177,14 @@ LensFile read_zmx(const std::string& text, const std::string& file_name, const L
   LensFile result;
   result.notes = check_zmx_keywords(file);
   check_environment(file);
-  GlassLookup glasses(options);
+  GlassLookup glasses(options, file_name, result.notes);
   ZmxContext context{file, glasses, read_unit(file), {}, result.notes};
   if (const ZmxRecord* catalogues = file.header.find("GCAT")) context.catalogues = catalogues->values;
   Lens& lens = result.lens;
   if (const ZmxRecord* name = file.header.find("NAME")) lens.name = name->rest;
   lens.object_distance_mm = zmx_object_distance_mm(context);
-  lens.surfaces = zmx_lens_surfaces(context);
+  put_zmx_surfaces(context, lens);
+  glasses.require_all_found();
   lens.aperture = read_aperture(context);
   lens.fields = read_fields(context);
   read_wavelengths(file, lens);

@@ -19,8 +19,11 @@ struct ZmxContext {
   std::vector<std::string>& notes;
 };
 
-/// Surfaces 1 to the last but one, with the thickness that reaches the image.
-std::vector<Surface> zmx_lens_surfaces(const ZmxContext& context);
+/// Surfaces 1 to the last but one, with the thickness that reaches the image, and the poses that coordinate
+/// breaks give them. The object's distance must be known.
+void put_zmx_surfaces(const ZmxContext& context, Lens& lens);
+/// The block that holds a surface of the lens: coordinate breaks are none.
+std::size_t zmx_block_of(const ZmxFile& file, std::size_t surface);
 /// From the object to surface 1; absent: infinity.
 std::optional<double> zmx_object_distance_mm(const ZmxContext& context);
 /// DIAM of the stop, automatic or not. \throws InputError if there is none.

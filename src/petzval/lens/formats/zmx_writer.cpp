@@ -4,9 +4,12 @@
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/catalogue.h>
+#include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/zmx.h>
+#include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace petzval {
@@ -94,9 +97,49 @@ std::string extended_shape_text(const Surface& surface, int step) {
   return text;
 }
 
+bool zmx_holds_kind(const std::string& kind) {
+  return kind == "biconic" || kind == "toroid" || kind == "xy_polynomial" || kind == "zernike_sag";
+}
+
+std::string zmx_added_shape_text(const Surface& surface) {
+  const std::string& kind = surface.shape->kind;
+  const auto number = [&](const char* key) {
+    const std::vector<double> given = shape_numbers(surface, key);
+    return given.empty() ? 0.0 : given[0];
+  };
+  const auto radius = [](double curvature) { return curvature == 0 ? "0" : radius_text(curvature); };
+  const std::vector<double> coefficients = shape_numbers(surface, "coefficients_mm");
+  const double unit_mm = number("normalisation_radius_mm");
+  std::string text;
+  if (kind == "biconic") {
+    text = fmt::format("  TYPE BICONICX\n  PARM 1 {}\n", radius(number("curvature_x_per_mm")));
+    return text + fmt::format("  PARM 2 {}\n", number_text(number("conic_x")));
+  }
+  if (kind == "toroid") {
+    constexpr std::size_t most = 7;
+    if (coefficients.size() > most)
+      throw InputError(
+          fmt::format("a toroid with {} coefficients; a .zmx file holds {}", coefficients.size(), most));
+    text = fmt::format("  TYPE TOROIDAL\n  PARM 1 {}\n", radius(number("rotation_curvature_per_mm")));
+    for (std::size_t i = 0; i < coefficients.size(); ++i)
+      text += fmt::format("  PARM {} {}\n", i + 2,
+                          number_text(coefficients[i] * std::pow(unit_mm, -2 * static_cast<double>(i + 1))));
+    return text;
+  }
+  const auto datum = [&](std::size_t i, const std::string& value) {
+    text += fmt::format("  XDAT {} {} 0 0 1 0 0 \"\"\n", i, value);
+  };
+  text = fmt::format("  TYPE {}\n", kind == "xy_polynomial" ? "XPOLYNOM" : "SZERNSAG");
+  datum(1, fmt::format("{}", coefficients.size()));
+  datum(2, number_text(unit_mm));
+  for (std::size_t i = 0; i < coefficients.size(); ++i) datum(i + 3, number_text(coefficients[i]));
+  return text;
+}
+
 /// Even powers up to 16 make an EVENASPH, higher ones an XASPHERE, any powers up to 8 an ODDASPHE, higher
 /// ones an XOSPHERE.
 std::string shape_text(const Surface& surface) {
+  if (surface.shape) return zmx_added_shape_text(surface);
   if (surface.asphere.empty()) return "  TYPE STANDARD\n";
   constexpr int parameters = 8;
   const bool even = std::all_of(surface.asphere.begin(), surface.asphere.end(),
@@ -109,26 +152,64 @@ std::string shape_text(const Surface& surface) {
   return text;
 }
 
-std::string surface_text(const Lens& lens, std::size_t i) {
+/// One aperture a surface: round, a ring, or a figure.
+std::string zmx_apertures_text(const Surface& surface, std::size_t i) {
+  const auto& figures = surface.apertures;
+  const bool ring = figures.size() == 1 && figures[0].obscures && figures[0].is_round();
+  if (surface.semi_diameter_mm && (figures.empty() || ring))
+    return fmt::format("  CLAP {} {} 0\n", ring ? number_text(figures[0].half_width_x_mm) : "0",
+                       number_text(*surface.semi_diameter_mm));
+  if (figures.empty()) return "";
+  if (figures.size() > 1 || surface.semi_diameter_mm || figures[0].rotation_deg != 0)
+    throw InputError(fmt::format(
+        "surfaces[{}].apertures: a .zmx file holds one aperture a surface, not turned, or a ring", i));
+  const ApertureFigure& figure = figures[0];
+  std::string text;
+  if (ring)
+    text = fmt::format("  OBSC 0 {} 0\n", number_text(figure.half_width_x_mm));
+  else
+    text = fmt::format("  {} {} {} 0\n",
+                       figure.kind == ApertureFigure::Kind::rectangle ? (figure.obscures ? "SQOB" : "SQAP")
+                                                                      : (figure.obscures ? "ELOB" : "ELAP"),
+                       number_text(figure.half_width_x_mm), number_text(figure.half_width_y_mm));
+  if (figure.decentre_x_mm != 0 || figure.decentre_y_mm != 0)
+    text +=
+        fmt::format("  OBDC {} {}\n", number_text(figure.decentre_x_mm), number_text(figure.decentre_y_mm));
+  return text;
+}
+
+/// Coordinate breaks in front of a surface, and their numbers.
+std::string zmx_break_text(const Frame& frame, double gap_mm, int& number) {
+  const Pose pose = pose_of(frame);
+  std::string text = fmt::format("SURF {}\n  TYPE COORDBRK\n", number++);
+  int parameter = 0;
+  for (const double value :
+       {pose.decentre_x_mm, pose.decentre_y_mm, pose.tilt_x_deg, pose.tilt_y_deg, pose.tilt_z_deg, 0.0})
+    text += fmt::format("  PARM {} {}\n", ++parameter, number_text(value));
+  return text + fmt::format("  DISZ {}\n", number_text(gap_mm));
+}
+
+/// \param gap_mm  to the next surface, or to the break in front of it.
+std::string surface_text(const Lens& lens, std::size_t i, double gap_mm, int& number) {
   const Surface& surface = lens.surfaces[i];
   if (surface.blades.count != 0)
     throw InputError(fmt::format(
         "surfaces[{0}]: Petzval writes no blades into a .zmx file; set surfaces[{0}].blades=null first", i));
-  if (surface.shape)
+  if (surface.shape && !zmx_holds_kind(surface.shape->kind))
     throw InputError(
         fmt::format("surfaces[{}].shape: a .zmx file cannot hold the kind \"{}\"", i, surface.shape->kind));
-  std::string text = fmt::format("SURF {}\n{}{}", i + 1, surface.stop ? "  STOP\n" : "", shape_text(surface));
+  std::string text =
+      fmt::format("SURF {}\n{}{}", number++, surface.stop ? "  STOP\n" : "", shape_text(surface));
   text += fmt::format("  CURV {} 0 0 0 0 \"\"\n", number_text(surface.curvature_per_mm));
   if (surface.conic != 0) text += fmt::format("  CONI {}\n", number_text(surface.conic));
-  text += fmt::format("  DISZ {}\n", number_text(surface.thickness_mm));
-  text += std::visit(ZmxGlassText{i}, surface.material.kind());
+  text += fmt::format("  DISZ {}\n", number_text(gap_mm));
+  text += surface.mirror ? "  GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0\n"
+                         : std::visit(ZmxGlassText{i}, surface.material.kind());
   // The size of the stop, where the aperture is given by it, is an automatic DIAM beside the clear aperture.
   const bool sets_aperture = surface.stop && lens.aperture.kind == Aperture::Kind::stop_semi_diameter_mm;
   const double semi = sets_aperture ? lens.aperture.value : surface.semi_diameter_mm.value_or(0);
   text += fmt::format("  DIAM {} {} 0 0 1 \"\"\n", number_text(semi), surface.semi_diameter_mm ? 1 : 0);
-  if (surface.semi_diameter_mm)
-    text += fmt::format("  CLAP 0 {} 0\n", number_text(*surface.semi_diameter_mm));
-  return text;
+  return text + zmx_apertures_text(surface, i);
 }
 
 std::string aperture_text(const Aperture& aperture) {
@@ -186,9 +267,17 @@ std::string zmx_text(const Lens& lens) {
   text += fields_text(lens) + zmx_wavelengths_text(lens);
   text += fmt::format("SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ {}\n",
                       lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "INFINITY");
-  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) text += surface_text(lens, i);
-  return text + fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n",
-                            lens.surfaces.size() + 1);
+  const AxisBreaks axis = axis_breaks_of(lens);
+  auto next = axis.breaks.begin();
+  int number = 1;
+  // The first vertex has no gap in front of it: a break of its own holds a shift along the axis.
+  if (axis.gap_shift_mm[0] != 0) text += zmx_break_text(Frame(), axis.gap_shift_mm[0], number);
+  for (std::size_t i = 0; i <= lens.surfaces.size(); ++i) {
+    if (next != axis.breaks.end() && next->surface == i) text += zmx_break_text((next++)->frame, 0, number);
+    if (i < lens.surfaces.size())
+      text += surface_text(lens, i, lens.surfaces[i].thickness_mm + axis.gap_shift_mm[i + 1], number);
+  }
+  return text + fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n", number);
 }
 
 }  // namespace petzval

@@ -8,8 +8,12 @@
 #define PETZVAL_LENS_SHAPES_ADDED_KINDS_INL_H_
 #endif
 
+#include <petzval/lens/shapes/biconic-inl.h>
 #include <petzval/lens/shapes/numbers-inl.h>
 #include <petzval/lens/shapes/qcon-inl.h>
+#include <petzval/lens/shapes/toroid-inl.h>
+#include <petzval/lens/shapes/xy_polynomial-inl.h>
+#include <petzval/lens/shapes/zernike_sag-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
@@ -17,7 +21,7 @@ namespace petzval::HWY_NAMESPACE {
 template <class... Kind>
 struct KindList {};
 
-using AddedKinds = KindList<Qcon>;
+using AddedKinds = KindList<Qcon, Biconic, Toroid, XyPolynomial, ZernikeSag>;
 
 }  // namespace petzval::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -19,7 +19,8 @@ constexpr double corner_margin = 1 + 1e-9;
 bool any_dispersion(const Lens& lens, const std::vector<double>& wavelengths_nm) {
   for (const Surface& surface : lens.surfaces)
     for (const double nm : wavelengths_nm)
-      if (surface.material.index(nm) != surface.material.index(wavelengths_nm.front())) return true;
+      if (!surface.mirror && surface.material.index(nm) != surface.material.index(wavelengths_nm.front()))
+        return true;
   return false;
 }
 
@@ -28,7 +29,7 @@ InputError no_light(const Lens& lens, double corner_mm) {
       fmt::format("{}: no light reaches the film, {:.4g} mm behind the lens and {:.4g} mm from corner to "
                   "corner, through a stop "
                   "{:.4g} mm wide; another film distance or a wider stop would be right",
-                  lens.name, lens.surfaces.back().thickness_mm, 2 * corner_mm, 2 * stop_radius_mm(lens)));
+                  lens.name, lens.image_distance_mm(), 2 * corner_mm, 2 * stop_radius_mm(lens)));
 }
 
 }  // namespace
@@ -38,12 +39,12 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     : film_(film), groups_(groups), options_(options) {
   if (film.columns < 1 || film.rows < 1 || !(film.pitch_um > 0))
     throw InputError("the film needs pixels of a positive pitch");
-  if (lens.surfaces.back().material.index(lens.reference_wavelength_nm) != 1)
+  if (lens.medium_behind(lens.surfaces.size() - 1).index(lens.reference_wavelength_nm) != 1)
     throw InputError(fmt::format("{}: the film does not stand in air, which rendering needs", lens.name));
-  if (!(lens.surfaces.back().thickness_mm > 0))
+  if (!(lens.image_distance_mm() > 0))
     throw InputError(
         fmt::format("{}: the film stands {:g} mm behind the last surface; a positive distance would be right",
-                    lens.name, lens.surfaces.back().thickness_mm));
+                    lens.name, lens.image_distance_mm()));
   const double stop_radius = stop_radius_mm(lens);
   const std::vector<double>& nm = groups.wavelengths_nm();
   disperses_ = any_dispersion(lens, nm);
@@ -75,7 +76,7 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   }
 
   const Surface& last = lens.surfaces.back();
-  rear_distance_mm_ = last.thickness_mm;
+  rear_distance_mm_ = lens.image_distance_mm();
   if (options.sampling == LensCameraOptions::Sampling::rear_disk) {
     if (!last.semi_diameter_mm)
       throw InputError(fmt::format(

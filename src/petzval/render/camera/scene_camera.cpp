@@ -189,13 +189,13 @@ SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& cho
 }
 
 double SceneCamera::film_distance_mm() const {
-  return lens ? lens->surfaces.back().thickness_mm : 0;
+  return lens ? lens->image_distance_mm() : 0;
 }
 
 SceneCamera SceneCamera::with_film_distance_mm(double distance_mm) const {
   if (!lens) throw InputError("an ideal camera has no film distance; a lens has");
   SceneCamera moved = *this;
-  moved.lens->surfaces.back().thickness_mm = distance_mm;
+  moved.lens->set_image_distance_mm(distance_mm);
   return moved;
 }
 

@@ -33,6 +33,9 @@ StopDiffraction::StopDiffraction(const Tracer& tracer, double wavelength_nm)
     throw InputError("diffraction needs a stop with a radius; an aperture of the lens would give one");
   if (tracer.surfaces()[tracer.stop_index()].transfer)
     throw InputError("diffraction bends rays at a stop, and that of a ray transfer is not to be reached");
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces())
+    if (surface.mirror)
+      throw InputError("diffraction bends rays at a stop between lenses, and this lens has mirrors");
   if (tracer.surfaces()[tracer.stop_index()].posed)
     throw InputError("diffraction bends rays at a stop on the axis, and this one has a pose");
   apothem_mm_ = radius_mm_ * tracer.stop_blades().apothem();
