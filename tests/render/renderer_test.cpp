@@ -96,6 +96,21 @@ TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   options.fingerprint = "another picture";
   EXPECT_THROW(small.render(options), InputError);
   options.fingerprint = "this picture";
+  // One bit anywhere: in the sums, which any bits are numbers of, and in what stands about them.
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path));
+  for (const std::size_t at : {size / 100, size / 3, size / 2, size - 9, size - 1}) {
+    const auto flip = [&] {
+      std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekg(static_cast<std::streamoff>(at));
+      const char byte = static_cast<char>(file.get() ^ 4);
+      file.seekp(static_cast<std::streamoff>(at));
+      file.put(byte);
+    };
+    flip();
+    EXPECT_THROW(small.render(options), InputError) << at;
+    flip();
+  }
+  EXPECT_EQ(values(small.render(options)), values(whole));
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 1);
   EXPECT_THROW(small.render(options), InputError);
   std::ofstream(path) << "something else";
