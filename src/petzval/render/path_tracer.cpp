@@ -131,8 +131,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       break;
     }
     const Geometry& geometry = world_.geometries[static_cast<std::size_t>(hit->geometry)];
-    const SurfacePoint point =
-        surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
+    SurfacePoint point = surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
     add_emitted(path, *hit, point, group);
     const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
     const Material& material =
@@ -144,6 +143,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       path.origin = point.origin_towards(path.direction);
       continue;
     }
+    if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
     const Bsdf bsdf = material.bsdf(texture_point, group, hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
