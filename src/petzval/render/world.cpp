@@ -10,7 +10,8 @@ namespace {
 
 bool is_mesh(const ShapeDescription& shape) {
   const std::string& type = shape.entity.type;
-  return shape.mesh || type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh";
+  return shape.mesh || type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh" ||
+         type == "loopsubdiv";
 }
 
 /// Puts the pieces of a world together.
