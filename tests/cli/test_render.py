@@ -121,7 +121,7 @@ class Render(ProgramTest):
                 self.assertGreater(float(re.search(r"([\d.]+) % of \d+ camera rays pass", said)[1]), 90)
 
     def test_lists_what_is_not_supported(self):
-        (self.folder / "s.pbrt").write_text('WorldBegin\nMaterial "hair"\nShape "loopsubdiv"\n')
+        (self.folder / "s.pbrt").write_text('WorldBegin\nMaterial "hair"\nShape "nurbs"\n')
         rows = self.json_of("render", "s.pbrt", "--list-unsupported")["rows"]
         self.assertEqual([(row["line"], row["column"]) for row in rows], [(2, 1), (3, 1)])
         self.assert_refused("render", "s.pbrt", "-o", "x.npy", words=["s.pbrt:2:1: "])
