@@ -109,7 +109,7 @@ Rendering render_or_save(const RenderCommand& command, const PreparedScene& scen
   } catch (const Cancelled&) {
     if (!stopped_at) throw;
     const ListenerScope unhurried(nullptr);
-    command.outputs.write(*stopped_at, scene.request.camera.sensor, outputs, context);
+    command.outputs.write(*stopped_at, scene, scene.request.camera.sensor, outputs, context);
     const bool whole = stopped_at->complete;
     throw Interrupted(fmt::format("stopped {} {} samples a pixel; the picture so far is written, and {}",
                                   whole ? "after" : "within the first", stopped_at->samples_per_pixel,
@@ -169,7 +169,7 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   const auto begin = std::chrono::steady_clock::now();
   const Rendering picture = render_or_save(command, scene, outputs, context);
   seconds.light = seconds_since(begin);
-  const Outputs made = command.outputs.write(picture, sensor, outputs, context);
+  const Outputs made = command.outputs.write(picture, scene, sensor, outputs, context);
   if (shared.json) return print_json(summary_json(scene, picture, made, seconds, command.outputs.pictures));
   if (!shared.quiet) print_summary(scene, picture, made, seconds);
 }

@@ -7,6 +7,7 @@
 #include <petzval/base/units.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/spectral_exr.h>
+#include <petzval/simulate/scene_segments.h>
 
 #include <algorithm>
 #include <cmath>
@@ -80,6 +81,18 @@ void write_first_surfaces(const RenderOutputs& outputs, const Rendering& picture
               bands_last(picture.first_surfaces->albedo, bands));
 }
 
+void write_segments(const std::string& path, const SceneSegments& seen, StagedFiles& files) {
+  std::vector<float> values;
+  values.reserve(3 * seen.shape.size());
+  for (std::size_t i = 0; i < seen.shape.size(); ++i)
+    for (const std::vector<int>* each : {&seen.shape, &seen.instance, &seen.material})
+      values.push_back(static_cast<float>((*each)[i]));
+  write_npy(files.stage(path),
+            std::vector<std::size_t>{static_cast<std::size_t>(seen.rows),
+                                     static_cast<std::size_t>(seen.columns), 3},
+            values);
+}
+
 }  // namespace
 
 void RenderOutputs::add_to(CLI::App& command) {
@@ -93,6 +106,12 @@ void RenderOutputs::add_to(CLI::App& command) {
       .add_option("--normals", normals, "Also write its normals in world space: rows x columns x 3 (.npy)")
       ->check(output_file());
   command.add_option("--albedo", albedo, "Also write its reflectance: rows x columns x bands (.npy)")
+      ->check(output_file());
+  command
+      .add_option(
+          "--segments", segments,
+          "Also write which shape, placed object and material the middle of each pixel sees, by their "
+          "number in the scene, -1 for none: rows x columns x 3 (.npy)")
       ->check(output_file());
   command.add_flag(
       "--layers", layers,
@@ -118,7 +137,7 @@ OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const 
     require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
   if (layers && std::ranges::none_of(pictures, [](const auto& path) { return extension_of(path) == ".exr"; }))
     throw InputError("--layers are written beside the light: -o picture.exr would be right");
-  for (const std::string* path : {&depth, &normals, &albedo})
+  for (const std::string* path : {&depth, &normals, &albedo, &segments})
     if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
   return shot.checked(sensor, pictures, command);
 }
@@ -127,8 +146,8 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
                              const std::vector<std::pair<std::string, std::string>>& others) const {
   std::vector<NamedFile> outputs, inputs;
   for (const std::string& path : pictures) outputs.push_back({"--output", path});
-  for (const auto& [option, path] :
-       {NamedFile{"--depth", depth}, NamedFile{"--normals", normals}, NamedFile{"--albedo", albedo}})
+  for (const auto& [option, path] : {NamedFile{"--depth", depth}, NamedFile{"--normals", normals},
+                                     NamedFile{"--albedo", albedo}, NamedFile{"--segments", segments}})
     if (!path.empty()) outputs.push_back({option, path});
   for (const auto& [option, path] : others)
     if (!path.empty()) outputs.push_back({option, path});
@@ -136,14 +155,16 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
   refuse_same_files(outputs, inputs);
 }
 
-Outputs RenderOutputs::write(const Rendering& picture, const std::optional<Sensor>& sensor,
-                             const OutputOptions& options, const Context& context) const {
+Outputs RenderOutputs::write(const Rendering& picture, const PreparedScene& scene,
+                             const std::optional<Sensor>& sensor, const OutputOptions& options,
+                             const Context& context) const {
   StagedFiles files;
   const Layers beside = layers ? layers_of(picture) : Layers();
   OutputOptions all = options;
   all.layers = beside.planes();
   Outputs made = write_outputs(picture.irradiance, pictures, sensor, all, files, context);
   write_first_surfaces(*this, picture, files);
+  if (!segments.empty()) write_segments(segments, segments_seen(scene, context), files);
   files.commit();
   return made;
 }

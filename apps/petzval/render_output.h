@@ -16,6 +16,7 @@ namespace petzval::app {
 struct RenderOutputs {
   std::vector<std::string> pictures;   ///< of the light, and of what the sensor makes of it
   std::string depth, normals, albedo;  ///< of the first surfaces
+  std::string segments;                ///< which things they are of
   bool layers = false;                 ///< these in every .exr of the light, too
   ShotChoice shot;
 
@@ -28,8 +29,8 @@ struct RenderOutputs {
   void keep_off(const std::vector<std::string>& files_of_scene,
                 const std::vector<std::pair<std::string, std::string>>& others) const;
   /// Writes all or none. \return what the sensor made of the light.
-  Outputs write(const Rendering& picture, const std::optional<Sensor>& sensor, const OutputOptions& options,
-                const Context& context) const;
+  Outputs write(const Rendering& picture, const PreparedScene& scene, const std::optional<Sensor>& sensor,
+                const OutputOptions& options, const Context& context) const;
 };
 
 /// How long it took.

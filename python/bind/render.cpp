@@ -66,8 +66,8 @@ Rendering render(const CameraInPython& camera, const std::string& scene, Maybe<s
 
 FocusRun focus_on(const CameraInPython& camera, const std::string& scene, Maybe<std::pair<int, int>> size,
                   const Zones& zones, const std::string& measure, const std::string& search,
-                  int samples_per_pixel, int most_evaluations, Maybe<double> from_mm, Maybe<double> to_mm,
-                  Maybe<double> film_diagonal_mm, int threads, std::uint64_t seed,
+                  int samples_per_pixel, Maybe<int> most_evaluations, Maybe<double> from_mm,
+                  Maybe<double> to_mm, Maybe<double> film_diagonal_mm, int threads, std::uint64_t seed,
                   const nb::object& progress) {
   RenderRequest r;
   r.scene = scene, r.camera = camera.value();
@@ -189,7 +189,7 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
   camera.def(
       "autofocus", focus_on, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
       nb::arg("zones") = Zones(), nb::arg("focus_measure") = "gradient", nb::arg("focus_search") = "brent",
-      nb::arg("samples_per_pixel") = 16, nb::arg("most_evaluations") = 12,
+      nb::arg("samples_per_pixel") = 16, nb::arg("most_evaluations") = nb::none(),
       nb::arg("from_mm").none() = nb::none(), nb::arg("to_mm").none() = nb::none(),
       nb::arg("film_diagonal_mm").none() = nb::none(), nb::arg("threads") = 0, nb::arg("seed") = 1,
       nb::arg("progress").none() = nb::none(),

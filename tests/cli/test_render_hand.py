@@ -141,6 +141,11 @@ class RenderHand(ProgramTest):
         self.assertAlmostEqual(depth[30, 24], 2, places=5)
         self.assertLessEqual(albedo.max(), 1 + 1e-6)
         self.assert_refused(*options, "--layers", "-o", "x.png", words=["--layers", ".exr"])
+        self.assert_succeeds(*options, "--segments", "s.npy", "-o", "b.npy")
+        segments = numpy.load(self.folder / "s.npy")
+        self.assertEqual(segments.shape, (*depth.shape, 3))
+        self.assertTrue((segments[0, :, 0] == -1).any())
+        self.assertGreaterEqual(segments[30, 24, 0], 0)
 
     def test_scales_the_lights(self):
         for scale, name in (("1", "a"), ("4", "b")):

@@ -154,6 +154,25 @@ TEST(Autofocus, GoldenSectionOf2006NeedsMorePictures) {
   EXPECT_LT(result.evaluations.size(), baseline.evaluations.size());
 }
 
+/// And ends where it is told to, with what it has seen.
+TEST(Autofocus, GoldenSectionOf2006HeedsHowManyPicturesItMayTake) {
+  const Subject subject{57.3, 2};
+  GoldenSearchOptions golden;
+  golden.nearest_mm = 49, golden.farthest_mm = 60;
+  golden.tolerance_mm = depth_of_focus_mm(subject) / 5;
+  const FocusResult whole = find_focus_2006(camera({subject}), {FocusZone{}}, golden);
+  for (const int most : {2, 3, 5, 1000}) {
+    golden.most_evaluations = most;
+    const FocusResult result = find_focus_2006(camera({subject}), {FocusZone{}}, golden);
+    ASSERT_EQ(result.evaluations.size(),
+              std::min<std::size_t>(whole.evaluations.size(), static_cast<std::size_t>(most)));
+    for (std::size_t i = 0; i < result.evaluations.size(); ++i)
+      EXPECT_EQ(result.evaluations[i].film_distance_mm, whole.evaluations[i].film_distance_mm);
+  }
+  golden.most_evaluations = 1;
+  EXPECT_THROW(find_focus_2006(camera({subject}), {FocusZone{}}, golden), InputError);
+}
+
 /// Wherever the peak lies between the coarse places, and however fine the pixels are against the range: a
 /// search that creeps towards a peak from one side runs out of evaluations.
 TEST(Autofocus, FindsTheTruthAnywhereInTheRange) {

@@ -99,7 +99,6 @@ TEST(GltfRefusals, ReadsNoFilesFromElsewhere) {
 
 TEST(GltfRefusals, ListsAllThatIsNotSupported) {
   GltfText gltf = room();
-  gltf.json["materials"][1]["normalTexture"] = {{"index", 0}};
   gltf.json["materials"][0]["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}};
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = 0;
   gltf.json["meshes"][1]["primitives"][0]["mode"] = 1;
@@ -109,11 +108,42 @@ TEST(GltfRefusals, ListsAllThatIsNotSupported) {
       "s.gltf: extensionsRequired[1]: the extension KHR_draco_mesh_compression",
       "s.gltf: nodes[1].skin: a skin that bones move",
       "s.gltf: materials[0].extensions.KHR_materials_clearcoat: this extension",
-      "s.gltf: meshes[0].primitives[0].attributes.COLOR_1: a second colour for every vertex",
-      "s.gltf: materials[1].normalTexture: a normal map",
-      "s.gltf: meshes[1].primitives[0].mode: a primitive of points or lines"};
+      "s.gltf: meshes[0].primitives[0].attributes.COLOR_1: a second colour for every vertex"};
   EXPECT_EQ(unsupported_in(gltf.text()), wanted);
   expect_refused(refusal(gltf.text()), "extensionsRequired[1]: ", "not supported");
+}
+
+TEST(GltfRefusals, LeavesPointsAndLinesOutWithANote) {
+  GltfText gltf = room();
+  const std::size_t all = read_gltf(gltf.text()).shapes.size();
+  gltf.json["meshes"][1]["primitives"][0]["mode"] = 1;
+  const SceneDescription scene = read_gltf(gltf.text());
+  EXPECT_LT(scene.shapes.size(), all);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].find("meshes[1].primitives[0]: points or lines"), std::string::npos);
+}
+
+/// KHR_texture_transform: scaled, turned anticlockwise, moved, v counted downwards.
+TEST(GltfTextures, AreTurnedAsTheExtensionSays) {
+  GltfText gltf = room();
+  const double turn = 0.4, sx = 2, sy = 3, ox = 0.1, oy = 0.2;
+  auto& texture = gltf.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  texture["index"] = 0;
+  texture["extensions"]["KHR_texture_transform"] = {
+      {"offset", {ox, oy}}, {"scale", {sx, sy}}, {"rotation", turn}};
+  const SceneDescription scene = read_gltf(gltf.text());
+  ASSERT_FALSE(scene.textures.empty());
+  const Parameters& made = scene.textures[0].entity.parameters;
+  const auto number = [&](const char* name) { return made.number(name, 0); };
+  for (const double u : {0.0, 0.3, 1.0})
+    for (const double v : {0.0, 0.6, 1.0}) {
+      // Anticlockwise as one looks at u to the right and v downwards: (1, 0) goes to (cos, −sin).
+      const double x = std::cos(turn) * sx * u + std::sin(turn) * sy * v + ox,
+                   y = -std::sin(turn) * sx * u + std::cos(turn) * sy * v + oy;
+      const double up = 1 - v;
+      EXPECT_NEAR(number("uscale") * u + number("sfromv") * up + number("udelta"), x, 1e-12);
+      EXPECT_NEAR(number("vscale") * up + number("tfromu") * u + number("vdelta"), 1 - y, 1e-12);
+    }
 }
 
 }  // namespace

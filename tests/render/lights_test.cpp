@@ -49,35 +49,37 @@ class EachLight : public testing::TestWithParam<NamedText> {};
 /// The density with which the world's lights are found in a direction from a point. Points of curved lights
 /// are drawn over their area, so that it grows as 1/cos towards their outline, where no rule would integrate
 /// it: grazing light is left out.
-double light_pdf(const World& world, Vector3 from, Vector3 direction) {
+double light_pdf(const World& world, const LightPlan& plan, Vector3 direction) {
+  const Vector3 from = plan.to.position;
   constexpr double grazing = 0.1;
   const auto hit = world.intersector->nearest(from, direction, std::numeric_limits<double>::infinity());
-  if (!hit) return world.lights.sky_pdf(direction);
+  if (!hit) return world.lights.sky_pdf(plan, direction);
   const Geometry& geometry = world.geometries[static_cast<std::size_t>(hit->geometry)];
   const SurfacePoint point = surface_point(geometry, *hit, from, direction, world.place_of(*hit));
   if (std::abs(dot(point.normal, direction)) < grazing) return 0;
   return world.lights.area_pdf(world.geometries,
-                               static_cast<std::size_t>(geometry.first_light + hit->primitive), from, point);
+                               static_cast<std::size_t>(geometry.first_light + hit->primitive), plan, point);
 }
 
 TEST_P(EachLight, IsDrawnFromItsDensity) {
   const auto world = world_of(GetParam().text);
   constexpr int samples = 100000;
   const Vector3 from{0, 0, 0};
+  const LightPlan plan = world->lights.plan({from, {0, 0, 1}, true});
   SphereCells cells;
   for (int i = 0; i < samples; ++i) {
     SobolSample sample(hashed(7, static_cast<std::uint32_t>(i)), 0);  // independent, for χ²
     const auto [choice, u, v, none] = sample.next4();
     (void)none;
-    const auto light = world->lights.sample(world->geometries, from, choice, u, v, 0);
+    const auto light = world->lights.sample(world->geometries, plan, choice, u, v, 0);
     if (!light) continue;
     // What lies behind another part of the light is found by the shadow ray, not here.
     if (light->place && world->intersector->blocked(from, *light->place - from, 1 - 1e-6)) continue;
-    if (light_pdf(*world, from, light->direction) > 0) cells.count(light->direction);
+    if (light_pdf(*world, plan, light->direction) > 0) cells.count(light->direction);
   }
   // Outlines of lights across cells of 100² points: two in a thousand.
   cells.expect_density(samples, 100, 0.002, GetParam().name,
-                       [&](Vector3 direction) { return light_pdf(*world, from, direction); });
+                       [&](Vector3 direction) { return light_pdf(*world, plan, direction); });
 }
 
 struct Mean {
@@ -121,7 +123,7 @@ TEST_P(EachLight, GivesTheSameLightWhoeverFindsIt) {
     EXPECT_NEAR(both.value, sampled.value, 4 * std::hypot(both.error, sampled.error)) << material;
     EXPECT_NEAR(both.value, by_chance.value, 4 * std::hypot(both.error, by_chance.error)) << material;
     // What MIS promises: never worse than the worse way.
-    EXPECT_LT(both.error, 1.05 * std::max(sampled.error, by_chance.error)) << material;
+    EXPECT_LE(both.error, 1.05 * std::max(sampled.error, by_chance.error)) << material;
   }
 }
 

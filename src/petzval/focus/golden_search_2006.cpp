@@ -12,9 +12,14 @@ FocusResult find_focus_2006(const PicturesAt& pictures_at, const std::vector<Foc
   check_film_range(options.nearest_mm, options.farthest_mm);
   if (!(options.tolerance_mm > 0 && options.first_interval_mm > 0 && options.growth >= 1))
     throw InputError("golden section needs a positive tolerance and intervals that do not shrink");
+  if (options.most_evaluations && *options.most_evaluations < 2)
+    throw InputError("golden section takes at least 2 evaluations");
   FocusJudge judge(pictures_at, zones, options.measure);
+  const auto may_ask = [&](int more) {
+    return !options.most_evaluations || judge.count() + more <= *options.most_evaluations;
+  };
   double width = options.first_interval_mm;
-  for (double from = options.nearest_mm; from < options.farthest_mm; width *= options.growth) {
+  for (double from = options.nearest_mm; from < options.farthest_mm && may_ask(2); width *= options.growth) {
     double low = from, high = std::min(from + width, options.farthest_mm);
     from = high;
     int weak = 0;
@@ -25,7 +30,7 @@ FocusResult find_focus_2006(const PicturesAt& pictures_at, const std::vector<Foc
     };
     double a = low + golden_share * (high - low), b = high - golden_share * (high - low);
     double at_a = ask(a), at_b = ask(b);
-    while (high - low > options.tolerance_mm && weak < options.weak_in_a_row) {
+    while (high - low > options.tolerance_mm && weak < options.weak_in_a_row && may_ask(1)) {
       if (at_a > at_b) {
         high = b, b = a, at_b = at_a;
         a = low + golden_share * (high - low);

@@ -30,7 +30,7 @@ struct PathTracer::Path {
   bool alone = false;  ///< dispersed: only the hero wavelength is left
   int hero = 0, depth = 0;
   double index_scale = 1;  ///< what refraction has done to radiance so far, undone for Russian roulette
-  Vector3 scattered_at;
+  LightPlan plan;          ///< of the last surface that is no mirror
   PathLight light;
 };
 
@@ -51,7 +51,7 @@ void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& poi
   if (path.pdf > 0) {
     if (options_.lights == PathOptions::Lights::sampled) return;
     if (options_.lights == PathOptions::Lights::both)
-      weight = balanced(path.pdf, world_.lights.area_pdf(world_.geometries, area, path.scattered_at, point));
+      weight = balanced(path.pdf, world_.lights.area_pdf(world_.geometries, area, path.plan, point));
   }
   add(path, weight * radiance);
   if (path.depth == 0) path.light.straight += radiance;
@@ -63,7 +63,7 @@ void PathTracer::add_sky(Path& path, int group) const {
   if (path.pdf > 0) {
     if (options_.lights == PathOptions::Lights::sampled) return;
     if (options_.lights == PathOptions::Lights::both)
-      weight = balanced(path.pdf, world_.lights.sky_pdf(path.direction));
+      weight = balanced(path.pdf, world_.lights.sky_pdf(path.plan, path.direction));
   }
   add(path, weight * world_.lights.sky(path.direction, group));
 }
@@ -73,8 +73,9 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   const auto [choice, u, v, unused] = sample.next4();
   (void)unused;
   if (bsdf.is_mirror()) return;
+  path.plan = world_.lights.plan({point.position, wo.z < 0 ? -frame.z : frame.z, bsdf.transmits()});
   const std::optional<LightSample> light =
-      world_.lights.sample(world_.geometries, point.position, choice, u, v, group);
+      world_.lights.sample(world_.geometries, path.plan, choice, u, v, group);
   if (!light || !(light->pdf > 0)) return;
   if (options_.lights == PathOptions::Lights::by_chance && !light->small) return;
   const Vector3 wi = frame.to_local(light->direction);
@@ -106,7 +107,6 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
   path.throughput *= chosen->weight;
   path.pdf = chosen->mirror ? 0 : chosen->pdf;
   if (chosen->transmitted) path.index_scale *= chosen->index_ratio * chosen->index_ratio;
-  path.scattered_at = point.position;
   path.direction = normalised(direction);
   path.origin = point.origin_towards(path.direction);
   const double left = static_cast<double>(path.throughput.largest()) * path.index_scale;
@@ -131,8 +131,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       break;
     }
     const Geometry& geometry = world_.geometries[static_cast<std::size_t>(hit->geometry)];
-    const SurfacePoint point =
-        surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
+    SurfacePoint point = surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
     add_emitted(path, *hit, point, group);
     const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
     const Material& material =
@@ -144,6 +143,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       path.origin = point.origin_towards(path.direction);
       continue;
     }
+    if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
     const Bsdf bsdf = material.bsdf(texture_point, group, hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};

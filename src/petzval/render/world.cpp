@@ -10,7 +10,8 @@ namespace {
 
 bool is_mesh(const ShapeDescription& shape) {
   const std::string& type = shape.entity.type;
-  return shape.mesh || type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh";
+  return shape.mesh || type == "trianglemesh" || type == "bilinearmesh" || type == "plymesh" ||
+         type == "loopsubdiv";
 }
 
 /// Puts the pieces of a world together.
@@ -106,8 +107,7 @@ std::unique_ptr<const World> build_world(const SceneDescription& scene, const Wa
   for (const LightDescription& light : scene.lights)
     add_light(light, world->groups, options, unsupported, world->lights);
   world->intersector = std::make_unique<Intersector>(world->geometries, standing, objects, world->placed);
-  const auto box = world->intersector->bounds();
-  world->lights.prepare(world->geometries, box ? length((*box)[1] - (*box)[0]) / 2 : 1);
+  world->lights.prepare(world->geometries);
   return world;
 }
 

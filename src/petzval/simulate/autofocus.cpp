@@ -151,15 +151,17 @@ FocusResult searched(const AutofocusOptions& wanted, const PicturesAt& pictures,
     options.measure = wanted.measure;
     options.nearest_mm = range.from_mm, options.farthest_mm = range.to_mm;
     options.tolerance_mm = share_of_depth * range.depth_mm;
+    options.most_evaluations = wanted.most_evaluations;
     return find_focus_2006(pictures, zones, options);
   }
   if (wanted.search == AutofocusOptions::Search::scan)
-    return scan_focus(pictures, zones, wanted.measure, range.from_mm, range.to_mm, wanted.most_evaluations);
+    return scan_focus(pictures, zones, wanted.measure, range.from_mm, range.to_mm,
+                      wanted.most_evaluations.value_or(AutofocusOptions::usual_evaluations));
   FocusSearchOptions options;
   options.measure = wanted.measure;
   options.nearest_mm = range.from_mm, options.farthest_mm = range.to_mm;
   options.depth_mm = range.depth_mm;
-  options.most_evaluations = wanted.most_evaluations;
+  options.most_evaluations = wanted.most_evaluations.value_or(AutofocusOptions::usual_evaluations);
   return find_focus(pictures, zones, options);
 }
 
@@ -183,8 +185,9 @@ FocusRun search(const PreparedScene& scene, const render::World& world, const Co
   const AutofocusOptions& wanted = scene.request.autofocus;
   ZoneRenderer zones(scene, world, zones_or_middle(wanted), context);
   int asked = 0;
+  const int usual = wanted.most_evaluations.value_or(AutofocusOptions::usual_evaluations);
   const PicturesAt pictures = [&](double film_distance_mm) {
-    progress(std::min(1.0, asked++ / static_cast<double>(std::max(1, wanted.most_evaluations))), "focus");
+    progress(std::min(1.0, asked++ / static_cast<double>(std::max(1, usual))), "focus");
     return zones.at(film_distance_mm);
   };
   const FocusRange range = range_of(scene);

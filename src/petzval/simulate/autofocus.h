@@ -26,7 +26,9 @@ struct AutofocusOptions {
   /// Of the zones. Where their noise leaves the measure ragged, four times and sixteen times as many are
   /// taken.
   int samples_per_pixel = 16;
-  int most_evaluations = 12;
+  /// At most so many places; absent: 12, and of golden_2006 as many as its sections take.
+  std::optional<int> most_evaluations = {};
+  static constexpr int usual_evaluations = 12;
   /// Film distances searched; absent: from a little before infinity is sharp to 0.15 focal lengths beyond.
   std::optional<double> from_mm = {}, to_mm = {};
   std::optional<double> depth_mm = {};  ///< of focus, the scale of the search; absent: f-number × pixel

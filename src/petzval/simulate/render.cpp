@@ -68,6 +68,7 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, const
   Rendering picture = result_within(context, [&](const ProgressCallback& progress) {
     render::SceneCamera camera = scene_camera(scene);
     camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
+    options.window = camera.crop;
     return render_picture(world, *camera.make(world.groups), camera.world_from_camera, scene.film, options,
                           progress);
   });

@@ -49,6 +49,38 @@ SensorGeometry sensor_film(const Sensor& sensor, const CameraChoice& choice) {
   return geometry;
 }
 
+/// pbrt's "cropwindow", left, right, top and bottom in shares of the film (pixel centres within), or
+/// "pixelbounds" of a picture that is as large as the scene has it.
+std::optional<PixelWindow> read_crop(const Parameters& parameters, const CameraChoice& choice,
+                                     const SensorGeometry& film, std::vector<std::string>& notes) {
+  const std::vector<double> shares = parameters.numbers("cropwindow", {"float"});
+  const std::vector<int> pixels = parameters.integers("pixelbounds");
+  if (shares.empty() && pixels.empty()) return {};
+  const char* name = pixels.empty() ? "cropwindow" : "pixelbounds";
+  if ((pixels.empty() ? shares.size() : pixels.size()) != 4)
+    throw scene_error(parameters.location_of(name), fmt::format("\"{}\" takes four numbers", name));
+  if (choice.sensor || (!pixels.empty() && (choice.columns || choice.rows))) {
+    notes.push_back(fmt::format("the scene's \"{}\" is of its own film, and is left aside", name));
+    return {};
+  }
+  PixelWindow window;
+  if (pixels.empty()) {
+    const auto share = [&](std::size_t i, int size) {
+      return static_cast<int>(std::ceil(size * std::clamp(shares[i], 0.0, 1.0)));
+    };
+    window = {share(0, film.columns), share(2, film.rows), share(1, film.columns), share(3, film.rows)};
+  } else {
+    const auto within = [](int at, int size) { return std::clamp(at, 0, size); };
+    window = {within(pixels[0], film.columns), within(pixels[2], film.rows), within(pixels[1], film.columns),
+              within(pixels[3], film.rows)};
+  }
+  if (window.columns() < 1 || window.rows() < 1)
+    throw scene_error(
+        parameters.location_of(name),
+        fmt::format("\"{}\" holds no pixel; left right top bottom within the film would be right", name));
+  return window;
+}
+
 SensorGeometry read_film(const Entity& film, const Entity& camera, CameraChoice choice,
                          Unsupported& unsupported) {
   if (camera.type == "realistic" && camera.parameters.find("filmdiag") && !choice.film_diagonal_mm &&
@@ -177,7 +209,9 @@ void read_camera(const SceneDescription& scene, const CameraChoice& choice, Unsu
 SceneCamera set_up_camera(const SceneDescription& scene, const CameraChoice& choice,
                           Unsupported& unsupported) {
   SceneCamera camera;
+  scene.film.parameters.find("cropwindow"), scene.film.parameters.find("pixelbounds");
   camera.film = read_film(scene.film, scene.camera, choice, unsupported);
+  camera.crop = read_crop(scene.film.parameters, choice, camera.film, camera.notes);
   if (choice.sensor) camera.photosite = choice.sensor->photosite;
   camera.options = choice.options;
   camera.options.margin_pixels = std::max(camera.photosite.separation_x, camera.photosite.separation_y) / 2;

@@ -5,6 +5,7 @@
 #include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/camera/perspective_camera.h>
+#include <petzval/render/film/pixel_window.h>
 #include <petzval/render/pbrt/scene_description.h>
 
 #include <memory>
@@ -43,6 +44,7 @@ struct SceneCamera {
   LensCameraOptions options;
   Transform world_from_camera;
   ClippingPlanes clipping;
+  std::optional<PixelWindow> crop;  ///< what is rendered of the film; absent: all of it
   std::vector<std::string> notes;
 
   /// The same camera with its film elsewhere. \throws InputError unless it has a lens and the distance is

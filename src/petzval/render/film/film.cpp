@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/render/film/film.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -17,12 +18,18 @@ namespace {
 
 /// 16 GiB of sums.
 constexpr double most_values = 2147483648.0;
-constexpr std::string_view magic = "petzval-render-checkpoint/3\n";
+constexpr std::string_view magic = "petzval-render-checkpoint/4\n";
 
 struct CheckpointHead {
   std::uint64_t fingerprint_size, rays, passed;
   std::int64_t passes;
 };
+
+/// Of all that follows the magic line, in this order; CRC-32 as in zip and PNG.
+std::uint32_t checksum(std::uint32_t so_far, const void* bytes, std::size_t count) {
+  if (count == 0) return so_far;  // of no bytes at all zlib begins anew
+  return static_cast<std::uint32_t>(crc32_z(so_far, static_cast<const Bytef*>(bytes), count));
+}
 
 /// Takes bytes from the front of a text, checking that they are there.
 void take(std::string_view& bytes, void* to, std::size_t count, const std::string& path) {
@@ -119,14 +126,18 @@ void write_checkpoint(const std::string& path, const Film& film, const std::stri
   WholeFile file(path);
   std::ofstream out(file.temporary_path(), std::ios::binary);
   const CheckpointHead head{fingerprint.size(), film.rays, film.passed, film.passes};
+  std::uint32_t sum = 0;
   const auto write = [&](const void* bytes, std::size_t count) {
     out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+    sum = checksum(sum, bytes, count);
   };
-  write(magic.data(), magic.size());
+  out.write(magic.data(), static_cast<std::streamsize>(magic.size()));
   write(&head, sizeof head);
   write(fingerprint.data(), fingerprint.size());
   for (const std::vector<double>* sums : sums_of(film)) write(sums->data(), sums->size() * sizeof(double));
   write(film.arriving.data(), film.arriving.size() * sizeof(double));
+  const std::uint32_t of_all = sum;
+  write(&of_all, sizeof of_all);
   out.close();
   if (!out) throw Failure(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
   file.commit();
@@ -138,6 +149,8 @@ bool read_checkpoint(const std::string& path, Film& film, const std::string& fin
   std::string_view bytes(text);
   if (bytes.substr(0, magic.size()) != magic) throw InputError(path, "is no checkpoint of petzval render");
   bytes.remove_prefix(magic.size());
+  const std::string_view sound =
+      bytes.substr(0, bytes.size() - std::min(bytes.size(), sizeof(std::uint32_t)));
   CheckpointHead head{};
   take(bytes, &head, sizeof head, path);
   if (bytes.size() < head.fingerprint_size)
@@ -148,8 +161,14 @@ bool read_checkpoint(const std::string& path, Film& film, const std::string& fin
   for (std::vector<double>* sums : sums_of(read))
     take(bytes, sums->data(), sums->size() * sizeof(double), path);
   take(bytes, read.arriving.data(), read.arriving.size() * sizeof(double), path);
+  std::uint32_t sum = 0;
+  take(bytes, &sum, sizeof sum, path);
   if (!bytes.empty())
     throw InputError(path, "is a damaged checkpoint: it is too long; delete it to start afresh");
+  if (sum != checksum(0, sound.data(), sound.size()))
+    throw InputError(
+        path,
+        "is a damaged checkpoint: its bytes are not those that were written; delete it to start afresh");
   read.rays = head.rays, read.passed = head.passed, read.passes = static_cast<int>(head.passes);
   film = std::move(read);
   return true;

@@ -25,8 +25,8 @@ struct GltfMaterials::Reading {
   const tinygltf::Material& material;
   std::string path;  ///< "materials[2]"
   GltfExtension transmission, volume, ior, specular, strength;
-  GltfTexture base{}, metal_and_roughness{}, emission{};
-  std::string colour{}, metallic{}, alpha{};  ///< names of textures; empty: the factors alone
+  GltfTexture base{}, metal_and_roughness{}, emission{}, lean{};
+  std::string colour{}, metallic{}, alpha{}, normals{};  ///< names of textures; empty: the factors alone
   double index_of_refraction = 1.5, specular_factor = 1;
 
   Reading(const GltfFile& file, const tinygltf::Material& of, std::string at)
@@ -44,9 +44,12 @@ struct GltfMaterials::Reading {
     return {f[0], f[1], f[2]};
   }
   int uv_set() const {
-    for (const GltfTexture* texture : {&base, &metal_and_roughness})
+    for (const GltfTexture* texture : {&base, &metal_and_roughness, &lean})
       if (*texture) return texture->uv_set;
     return -1;
+  }
+  void with_normals(EntityMaker& maker) const {
+    if (!normals.empty()) maker.texture("normalmap", normals);
   }
   void with_colour(EntityMaker& maker) const {
     if (colour.empty())
@@ -135,10 +138,14 @@ void GltfMaterials::read_textures(Reading& reading) {
   const tinygltf::TextureInfo& third = reading.material.emissiveTexture;
   reading.emission =
       textures_.reference(third.index, third.texCoord, third.extensions, reading.path + ".emissiveTexture");
-  if (reading.base && reading.metal_and_roughness &&
-      reading.base.uv_set != reading.metal_and_roughness.uv_set)
-    unsupported_.report(file_.at(reading.metal_and_roughness.path + ".texCoord"),
-                        "another set of texture coordinates than that of the base colour");
+  const tinygltf::NormalTextureInfo& fourth = reading.material.normalTexture;
+  reading.lean =
+      textures_.reference(fourth.index, fourth.texCoord, fourth.extensions, reading.path + ".normalTexture");
+  for (const GltfTexture* each : {&reading.metal_and_roughness, &reading.lean})
+    if (*each && each->uv_set != reading.uv_set())
+      unsupported_.report(file_.at(each->path + ".texCoord"),
+                          "another set of texture coordinates than that of the first texture");
+  if (reading.lean) reading.normals = textures_.add_normals(reading.lean, fourth.scale);
   if (reading.base) reading.colour = textures_.add_colour(reading.base, reading.base_factor());
   if (!reading.metal_and_roughness) return;
   const double metallic = pbr.metallicFactor, roughness = pbr.roughnessFactor;
@@ -176,6 +183,7 @@ int GltfMaterials::add_metal(const Reading& reading) {
   EntityMaker metal("conductor", file_.at(reading.path));
   reading.with_colour(metal);
   reading.with_roughness(metal);
+  reading.with_normals(metal);
   return add(metal.made());
 }
 
@@ -183,6 +191,7 @@ int GltfMaterials::add_opaque(const Reading& reading) {
   const bool coated = reading.specular_factor > 0 && reading.index_of_refraction > 1;
   EntityMaker body(coated ? "coateddiffuse" : "diffuse", file_.at(reading.path));
   reading.with_colour(body);
+  reading.with_normals(body);
   if (coated) {
     reading.with_roughness(body);
     body.number("eta", reading.index_of_refraction).flag("throughcoating", true);
@@ -197,6 +206,7 @@ int GltfMaterials::add_glass(const Reading& reading) {
     unsupported_.report(file_.at(reading.transmission.path()), "light that is coloured by passing a surface");
   EntityMaker glass(thin ? "thindielectric" : "dielectric", file_.at(reading.transmission.path()));
   glass.number("eta", reading.index_of_refraction);
+  reading.with_normals(glass);
   if (!thin)
     reading.with_roughness(glass);
   else if (!reading.alpha.empty() || reading.pbr().roughnessFactor > 0.03)  // below, alpha makes a mirror
@@ -242,7 +252,6 @@ void GltfMaterials::report_rest(const Reading& reading) {
   const auto report = [&](bool there, const std::string& path, const char* what) {
     if (there) unsupported_.report(file_.at(path), what);
   };
-  report(reading.material.normalTexture.index >= 0, reading.path + ".normalTexture", "a normal map");
   // An occlusion map is what light in corners does; here it is followed.
   GltfExtension transmission = reading.transmission, volume = reading.volume, ior = reading.ior,
                 specular = reading.specular, strength = reading.strength;

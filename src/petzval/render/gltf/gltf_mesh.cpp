@@ -50,7 +50,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::ui
 void report_attributes(const GltfFile& file, const tinygltf::Primitive& primitive, const std::string& path,
                        Unsupported& unsupported) {
   for (const auto& [name, accessor] : primitive.attributes) {
-    // Tangents serve normal maps, which are reported; other sets of coordinates may serve nothing.
+    // Normal maps are laid along u, not along tangents; other sets of coordinates may serve nothing.
     const bool known = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" ||
                        name.rfind("TEXCOORD_", 0) == 0 || name.rfind("_", 0) == 0;
     if (!known)
@@ -79,11 +79,13 @@ std::vector<std::array<float, 4>> read_colours(const GltfFile& file, int index, 
 std::shared_ptr<const TriangleMesh> read_gltf_triangles(const GltfFile& file,
                                                         const tinygltf::Primitive& primitive,
                                                         const std::string& path, int uv_set,
-                                                        Unsupported& unsupported) {
+                                                        Unsupported& unsupported,
+                                                        std::vector<std::string>& notes) {
   const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   report_attributes(file, primitive, path, unsupported);
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    unsupported.report(file.at(path + ".mode"), "a primitive of points or lines");
+    notes.push_back(
+        fmt::format("{}: points or lines, which have no surface, are left out", file.at(path).text()));
     return nullptr;
   }
   const auto attribute = [&](const std::string& name) {

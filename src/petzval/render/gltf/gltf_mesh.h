@@ -8,11 +8,12 @@
 namespace petzval::render {
 
 /// The triangles of a primitive (list, strip or fan) in the space of its node, v of the texture coordinates
-/// turned upwards. Nothing for points and lines, which are reported. \param path  "meshes[0].primitives[1]".
-/// \param uv_set  which TEXCOORD is wanted. \throws InputError.
+/// turned upwards. Nothing for points and lines, which have no surface: `notes` tell of them. \param path
+/// "meshes[0].primitives[1]". \param uv_set  which TEXCOORD is wanted. \throws InputError.
 std::shared_ptr<const TriangleMesh> read_gltf_triangles(const GltfFile& file,
                                                         const tinygltf::Primitive& primitive,
                                                         const std::string& path, int uv_set,
-                                                        Unsupported& unsupported);
+                                                        Unsupported& unsupported,
+                                                        std::vector<std::string>& notes);
 
 }  // namespace petzval::render

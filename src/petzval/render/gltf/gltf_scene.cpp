@@ -77,7 +77,8 @@ class MeshPlacer {
       ShapeDescription shape;
       shape.entity = mesh_entity(surface, tinted, path);
       shape.material = surface.material, shape.area_light = surface.area_light;
-      shape.mesh = read_gltf_triangles(file_, primitive, path, std::max(surface.uv_set, 0), unsupported_);
+      shape.mesh = read_gltf_triangles(file_, primitive, path, std::max(surface.uv_set, 0), unsupported_,
+                                       scene_.notes);
       if (!shape.mesh) continue;
       if (surface.uv_set >= 0 && shape.mesh->uvs.empty())
         throw scene_error(

@@ -34,7 +34,7 @@ const char* wrap_of(const GltfFile& file, int mode, const std::string& path) {
 
 GltfTexture GltfTextures::reference(int index, int uv_set, const tinygltf::ExtensionMap& extensions,
                                     const std::string& path) {
-  GltfTexture texture{index, uv_set, 0, 0, 1, 1, path};
+  GltfTexture texture{index, uv_set, 0, 0, 1, 1, 0, path};
   if (index < 0) return texture;
   file_.entry(file_.model.textures, index, "textures", path + ".index");
   GltfExtension transform(file_, extensions, "KHR_texture_transform", path);
@@ -44,8 +44,7 @@ GltfTexture GltfTextures::reference(int index, int uv_set, const tinygltf::Exten
     texture.offset_u = offset[0], texture.offset_v = offset[1];
     texture.scale_u = scale[0], texture.scale_v = scale[1];
     if (transform.has("texCoord")) texture.uv_set = transform.index("texCoord");
-    if (transform.number("rotation", 0, -1e6, 1e6) != 0)
-      unsupported_.report(file_.at(transform.path() + ".rotation"), "a texture that is turned");
+    texture.turn = transform.number("rotation", 0, -1e6, 1e6);
     transform.report_rest(unsupported_);
   }
   report_gltf_extensions(file_, extensions, path, {"KHR_texture_transform"}, unsupported_);
@@ -95,7 +94,8 @@ const GltfTextures::Decoded& GltfTextures::decoded(const GltfTexture& texture) {
                                  : decoded_.emplace(entry.source, decode(entry.source)).first->second;
 }
 
-std::string GltfTextures::add(const GltfTexture& texture, const char* value_type, PictureFile picture) {
+std::string GltfTextures::add(const GltfTexture& texture, const char* value_type, PictureFile picture,
+                              double scale) {
   const tinygltf::Texture& entry = file_.model.textures[static_cast<std::size_t>(texture.index)];
   tinygltf::Sampler sampler;
   const std::string path = fmt::format("samplers[{}]", entry.sampler);
@@ -109,15 +109,19 @@ std::string GltfTextures::add(const GltfTexture& texture, const char* value_type
   description.name = fmt::format("textures {}", scene_.textures.size());
   description.value_type = value_type;
   description.picture = std::make_shared<const PictureFile>(std::move(picture));
-  // v is counted upwards in a scene: 1 − v′ with v′ = scale (1 − v) + offset.
+  // v is counted upwards in a scene: t = 1 − v′ with (u′, v′) = turn · scale · (u, 1 − v) + offset.
+  const double cos = std::cos(texture.turn), sin = std::sin(texture.turn);
   description.entity =
       EntityMaker("imagemap", file_.at(texture.path))
           .text("wrap", {wrap})
           .text("filter", {sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? "point" : "bilinear"})
-          .number("uscale", texture.scale_u)
-          .number("vscale", texture.scale_v)
-          .number("udelta", texture.offset_u)
-          .number("vdelta", 1 - texture.scale_v - texture.offset_v)
+          .number("scale", scale)
+          .number("uscale", cos * texture.scale_u)
+          .number("sfromv", -sin * texture.scale_v)
+          .number("udelta", texture.offset_u + sin * texture.scale_v)
+          .number("vscale", cos * texture.scale_v)
+          .number("tfromu", sin * texture.scale_u)
+          .number("vdelta", 1 - cos * texture.scale_v - texture.offset_v)
           .made();
   scene_.textures.push_back(description);
   return description.name;
@@ -174,6 +178,16 @@ std::string GltfTextures::add_opacity(const GltfTexture& texture, double factor)
   for (std::size_t i = 0; i < from.pixels(); ++i)
     picture.values.push_back(static_cast<float>(factor * from.opacity(i)));
   return add(texture, "float", std::move(picture));
+}
+
+std::string GltfTextures::add_normals(const GltfTexture& texture, double scale) {
+  const Decoded& from = decoded(texture);
+  PictureFile picture{from.width, from.height, 3, {}};
+  picture.values.reserve(3 * from.pixels());
+  for (std::size_t i = 0; i < from.pixels(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      picture.values.push_back(static_cast<float>(static_cast<double>(from.sample(i, c)) / from.white));
+  return add(texture, "normal", std::move(picture), scale);
 }
 
 std::string GltfTextures::add_square(const std::string& texture, const Location& at) {

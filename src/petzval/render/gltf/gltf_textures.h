@@ -17,7 +17,8 @@ struct GltfTexture {
   int index = -1;  ///< −1: there is none
   int uv_set = 0;
   double offset_u = 0, offset_v = 0, scale_u = 1, scale_v = 1;  ///< KHR_texture_transform, v downwards
-  std::string path;                                             ///< "materials[0].emissiveTexture"
+  double turn = 0;   ///< anticlockwise as one sees the coordinates [rad]
+  std::string path;  ///< "materials[0].emissiveTexture"
 
   explicit operator bool() const { return index >= 0; }
 };
@@ -39,6 +40,8 @@ class GltfTextures {
   std::string add_opacity(const GltfTexture& texture, double factor);
   /// One channel (0 red … 2 blue) as it stands, times a factor, as a float texture. \return its name.
   std::string add_channel(const GltfTexture& texture, std::size_t channel, double factor);
+  /// A normal map, `scale` times as steep. \return its name.
+  std::string add_normals(const GltfTexture& texture, double scale);
   /// The square of a float texture. \return its name.
   std::string add_square(const std::string& texture, const Location& at);
 
@@ -69,7 +72,7 @@ class GltfTextures {
   };
   const Decoded& decoded(const GltfTexture& texture);
   Decoded decode(int image) const;
-  std::string add(const GltfTexture& texture, const char* value_type, PictureFile picture);
+  std::string add(const GltfTexture& texture, const char* value_type, PictureFile picture, double scale = 1);
 
   const GltfFile& file_;
   SceneDescription& scene_;

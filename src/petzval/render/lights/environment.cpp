@@ -2,6 +2,7 @@
 #include <petzval/base/stop.h>
 #include <petzval/base/units.h>
 #include <petzval/colour/rgb_to_spectrum.h>
+#include <petzval/render/disk_point.h>
 #include <petzval/render/lights/environment.h>
 
 #include <algorithm>
@@ -86,6 +87,30 @@ void square_from_sphere(Vector3 d, double& u, double& v) {
   v = (std::copysign(vp, d.y) + 1) / 2;
 }
 
+namespace {
+
+/// The real spherical harmonics to order 2 of a unit direction.
+std::array<double, 9> harmonics(Vector3 d) {
+  static const double c0 = std::sqrt(1 / (4 * pi)), c1 = std::sqrt(3 / (4 * pi)),
+                      c2 = std::sqrt(15 / (4 * pi)), c20 = std::sqrt(5 / (16 * pi)),
+                      c22 = std::sqrt(15 / (16 * pi));
+  return {c0,
+          c1 * d.y,
+          c1 * d.z,
+          c1 * d.x,
+          c2 * d.x * d.y,
+          c2 * d.y * d.z,
+          c20 * (3 * d.z * d.z - 1),
+          c2 * d.x * d.z,
+          c22 * (d.x * d.x - d.y * d.y)};
+}
+
+/// What a cosine leaves of each order (Ramamoorthi & Hanrahan 2001, equation 8).
+constexpr std::array<double, 9> cosine_of_order{pi,     2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4,
+                                                pi / 4, pi / 4,     pi / 4,     pi / 4};
+
+}  // namespace
+
 struct Environment::Sky {
   std::shared_ptr<const PictureFile> picture;
   SquareDistribution distribution;
@@ -116,7 +141,7 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
   const ReflectanceTable table;
   std::vector<Sky::Pixel> pixels;
   std::vector<double> weights;
-  double sum = 0;
+  double sum = 0, squares = 0;
   for (int row = 0; row < picture->height; ++row) {
     check_stop();
     for (int column = 0; column < picture->width; ++column) {
@@ -129,10 +154,18 @@ Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectru
       if (scale > 0) pixel.shape = table({rgb.r / scale, rgb.g / scale, rgb.b / scale});
       pixels.push_back(pixel);
       weights.push_back((rgb.r + rgb.g + rgb.b) / 3);
-      sum += weights.back();
+      sum += weights.back(), squares += weights.back() * weights.back();
+      const auto basis =
+          harmonics(sphere_from_square((column + 0.5) / picture->width, (row + 0.5) / picture->height));
+      for (std::size_t i = 0; i < basis.size(); ++i) irradiance_[i] += weights.back() * basis[i];
     }
   }
-  mean_ = mean_of(radiance_) * sum / static_cast<double>(weights.size());
+  const auto count = static_cast<double>(weights.size());
+  const double white_mean = mean_of(radiance_);
+  mean_ = white_mean * sum / count;
+  if (squares > 0) unevenness_ = 1 - sum * sum / (count * squares);
+  for (std::size_t i = 0; i < irradiance_.size(); ++i)
+    irradiance_[i] *= white_mean * cosine_of_order[i] * 4 * pi / count;
   sky_ = std::make_shared<const Sky>(
       Sky{picture, SquareDistribution(weights, picture->width, picture->height), std::move(pixels), groups});
 }
@@ -150,15 +183,35 @@ Lanes Environment::radiance(Vector3 direction, int group) const {
   return result;
 }
 
-Environment::Sample Environment::sample(double u, double v) const {
-  if (!sky_) return {sphere_from_square(u, v), 1 / (4 * pi)};
+double Environment::irradiance(Vector3 normal) const {
+  const double even = pi * mean_;
+  if (!sky_) return even;
+  const auto basis = harmonics(normalised(world_from_light_.inverse_direction(normal)));
+  double sum = 0;
+  for (std::size_t i = 0; i < basis.size(); ++i) sum += irradiance_[i] * basis[i];
+  constexpr double at_least = 0.05;  // the series rings, and surfaces see more than a cosine's hemisphere
+  return std::max(at_least * even, sum);
+}
+
+Environment::Sample Environment::sample(const LightReceiver& to, double u, double v) const {
+  if (!sky_) {
+    const bool behind = to.both_sides && u < 0.5;
+    if (to.both_sides) u = behind ? 2 * u : 2 * u - 1;
+    const DiskPoint on = disk_point(u, v);
+    const double up = std::sqrt(std::max(0.0, 1 - on.x * on.x - on.y * on.y));
+    const Vector3 direction = Frame(to.normal).from_local({on.x, on.y, behind ? -up : up});
+    return {direction, pdf(to, direction)};
+  }
   const SquareDistribution::Point point = sky_->distribution.sample(u, v);
   return {normalised(world_from_light_.direction(sphere_from_square(point.u, point.v))),
           point.density / (4 * pi)};
 }
 
-double Environment::pdf(Vector3 direction) const {
-  if (!sky_) return 1 / (4 * pi);
+double Environment::pdf(const LightReceiver& to, Vector3 direction) const {
+  if (!sky_) {
+    const double cos = dot(to.normal, direction);
+    return to.both_sides ? std::abs(cos) / (2 * pi) : std::max(0.0, cos) / pi;
+  }
   double u, v;
   square_from_sphere(normalised(world_from_light_.inverse_direction(direction)), u, v);
   return sky_->distribution.density(u, v) / (4 * pi);

@@ -2,10 +2,12 @@
 // Light from all around, far away.
 #pragma once
 
+#include <petzval/render/lights/light_tree.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/render/textures/picture_file.h>
 #include <petzval/render/transform.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -47,17 +49,23 @@ class Environment {
     Vector3 direction;
     double pdf = 0;  ///< over solid angle
   };
-  Sample sample(double u, double v) const;
-  double pdf(Vector3 direction) const;
-  /// Mean over the sphere, of all wavelengths: how important the light is.
-  double mean() const { return mean_; }
+  /// A picture by its luminance; an even light over the cosine of a surface, which is how it arrives there.
+  Sample sample(const LightReceiver& to, double u, double v) const;
+  double pdf(const LightReceiver& to, Vector3 direction) const;
+  /// Nearly what a plane gets of it in the open, of all wavelengths, from its spherical harmonics of order 2
+  /// (Ramamoorthi & Hanrahan 2001); at least a twentieth of what it would get if the light were even.
+  double irradiance(Vector3 normal) const;
+  /// 0 for light that is the same from everywhere, near 1 for light that comes from few directions: 1 −
+  /// mean² / mean square of the radiance.
+  double unevenness() const { return unevenness_; }
 
  private:
   struct Sky;
   BandSpectrum radiance_;
   Transform world_from_light_;
   std::shared_ptr<const Sky> sky_;
-  double mean_ = 0;
+  double mean_ = 0, unevenness_ = 0;
+  std::array<double, 9> irradiance_{};  ///< coefficients over the directions of the light's own space
 };
 
 }  // namespace petzval::render

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/render/lights/environment.h>
+#include <petzval/render/lights/light_tree.h>
 #include <petzval/render/shapes/geometry.h>
 #include <petzval/render/spectra/named_spectra.h>
 
@@ -39,7 +40,16 @@ struct LightSample {
   bool small = false;  ///< no other way of sampling finds it
 };
 
-/// All lights of a scene. Which one is asked is chosen by how much light each gives.
+/// How likely each light is asked from one point.
+struct LightPlan {
+  LightReceiver to;
+  LightTree::Weights nearby;  ///< of the tree's entries
+  double nearby_sum = 0;      ///< areas, point lights and spots
+  double far_sum = 0;         ///< distant lights and skies
+};
+
+/// All lights of a scene. Which one is asked is chosen by what each can do at the point: lights that stand
+/// somewhere by a tree, those infinitely far away by the irradiance that they would give it in the open.
 class Lights {
  public:
   std::vector<BandSpectrum> area_spectra;
@@ -47,21 +57,21 @@ class Lights {
   std::vector<SmallLight> smalls;
   std::vector<Environment> environments;
 
-  /// Works out how often each is chosen; call when the lists are complete. \param scene_radius  of the
-  /// scene's sphere.
-  void prepare(const std::vector<Geometry>& geometries, double scene_radius);
+  /// Builds what choosing takes; call when the lists are complete.
+  void prepare(const std::vector<Geometry>& geometries);
   bool empty() const { return areas.empty() && smalls.empty() && environments.empty(); }
 
+  LightPlan plan(const LightReceiver& to) const;
   /// Light towards a point. Nothing where the chosen light does not reach.
-  std::optional<LightSample> sample(const std::vector<Geometry>& geometries, Vector3 to, double choice,
-                                    double u, double v, int group) const;
+  std::optional<LightSample> sample(const std::vector<Geometry>& geometries, const LightPlan& plan,
+                                    double choice, double u, double v, int group) const;
   /// Radiance of an area light at a point of it, towards `wo`.
   Lanes emitted(std::size_t area, const SurfacePoint& point, Vector3 wo, int group) const;
-  /// The density with which sample() finds a point of an area light from `from`.
-  double area_pdf(const std::vector<Geometry>& geometries, std::size_t area, Vector3 from,
+  /// The density with which sample() finds a point of an area light.
+  double area_pdf(const std::vector<Geometry>& geometries, std::size_t area, const LightPlan& plan,
                   const SurfacePoint& point) const;
   Lanes sky(Vector3 direction, int group) const;
-  double sky_pdf(Vector3 direction) const;
+  double sky_pdf(const LightPlan& plan, Vector3 direction) const;
 
  private:
   struct Sphere {
@@ -71,9 +81,15 @@ class Lights {
   std::optional<LightSample> sample_area(const std::vector<Geometry>& geometries, std::size_t index,
                                          Vector3 to, double u, double v, int group) const;
   std::optional<LightSample> sample_small(const SmallLight& light, Vector3 to, int group) const;
-  double share(std::size_t light) const { return cumulative_[light + 1] - cumulative_[light]; }
+  std::optional<LightSample> sample_far(const LightPlan& plan, double choice, double u, double v,
+                                        int group) const;
+  LightBounds bounds_of(const Geometry& geometry, const AreaLight& light,
+                        const std::optional<Sphere>& sphere) const;
+  double weight_of(const Environment& environment, const LightReceiver& to) const;
 
-  std::vector<double> cumulative_;              ///< areas, then smalls, then environments
+  LightTree tree_;                   ///< of areas, then of smalls that stand somewhere
+  std::vector<std::size_t> stands_;  ///< into smalls
+  std::vector<std::size_t> distant_;
   std::vector<std::optional<Sphere>> spheres_;  ///< of area lights that are whole spheres
 };
 

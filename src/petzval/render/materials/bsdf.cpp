@@ -64,6 +64,10 @@ Bsdf Bsdf::thin_dielectric(const Lanes& eta) {
   return bsdf;
 }
 
+bool Bsdf::transmits() const {
+  return kind_ == Kind::dielectric || kind_ == Kind::thin || (kind_ == Kind::diffuse && !second_.is_black());
+}
+
 Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
   if (mirror_ || wo.z == 0 || wi.z == 0) return Lanes::all(0);
   switch (kind_) {

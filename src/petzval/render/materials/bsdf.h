@@ -46,6 +46,8 @@ class Bsdf {
   std::optional<BsdfSample> sample(Vector3 wo, double choice, double u, double v) const;
 
   bool is_mirror() const { return mirror_; }
+  /// Whether light from behind may come through.
+  bool transmits() const;
   /// Whether a transmitted path serves the hero wavelength alone.
   bool disperses() const { return disperses_; }
   /// Share of light reflected as a whole, for albedo pictures: exact for diffuse, facing the surface for

@@ -152,6 +152,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     return material;
   }
   parameters.find("type");
+  material.normal_map = textures.normal_map(parameters);
   unsupported.report_unused(parameters, fmt::format("material \"{}\"", entity.type));
   return material;
 }

@@ -4,6 +4,7 @@
 
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
+#include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
 
 #include <array>
@@ -33,6 +34,7 @@ struct Material {
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
+  std::shared_ptr<const NormalMap> normal_map;  ///< null: none
   FloatTexture mix_amount;
   std::array<int, 2> mixed{0, 0};  ///< into the list of materials
 

@@ -35,6 +35,10 @@ Parameter declared(const Token& token, const Location& at) {
   Parameter parameter;
   parameter.type = text.substr(0, gap);
   parameter.name = trim(text.substr(gap));
+  // Versions 1 to 3.
+  if (parameter.type == "color") parameter.type = "rgb";
+  if (parameter.type == "point") parameter.type = "point3";
+  if (parameter.type == "vector") parameter.type = "vector3";
   parameter.at = at;
   if (!contains(number_types, parameter.type) && !contains(string_types, parameter.type) &&
       parameter.type != "bool")

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/render/pbrt/old_scene.h>
 #include <petzval/render/pbrt/scene_reader.h>
 
 #include <algorithm>
@@ -56,11 +57,21 @@ void SceneReader::follow(Tokens& tokens) {
 }
 
 bool SceneReader::follow_old(const std::string& word, Tokens& tokens, const Location& at) {
-  if (word == "WorldEnd") return true;  // the world of version 4 ends with the file
-  static const std::map<std::string, const char*> now{{"SurfaceIntegrator", "Integrator"},
-                                                      {"VolumeIntegrator", "Integrator"},
-                                                      {"Renderer", "Integrator"},
-                                                      {"Volume", "MakeNamedMedium"}};
+  if (word == "WorldEnd") {  // the world of version 4 ends with the file
+    is_old_ = true;
+    return true;
+  }
+  if (word == "SurfaceIntegrator") {
+    is_old_ = true;
+    scene_.integrator = entity(tokens, at, "integrator");
+    return true;
+  }
+  if (word == "VolumeIntegrator" || word == "Renderer") {  // of media, which have directives of their own
+    is_old_ = true;
+    entity(tokens, at, "integrator");
+    return true;
+  }
+  static const std::map<std::string, const char*> now{{"Volume", "MakeNamedMedium"}};
   const auto old = now.find(word);
   if (old == now.end()) return false;
   unsupported_.report(at, fmt::format("{} of pbrt before version 4 (now {})", word, old->second));
@@ -90,6 +101,7 @@ void SceneReader::finish() {
   if (!saved_.empty())
     throw scene_error(saved_.back().at, fmt::format("this block is not ended by {}", saved_.back().ended_by));
   if (!in_world_) throw InputError(scene_.file, "has no WorldBegin; what the scene holds stands after it");
+  if (is_old_) translate_old_scene(scene_);
 }
 
 SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported) {

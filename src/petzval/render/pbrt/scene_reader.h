@@ -73,6 +73,7 @@ class SceneReader {
   int open_object_ = -1;
   Location object_at_;
   bool in_world_ = false;
+  bool is_old_ = false;  ///< of pbrt before version 4
 };
 
 }  // namespace petzval::render

@@ -53,6 +53,7 @@ void SceneReader::texture(Tokens& tokens, const Location& at) {
   TextureDescription texture;
   texture.name = quoted(tokens, at, "texture's name");
   texture.value_type = quoted(tokens, at, "texture's type, float or spectrum,");
+  if (texture.value_type == "color") texture.value_type = "spectrum";  // versions 1 to 3
   if (texture.value_type != "float" && texture.value_type != "spectrum")
     throw scene_error(at, fmt::format("a texture holds float or spectrum, not \"{}\"", texture.value_type));
   texture.entity = entity(tokens, at, "texture's class", "texture");

@@ -33,7 +33,8 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
   const std::array<double, 3> b{1 - b1 - b2, b1, b2};
   SurfacePoint point;
   point.position = b[0] * p[0] + b[1] * p[1] + b[2] * p[2];
-  point.normal = normalised(cross(p[1] - p[0], p[2] - p[0]));
+  const Vector3 counted = cross(p[1] - p[0], p[2] - p[0]);
+  point.normal = normalised(counted);
   std::array<std::array<double, 2>, 3> uv;
   for (std::size_t i = 0; i < 3; ++i) {
     uv[i] = uv_of(mesh, index[i], i);
@@ -41,6 +42,8 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
     point.v += b[i] * uv[i][1];
   }
   point.along_u = triangle_along_u(p, uv);
+  const double uv_area =
+      (uv[1][0] - uv[0][0]) * (uv[2][1] - uv[0][1]) - (uv[1][1] - uv[0][1]) * (uv[2][0] - uv[0][0]);
   if (!mesh.colours.empty()) {
     point.tint = {0, 0, 0};
     for (std::size_t i = 0; i < 3; ++i)
@@ -50,6 +53,7 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
   if (mesh.normals.empty()) {
     if (geometry.reversed != geometry.swaps_handedness) point.normal = -point.normal;
     point.shading_normal = point.normal;
+    point.mirrored_uv = (uv_area < 0) != (dot(counted, point.shading_normal) < 0);
     return point;
   }
   Vector3 shading;
@@ -60,6 +64,7 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
   if (geometry.reversed) shading = -shading;
   point.normal = facing(point.normal, shading);
   point.shading_normal = dot(shading, shading) > 0 ? normalised(shading) : point.normal;
+  point.mirrored_uv = (uv_area < 0) != (dot(counted, point.shading_normal) < 0);
   return point;
 }
 

@@ -49,6 +49,7 @@ struct SurfacePoint {
   Vector3 shading_normal;  ///< of its interpolated normals, on the same side
   Vector3 along_u;
   double u = 0, v = 0;
+  bool mirrored_uv = false;             ///< ∂p/∂u × ∂p/∂v looks away from the shading normal
   std::array<double, 3> tint{1, 1, 1};  ///< colour of the vertices
   double clearance = 0;                 ///< how far rays must get away before they may meet the surface again
 

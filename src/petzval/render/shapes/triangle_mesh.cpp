@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/stop.h>
+#include <petzval/render/shapes/loop_subdivision.h>
 #include <petzval/render/shapes/triangle_mesh.h>
 
 #include <cmath>
@@ -130,6 +131,19 @@ TriangleMesh read_triangles(const Parameters& parameters) {
   return mesh;
 }
 
+TriangleMesh read_loop_surface(const Parameters& parameters) {
+  constexpr int usual_levels = 3;
+  const int levels = parameters.integer("levels", parameters.integer("nlevels", usual_levels));
+  parameters.find("nlevels"), parameters.choice("scheme", "loop", {"loop"});
+  const TriangleMesh coarse = read_triangles(parameters);
+  try {
+    coarse.validate();
+    return loop_surface(coarse, levels);
+  } catch (const InputError& error) {
+    throw scene_error(parameters.location(), error.what());
+  }
+}
+
 TriangleMesh read_ply_shape(const Parameters& parameters, Unsupported& unsupported) {
   const std::string name = parameters.string("filename", "");
   if (name.empty()) throw scene_error(parameters.location(), "a plymesh needs a \"string filename\"");
@@ -197,6 +211,7 @@ TriangleMesh read_triangle_mesh(const ShapeDescription& shape, Unsupported& unsu
   TriangleMesh mesh = shape.mesh                            ? *shape.mesh
                       : shape.entity.type == "plymesh"      ? read_ply_shape(parameters, unsupported)
                       : shape.entity.type == "bilinearmesh" ? read_bilinear(parameters)
+                      : shape.entity.type == "loopsubdiv"   ? read_loop_surface(parameters)
                                                             : read_triangles(parameters);
   try {
     mesh.validate();

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/stop.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/colour/display.h>
+#include <petzval/image/formats/jpeg.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/render/textures/picture_file.h>
+#include <petzval/render/textures/radiance_picture.h>
 
 #include <algorithm>
 #include <array>
@@ -44,6 +47,19 @@ PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) 
       picture.values.push_back(
           linear[png.samples[i * static_cast<std::size_t>(png.channels) + static_cast<std::size_t>(c)]]);
   }
+  return picture;
+}
+
+PictureFile read_jpeg_picture(const std::string& path, PictureEncoding encoding) {
+  const JpegImage jpeg = read_jpeg(path);
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    const double value = static_cast<double>(i) / 255;
+    linear[i] = static_cast<float>(encoding == PictureEncoding::linear ? value : srgb_decoded(value));
+  }
+  PictureFile picture{jpeg.columns, jpeg.rows, jpeg.channels, {}};
+  picture.values.reserve(jpeg.samples.size());
+  for (const std::uint8_t sample : jpeg.samples) picture.values.push_back(linear[sample]);
   return picture;
 }
 
@@ -89,9 +105,11 @@ PictureFile read_picture_file(const std::string& path, PictureEncoding encoding)
   std::string extension = path.size() > 4 ? path.substr(path.size() - 4) : "";
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".jpg" || extension == "jpeg") return read_jpeg_picture(path, encoding);
+  if (extension == ".hdr") return parse_radiance_picture(read_whole_file(path), path);
   if (extension == ".png") return read_png_picture(path, encoding);
   if (extension == ".exr") return read_exr_picture(path);
-  throw InputError(path, "is a picture of a kind that is not read; .png or .exr would be right");
+  throw InputError(path, "is a picture of a kind that is not read; .png, .jpg, .exr or .hdr would be right");
 }
 
 }  // namespace petzval::render

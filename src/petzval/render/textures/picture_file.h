@@ -22,8 +22,9 @@ struct PictureFile {
 /// How the numbers of an 8- or 16-bit picture become linear light.
 enum class PictureEncoding { by_format, srgb, linear };
 
-/// Reads a PNG (8-bit: sRGB; 16-bit: linear, as pbrt has it, unless said otherwise) or an OpenEXR picture
-/// with channels R, G, B or Y. \throws InputError if it is missing, damaged or another kind of file.
+/// Reads a PNG (8-bit: sRGB; 16-bit: linear, as pbrt has it, unless said otherwise), a JPEG (sRGB unless said
+/// otherwise; as its samples lie, whatever Exif says of turning), an OpenEXR picture with channels R, G, B or
+/// Y, or a Radiance picture (.hdr). \throws InputError if it is missing, damaged or another kind of file.
 PictureFile read_picture_file(const std::string& path, PictureEncoding encoding = PictureEncoding::by_format);
 
 }  // namespace petzval::render

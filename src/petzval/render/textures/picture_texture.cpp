@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/units.h>
 #include <petzval/render/textures/picture_texture.h>
 
 #include <algorithm>
@@ -12,8 +13,19 @@ void TextureMapping::coordinates(const TexturePoint& point, double& s, double& t
     t = dot(p, axis_t) + offset_v;
     return;
   }
-  s = scale_u * point.u + offset_u;
-  t = scale_v * point.v + offset_v;
+  if (kind == Kind::spherical || kind == Kind::cylindrical) {
+    const Vector3 p = texture_from_world.point(point.world);
+    const double azimuth = std::atan2(p.y, p.x);
+    if (kind == Kind::cylindrical) {
+      s = (pi + azimuth) / (2 * pi), t = p.z;
+      return;
+    }
+    s = std::atan2(std::hypot(p.x, p.y), p.z) / pi;
+    t = (azimuth < 0 ? azimuth + 2 * pi : azimuth) / (2 * pi);
+    return;
+  }
+  s = scale_u * point.u + s_from_v * point.v + offset_u;
+  t = scale_v * point.v + t_from_u * point.u + offset_v;
 }
 
 namespace {

@@ -30,9 +30,10 @@ using SpectrumTexture = std::shared_ptr<const Texture<Lanes>>;
 
 /// How a place on a surface becomes texture coordinates (s, t).
 struct TextureMapping {
-  enum class Kind { uv, planar };
+  enum class Kind { uv, planar, spherical, cylindrical };
   Kind kind = Kind::uv;
   double scale_u = 1, scale_v = 1, offset_u = 0, offset_v = 0;
+  double s_from_v = 0, t_from_u = 0;  ///< of pictures that are turned
   Vector3 axis_s{1, 0, 0}, axis_t{0, 1, 0};
   Transform texture_from_world;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
 
 namespace petzval::render {
@@ -16,6 +17,12 @@ TextureMapping mapping_of(const TextureDescription& description, Unsupported& un
   if (kind == "uv") {
     mapping.scale_u = parameters.number("uscale", 1);
     mapping.scale_v = parameters.number("vscale", 1);
+    mapping.s_from_v = parameters.number("sfromv", 0);
+    mapping.t_from_u = parameters.number("tfromu", 0);
+  } else if (kind == "spherical") {
+    mapping.kind = TextureMapping::Kind::spherical;
+  } else if (kind == "cylindrical") {
+    mapping.kind = TextureMapping::Kind::cylindrical;
   } else if (kind == "planar") {
     mapping.kind = TextureMapping::Kind::planar;
     if (const auto axis = parameters.triple("v1")) mapping.axis_s = {(*axis)[0], (*axis)[1], (*axis)[2]};
@@ -42,7 +49,9 @@ TextureLibrary::TextureLibrary(const SceneDescription& scene, const WavelengthGr
                                Unsupported& unsupported)
     : groups_(groups), unsupported_(unsupported) {
   for (const TextureDescription& description : scene.textures) {
-    if (description.value_type == "float")
+    if (description.value_type == "normal")
+      normals_[description.name] = make_normal_map(description);
+    else if (description.value_type == "float")
       floats_[description.name] = make_float(description);
     else
       spectra_[description.name] = make_spectrum(description);
@@ -121,6 +130,29 @@ PictureSampler TextureLibrary::picture(const Parameters& parameters, PictureText
           : wrap == "mirror" ? PictureWrap::mirror
                              : PictureWrap::black,
           filter != "point"};
+}
+
+std::shared_ptr<const NormalMap> TextureLibrary::make_normal_map(const TextureDescription& description) {
+  const Parameters& parameters = description.entity.parameters;
+  PictureTextureOptions options;
+  PictureSampler sampler = picture(parameters, options, description);
+  return std::make_shared<const NormalMap>(std::move(sampler), options.mapping, options.scale, true);
+}
+
+std::shared_ptr<const NormalMap> TextureLibrary::normal_map(const Parameters& parameters) const {
+  const Parameter* given = parameters.find("normalmap");
+  if (!given) return nullptr;
+  if (given->type == "texture") return named_texture(normals_, *given, "normal");
+  const std::string name = parameters.string("normalmap", "");
+  try {
+    auto picture = std::make_shared<const PictureFile>(
+        read_picture_file(resolved_path(given->at, name), PictureEncoding::linear));
+    if (picture->channels != 3) throw InputError(name, "is grey; a normal map has three channels");
+    return std::make_shared<const NormalMap>(PictureSampler(std::move(picture), PictureWrap::repeat, true),
+                                             TextureMapping(), 1, false);
+  } catch (const InputError& error) {
+    throw scene_error(given->at, error.what());
+  }
 }
 
 FloatTexture TextureLibrary::make_float(const TextureDescription& description) {

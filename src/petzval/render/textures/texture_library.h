@@ -12,6 +12,8 @@
 
 namespace petzval::render {
 
+class NormalMap;
+
 /// Makes and keeps the textures of a scene by name, and reads parameters that are textures or plain values.
 class TextureLibrary {
  public:
@@ -27,7 +29,11 @@ class TextureLibrary {
   SpectrumTexture spectrum_parameter(const Parameters& parameters, const std::string& name, SpectrumRole role,
                                      double otherwise) const;
 
+  /// "string normalmap", a file, or "texture normalmap", a texture of value type normal. Nothing if absent.
+  std::shared_ptr<const NormalMap> normal_map(const Parameters& parameters) const;
+
  private:
+  std::shared_ptr<const NormalMap> make_normal_map(const TextureDescription& description);
   FloatTexture make_float(const TextureDescription& description);
   SpectrumTexture make_spectrum(const TextureDescription& description);
   PictureSampler picture(const Parameters& parameters, PictureTextureOptions& options,
@@ -39,6 +45,7 @@ class TextureLibrary {
   Unsupported& unsupported_;
   std::map<std::string, FloatTexture> floats_;
   std::map<std::string, SpectrumTexture> spectra_;
+  std::map<std::string, std::shared_ptr<const NormalMap>> normals_;
   std::map<std::string, std::shared_ptr<const PictureFile>> pictures_;
   std::shared_ptr<const ReflectanceTable> reflectances_;
 };
