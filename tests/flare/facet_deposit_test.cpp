@@ -78,6 +78,29 @@ TEST(FacetDeposit, KeepsAllLightOfWhatLiesInside) {
   }
 }
 
+TEST(FacetDeposit, ShadesAsTheCornersSay) {
+  LightFacet facet{{10, 190, 40}, {15, 60, 180}, 1, {0.2, 1.3, 1.5}};
+  const std::vector<double> pixels = deposited({facet}, 200, 200, 200);
+  double sum = 0, column = 0, row = 0;
+  for (int r = 0; r < 200; ++r)
+    for (int c = 0; c < 200; ++c) {
+      const double value = pixels[static_cast<std::size_t>(r * 200 + c)];
+      sum += value, column += value * (c + 0.5), row += value * (r + 0.5);
+    }
+  // ∫ λi λj over a triangle is area/12, of λi² area/6 (barycentric λ).
+  double expected_column = 0, expected_row = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double weight = facet.shade[i] / (i == j ? 6 : 12);
+      expected_column += weight * facet.column[j];
+      expected_row += weight * facet.row[j];
+    }
+  // Pixels at the rim have the shade of their middle: of 180 pixels across, half of one at most.
+  EXPECT_NEAR(sum, 1, 2e-3);
+  EXPECT_NEAR(column / sum, expected_column, 0.2);
+  EXPECT_NEAR(row / sum, expected_row, 0.2);
+}
+
 TEST(FacetDeposit, DoesNotDependOnTheStripesButByRounding) {
   std::mt19937_64 random(7);
   std::vector<LightFacet> facets;

@@ -65,15 +65,16 @@ class RowCover {
     }
   }
 
-  /// Adds density × covered area of each pixel, and is empty again.
-  void flush(double density, double* pixels) {
+  /// Adds light × covered area of each pixel, and is empty again. \param light  by column, of this row.
+  template <class Light>
+  void flush(double* pixels, const Light& light) {
     if (high_ < low_) return;
     double covered = 0;
     const int last = std::min(high_ + 2, columns_ + 1);
     for (int x = low_; x <= last; ++x) {
       covered += change_[static_cast<std::size_t>(x)];
       change_[static_cast<std::size_t>(x)] = 0;
-      if (x < columns_) pixels[x] += density * covered;
+      if (x < columns_) pixels[x] += light(x) * covered;
     }
     low_ = columns_;
     high_ = -1;
@@ -94,12 +95,30 @@ class RowCover {
   std::vector<double> change_;
 };
 
+/// The shade of a facet as a linear function.
+struct LinearShade {
+  double start = 1, by_column = 0, by_row = 0;
+
+  LinearShade(const LightFacet& facet, double area) {
+    const auto& [c0, c1, c2] = facet.column;
+    const auto& [r0, r1, r2] = facet.row;
+    const double up = facet.shade[1] - facet.shade[0], over = facet.shade[2] - facet.shade[0];
+    by_column = (up * (r2 - r0) - over * (r1 - r0)) / (2 * area);
+    by_row = (over * (c1 - c0) - up * (c2 - c0)) / (2 * area);
+    start = facet.shade[0] - by_column * c0 - by_row * r0;
+  }
+  double at(double column, double row) const { return start + by_column * column + by_row * row; }
+};
+
 void add_triangle(const LightFacet& facet, double area, const RowBand& band, RowCover& cover) {
   const auto [low, high] = std::ranges::minmax(facet.row);
   const int from = static_cast<int>(std::clamp(std::floor(low), double(band.from), double(band.to)));
   const int to = static_cast<int>(std::clamp(std::ceil(high), double(band.from), double(band.to)));
   // Rows run downwards: a facet of positive area is left of the edges that lead down.
   const double density = -facet.flux / area;
+  const auto [least, most] = std::ranges::minmax(facet.shade);
+  const bool flat = least == most;
+  const LinearShade shade(facet, area);
   for (int row = from; row < to; ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
@@ -113,7 +132,13 @@ void add_triangle(const LightFacet& facet, double area, const RowBand& band, Row
       const double x1 = bottom == y1 ? facet.column[j] : facet.column[i] + slope * (bottom - y0);
       cover.add(x0, top, x1, bottom);
     }
-    cover.flush(density, band.flux.data() + static_cast<std::ptrdiff_t>(row - band.from) * band.columns);
+    double* const pixels = band.flux.data() + static_cast<std::ptrdiff_t>(row - band.from) * band.columns;
+    if (flat) {
+      cover.flush(pixels, [&](int) { return density; });
+    } else {
+      const double begin = shade.at(0.5, row + 0.5), step = shade.by_column;
+      cover.flush(pixels, [&](int x) { return density * std::clamp(begin + step * x, least, most); });
+    }
   }
 }
 

@@ -20,6 +20,7 @@ struct BundleNode {
   double weight = 0;  ///< light per area of that plane that arrives
   double clearance = 0;
   bool arrives = false;
+  double spread = 0;  ///< pixels per mm² of that plane, signed; 0: not known
 
   bool passes() const { return arrives && clearance <= 0; }
 };
@@ -69,7 +70,7 @@ constexpr int enough_nodes = 6;
 
 void BundleOptions::validate() const {
   if (cells < 4 || cells > 512)
-    throw InputError(fmt::format("`ghosts.cells` is {}; 4 to 512 would be right", cells));
+    throw InputError(fmt::format("a bundle of {} cells along a side; 4 to 512 would be right", cells));
   if (edge_divisions < 0 || edge_divisions > 8 || twist_divisions < 0 || twist_divisions > 8)
     throw InputError("cells of a bundle are halved 0 to 8 times");
 }
@@ -163,7 +164,8 @@ BundleNode between(const BundleNode& a, const BundleNode& b, double t) {
           mix(a.row, b.row),
           mix(a.weight, b.weight),
           mix(a.clearance, b.clearance),
-          true};
+          true,
+          mix(a.spread, b.spread)};
 }
 
 class BundleMesh {
@@ -179,6 +181,7 @@ class BundleMesh {
       for (std::size_t i = 0; i < side; ++i)
         nodes[j * side + i] = follow(box.left + (box.right - box.left) * static_cast<double>(i) / cells,
                                      box.low + (box.high - box.low) * static_cast<double>(j) / cells);
+    find_spreads(nodes, side);
     for (std::size_t j = 0; j + 1 < side; ++j)
       for (std::size_t i = 0; i + 1 < side; ++i)
         cell(nodes[j * side + i], nodes[j * side + i + 1], nodes[(j + 1) * side + i],
@@ -192,6 +195,26 @@ class BundleMesh {
   BundleNode follow(double x_mm, double y_mm) {
     ++rays;
     return follow_node(tracer_, pair_, beam_, frame_, x_mm, y_mm);
+  }
+
+  /// At each node the mean over the cells about it, whose corners all arrive.
+  static void find_spreads(std::vector<BundleNode>& nodes, std::size_t side) {
+    std::vector<int> cells(nodes.size());
+    for (std::size_t j = 0; j + 1 < side; ++j)
+      for (std::size_t i = 0; i + 1 < side; ++i) {
+        const std::array<std::size_t, 4> corner{j * side + i, j * side + i + 1, (j + 1) * side + i,
+                                                (j + 1) * side + i + 1};
+        const BundleNode &a = nodes[corner[0]], &b = nodes[corner[1]], &c = nodes[corner[2]],
+                         &d = nodes[corner[3]];
+        if (!a.arrives || !b.arrives || !c.arrives || !d.arrives) continue;
+        // Half the product of the diagonals.
+        const double area =
+            0.5 * ((d.column - a.column) * (c.row - b.row) - (c.column - b.column) * (d.row - a.row));
+        const double spread = area / ((d.x_mm - a.x_mm) * (d.y_mm - a.y_mm));
+        for (const std::size_t at : corner) nodes[at].spread += spread, ++cells[at];
+      }
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (cells[i] > 0) nodes[i].spread /= cells[i];
   }
 
   void cell(const BundleNode& a, const BundleNode& b, const BundleNode& c, const BundleNode& d, int depth) {
@@ -210,8 +233,11 @@ class BundleMesh {
 
   void divide(const BundleNode& a, const BundleNode& b, const BundleNode& c, const BundleNode& d, int depth) {
     const double x = 0.5 * (a.x_mm + d.x_mm), y = 0.5 * (a.y_mm + d.y_mm);
-    const BundleNode low = follow(x, a.y_mm), left = follow(a.x_mm, y), middle = follow(x, y),
-                     right = follow(d.x_mm, y), high = follow(x, d.y_mm);
+    BundleNode low = follow(x, a.y_mm), left = follow(a.x_mm, y), middle = follow(x, y),
+               right = follow(d.x_mm, y), high = follow(x, d.y_mm);
+    low.spread = 0.5 * (a.spread + b.spread), left.spread = 0.5 * (a.spread + c.spread);
+    right.spread = 0.5 * (b.spread + d.spread), high.spread = 0.5 * (c.spread + d.spread);
+    middle.spread = 0.5 * (left.spread + right.spread);
     cell(a, low, left, middle, depth);
     cell(low, b, middle, right, depth);
     cell(left, middle, c, high, depth);
@@ -240,6 +266,54 @@ class BundleMesh {
   const SensorGeometry& frame_;
   const BundleOptions& options_;
 };
+
+/// Light that varies smoothly over a triangle, and how much of it there would be on its area.
+struct Shading {
+  std::array<double, 3> light{};
+  double flux = 0;
+};
+
+/// Nothing where the lens folds the bundle, or nearly, or the triangle is so small that nobody sees its
+/// shade.
+std::optional<Shading> shading_of(const PassingTriangle& triangle) {
+  constexpr double least_ratio = 0.3, least_pixels = 4;
+  const auto& [a, b, c] = triangle.nodes;
+  const double area =
+      0.5 * std::abs((b.column - a.column) * (c.row - a.row) - (c.column - a.column) * (b.row - a.row));
+  const auto [low, high] = std::minmax({a.spread, b.spread, c.spread});
+  if (area < least_pixels || low * high <= 0) return {};
+  if (std::min(std::abs(low), std::abs(high)) < least_ratio * std::max(std::abs(low), std::abs(high)))
+    return {};
+  Shading shading;
+  for (std::size_t i = 0; i < 3; ++i)
+    shading.light[i] = triangle.nodes[i].weight / std::abs(triangle.nodes[i].spread);
+  shading.flux = area * (shading.light[0] + shading.light[1] + shading.light[2]) / 3;
+  return shading.flux > 0 ? std::optional(shading) : std::nullopt;
+}
+
+/// Triangles of a bundle with a share of its light. Those that can be shaded have the light of their corners,
+/// so that neighbours meet; all of them together keep the light that entered between their rays.
+void add_facets(const std::vector<PassingTriangle>& triangles, double share, GhostBundle& bundle) {
+  double entered = 0, shaded = 0;
+  std::vector<std::optional<Shading>> shadings;
+  for (const PassingTriangle& each : triangles) {
+    shadings.push_back(shading_of(each));
+    if (shadings.back()) entered += each.flux_mm2(), shaded += shadings.back()->flux;
+  }
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const auto& nodes = triangles[k].nodes;
+    LightFacet facet{{nodes[0].column, nodes[1].column, nodes[2].column},
+                     {nodes[0].row, nodes[1].row, nodes[2].row},
+                     share * triangles[k].flux_mm2()};
+    if (shadings[k]) {
+      const std::array<double, 3>& light = shadings[k]->light;
+      facet.flux = share * shadings[k]->flux * entered / shaded;
+      for (std::size_t i = 0; i < 3; ++i) facet.shade[i] = 3 * light[i] / (light[0] + light[1] + light[2]);
+    }
+    bundle.flux_mm2 += facet.flux;
+    bundle.facets.push_back(facet);
+  }
+}
 
 /// How far the whole source moves the end of one ray [pixels].
 double source_pixels(const GhostTracer& tracer, const GhostPair& pair, const BrightSource& source,
@@ -278,13 +352,7 @@ GhostBundle trace_bundle(const GhostTracer& tracer, const GhostPair& pair, const
       BundleMesh mesh(tracer, pair, beam, frame, options);
       mesh.cover(box, cells);
       bundle.rays += mesh.rays;
-      for (const PassingTriangle& each : mesh.triangles) {
-        const double flux = each.flux_mm2() / points;
-        bundle.flux_mm2 += flux;
-        bundle.facets.push_back({{each.nodes[0].column, each.nodes[1].column, each.nodes[2].column},
-                                 {each.nodes[0].row, each.nodes[1].row, each.nodes[2].row},
-                                 flux});
-      }
+      add_facets(mesh.triangles, 1.0 / points, bundle);
     }
     return bundle;
   }

@@ -131,7 +131,7 @@ void GhostLightOptions::validate() const {
   bundle.validate();
   if (!(neglected_share >= 0 && neglected_share < 1))
     throw InputError(
-        fmt::format("`ghosts.neglected_share` is {:g}; 0 to less than 1 would be right", neglected_share));
+        fmt::format("`ghost_neglect` is {:g}; 0 to less than 1 would be right", neglected_share));
 }
 
 SpectralImage ghost_light(const Lens& lens, const SensorGeometry& frame,
