@@ -346,10 +346,13 @@ GhostBundle trace_bundle(const GhostTracer& tracer, const GhostPair& pair, const
         spread < small_pixels
             ? 1
             : static_cast<int>(std::clamp(std::ceil(std::pow(spread / step, 2)), 1.0, most_points));
-    const int cells = std::max(8, static_cast<int>(options.cells / std::pow(points, 0.25)));
+    // Many bundles smooth each other's edges.
+    const int cells = std::max(8, static_cast<int>(options.cells / std::cbrt(points)));
+    BundleOptions each = options;
+    if (points > 1) each.edge_divisions = std::min(options.edge_divisions, 1);
     for (const std::array<double, 2>& place : even_disc(points)) {
       const SourceBeam beam(source, place);
-      BundleMesh mesh(tracer, pair, beam, frame, options);
+      BundleMesh mesh(tracer, pair, beam, frame, each);
       mesh.cover(box, cells);
       bundle.rays += mesh.rays;
       add_facets(mesh.triangles, 1.0 / points, bundle);

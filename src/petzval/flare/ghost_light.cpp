@@ -166,20 +166,23 @@ SpectralImage ghost_light(const Lens& lens, const SensorGeometry& frame,
   return light;
 }
 
+Losses losses_of_picture(const Lens& lens, double wavelength_nm, const Losses& given) {
+  Losses losses = given;
+  if (losses.fresnel) return losses;
+  double before = 1;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const double after = lens.surfaces[i].material.index(wavelength_nm);
+    if (!losses.coating(i, before, after)) losses.surfaces[i] = Coating::constant(0);
+    before = after;
+  }
+  return losses;
+}
+
 SpectralImage straight_light(const Lens& lens, const SensorGeometry& frame,
                              const std::vector<double>& wavelengths_nm, std::span<const BrightSource> sources,
                              const GhostLightOptions& options, const ProgressCallback& progress) {
   check_light(frame, wavelengths_nm, sources, options);
-  // What counts no reflection at bare glass lets all of it through.
-  Losses losses = options.losses;
-  if (!losses.fresnel) {
-    double before = 1;
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-      const double after = lens.surfaces[i].material.index(wavelengths_nm.front());
-      if (!losses.coating(i, before, after)) losses.surfaces[i] = Coating::constant(0);
-      before = after;
-    }
-  }
+  const Losses losses = losses_of_picture(lens, wavelengths_nm.front(), options.losses);
   const auto tracers = tracers_of(lens, wavelengths_nm, losses, options);
   std::vector<GhostTask> tasks;
   for (std::size_t source = 0; source < sources.size(); ++source)

@@ -53,6 +53,10 @@ SpectralImage ghost_light(const Lens& lens, const SensorGeometry& frame,
                           const GhostLightOptions& options = {}, const ProgressCallback& progress = {},
                           GhostLightReport* report = nullptr);
 
+/// What a picture loses: surfaces without a coating let all light through unless `given` counts reflection at
+/// bare glass.
+Losses losses_of_picture(const Lens& lens, double wavelength_nm, const Losses& given);
+
 /// The image of the sources themselves, as their rays give it; a lens without losses lets all light through.
 SpectralImage straight_light(const Lens& lens, const SensorGeometry& frame,
                              const std::vector<double>& wavelengths_nm, std::span<const BrightSource> sources,
