@@ -34,7 +34,7 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
   // The ground of the sky is dark, however faint the stars are.
   constexpr double sky_dark_share = 1e-2;
   if (is_sky_chart(choice.scene.request().name)) outputs.shown.dark_share = sky_dark_share;
-  const Outputs made = write_image(choice.outputs, formed, sensor, outputs, context);
+  const Outputs made = write_image(choice.outputs, choice.flare, formed, sensor, outputs, context);
   if (shared.json) return print_json(summary_json(formed, made, choice.outputs));
   if (!shared.quiet) print_summary(formed, made);
 }

@@ -80,6 +80,7 @@ ImageOptions ImageChoice::image_options() const {
   imaging.surround = surround == "zero"     ? Surround::zero
                      : surround == "extend" ? Surround::extend
                                             : Surround::error;
+  options.flare = flare.options();
   return options;
 }
 
@@ -138,6 +139,7 @@ void ImageChoice::add_light_to(CLI::App& command) {
                      "Layers that a scene with depth is cut into; 0: as many as its defocus needs");
   camera.add_sensor(command, "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
   add_method_options(command);
+  flare.add_to(command, true);
 }
 
 void ImageChoice::add_to(CLI::App& command) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "camera_option.h"
+#include "flare_option.h"
 #include "scene_option.h"
 #include "shot_option.h"
 
@@ -19,6 +20,7 @@ struct ImageChoice {
   std::string optics;
   std::string method = "product", interpolate = "psf", fit = "monotone", surround = "error";
   ImageOptions image;
+  FlareChoice flare;
   ShotChoice shot;
   std::vector<std::string> outputs;
 

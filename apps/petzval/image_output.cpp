@@ -27,7 +27,9 @@ std::string distance_of(const Scene& scene) {
 std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, const ImagePlan& plan) {
   const auto& [columns, rows, pitch_um] = plan.frame;
   const Scene& scene = plan.scene;
-  if (plan.depth || outputs.size() != 1 || extension_of(outputs.front()) != ".npy") return {};
+  if (plan.depth || plan.options.flare.any() || outputs.size() != 1 ||
+      extension_of(outputs.front()) != ".npy")
+    return {};
   SpectralImage::check(columns, rows, scene.wavelengths_nm(), pitch_um);
   const NpyImageShape shape = {static_cast<std::size_t>(rows), static_cast<std::size_t>(columns),
                                static_cast<std::size_t>(scene.bands())};
@@ -36,7 +38,7 @@ std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, c
   return file ? std::optional(std::move(file)) : std::nullopt;
 }
 
-Outputs write_image(const std::vector<std::string>& paths, FormedImage& image,
+Outputs write_image(const std::vector<std::string>& paths, const FlareChoice& flare, FormedImage& image,
                     const std::optional<Sensor>& sensor, const OutputOptions& options,
                     const Context& context) {
   StagedFiles files;
@@ -45,6 +47,7 @@ Outputs write_image(const std::vector<std::string>& paths, FormedImage& image,
     image.file->put_at(files.stage(paths.front()));
   else
     made = write_outputs(*std::move(image.light), paths, sensor, options, files, context);
+  if (image.report.flare) flare.write(*image.report.flare, files);
   files.commit();
   return made;
 }
@@ -96,6 +99,7 @@ nlohmann::ordered_json summary_json(const FormedImage& image, const Outputs& mad
     json["temperature_k"] = made.picture->report.temperature_k;
     json["defects_corrected"] = made.picture->report.defects;
   }
+  if (image.report.flare) json["flare"] = flare_json(*image.report.flare);
   if (image.report.layers.empty()) return json;
   json["viewpoint_to_sensor_mm"] = image.report.pupil_to_sensor_mm;
   for (const DepthLayer& layer : image.report.layers)
@@ -145,6 +149,7 @@ void print_summary(const FormedImage& image, const Outputs& made) {
   fmt::print("  method      {}\n", image.report.method);
   fmt::print("  irradiance  {:.4g} to {:.4g} W/(m2 nm)\n", image.report.imaging.darkest,
              image.report.imaging.brightest);
+  if (image.report.flare) print_flare(*image.report.flare);
   if (made.raw) print_shot(made);
   print_layers(image.report.layers, image.plan.frame.pitch_um);
 }

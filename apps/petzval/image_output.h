@@ -12,6 +12,8 @@
 
 #include <petzval/simulate/outputs.h>
 
+#include "flare_option.h"
+
 namespace petzval::app {
 
 /// An image, and what it was made of.
@@ -26,7 +28,7 @@ struct FormedImage {
 std::optional<NpyBandFile> large_file(const std::vector<std::string>& outputs, const ImagePlan& plan);
 
 /// Writes everything that was asked for.
-Outputs write_image(const std::vector<std::string>& paths, FormedImage& image,
+Outputs write_image(const std::vector<std::string>& paths, const FlareChoice& flare, FormedImage& image,
                     const std::optional<Sensor>& sensor, const OutputOptions& options,
                     const Context& context);
 

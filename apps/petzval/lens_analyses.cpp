@@ -9,6 +9,7 @@
 
 #include "camera_option.h"
 #include "field_option.h"
+#include "ghost_drawing.h"
 #include "lens_commands.h"
 #include "loss_option.h"
 #include "option_names.h"
@@ -27,6 +28,7 @@ struct AnalysisCommand {
   LossChoice losses;
   AnalysisRequest request;
   std::string name, plot, csv, map, zernike_order = "fringe";
+  GhostDrawing ghost;
   bool by_light = false, about_chief = false, as_psf = false;
 };
 
@@ -88,6 +90,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   if (!command.csv.empty()) require_extension(command.csv, {".csv"}, "a table");
   if (!command.map.empty()) require_drawing(command.map, "a wavefront map", {".csv"});
+  command.ghost.check();
   Context context = context_of(shared);
   context.progress = {};
   const Lens read = command.lens.read(shared);
@@ -109,6 +112,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   if (!command.plot.empty()) write_drawing(command.plot, drawn(result));
   if (!command.csv.empty()) write_whole_file(command.csv, to_csv(result.rows()));
   if (!command.map.empty()) write_map(command, lens, request, context);
+  command.ghost.draw(lens, request.at, request.sensor_reflectance, shared);
   shared.json ? print_as_json(result) : print_as_text(result);
 }
 
@@ -200,6 +204,10 @@ const OwnOptions own_options[] = {
        app.add_option("--source-diameter", command.request.source_diameter_deg,
                       "Angle under which the lens sees the source [degrees]; default: the Sun's")
            ->check(positive_number());
+       app.add_option("--draw", command.ghost.pair,
+                      "Draw the way of one ghost: the surfaces that reflect first and second, as in 4,1");
+       app.add_option("-o,--output", command.ghost.output, "The drawing of --draw: .svg, .png or .pdf")
+           ->check(output_file());
      }},
     {"mtf", "petzval lens mtf cooke-triplet --frequencies 10,20,40 --polychromatic --plot mtf.svg", add_mtf},
     {"focus", "petzval lens focus cooke-triplet --frequency 40 --plot focus.svg",

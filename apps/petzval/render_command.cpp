@@ -148,6 +148,7 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   }
   const std::optional<Sensor>& sensor = request.camera.sensor;
   OutputOptions outputs = command.outputs.checked(sensor, app);
+  const FlareOptions flare = command.outputs.flare.options();
   if (!command.focus_plot.empty()) require_drawing(command.focus_plot, "a plot");
   if (!command.preview.empty()) require_extension(command.preview, {".png"}, "a preview");
 
@@ -167,11 +168,21 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   if (command.show_zones) outputs.shown.frames = frames_of_zones(scene);
   RenderSeconds seconds{seconds_since(start), 0};
   const auto begin = std::chrono::steady_clock::now();
-  const Rendering picture = render_or_save(command, scene, outputs, context);
+  std::optional<FlareLayers> layers;
+  if (flare.any()) layers = scene_flare(scene, flare, context);
+  Rendering picture = render_or_save(command, scene, outputs, context);
+  if (layers) add_layers(*layers, picture.irradiance);
   seconds.light = seconds_since(begin);
-  const Outputs made = command.outputs.write(picture, scene, sensor, outputs, context);
-  if (shared.json) return print_json(summary_json(scene, picture, made, seconds, command.outputs.pictures));
-  if (!shared.quiet) print_summary(scene, picture, made, seconds);
+  const Outputs made =
+      command.outputs.write(picture, scene, sensor, outputs, context, layers ? &*layers : nullptr);
+  if (shared.json) {
+    nlohmann::ordered_json json = summary_json(scene, picture, made, seconds, command.outputs.pictures);
+    if (layers) json["flare"] = flare_json(*layers);
+    return print_json(json);
+  }
+  if (shared.quiet) return;
+  print_summary(scene, picture, made, seconds);
+  if (layers) print_flare(*layers);
 }
 
 void add_focus_options(RenderCommand& options, CLI::App& command) {

@@ -116,6 +116,7 @@ void RenderOutputs::add_to(CLI::App& command) {
   command.add_flag(
       "--layers", layers,
       "Every .exr of the light also has depth (Z), normals (N.X, N.Y, N.Z) and reflectance (T.550,0nm)");
+  flare.add_to(command, false);
   command
       .add_option("-o,--output", pictures,
                   "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png or .tif; "
@@ -146,8 +147,9 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
                              const std::vector<std::pair<std::string, std::string>>& others) const {
   std::vector<NamedFile> outputs, inputs;
   for (const std::string& path : pictures) outputs.push_back({"--output", path});
-  for (const auto& [option, path] : {NamedFile{"--depth", depth}, NamedFile{"--normals", normals},
-                                     NamedFile{"--albedo", albedo}, NamedFile{"--segments", segments}})
+  for (const auto& [option, path] :
+       {NamedFile{"--depth", depth}, NamedFile{"--normals", normals}, NamedFile{"--albedo", albedo},
+        NamedFile{"--segments", segments}, NamedFile{"--ghost-layer", flare.ghost_layer}})
     if (!path.empty()) outputs.push_back({option, path});
   for (const auto& [option, path] : others)
     if (!path.empty()) outputs.push_back({option, path});
@@ -157,7 +159,7 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
 
 Outputs RenderOutputs::write(const Rendering& picture, const PreparedScene& scene,
                              const std::optional<Sensor>& sensor, const OutputOptions& options,
-                             const Context& context) const {
+                             const Context& context, const FlareLayers* layers_of_flare) const {
   StagedFiles files;
   const Layers beside = layers ? layers_of(picture) : Layers();
   OutputOptions all = options;
@@ -165,6 +167,7 @@ Outputs RenderOutputs::write(const Rendering& picture, const PreparedScene& scen
   Outputs made = write_outputs(picture.irradiance, pictures, sensor, all, files, context);
   write_first_surfaces(*this, picture, files);
   if (!segments.empty()) write_segments(segments, segments_seen(scene, context), files);
+  if (layers_of_flare) flare.write(*layers_of_flare, files);
   files.commit();
   return made;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "flare_option.h"
 #include "shot_option.h"
 
 namespace petzval::app {
@@ -19,6 +20,7 @@ struct RenderOutputs {
   std::string segments;                ///< which things they are of
   bool layers = false;                 ///< these in every .exr of the light, too
   ShotChoice shot;
+  FlareChoice flare;
 
   void add_to(CLI::App& command);
   bool first_surfaces() const { return layers || !depth.empty() || !normals.empty() || !albedo.empty(); }
@@ -28,9 +30,11 @@ struct RenderOutputs {
   /// \throws InputError if one of them, or of those, is a file of the scene.
   void keep_off(const std::vector<std::string>& files_of_scene,
                 const std::vector<std::pair<std::string, std::string>>& others) const;
-  /// Writes all or none. \return what the sensor made of the light.
+  /// Writes all or none. \param layers_of_flare  that the picture has, if any. \return what the sensor made
+  /// of the light.
   Outputs write(const Rendering& picture, const PreparedScene& scene, const std::optional<Sensor>& sensor,
-                const OutputOptions& options, const Context& context) const;
+                const OutputOptions& options, const Context& context,
+                const FlareLayers* layers_of_flare = nullptr) const;
 };
 
 /// How long it took.

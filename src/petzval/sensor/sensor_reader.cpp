@@ -341,7 +341,7 @@ Sensor parse_sensor(const JsonDocument& document) {
   root.allow_only({"format",      "name",        "source",   "columns", "rows",         "pitch_um",
                    "photosite",   "low_pass_um", "channels", "mosaic",  "microlens",    "crosstalk",
                    "gain_modes",  "adc",         "dark",     "dsnu_e",  "prnu_percent", "column_pattern_e",
-                   "row_noise_e", "defects",     "shutter",  "serial"});
+                   "row_noise_e", "defects",     "shutter",  "serial",  "reflectance"});
   if (const std::string format = root.at("format").text("\"petzval-sensor/1\""); format != "petzval-sensor/1")
     root.at("format").fail("is another format; \"petzval-sensor/1\" would be right");
   Sensor sensor;
@@ -352,6 +352,7 @@ Sensor parse_sensor(const JsonDocument& document) {
   if (const std::string wrong = complaint_about(sensor.geometry); !wrong.empty())
     root.at("pitch_um").fail("gives " + wrong);
   sensor.photosite = read_photosite(root, sensor.geometry.pitch_um);
+  if (const auto entry = root.find("reflectance")) sensor.reflectance = number_in(*entry, 0, 1);
   if (root.find("channels")) {
     sensor.electronics = read_electronics(root);
   } else {

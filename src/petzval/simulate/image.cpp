@@ -5,6 +5,7 @@
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/image.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -47,6 +48,15 @@ ImageReport& finish(const ImagePlan& plan, const Context& context, ImageReport& 
   return report;
 }
 
+FlareLayers flare_of(const ImagePlan& plan, const Context& context) {
+  const FlareOptions& options = plan.options.flare;
+  const LitLens& lens = *plan.lens;
+  return flare_layers(
+      lens, plan.frame, plan.scene.wavelengths_nm(),
+      options.ghosts ? find_sources(plan.scene, lens.lens.total_track_mm(), options.search) : SourcesFound{},
+      options, context);
+}
+
 }  // namespace
 
 SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* report) {
@@ -69,10 +79,19 @@ SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* 
       "petzval {} image: {} {} through {}, working f-number {:.4g}; {}", version(), scene.name,
       scene.distance_m() ? fmt::format("{:g} m from the sensor", *scene.distance_m()) : "at infinity",
       plan.table.lens_name, plan.table.first_order.working_f_number, says.method);
+  if (plan.options.flare.any()) {
+    says.flare = flare_of(plan, context);
+    add_layers(*says.flare, light);
+    const auto [darkest, brightest] = std::ranges::minmax(light.values());
+    says.imaging.darkest = double(darkest);
+    says.imaging.brightest = double(brightest);
+  }
   return light;
 }
 
 void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& context, ImageReport* report) {
+  if (plan.options.flare.any())
+    throw InputError("light that goes astray is added to an image, not handed over band by band");
   if (plan.depth)
     throw InputError("the layers of a scene with depth are added up, not handed over band by band");
   ImageReport unwanted;

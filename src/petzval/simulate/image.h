@@ -9,6 +9,7 @@
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/scene/scene_file.h>
 #include <petzval/simulate/camera.h>
+#include <petzval/simulate/flare.h>
 
 #include <optional>
 #include <string>
@@ -38,6 +39,7 @@ struct ImageOptions {
   DepthOptions depth = {};
   /// The least width of a chart or a photograph that fills the frame: the same scale in several images.
   std::optional<double> least_scene_angle_deg = {};
+  FlareOptions flare = {};  ///< of scenes on a plane or all around, through a lens
 };
 
 /// What is known before light is computed: the scene where it stands, the table of the lens focused on it,
@@ -48,14 +50,16 @@ struct ImagePlan {
   std::optional<DepthCamera> depth;
   SensorGeometry frame;
   ImageOptions options;
+  std::optional<LitLens> lens = {};  ///< if it is not a table alone
 };
 
 /// What there is to say about an image.
 struct ImageReport {
   ImagingReport imaging;
-  std::vector<DepthLayer> layers;  ///< of a scene with depth
-  double pupil_to_sensor_mm = 0;   ///< the viewpoint of such a scene
-  std::string method;              ///< how the image was blurred, in a line
+  std::vector<DepthLayer> layers;         ///< of a scene with depth
+  double pupil_to_sensor_mm = 0;          ///< the viewpoint of such a scene
+  std::string method;                     ///< how the image was blurred, in a line
+  std::optional<FlareLayers> flare = {};  ///< that the image has, if any was asked for
 };
 
 /// Reads the scene, focuses the lens, makes its table, and fits scene and frame to each other. Notes tell

@@ -7,6 +7,7 @@
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_table.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/optics/build.h>
 #include <petzval/scene/depth_map.h>
 #include <petzval/simulate/image.h>
@@ -204,6 +205,28 @@ std::string lens_key(const Lens& lens, const TableOptions& options, double pitch
   return key;
 }
 
+LitLens in_use(const Lens& focused, const TableOptions& table, const Camera& camera) {
+  return {focused, table.losses, table.clip, camera.sensor ? camera.sensor->reflectance.value_or(0.0) : 0.0};
+}
+
+/// What ghosts need, before the long work. \throws InputError saying what is missing.
+void check_flare(const ImagePlan& plan) {
+  const FlareOptions& options = plan.options.flare;
+  if (!options.any()) return;
+  options.search.validate();
+  if (!plan.lens)
+    throw InputError(
+        "a lens data table does not say what its surfaces reflect; a `lens` would be right for ghosts and "
+        "suns");
+  require_glass(plan.lens->lens, "ghosts and suns need");
+  require_centred(plan.lens->lens, "ghosts and suns are those of centred lenses");
+  for (const Sun& sun : options.suns) sun.at(plan.scene.wavelengths_nm());
+  if (plan.depth)
+    throw InputError(
+        "ghosts and suns are for scenes on a plane or all around; this one has depth (`scene.depth` none "
+        "takes it away)");
+}
+
 /// Scene and table, before frame and scene are fitted to each other.
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context, ImagingMemory* memory) {
@@ -234,7 +257,8 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
             facts_alone(focused),
             DepthCamera{focused, table, std::make_shared<std::map<std::string, LensDataTable>>()},
             {},
-            std::move(options)};
+            std::move(options),
+            in_use(focused, table, camera)};
   const auto build = [&] {
     return result_within(context, [&](const ProgressCallback& progress) {
       const bool mixes_psfs = options.imaging.method == BlurMethod::product &&
@@ -250,7 +274,7 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   };
   LensDataTable built =
       memory != nullptr ? memory->table(lens_key(focused, table, pitch_um), build) : build();
-  return {std::move(scene), std::move(built), {}, {}, std::move(options)};
+  return {std::move(scene), std::move(built), {}, {}, std::move(options), in_use(focused, table, camera)};
 }
 
 /// A stored table is what it is: the scene stands where it was made for.
@@ -267,7 +291,7 @@ ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, Ta
     send_note(
         context,
         "the scene's depth map is not used: a lens data table is made for one distance; `lens` would use it");
-  return {std::move(scene), std::move(camera.table), {}, {}, std::move(options)};
+  return {std::move(scene), std::move(camera.table), {}, {}, std::move(options), {}};
 }
 
 /// Where the scene may end in the margin of the PSFs, the frame alone is filled.
@@ -336,6 +360,7 @@ ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, con
         return source(std::move(input), camera, wanted, TableDetail::full, context, memory);
       },
       optics);
+  check_flare(result);
   if (!result.depth && wanted.depth.layers != 0)
     throw InputError("`layers` is for scenes with depth; this one is a plane (`scene.depth` gives it a map)");
   run_within(context,

@@ -6,6 +6,7 @@
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/framing.h>
 #include <petzval/simulate/prepared_world.h>
+#include <petzval/simulate/scene_lights.h>
 
 #include <cmath>
 #include <utility>
@@ -84,6 +85,29 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, const
                                    scene.lens->name, seen->lit_circle_mm, seen->film_width_mm,
                                    seen->film_height_mm, seen->lit_circle_mm));
   return picture;
+}
+
+FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options, const Context& context) {
+  if (!scene.lens)
+    throw InputError("ghosts and suns are light that comes through glass; a `lens` would be right");
+  const RenderRequest& request = scene.request;
+  const render::World& world = *scene.world->world;
+  const bool at_front = request.camera_origin == RenderRequest::Origin::front;
+  const LensPlace place{scene.world->camera.world_from_camera,
+                        at_front ? 0 : scene.lens->total_track_mm() / request.scene_unit_mm,
+                        request.scene_unit_mm};
+  FlareOptions visible = options;
+  std::erase_if(visible.suns, [&](const Sun& sun) {
+    return !is_seen(world, place, sun.at(world.groups.wavelengths_nm()));
+  });
+  if (visible.suns.size() < options.suns.size())
+    send_note(context, fmt::format("{} of {} suns stand behind something",
+                                   options.suns.size() - visible.suns.size(), options.suns.size()));
+  const double reflectance = request.camera.sensor ? request.camera.sensor->reflectance.value_or(0.0) : 0.0;
+  return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflectance}, scene.film,
+                      world.groups.wavelengths_nm(),
+                      options.ghosts ? lights_seen(world, place, options.search.most) : SourcesFound{},
+                      visible, context);
 }
 
 Rendering render_scene(const RenderRequest& request, const Context& context) {

@@ -7,6 +7,7 @@
 #include <petzval/render/rendering.h>
 #include <petzval/simulate/autofocus.h>
 #include <petzval/simulate/camera.h>
+#include <petzval/simulate/flare.h>
 
 #include <array>
 #include <functional>
@@ -148,6 +149,10 @@ struct PictureWatch {
 /// has not been. The seed is the context's. \throws InputError; Failure; Cancelled.
 Rendering render_scene(const PreparedScene& scene, const Context& context = {},
                        const PictureWatch& watch = {});
+/// Suns that the scene does not hold, and ghosts of them and of its own lights, to be added to its picture
+/// (add_layers). A sun is hidden if something stands between it and the lens. \throws InputError for a camera
+/// without a lens, and as flare_layers(); Cancelled.
+FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options, const Context& context = {});
 /// prepare_scene() and render_scene() in one.
 Rendering render_scene(const RenderRequest& request, const Context& context = {});
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flare_option.h"
+
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
+#include <petzval/base/units.h>
+#include <petzval/simulate/outputs.h>
+
+#include <cmath>
+#include <utility>
+
+#include "command.h"
+#include "output_option.h"
+
+namespace petzval::app {
+
+void FlareChoice::add_to(CLI::App& command, bool scene) {
+  const std::string before = command.option_defaults()->get_group();
+  command.option_defaults()->group("Light that goes astray");
+  command.add_flag("--ghosts", ghosts,
+                   "Add the light of bright sources that two surfaces of the lens reflect (see lens ghosts)");
+  command
+      .add_option("--ghost-layer", ghost_layer,
+                  "Also write the irradiance of the ghosts alone (.exr, .npy); without them the picture is "
+                  "the output minus this")
+      ->check(output_file());
+  if (scene)
+    command
+        .add_option("--ghost-threshold", flare.search.threshold,
+                    "Samples of the scene brighter than this times its mean are sources of ghosts")
+        ->check(positive_number())
+        ->capture_default_str();
+  command
+      .add_option("--ghost-neglect", flare.neglected_share,
+                  "Share of the light of all ghosts that may be left out, the faintest first; 0: none")
+      ->capture_default_str();
+  command
+      .add_option("--sun", suns,
+                  "Add a sun: degrees to the right and up from the middle of the picture, and its "
+                  "illuminance at the lens [lx] if it is not 100000: 20,15 or 20,15:80000; repeatable")
+      ->allow_extra_args(false);
+  command.add_option("--sun-diameter", sun_diameter_deg, "Of suns [degrees]; 0: points")
+      ->capture_default_str();
+  command.add_option("--sun-light", sun_light, "Illuminant of suns")->capture_default_str();
+  command.option_defaults()->group(before);
+}
+
+FlareOptions FlareChoice::options() const {
+  FlareOptions options = flare;
+  options.ghosts = ghosts || !ghost_layer.empty();
+  for (const std::string& text : suns) {
+    Sun sun = parse_sun(text);
+    sun.diameter_deg = sun_diameter_deg;
+    sun.light = sun_light;
+    options.suns.push_back(std::move(sun));
+  }
+  const FlareOptions usual;
+  if (!options.ghosts &&
+      (flare.search.threshold != usual.search.threshold || flare.neglected_share != usual.neglected_share))
+    throw InputError("--ghost-threshold and --ghost-neglect have no effect without --ghosts");
+  if (suns.empty() && (sun_diameter_deg != Sun().diameter_deg || sun_light != Sun().light))
+    throw InputError("--sun-diameter and --sun-light have no effect without --sun");
+  if (!ghost_layer.empty()) require_extension(ghost_layer, {".exr", ".npy"}, "a layer of ghosts");
+  return options;
+}
+
+void FlareChoice::write(const FlareLayers& layers, StagedFiles& files) const {
+  if (ghost_layer.empty()) return;
+  SpectralImage light = *layers.ghosts;
+  write_outputs(std::move(light), {ghost_layer}, {}, {}, files, {});
+}
+
+nlohmann::ordered_json flare_json(const FlareLayers& layers) {
+  nlohmann::ordered_json json;
+  json["sources"] = nlohmann::ordered_json::array();
+  for (const BrightSource& source : layers.sources)
+    json["sources"].push_back({{"name", source.name},
+                               {"right_deg", degrees(std::atan(source.right))},
+                               {"up_deg", degrees(std::atan(source.up))},
+                               {"radius_deg", degrees(source.radius_rad)}});
+  json["ways"] = layers.report.followed;
+  json["ways_neglected"] = layers.report.neglected;
+  json["neglected_share"] = layers.report.neglected_share;
+  json["flux_w_per_nm"] = layers.report.ghost_flux_w;
+  json["frame_flux_w_per_nm"] = layers.report.frame_flux_w;
+  json["pairs"] = nlohmann::ordered_json::array();
+  for (const GhostPairReport& pair : layers.report.pairs)
+    json["pairs"].push_back({{"first", pair.pair.first},
+                             {"second", pair.pair.second},
+                             {"flux_w_per_nm", pair.flux_w},
+                             {"rays", pair.rays},
+                             {"seconds", pair.seconds}});
+  return json;
+}
+
+void print_flare(const FlareLayers& layers) {
+  if (layers.sun_count > 0) fmt::print("  suns        {}, as their rays give them\n", layers.sun_count);
+  if (!layers.ghosts) return;
+  const GhostLightReport& report = layers.report;
+  fmt::print(
+      "  ghosts      of {} sources, {} ways followed, {} neglected with at most {:.1e} of their light\n",
+      layers.sources.size(), report.followed, report.neglected, report.neglected_share);
+}
+
+}  // namespace petzval::app

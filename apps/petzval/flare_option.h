@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Light that goes astray in the lens, as commands are asked for it.
+#pragma once
+
+#include <petzval/base/staged_files.h>
+#include <petzval/simulate/flare.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli11.h"
+
+namespace petzval::app {
+
+struct FlareChoice {
+  std::vector<std::string> suns;
+  double sun_diameter_deg = Sun().diameter_deg;
+  std::string sun_light = Sun().light;
+  bool ghosts = false;
+  std::string ghost_layer;
+  FlareOptions flare = {};
+
+  /// Adds --ghosts, --sun and what belongs to them. \param scene  whether sources are sought among the
+  /// samples of a scene.
+  void add_to(CLI::App& command, bool scene);
+  /// \throws InputError for options that need another, and suns that are none.
+  FlareOptions options() const;
+  /// Writes the ghosts alone, if that is asked.
+  void write(const FlareLayers& layers, StagedFiles& files) const;
+};
+
+nlohmann::ordered_json flare_json(const FlareLayers& layers);
+/// Lines of a summary.
+void print_flare(const FlareLayers& layers);
+
+}  // namespace petzval::app

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/flare/ghost_way.h>
+#include <petzval/lens/ray_transfer.h>
+#include <petzval/trace/surface_step.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace petzval {
+
+namespace {
+
+using Direction = std::array<double, 3>;
+
+/// A ray on its way, relative to the vertex of the surface that it left.
+struct Wanderer {
+  SurfaceRay at{};
+  double vertex_z = 0;
+  LightFields light;
+
+  Direction direction() const { return {at.l, at.m, at.n}; }
+  std::array<double, 3> place() const { return {at.x, at.y, at.z + vertex_z}; }
+  void move_vertex(double z) {
+    at.z += vertex_z - z;
+    vertex_z = z;
+  }
+};
+
+void mirror_at(const double normal[3], SurfaceRay& ray) {
+  const double along = ray.l * normal[0] + ray.m * normal[1] + ray.n * normal[2];
+  ray.l -= 2 * along * normal[0];
+  ray.m -= 2 * along * normal[1];
+  ray.n -= 2 * along * normal[2];
+}
+
+}  // namespace
+
+GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses,
+                         double sensor_reflectance, Tracer::Clip clip)
+    : tracer_(lens, wavelength_nm), clip_(clip) {
+  require_glass(lens, "ghosts need");
+  require_centred(lens, "ghosts are those of centred lenses");
+  losses.validate(lens);
+  if (!(sensor_reflectance >= 0 && sensor_reflectance <= 1))
+    throw InputError(fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", sensor_reflectance));
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
+    surfaces_.emplace_back(surface.index_before, surface.index_after,
+                           losses.coating(i, surface.index_before, surface.index_after), wavelength_nm);
+    const std::optional<double> k =
+        losses.absorption ? lens.surfaces[i].material.extinction(wavelength_nm) : std::nullopt;
+    absorption_per_mm_.push_back(k ? 4 * pi * *k / (wavelength_nm * mm_per_nm) : 0.0);
+  }
+  surfaces_.push_back(SurfaceReflection::mirror(sensor_reflectance, tracer_.image_index()));
+}
+
+std::vector<GhostPair> GhostTracer::pairs() const {
+  std::vector<GhostPair> result;
+  for (std::size_t first = 1; first < surfaces_.size(); ++first)
+    for (std::size_t second = 0; second < first; ++second)
+      if (surfaces_[first].reflects() && surfaces_[second].reflects()) result.push_back({first, second});
+  return result;
+}
+
+GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
+                                 std::vector<std::array<double, 3>>* places) const {
+  const std::size_t sensor = tracer_.surface_count();
+  Wanderer ray;
+  ray.vertex_z = tracer_.vertex_z_mm(0);
+  ray.at = {start.point_mm[0],
+            start.point_mm[1],
+            start.point_mm[2] - ray.vertex_z,
+            start.direction[0],
+            start.direction[1],
+            start.direction[2],
+            0};
+  ray.light = LightFields::unpolarised(start.direction);
+  GhostLanding landing;
+  double worst = -1, clear = 1;
+
+  const auto absorb = [&](std::size_t gap, const std::array<double, 3>& from) {
+    if (absorption_per_mm_[gap] == 0) return;
+    const std::array<double, 3> to = ray.place();
+    double along = 0;
+    for (std::size_t i = 0; i < 3; ++i) along += (to[i] - from[i]) * ray.direction()[i];
+    clear *= std::exp(-absorption_per_mm_[gap] * std::max(along, 0.0));
+  };
+  /// To surface i, and through it or back from it; false where the ray ends.
+  const auto meet = [&](std::size_t i, bool backward, bool reflect) {
+    const double sense = backward ? -1 : 1;
+    const std::array<double, 3> from = ray.place();
+    double normal[3] = {0, 0, 1};
+    if (i == sensor) {
+      ray.move_vertex(tracer_.image_z_mm());
+      if (!(ray.at.n > 0)) return false;
+      const double distance = -ray.at.z / ray.at.n;
+      ray.at.x += distance * ray.at.l;
+      ray.at.y += distance * ray.at.m;
+      ray.at.z = 0;
+      absorb(sensor - 1, from);
+    } else {
+      const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
+      ray.move_vertex(surface.vertex_z_mm);
+      if (!intersect(surface, sense, 1, ray.at, normal)) return false;
+      worst = std::max(worst, tracer_.clip_share_sq(i, ray.at.x, ray.at.y, clip_) - 1);
+      if (backward)
+        absorb(i, from);
+      else if (i > 0)
+        absorb(i - 1, from);
+    }
+    if (places) places->push_back(ray.place());
+    if (i == sensor && !reflect) return true;
+    const Direction before = ray.direction(), across{normal[0], normal[1], normal[2]};
+    if (reflect) {
+      mirror_at(normal, ray.at);
+      ray.light = surfaces_[i].reflected(ray.light, before, ray.direction(), across, backward);
+    } else {
+      const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
+      const double ratio =
+          backward ? surface.index_after / surface.index_before : surface.index_before / surface.index_after;
+      if (!refract(ratio, sense, ray.at, normal)) return false;
+      ray.light = surfaces_[i].transmitted(ray.light, before, ray.direction(), across, backward);
+    }
+    return true;
+  };
+
+  const std::size_t turn = pair.is_straight() ? sensor : pair.first;
+  for (std::size_t i = 0; i < turn; ++i)
+    if (!meet(i, false, false)) return landing;
+  if (!pair.is_straight()) {
+    if (!meet(pair.first, false, true)) return landing;
+    for (std::size_t i = pair.first; i-- > pair.second + 1;)
+      if (!meet(i, true, false)) return landing;
+    if (!meet(pair.second, true, true)) return landing;
+    for (std::size_t i = pair.second + 1; i < sensor; ++i)
+      if (!meet(i, false, false)) return landing;
+  }
+  if (!meet(sensor, false, false)) return landing;
+  landing.arrives = true;
+  landing.x_mm = ray.at.x;
+  landing.y_mm = ray.at.y;
+  landing.share = clear * ray.light.power();
+  landing.clearance = worst;
+  return landing;
+}
+
+}  // namespace petzval

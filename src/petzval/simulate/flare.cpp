@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
+#include <petzval/base/units.h>
+#include <petzval/base/version.h>
+#include <petzval/colour/band_light.h>
+#include <petzval/colour/illuminants.h>
+#include <petzval/colour/observer.h>
+#include <petzval/simulate/flare.h>
+
+#include <cmath>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+std::string suns_text(std::size_t count) {
+  return count == 1 ? "a sun" : fmt::format("{} suns", count);
+}
+
+/// Nobody meters by the suns themselves.
+void mark_lamps(const SpectralImage& suns, SpectralImage& light) {
+  if (light.lamps.empty()) light.lamps.resize(light.band_size());
+  for (int band = 0; band < suns.bands(); ++band) {
+    const std::span<const float> values = suns.band(band);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i] > 0) light.lamps[i] = 1;
+  }
+}
+
+}  // namespace
+
+BrightSource Sun::at(const std::vector<double>& wavelengths_nm) const {
+  constexpr double most_deg = 80;
+  if (!(std::abs(right_deg) < most_deg && std::abs(up_deg) < most_deg))
+    throw InputError(
+        fmt::format("a sun at {:g}, {:g} degrees; less than {:g} from the axis would be right (`sun`)",
+                    right_deg, up_deg, most_deg));
+  if (!(illuminance_lx > 0 && std::isfinite(illuminance_lx)))
+    throw InputError(fmt::format("a sun of {:g} lx; more than 0 would be right (`sun`)", illuminance_lx));
+  if (!(diameter_deg >= 0 && diameter_deg <= 60))
+    throw InputError(fmt::format("`sun_diameter_deg` is {:g}; 0 to 60 would be right", diameter_deg));
+  const Spectrum spectrum = illuminant(light);
+  const double seen_lx = luminance(spectrum);
+  if (!(seen_lx > 0))
+    throw InputError(
+        fmt::format("no eye sees {}, so that lux say nothing of it; a light within 370 to 730 nm would be "
+                    "right (`sun_light`)",
+                    light));
+  BrightSource source;
+  source.name = fmt::format("sun at {:g}, {:g} degrees", right_deg, up_deg);
+  source.right = std::tan(radians(right_deg));
+  source.up = std::tan(radians(up_deg));
+  source.radius_rad = radians(diameter_deg) / 2;
+  for (const double value : band_light(spectrum, wavelengths_nm))
+    source.irradiance.push_back(value * illuminance_lx / seen_lx);
+  return source;
+}
+
+Sun parse_sun(const std::string& text) {
+  const std::size_t comma = text.find(','), colon = text.find(':');
+  const std::optional<double> right = parse_number(text.substr(0, comma));
+  const std::optional<double> up =
+      comma == std::string::npos
+          ? std::nullopt
+          : parse_number(text.substr(comma + 1, colon == std::string::npos ? colon : colon - comma - 1));
+  Sun sun;
+  const std::optional<double> lux =
+      colon == std::string::npos ? sun.illuminance_lx : parse_number(text.substr(colon + 1));
+  if (!right || !up || !lux || (colon != std::string::npos && colon < comma))
+    throw InputError(
+        fmt::format("'{}' is no sun: degrees to the right and up, as in 20,15, or with its "
+                    "illuminance in lux, 20,15:80000, would be right (`sun`)",
+                    text));
+  sun.right_deg = *right;
+  sun.up_deg = *up;
+  sun.illuminance_lx = *lux;
+  return sun;
+}
+
+FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
+                         const std::vector<double>& wavelengths_nm, const SourcesFound& found,
+                         const FlareOptions& options, const Context& context) {
+  GhostLightOptions how;
+  how.losses = lens.losses;
+  how.clip = lens.clip;
+  how.sensor_reflectance = lens.sensor_reflectance;
+  how.neglected_share = options.neglected_share;
+  FlareLayers layers;
+  for (const Sun& sun : options.suns) layers.sources.push_back(sun.at(wavelengths_nm));
+  layers.sun_count = layers.sources.size();
+  if (layers.sun_count > 0) {
+    layers.suns = result_within(context, [&](const ProgressCallback& progress) {
+      return straight_light(lens.lens, frame, wavelengths_nm, layers.sources, how, progress);
+    });
+    layers.suns->provenance =
+        fmt::format("petzval {}: {} through {}", version(), suns_text(layers.sun_count), lens.lens.name);
+  }
+  if (!options.ghosts) return layers;
+  layers.sources.insert(layers.sources.end(), found.sources.begin(), found.sources.end());
+  if (found.left_out > 0)
+    send_note(context, fmt::format("ghosts of the {} brightest sources are followed; {} more, with {:.2g} of "
+                                   "their light, are left out",
+                                   found.sources.size(), found.left_out, found.left_out_share));
+  if (layers.sources.empty())
+    send_note(
+        context,
+        "nothing in the scene is bright enough to have its ghosts followed; a lower `ghost_threshold` or "
+        "a `sun` would be");
+  if (!lens.losses.fresnel && !lens.losses.air_glass && lens.losses.surfaces.empty())
+    send_note(context,
+              "ghosts are those of bare glass, which takes nothing from the picture itself unless "
+              "`fresnel` counts it");
+  layers.ghosts = result_within(context, [&](const ProgressCallback& progress) {
+    return ghost_light(lens.lens, frame, wavelengths_nm, layers.sources, how, progress, &layers.report);
+  });
+  layers.ghosts->provenance = fmt::format(
+      "petzval {} ghosts: {} sources through {}, {} ways, {:.1e} of their light neglected", version(),
+      layers.sources.size(), lens.lens.name, layers.report.followed, layers.report.neglected_share);
+  return layers;
+}
+
+void add_layers(const FlareLayers& layers, SpectralImage& light) {
+  for (const std::optional<SpectralImage>* layer : {&layers.suns, &layers.ghosts}) {
+    if (!*layer) continue;
+    if ((*layer)->columns() != light.columns() || (*layer)->rows() != light.rows() ||
+        (*layer)->wavelengths_nm() != light.wavelengths_nm() || (*layer)->pitch_um() != light.pitch_um())
+      throw InputError("a layer of light has another frame or other bands than the picture it is added to");
+    for (int band = 0; band < light.bands(); ++band) {
+      const std::span<float> to = light.band(band);
+      const std::span<const float> from = std::as_const(**layer).band(band);
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+      light.release_memory();
+    }
+  }
+  if (layers.suns) mark_lamps(*layers.suns, light);
+  if (layers.suns) light.provenance += fmt::format("; {}", suns_text(layers.sun_count));
+  if (layers.ghosts)
+    light.provenance +=
+        fmt::format("; ghosts of {} sources, {} ways", layers.sources.size(), layers.report.followed);
+}
+
+}  // namespace petzval

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Light that goes astray in the lens, for every way to the sensor.
+#pragma once
+
+#include <petzval/base/context.h>
+#include <petzval/flare/ghost_light.h>
+#include <petzval/flare/scene_sources.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace petzval {
+
+/// A disc of light at infinity that the scene does not hold: the Sun, unless told otherwise.
+struct Sun {
+  double right_deg = 0, up_deg = 0;  ///< angles whose tangents are those from the axis, for the photographer
+  double illuminance_lx = 100000;    ///< at the lens, across its light
+  double diameter_deg = 0.53;
+  std::string light = "5772K";  ///< an illuminant (colour/illuminants.h)
+
+  /// As a source at these wavelengths. \throws InputError for angles of 80 degrees or more, an illuminance
+  /// or a diameter that is not positive, and for light that no eye sees.
+  BrightSource at(const std::vector<double>& wavelengths_nm) const;
+};
+
+/// "20,15" or "20,15:80000": degrees to the right and up, illuminance [lx].
+/// \throws InputError for anything else.
+Sun parse_sun(const std::string& text);
+
+struct FlareOptions {
+  std::vector<Sun> suns = {};  ///< added to the scene: their images as their rays give them
+  bool ghosts = false;         ///< of suns, and of the bright sources that the scene itself holds
+  SourceSearch search = {};
+  double neglected_share = 1e-4;  ///< of the light of all ghosts, that may be left out
+
+  bool any() const { return ghosts || !suns.empty(); }
+};
+
+/// A lens as it is used: what light meets on its way.
+struct LitLens {
+  Lens lens = {};
+  Losses losses = {};
+  Tracer::Clip clip = Tracer::Clip::apertures;
+  double sensor_reflectance = 0;
+};
+
+/// Light that is added to a picture, each layer by itself.
+struct FlareLayers {
+  std::optional<SpectralImage> suns, ghosts;
+  std::vector<BrightSource> sources;  ///< suns first, then what the scene itself holds
+  std::size_t sun_count = 0;
+  GhostLightReport report = {};
+};
+
+/// \param found  sources that the scene itself holds. Notes tell what was left out.
+/// \throws InputError as ghost_light() and Sun::at(); Cancelled.
+FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
+                         const std::vector<double>& wavelengths_nm, const SourcesFound& found,
+                         const FlareOptions& options, const Context& context = {});
+
+/// Adds the layers to a picture of the same frame and bands, which its provenance then says.
+void add_layers(const FlareLayers& layers, SpectralImage& light);
+
+}  // namespace petzval
