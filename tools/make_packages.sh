@@ -77,13 +77,16 @@ make_wheel() {
 }
 
 try_wheel() { # without any of the libraries, with Python 3.11 and 3.13
-  local suite root
+  local suite root python
   for suite in bookworm trixie; do
-    bare $suite bash,ca-certificates,python3,python3-venv,python3-pip
+    bare $suite bash,ca-certificates
+    in_bare $suite apt-get update --quiet
     in_bare $suite apt-get install --quiet --yes --no-install-recommends python3 python3-venv python3-pip
     root=$folder/bare/$suite
+    python=$(in_bare $suite python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    "$folder/tools/bin/pip" download --quiet --only-binary :all: --python-version "$python" --dest "$root/opt" numpy nanobind-backend
     cp "$folder"/petzval-"$version"-*.whl "$root/opt"
-    in_bare $suite bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet petzval-*.whl'
+    in_bare $suite bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
     in_bare $suite /opt/v/bin/python -W ignore -c '
 import sys
 import petzval as pz

@@ -139,11 +139,11 @@ void ImageChoice::add_light_to(CLI::App& command) {
                      "Layers that a scene with depth is cut into; 0: as many as its defocus needs");
   camera.add_sensor(command, "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
   add_method_options(command);
-  flare.add_to(command, true);
 }
 
 void ImageChoice::add_to(CLI::App& command) {
   add_light_to(command);
+  flare.add_to(command, true);
   command
       .add_option(
           "-o,--output", outputs,
