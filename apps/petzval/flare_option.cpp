@@ -25,10 +25,13 @@ void FlareChoice::add_to(CLI::App& command, bool scene) {
                   "Also write the irradiance of the ghosts alone (.exr, .npy); without them the picture is "
                   "the output minus this")
       ->check(output_file());
+  command.add_flag("--starburst", starburst,
+                   "Add the light of bright sources that the edges of the stop diffract; blades give it "
+                   "its rays");
   if (scene)
     command
         .add_option("--ghost-threshold", flare.search.threshold,
-                    "Samples of the scene brighter than this times its mean are sources of ghosts")
+                    "Samples of the scene brighter than this times its mean are sources of ghosts and stars")
         ->check(positive_number())
         ->capture_default_str();
   command
@@ -49,6 +52,7 @@ void FlareChoice::add_to(CLI::App& command, bool scene) {
 FlareOptions FlareChoice::options() const {
   FlareOptions options = flare;
   options.ghosts = ghosts || !ghost_layer.empty();
+  options.starburst = starburst;
   for (const std::string& text : suns) {
     Sun sun = parse_sun(text);
     sun.diameter_deg = sun_diameter_deg;
@@ -96,6 +100,7 @@ nlohmann::ordered_json flare_json(const FlareLayers& layers) {
 
 void print_flare(const FlareLayers& layers) {
   if (layers.sun_count > 0) fmt::print("  suns        {}, as their rays give them\n", layers.sun_count);
+  if (layers.stars) fmt::print("  stars       of {} sources\n", layers.sources.size());
   if (!layers.ghosts) return;
   const GhostLightReport& report = layers.report;
   fmt::print(

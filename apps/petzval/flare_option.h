@@ -17,7 +17,7 @@ struct FlareChoice {
   std::vector<std::string> suns;
   double sun_diameter_deg = Sun().diameter_deg;
   std::string sun_light = Sun().light;
-  bool ghosts = false;
+  bool ghosts = false, starburst = false;
   std::string ghost_layer;
   FlareOptions flare = {};
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace petzval {
 
@@ -50,8 +51,7 @@ class RowCover {
     if (height == 0) return;
     const double end = columns_;
     double left = std::clamp(std::min(x0, x1), 0.0, end), right = std::clamp(std::max(x0, x1), 0.0, end);
-    low_ = std::min(low_, static_cast<int>(left));
-    high_ = std::max(high_, static_cast<int>(right));
+    runs_[run_count_++] = {static_cast<int>(left), std::min(static_cast<int>(right) + 1, columns_)};
     const double run = std::abs(x1 - x0);
     // Beyond the picture's sides the edge stands on them.
     if (run == 0 || std::max(x0, x1) <= 0 || std::min(x0, x1) >= end) return upright(left, height);
@@ -59,7 +59,7 @@ class RowCover {
     if (const double beyond = std::max(x0, x1) - end; beyond > 0) upright(end, height * beyond / run);
     const double per_column = height / run;
     while (left < right) {
-      const double next = std::min(right, std::floor(left) + 1);
+      const double next = std::min(right, static_cast<double>(static_cast<int>(left) + 1));
       slanted(left, next, per_column * (next - left));
       left = next;
     }
@@ -68,16 +68,23 @@ class RowCover {
   /// Adds light × covered area of each pixel, and is empty again. \param light  by column, of this row.
   template <class Light>
   void flush(double* pixels, const Light& light) {
-    if (high_ < low_) return;
+    // From one run of columns that an edge crosses to the next the cover stays.
+    std::sort(runs_.begin(), runs_.begin() + run_count_);
     double covered = 0;
-    const int last = std::min(high_ + 2, columns_ + 1);
-    for (int x = low_; x <= last; ++x) {
-      covered += change_[static_cast<std::size_t>(x)];
-      change_[static_cast<std::size_t>(x)] = 0;
-      if (x < columns_) pixels[x] += light(x) * covered;
+    int x = columns_ + 1;
+    for (std::size_t k = 0; k < run_count_; ++k) {
+      const auto [from, to] = runs_[k];
+      if (k == 0) x = from;
+      const double inside = covered;
+      for (; x < from; ++x) pixels[x] += light(x) * inside;
+      for (; x <= to; ++x) {
+        covered += change_[static_cast<std::size_t>(x)];
+        change_[static_cast<std::size_t>(x)] = 0;
+        if (x < columns_) pixels[x] += light(x) * covered;
+      }
     }
-    low_ = columns_;
-    high_ = -1;
+    change_[static_cast<std::size_t>(columns_) + 1] = 0;
+    run_count_ = 0;
   }
 
  private:
@@ -85,13 +92,16 @@ class RowCover {
   /// An edge within one column covers everything to its right, and of its own column what lies to its right.
   void slanted(double from, double to, double height) {
     const double middle = 0.5 * (from + to);
-    const auto column = static_cast<std::size_t>(std::min(std::floor(from), std::floor(middle)));
+    const auto column = static_cast<std::size_t>(from);  // not negative
     const double own = height * (1 - (middle - static_cast<double>(column)));
     change_[column] += own;
     change_[column + 1] += height - own;
   }
 
-  int columns_, low_ = columns_, high_ = -1;
+  int columns_;
+  /// Columns [first, second] in which edges change the cover, up to three edges a row.
+  std::array<std::pair<int, int>, 4> runs_{};
+  std::size_t run_count_ = 0;
   std::vector<double> change_;
 };
 

@@ -48,6 +48,7 @@ std::optional<StarPupil> star_pupil(const GhostTracer& tracer, const BrightSourc
   constexpr int side = 24;
   const double cell_mm2 = (box->right - box->left) * (box->high - box->low) / (side * side);
   std::vector<std::array<double, 3>> places;
+  std::vector<std::array<double, 2>> ends;
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j) {
       const double x = box->left + (box->right - box->left) * (i + 0.5) / side,
@@ -62,6 +63,7 @@ std::optional<StarPupil> star_pupil(const GhostTracer& tracer, const BrightSourc
       const auto& stop = places[tracer.tracer().stop_index()];
       fit.add(stop[0], stop[1], {dx / length, dy / length});
       pupil.x_mm += end.x_mm, pupil.y_mm += end.y_mm;
+      ends.push_back({end.x_mm, end.y_mm});
       pupil.flux_mm2 += end.share * beam.weight(x, y) * cell_mm2;
     }
   if (fit.count < 6) return {};
@@ -89,7 +91,9 @@ std::optional<StarPupil> star_pupil(const GhostTracer& tracer, const BrightSourc
     if (middle.arrives && rim.arrives)
       pupil.source_mm = std::hypot(rim.x_mm - middle.x_mm, rim.y_mm - middle.y_mm);
   }
-  pupil.core_mm = box->extent_pixels() / 2 * pixel_mm + pupil.source_mm + pixel_mm;
+  for (const auto& [x, y] : ends)
+    pupil.core_mm = std::max(pupil.core_mm, std::hypot(x - pupil.x_mm, y - pupil.y_mm));
+  pupil.core_mm += pupil.source_mm + 2.5 * pixel_mm;  // nearer, pixels are too coarse for the star
   return pupil;
 }
 

@@ -7,9 +7,13 @@
 #include <petzval/colour/band_light.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
+#include <petzval/flare/starburst.h>
 #include <petzval/simulate/flare.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 
 namespace petzval {
@@ -28,6 +32,24 @@ void mark_lamps(const SpectralImage& suns, SpectralImage& light) {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (values[i] > 0) light.lamps[i] = 1;
   }
+}
+
+/// Suns are geometric, whose stars begin where they end; what the scene holds has been blurred.
+SpectralImage stars_of(const LitLens& lens, const SensorGeometry& frame,
+                       const std::vector<double>& wavelengths_nm, const FlareLayers& layers,
+                       const GhostLightOptions& how, const Context& context) {
+  const std::span<const BrightSource> all(layers.sources);
+  SpectralImage stars = result_within(context, [&](const ProgressCallback&) {
+    return starburst_light(lens.lens, frame, wavelengths_nm, all.first(layers.sun_count), how);
+  });
+  const SpectralImage held = result_within(context, [&](const ProgressCallback&) {
+    return starburst_light(lens.lens, frame, wavelengths_nm, all.subspan(layers.sun_count), how, lens.psf_mm);
+  });
+  for (int band = 0; band < stars.bands(); ++band)
+    std::ranges::transform(stars.band(band), held.band(band), stars.band(band).begin(), std::plus<>());
+  stars.provenance = fmt::format("petzval {} stars: {} sources through {}", version(), layers.sources.size(),
+                                 lens.lens.name);
+  return stars;
 }
 
 }  // namespace
@@ -98,17 +120,19 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
     layers.suns->provenance =
         fmt::format("petzval {}: {} through {}", version(), suns_text(layers.sun_count), lens.lens.name);
   }
-  if (!options.ghosts) return layers;
+  if (!options.seeks()) return layers;
   layers.sources.insert(layers.sources.end(), found.sources.begin(), found.sources.end());
   if (found.left_out > 0)
-    send_note(context, fmt::format("ghosts of the {} brightest sources are followed; {} more, with {:.2g} of "
+    send_note(context, fmt::format("the {} brightest sources are followed; {} more, with {:.2g} of "
                                    "their light, are left out",
                                    found.sources.size(), found.left_out, found.left_out_share));
   if (layers.sources.empty())
-    send_note(
-        context,
-        "nothing in the scene is bright enough to have its ghosts followed; a lower `ghost_threshold` or "
-        "a `sun` would be");
+    send_note(context,
+              "nothing in the scene is bright enough for light that goes astray to be followed; a lower "
+              "`ghost_threshold` or "
+              "a `sun` would be");
+  if (options.starburst) layers.stars = stars_of(lens, frame, wavelengths_nm, layers, how, context);
+  if (!options.ghosts) return layers;
   if (!lens.losses.fresnel && !lens.losses.air_glass && lens.losses.surfaces.empty())
     send_note(context,
               "ghosts are those of bare glass, which takes nothing from the picture itself unless "
@@ -123,7 +147,7 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
 }
 
 void add_layers(const FlareLayers& layers, SpectralImage& light) {
-  for (const std::optional<SpectralImage>* layer : {&layers.suns, &layers.ghosts}) {
+  for (const std::optional<SpectralImage>* layer : {&layers.suns, &layers.ghosts, &layers.stars}) {
     if (!*layer) continue;
     if ((*layer)->columns() != light.columns() || (*layer)->rows() != light.rows() ||
         (*layer)->wavelengths_nm() != light.wavelengths_nm() || (*layer)->pitch_um() != light.pitch_um())
@@ -137,6 +161,7 @@ void add_layers(const FlareLayers& layers, SpectralImage& light) {
   }
   if (layers.suns) mark_lamps(*layers.suns, light);
   if (layers.suns) light.provenance += fmt::format("; {}", suns_text(layers.sun_count));
+  if (layers.stars) light.provenance += fmt::format("; stars of {} sources", layers.sources.size());
   if (layers.ghosts)
     light.provenance +=
         fmt::format("; ghosts of {} sources, {} ways", layers.sources.size(), layers.report.followed);

@@ -31,10 +31,12 @@ Sun parse_sun(const std::string& text);
 struct FlareOptions {
   std::vector<Sun> suns = {};  ///< added to the scene: their images as their rays give them
   bool ghosts = false;         ///< of suns, and of the bright sources that the scene itself holds
+  bool starburst = false;      ///< of the same: what the edges of the stop diffract
   SourceSearch search = {};
   double neglected_share = 1e-4;  ///< of the light of all ghosts, that may be left out
 
-  bool any() const { return ghosts || !suns.empty(); }
+  bool seeks() const { return ghosts || starburst; }
+  bool any() const { return seeks() || !suns.empty(); }
 };
 
 /// A lens as it is used: what light meets on its way.
@@ -43,11 +45,12 @@ struct LitLens {
   Losses losses = {};
   Tracer::Clip clip = Tracer::Clip::apertures;
   double sensor_reflectance = 0;
+  double psf_mm = 0;  ///< the picture of what the scene holds has diffraction this near to its image points
 };
 
 /// Light that is added to a picture, each layer by itself.
 struct FlareLayers {
-  std::optional<SpectralImage> suns, ghosts;
+  std::optional<SpectralImage> suns, ghosts, stars;
   std::vector<BrightSource> sources;  ///< suns first, then what the scene itself holds
   std::size_t sun_count = 0;
   GhostLightReport report = {};

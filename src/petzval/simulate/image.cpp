@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/base/version.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/image.h>
@@ -50,10 +51,13 @@ ImageReport& finish(const ImagePlan& plan, const Context& context, ImageReport& 
 
 FlareLayers flare_of(const ImagePlan& plan, const Context& context) {
   const FlareOptions& options = plan.options.flare;
-  const LitLens& lens = *plan.lens;
+  LitLens lens = *plan.lens;
+  for (const Psf& psf : plan.table.psf)
+    lens.psf_mm = std::max(lens.psf_mm, psf.size / 2 * psf.spacing_um * mm_per_um);
+  if (plan.options.imaging.method == BlurMethod::none) lens.psf_mm = 0;
   return flare_layers(
       lens, plan.frame, plan.scene.wavelengths_nm(),
-      options.ghosts ? find_sources(plan.scene, lens.lens.total_track_mm(), options.search) : SourcesFound{},
+      options.seeks() ? find_sources(plan.scene, lens.lens.total_track_mm(), options.search) : SourcesFound{},
       options, context);
 }
 

@@ -106,7 +106,7 @@ FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options,
   const double reflectance = request.camera.sensor ? request.camera.sensor->reflectance.value_or(0.0) : 0.0;
   return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflectance}, scene.film,
                       world.groups.wavelengths_nm(),
-                      options.ghosts ? lights_seen(world, place, options.search.most) : SourcesFound{},
+                      options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{},
                       visible, context);
 }
 
