@@ -30,8 +30,8 @@ std::string find_data_file(const std::string& kind, const std::string& extension
 /// Names (without extension) of the bundled files of a kind, sorted.
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension);
 
-/// Up to `count` of `candidates` nearest to `name`, nearest first: by edit distance without regard to case, or
-/// because `name` is a part of them or their beginning.
+/// Up to `count` of `candidates` nearest to `name`, nearest first: by edit distance without regard to case,
+/// or because `name` is a part of them or their beginning.
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,
                                        std::size_t count = 3);
 
