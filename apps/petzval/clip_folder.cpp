@@ -12,16 +12,23 @@
 #include <string_view>
 #include <utility>
 
+#include "sweep_result.h"
+
 namespace petzval::app {
 
-nlohmann::ordered_json asked_for(const CLI::App& command) {
+nlohmann::ordered_json asked_for(const CLI::App& command, const std::string& folder) {
   constexpr std::array<std::string_view, 5> of_no_matter{"--threads", "--quiet", "--json", "--output",
                                                          "--help"};
   nlohmann::ordered_json asked = nlohmann::ordered_json::object();
+  std::vector<std::string> words;
   // CLI11 gives options that may be altered only.
   for (CLI::Option* option : const_cast<CLI::App&>(command).get_options({}))
-    if (option->count() > 0 && std::ranges::find(of_no_matter, option->get_name()) == of_no_matter.end())
+    if (option->count() > 0 && std::ranges::find(of_no_matter, option->get_name()) == of_no_matter.end()) {
       asked[option->get_name()] = option->results();
+      words.insert(words.end(), option->results().begin(), option->results().end());
+    }
+  if (const nlohmann::ordered_json sums = checksums_of_files(words, folder); !sums.empty())
+    asked["checksums"] = sums;
   return asked;
 }
 
@@ -38,7 +45,8 @@ ClipFolder::ClipFolder(std::string folder, std::vector<std::string> formats,
   if (!std::filesystem::exists(name))
     write_whole_file(name, text);
   else if (read_whole_file(name) != text)
-    throw InputError(name, "is of another clip; the same options, or another folder, would be right");
+    throw InputError(name,
+                     "is of another clip; the same options and files, or another folder, would be right");
 }
 
 bool ClipFolder::has(int frame) const {

@@ -10,8 +10,9 @@
 
 namespace petzval::app {
 
-/// What a command was asked for that alters the bytes of its files.
-nlohmann::ordered_json asked_for(const CLI::App& command);
+/// What a command was asked for that alters the bytes of its files, with checksums of the files that it
+/// names. \param folder  of the clip, whose own files do not count.
+nlohmann::ordered_json asked_for(const CLI::App& command, const std::string& folder);
 
 class ClipFolder {
  public:

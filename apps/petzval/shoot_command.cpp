@@ -40,7 +40,7 @@ const char* shutter_name(const Shutter& shutter) {
 }
 
 nlohmann::ordered_json facts_of(const Clip& clip, const ClipOptions& options, const Sensor& sensor,
-                                const CLI::App& app) {
+                                const CLI::App& app, const std::string& folder) {
   return {{"frames", options.frames},
           {"fps", options.fps},
           {"columns", sensor.geometry.columns},
@@ -48,7 +48,7 @@ nlohmann::ordered_json facts_of(const Clip& clip, const ClipOptions& options, co
           {"exposure_s", clip.exposure_s()},
           {"shutter", shutter_name(clip.shutter())},
           {"row_time_s", clip.shutter().row_time_s},
-          {"asked_for", asked_for(app)}};
+          {"asked_for", asked_for(app, folder)}};
 }
 
 void write_frame(const ClipFolder& folder, int frame, const RawImage& raw, const ShootCommand& command,
@@ -112,7 +112,8 @@ void run_shoot(const ShootCommand& command, const CLI::App& app, const Shared& s
   ImagePlan plan = plan_clip(command.light.scene.request(), std::move(optics), command.light.image_options(),
                              options.motion, context);
   const Clip clip(std::move(plan), sensor, options, context);
-  const ClipFolder folder(command.folder, command.formats, facts_of(clip, options, sensor, app));
+  const ClipFolder folder(command.folder, command.formats,
+                          facts_of(clip, options, sensor, app, command.folder));
 
   int kept = 0, made = 0;
   const double parts = options.frames + (command.clip.events ? 1 : 0);
@@ -136,7 +137,7 @@ void run_shoot(const ShootCommand& command, const CLI::App& app, const Shared& s
   }
 
   if (shared.json) {
-    nlohmann::ordered_json json = facts_of(clip, options, sensor, app);
+    nlohmann::ordered_json json = facts_of(clip, options, sensor, app, command.folder);
     json.erase("asked_for");
     json["instants_per_frame"] = clip.instants(0);
     json["frames_kept"] = kept;

@@ -51,6 +51,14 @@ class Shoot(ProgramTest):
         self.assert_succeeds(*CLIP, "--frames", "1", "--quiet", "-o", "clip")
         self.assert_refused(*CLIP, "--frames", "1", "--seed", "2", "-o", "clip", words=("another clip",))
 
+    def test_a_lens_that_was_altered_makes_another_clip(self):
+        self.assert_succeeds("lens", "convert", "edmund-54852", "mine.json")
+        clip = [("mine.json" if word == "edmund-54852" else word) for word in CLIP]
+        self.assert_succeeds(*clip, "--frames", "1", "--quiet", "-o", "clip")
+        self.assert_succeeds(*clip, "--frames", "1", "--quiet", "-o", "clip")
+        self.assert_succeeds("lens", "convert", "edmund-54852", "mine.json", "--set", "surfaces[4].thickness_mm=0.7")
+        self.assert_refused(*clip, "--frames", "1", "-o", "clip", words=("another clip",))
+
     def test_bad_words_are_refused(self):
         for words, said in ((("--flicker", "disco"), ("--flicker", "mains:50:0.4")),
                             (("--exposure", "1"), ("longer than a frame", "--fps")),
