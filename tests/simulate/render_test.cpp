@@ -137,7 +137,7 @@ TEST(RenderScene, NamesWhatBelongsToALens) {
 TEST(RenderScene, ListsWhatItDoesNotKnowWithItsPlace) {
   const Scenes scenes;
   const std::vector<UnsupportedFeature> list =
-      unsupported_features(scenes.request("WorldBegin\nMaterial \"hair\"\nShape \"loopsubdiv\"\n"));
+      unsupported_features(scenes.request("WorldBegin\nMaterial \"hair\"\nShape \"nurbs\"\n"));
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0].line, 2);
   EXPECT_EQ(list[1].line, 3);
