@@ -46,8 +46,11 @@ ImagePlan plan_clip(const SceneRequest& scene, Optics optics, const ImageOptions
 /// A clip whose exposure and white balance are settled. Frames are made one by one, in any order, each with
 /// the same bytes as in any other:
 ///
-///     const Clip clip(plan, sensor, options, context);
-///     for (int frame = 0; frame < options.frames; ++frame) write_raw(name(frame), clip.frame(frame));
+///     ClipOptions options;
+///     options.frames = 48;
+///     options.flicker = LampFlicker::mains(50, 0.4);
+///     const Clip clip(plan_image(SceneRequest{.name = "studio"}, camera), sensor, options);
+///     const RawImage first = clip.frame(0);
 ///
 /// Temporal noise is new in each frame; the fixed pattern stays.
 class Clip {
@@ -84,7 +87,10 @@ class Clip {
 ///     ClipOptions options;
 ///     options.frames = 48;
 ///     options.motion = MotionPath::steady({.pan_deg = 20}, options.duration_s());
-///     shoot(plan, sensor, options, [](int frame, const RawImage& raw) { … });
+///     const ImagePlan plan = plan_clip(SceneRequest{.name = "studio"}, camera, {}, options.motion);
+///     shoot(plan, sensor, options, [](int frame, const RawImage& raw) {
+///       write_picture("frame-" + std::to_string(frame) + ".png", develop(raw));
+///     });
 void shoot(const ImagePlan& plan, const Sensor& sensor, const ClipOptions& options,
            const std::function<void(int frame, const RawImage& raw)>& take, const Context& context = {});
 
