@@ -66,8 +66,9 @@ def test_notes_are_warnings(camera):
 
 # Of parts of the library that the package does not have: tables of other programs and their making, and plans of image
 # formation by hand.
-NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "nodes", "port", "psf_away", "relative_illumination",
-                 "resample", "tile", "vertex_to_sensor_mm"}
+NOT_IN_PYTHON = {"clip_negative", "curves", "flicker", "fps", "g_axis_sr", "ghost_neglect", "ghost_threshold", "nodes", "port",
+                 "psf_away", "relative_illumination", "resample", "sun", "sun_diameter_deg", "sun_light", "tile",
+                 "vertex_to_sensor_mm"}
 
 
 def keywords(scope):
