@@ -14,6 +14,7 @@
 
 #include "clip_folder.h"
 #include "clip_option.h"
+#include "field_option.h"
 #include "image_option.h"
 #include "interrupted.h"
 #include "output_option.h"

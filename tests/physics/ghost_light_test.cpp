@@ -2,6 +2,7 @@
 // Light of ghosts against photons that are reflected at random, and against the unfolded lens.
 #include <gtest/gtest.h>
 #include <petzval/analysis/ghosts.h>
+#include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/flare/ghost_light.h>

@@ -147,7 +147,9 @@ void add_triangle(const LightFacet& facet, double area, const RowBand& band, Row
       cover.flush(pixels, [&](int) { return density; });
     } else {
       const double begin = shade.at(0.5, row + 0.5), step = shade.by_column;
-      cover.flush(pixels, [&](int x) { return density * std::clamp(begin + step * x, least, most); });
+      cover.flush(pixels, [&, low = least, high = most](int x) {
+        return density * std::clamp(begin + step * x, low, high);
+      });
     }
   }
 }
