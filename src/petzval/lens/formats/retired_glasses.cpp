@@ -11,7 +11,8 @@ namespace petzval {
 namespace {
 
 /// nd and Vd of SCHOTT's catalogues before 1998 (lead and arsenic still in them), and of materials that files
-/// name in their own way. The test holds them against the successors.
+/// name in their own way. The test holds them against the successors; those that have none, "", have not been
+/// compared with a publication.
 constexpr RetiredGlass retired[] = {
     {"B270", 1.52290, 58.50, ""},
     {"BAF10", 1.67003, 47.11, "SCHOTT:N-BAF10"},
