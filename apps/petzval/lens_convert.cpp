@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens convert.
 #include <fmt/format.h>
+#include <petzval/analysis/ray_fan.h>
 #include <petzval/lens/lens_file.h>
 
 #include <memory>
@@ -16,11 +17,13 @@ namespace {
 struct ConvertCommand {
   LensChoice lens;
   CameraChoice camera;
+  bool from_fields = false;
   std::string output;
 };
 
 void convert(const ConvertCommand& options, const Shared& shared) {
-  const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
+  Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
+  if (options.from_fields) lens = with_apertures_from_fields(std::move(lens));
   for (const std::string& line : write_lens(lens, options.output)) note(shared, line);
   if (!shared.quiet) fmt::print("{}: {} surfaces\n", options.output, lens.surfaces.size());
 }
@@ -37,6 +40,13 @@ void add_lens_convert(CLI::App& lens, Shared& shared) {
                   [options, &shared] { convert(*options, shared); });
   options->lens.add_to(*command);
   options->camera.add_to(*command);
+  command
+      ->add_option_function<std::string>(
+          "--apertures",
+          [options](const std::string& choice) { options->from_fields = choice == "from-fields"; },
+          "Clear apertures that the file does not give: none (file), or as wide as the fields need "
+          "(from-fields)")
+      ->check(CLI::IsMember({"file", "from-fields"}));
   command->add_option("output", options->output, "File to write; its extension tells the format")
       ->check(output_file())
       ->required();

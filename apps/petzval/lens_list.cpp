@@ -47,7 +47,10 @@ void list(const std::string& word, const Shared& shared) {
   std::string text = fmt::format("{:<23} {:>10} {:>6} {:>9} {:>12}  {}\n", "name", "EFL [mm]", "f/",
                                  "FOV [deg]", "light [nm]", "lens");
   std::size_t found = 0;
-  for (const std::string& name : bundled_names("lenses", ".json")) {
+  std::vector<std::string> names = bundled_names("lenses", ".json");
+  const std::vector<std::string> patents = bundled_names("lenses/patents", ".json");
+  if (!word.empty()) names.insert(names.end(), patents.begin(), patents.end());
+  for (const std::string& name : names) {
     const Lens lens = read_lens(name).lens;
     if (!mentions(name, lens, word)) continue;
     ++found;
@@ -75,10 +78,11 @@ void list(const std::string& word, const Shared& shared) {
   if (found == 0)
     throw InputError(
         fmt::format("no bundled lens has the word {}; machine vision, telecentric, C-mount, M12, "
-                    "teaching, fisheye or double Gauss would be right, or none for all",
+                    "teaching, fisheye, patent or double Gauss would be right, or none for all",
                     quotable(word)));
   if (shared.json) return print_json({{"rows", rows}});
   fmt::print("{}", text);
+  if (word.empty()) fmt::print("\n{} more are from patents: petzval lens list patent\n", patents.size());
 }
 
 }  // namespace
@@ -89,7 +93,7 @@ void add_lens_list(CLI::App& lens, Shared& shared) {
       add_command(lens, shared, "list", "The bundled lenses", "petzval lens list \"machine vision\"", true,
                   [=, &shared] { list(*word, shared); });
   command->add_option("word", *word,
-                      "Only those whose name, description or source has it: C-mount, teaching");
+                      "Only those whose name, description or source has it: C-mount, teaching, patent");
 }
 
 }  // namespace petzval::app

@@ -41,7 +41,8 @@ void bind_errors(nb::module_& module) {
   module.def(
       "bundled_names",
       [](const std::string& kind) { return bundled_names(kind, kind == "scenes" ? ".pbrt" : ".json"); },
-      nb::arg("kind"), "Names of the bundled \"lenses\", \"sensors\" or (three-dimensional) \"scenes\".");
+      nb::arg("kind"),
+      "Names of the bundled \"lenses\", \"lenses/patents\", \"sensors\" or (three-dimensional) \"scenes\".");
 }
 
 }  // namespace petzval::python

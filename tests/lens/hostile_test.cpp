@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files that are broken, absurd or meant to harm: each is read, or refused in one line that names it.
+#include "bench_samples.h"
 #include "random_lens.h"
 #include "sample_lenses.h"
 #include "scratch_file.h"
@@ -7,8 +8,10 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/formats/flaresim.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/optical_bench.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
@@ -21,6 +24,8 @@ namespace {
 using namespace testing;
 
 std::string file_text(const std::string& name, const std::string& extension) {
+  if (extension == ".txt") return bench("AsphericalOddCount\t1\n", singlet, "1\t51.68\t-0.5\t1e-5\t1e-7\n");
+  if (extension == ".lens") return flare_rows;
   ScratchFile file("whole" + extension);
   write_lens(with_setting(read_lens(name).lens, "source=a test"), file.path());
   return read_whole_file(file.path());
@@ -32,6 +37,8 @@ Lens lens_from_bytes(const std::string& file, const std::string& bytes) {
   if (extension == ".zmx") return read_zmx(decoded_text(bytes), file, {}).lens;
   if (extension == ".seq") return read_seq(decoded_text(bytes), file, {}).lens;
   if (extension == ".dat") return read_pbrt(decoded_text(bytes), file).lens;
+  if (extension == ".txt") return read_optical_bench(decoded_text(bytes), file, {}).lens;
+  if (extension == ".lens") return read_flaresim(decoded_text(bytes), file).lens;
   const JsonDocument document(bytes, file);
   return is_iset(document) ? read_iset(document).lens : read_native(document, {});
 }
@@ -111,8 +118,8 @@ INSTANTIATE_TEST_SUITE_P(Formats, HostileFile,
                          ::testing::Values(std::pair(".json", "edmund-54852"),
                                            std::pair(".zmx", "us-2532751"),
                                            std::pair(".seq", "cooke-triplet"),
-                                           std::pair(".dat", "dgauss-50mm"),
-                                           std::pair(".iset.json", "dgauss-50mm")),
+                                           std::pair(".dat", "dgauss-50mm"), std::pair(".txt", ""),
+                                           std::pair(".lens", ""), std::pair(".iset.json", "dgauss-50mm")),
                          [](const auto& format) {
                            std::string name = format.param.first + 1;
                            std::replace(name.begin(), name.end(), '.', '_');

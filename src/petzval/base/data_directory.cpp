@@ -129,18 +129,30 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
   return nearest;
 }
 
+std::vector<std::string> bundled_folders(const std::string& kind) {
+  std::vector<std::string> folders{kind};
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(data_directory()) / kind, error))
+    if (entry.is_directory(error)) folders.push_back(kind + "/" + entry.path().filename().string());
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
 std::string find_data_file(const std::string& kind, const std::string& extension,
                            const std::string& path_or_name, const std::string& what) {
   std::error_code error;
   if (fs::is_regular_file(path_or_name, error)) return path_or_name;
   if (path_or_name.empty()) throw InputError(fmt::format("an empty name for a {}", what));
-  if (path_or_name.find('/') == std::string::npos) {
-    const fs::path bundled = fs::path(data_directory()) / kind / (path_or_name + extension);
-    if (fs::is_regular_file(bundled, error)) return bundled.string();
+  std::vector<std::string> names;
+  for (const std::string& folder : bundled_folders(kind)) {
+    const fs::path bundled = fs::path(data_directory()) / folder / (path_or_name + extension);
+    if (path_or_name.find('/') == std::string::npos && fs::is_regular_file(bundled, error))
+      return bundled.string();
+    for (std::string& name : bundled_names(folder, extension)) names.push_back(std::move(name));
   }
   if (fs::is_directory(path_or_name, error))
     throw InputError(path_or_name, fmt::format("is a folder; the {} wanted is a file", what));
-  const std::vector<std::string> near = nearest_names(path_or_name, bundled_names(kind, extension));
+  const std::vector<std::string> near = nearest_names(path_or_name, names);
   throw InputError(path_or_name,
                    fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,
                                fmt::join(near, ", ")));

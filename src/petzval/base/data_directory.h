@@ -22,12 +22,16 @@ void set_default_data_directory(const std::string& path);
 std::string default_data_directory();
 
 /// A file given by the user: a path that exists is taken as it is; a bare name (no '/') means
-/// `<data>/<kind>/<name><extension>`. \param what  for the message: "lens", "sensor".
-/// \throws InputError naming the nearest bundled names.
+/// `<data>/<kind>/<name><extension>`, or that in a folder below it. \param what  for the message: "lens",
+/// "sensor". \throws InputError naming the nearest bundled names.
 std::string find_data_file(const std::string& kind, const std::string& extension,
                            const std::string& path_or_name, const std::string& what);
 
-/// Names (without extension) of the bundled files of a kind, sorted.
+/// The kind and the folders below it, "lenses" and "lenses/patents", sorted: kinds themselves.
+std::vector<std::string> bundled_folders(const std::string& kind);
+
+/// Names (without extension) of the bundled files of a kind, sorted; those in folders below it not among
+/// them.
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension);
 
 /// Up to `count` of `candidates` nearest to `name`, nearest first: by edit distance without regard to case,

@@ -5,11 +5,13 @@
 #include <petzval/base/file_extension.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/lens/formats/flaresim.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/iset_transfer.h>
 #include <petzval/lens/formats/lens_table.h>
 #include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/optical_bench.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
@@ -50,10 +52,17 @@ LensFile read_text(const std::string& bytes, const std::string& path, const Lens
   if (extension == ".zmx") return read_zmx(decoded_text(bytes), path, options);
   if (extension == ".seq") return read_seq(decoded_text(bytes), path, options);
   if (extension == ".csv" || extension == ".tsv") return read_lens_table(decoded_text(bytes), path, options);
+  if (extension == ".lens") return without_glasses(read_flaresim(decoded_text(bytes), path), path, options);
+  if (extension == ".txt") {
+    const std::string text = decoded_text(bytes);
+    return is_optical_bench(text) ? read_optical_bench(text, path, options)
+                                  : read_lens_table(text, path, options);
+  }
   throw InputError(
       path,
       fmt::format("\"{}\" is not the extension of a lens file that is read here; .json (native or ISET), "
-                  ".dat (pbrt), .zmx, .seq (CODE V) and tables (.csv, .tsv) are",
+                  ".dat (pbrt), .zmx, .seq (CODE V), .txt (Optical Bench, or a table), .lens (FlareSim) and "
+                  "tables (.csv, .tsv) are",
                   extension));
 }
 

@@ -39,8 +39,9 @@ struct LensFile {
 ///     write_lens(lens, "altered.zmx");
 ///
 /// By path or bundled name; the format is told by extension (.json native or ISET, .dat, .zmx,
-/// .seq, .csv and .tsv for tables) and content. The lens is valid. \throws InputError with file and line, for
-/// anything that is wrong or not modelled, and for a substitution of a glass that the file does not have.
+/// .seq, .txt of the Optical Bench, .lens, .csv and .tsv for tables) and content. The lens is valid. \throws
+/// InputError with file and line, for anything that is wrong or not modelled, and for a substitution of a
+/// glass that the file does not have.
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options = {});
 
 /// Writes by extension (.json native, .iset.json, .dat, .zmx, .seq), whole or not at all. What a format
