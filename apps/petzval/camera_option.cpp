@@ -87,6 +87,7 @@ std::vector<std::string> CameraChoice::given_lens_options() const {
   add(!focus.empty(), "--focus");
   add(focus_wavelength_nm.has_value(), "--focus-wavelength");
   add(defocus_mm != 0, "--defocus");
+  add(!lens.state.empty(), "--state");
   add(!lens.settings.empty(), "--set");
   add(!lens.substitutions.empty(), "--substitute");
   add(lens.build.has_value(), "--build");

@@ -10,6 +10,7 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/glass/glass_file.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/simulate/mounting.h>
 #include <petzval/tolerance/tolerancing.h>
 
@@ -231,6 +232,13 @@ void LensChoice::add_to(CLI::App& command, bool positional, bool required) {
 }
 
 void LensChoice::add_settings_to(CLI::App& command) {
+  command
+      .add_option("--state", state,
+                  "Zoom or focus position, by name or by number from 0 on; between two numbers, in "
+                  "proportion (lens info lists them)")
+      ->check(CLI::Validator(
+          [](const std::string& word) { return word.empty() ? "an empty word" : std::string(); },
+          "NAME|NUMBER"));
   command.add_option("--set", settings, "Alter the lens: surfaces[4].thickness_mm=0.5 (repeatable)")
       ->take_all()
       ->allow_extra_args(false);
@@ -280,6 +288,7 @@ Lens LensChoice::read(const Shared& shared) const {
   options.substituted = substituted;
   LensFile file = read_lens(path_or_name, options);
   for (const std::string& line : file.notes) note(shared, line);
+  if (!state.empty()) file.lens = in_state(file.lens, state, options);
   const Lens before = file.lens;
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
   if (before.object_distance_mm != file.lens.object_distance_mm)

@@ -58,10 +58,11 @@ struct GlassChoice {
   GlassCatalogue read(const Shared& shared) const;
 };
 
-/// A lens on the command line: LENS, --set, --substitute, --glass-catalogue.
+/// A lens on the command line: LENS, --state, --set, --substitute, --glass-catalogue.
 struct LensChoice {
   std::string path_or_name;
   GlassChoice glasses;
+  std::string state;  ///< empty: as the file has it
   std::vector<std::string> settings;
   std::vector<std::string> substitutions;
   bool offers_builds = true;
@@ -70,15 +71,17 @@ struct LensChoice {
   /// Of several lenses that are read by turns: what has been substituted in any of them.
   std::shared_ptr<std::set<std::string>> substituted = {};
 
-  /// Adds the positional LENS (or `--lens` when `positional` is false), --set, --substitute and --build.
+  /// Adds the positional LENS (or `--lens` when `positional` is false), --state, --set, --substitute and
+  /// --build.
   void add_to(CLI::App& command, bool positional = true, bool required = true);
   /// Reads one of several lenses.
   LensChoice for_lens(const std::string& name) const;
   /// \throws InputError if none of them had a glass that was to be substituted.
   void require_all_substituted() const;
-  /// Adds --set, --substitute and --build alone.
+  /// Adds --state, --set, --substitute and --build alone.
   void add_settings_to(CLI::App& command);
-  /// Reads the lens, applies the settings and builds it; the reader's notes go to stderr unless quiet.
+  /// Reads the lens, sets it to its state, applies the settings and builds it; the reader's notes go to
+  /// stderr unless quiet.
   Lens read(const Shared& shared) const;
 };
 

@@ -6,6 +6,8 @@
 #include <petzval/analysis/ray_fan.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/report/colours.h>
 #include <petzval/report/lens_drawing.h>
 
@@ -30,6 +32,7 @@ struct DrawCommand {
   std::string output;
   std::vector<double> film_heights_mm;
   std::string section = "meridional";
+  bool all_states = false;
 };
 
 /// Rays from points of the film instead of fields.
@@ -54,32 +57,62 @@ std::string usual_output(const LensChoice& lens) {
   return std::filesystem::path(lens.path_or_name).stem().string() + ".svg";
 }
 
-void draw(const DrawCommand& options, const Shared& shared) {
-  const std::string output = options.output.empty() ? usual_output(options.lens) : options.output;
-  require_drawing(output, "a drawing");
-  const Lens read = options.fields.prepare(options.lens.read(shared), shared);
-  const Lens lens = options.camera.used(read, options.fields.request(read), shared);
+/// What draw_lens() draws of a lens as it was read.
+DrawnState drawn(const DrawCommand& options, const Lens& read, const Shared& shared) {
+  DrawnState state;
+  state.lens = options.camera.used(read, options.fields.request(read), shared);
+  const Lens& lens = state.lens;
   const FieldTableRequest request = options.fields.request(lens);
   FieldTracer tracer(
       lens,
       options.fields.wavelengths_nm.empty() ? lens.reference_wavelength_nm : request.wavelengths_nm.front(),
       request.clip, options.camera.field_azimuth_deg);
-  LensDrawingOptions drawing;
+  LensDrawingOptions& drawing = state.options;
   drawing.azimuth_deg = options.camera.field_azimuth_deg;
   drawing.title = fmt::format("{} — rays at {:g} nm", lens.name, tracer.tracer().wavelength_nm());
-  std::vector<DrawnRay> rays = film_rays(options, lens, tracer.tracer(), drawing, shared);
+  state.rays = film_rays(options, lens, tracer.tracer(), drawing, shared);
   for (std::size_t i = 0; options.film_heights_mm.empty() && i < request.fields.size(); ++i) {
     const double field = object_field(lens, request.field_kind, request.fields[i]);
     const std::string colour = series_colour(i).hex();
     const auto fan = meridional_fan(tracer, field, options.rays, 0.25 * lens.total_track_mm());
     if (fan.empty()) note(shared, fmt::format("no ray passes at field {:g}", request.fields[i]));
-    for (const MeridionalPath& path : fan) rays.push_back({path, colour});
+    for (const MeridionalPath& path : fan) state.rays.push_back({path, colour});
     drawing.legend.push_back(
         {fmt::format("{:g} {}", request.fields[i], field_unit(request.field_kind)), colour});
   }
-  write_drawing(output, draw_lens(lens, rays, drawing));
+  return state;
+}
+
+/// All states of the lens, those that lie between them left out.
+void draw_all_states(const DrawCommand& options, const std::string& output, const Shared& shared) {
+  if (!options.lens.state.empty())
+    throw InputError("--states draws all of them; without --state it would be right");
+  const Lens read = options.fields.prepare(options.lens.read(shared), shared);
+  if (read.states.empty()) throw InputError(fmt::format("--states: {} has no states", read.name));
+  std::vector<DrawnState> states;
+  for (std::size_t i = 0; i < read.states.size(); ++i) {
+    states.push_back(drawn(options, in_state(read, static_cast<double>(i)), shared));
+    LensDrawingOptions& drawing = states.back().options;
+    drawing.title =
+        fmt::format("{} — {:.4g} mm", read.states.names[i], first_order(states.back().lens).efl_mm);
+    drawing.surface_numbers = false;
+    if (i > 0) drawing.legend.clear();
+    constexpr double tallest_px = 240;
+    drawing.tallest_px = tallest_px;
+  }
+  write_drawing(output, draw_states(states));
+  if (!shared.quiet) fmt::print("{}: {} states\n", output, states.size());
+}
+
+void draw(const DrawCommand& options, const Shared& shared) {
+  const std::string output = options.output.empty() ? usual_output(options.lens) : options.output;
+  require_drawing(output, "a drawing");
+  if (options.all_states) return draw_all_states(options, output, shared);
+  const Lens read = options.fields.prepare(options.lens.read(shared), shared);
+  const DrawnState state = drawn(options, read, shared);
+  write_drawing(output, draw_lens(state.lens, state.rays, state.options));
   if (!shared.quiet)
-    fmt::print("{}: {} rays through {} surfaces\n", output, rays.size(), lens.surfaces.size());
+    fmt::print("{}: {} rays through {} surfaces\n", output, state.rays.size(), state.lens.surfaces.size());
 }
 
 }  // namespace
@@ -103,6 +136,8 @@ void add_lens_draw(CLI::App& lens, Shared& shared) {
           "Of the rays from film points: in the plane of point and axis, or across it, seen from above")
       ->check(CLI::IsMember({"meridional", "sagittal"}))
       ->capture_default_str();
+  command->add_flag("--states", options->all_states,
+                    "All states of the lens beneath each other, their sensors in one line");
   command->add_option("-o,--output", options->output, ".svg, .png or .pdf; default: NAME.svg, of the lens")
       ->check(output_file());
 }

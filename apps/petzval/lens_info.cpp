@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // petzval lens info.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <cmath>
@@ -120,10 +122,49 @@ void print_surfaces(const Lens& lens) {
   }
 }
 
+nlohmann::ordered_json states_json(const Lens& lens, std::optional<double> wavelength_nm) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < lens.states.size(); ++i) {
+    const Lens state = in_state(lens, static_cast<double>(i));
+    const FirstOrder data = first_order(state, wavelength_nm);
+    rows.push_back({{"state", i},
+                    {"name", lens.states.names[i]},
+                    {"object_distance_mm",
+                     state.object_distance_mm ? number_or_null(*state.object_distance_mm) : nullptr},
+                    {"efl_mm", number_or_null(data.efl_mm)},
+                    {"f_number", f_number_or_null(data)},
+                    {"working_f_number", number_or_null(data.working_f_number)},
+                    {"field_of_view_deg", number_or_null(data.field_of_view_deg)},
+                    {"magnification", number_or_null(data.magnification)},
+                    {"total_track_mm", number_or_null(data.total_track_mm)}});
+  }
+  return rows;
+}
+
+/// A line a state, and what differs between them.
+void print_states(const Lens& lens, std::optional<double> wavelength_nm) {
+  if (lens.states.empty()) return;
+  const std::optional<std::size_t> present = present_state(lens);
+  fmt::print("\n{:>3} {:<12} {:>12} {:>10} {:>10} {:>10} {:>12} {:>10}\n", "", "state", "object", "focal l.",
+             "f-number", "view [deg]", "magnific.", "track");
+  for (std::size_t i = 0; i < lens.states.size(); ++i) {
+    const Lens state = in_state(lens, static_cast<double>(i));
+    const FirstOrder data = first_order(state, wavelength_nm);
+    fmt::print("{:>3} {:<12} {:>12.6g} {:>10.4f} {:>10.4f} {:>10.2f} {:>12.6f} {:>10.3f}{}\n", i,
+               lens.states.names[i], state.object_distance_mm.value_or(INFINITY), data.efl_mm,
+               has_f_number(data) ? data.f_number : NAN, data.field_of_view_deg, data.magnification,
+               data.total_track_mm, i == present ? "  (this one)" : "");
+  }
+  std::vector<std::string> paths;
+  for (const StateRow& row : lens.states.rows) paths.push_back(row.path);
+  fmt::print("    that differ in {}\n", fmt::join(paths, ", "));
+}
+
 void info(const InfoCommand& options, const Shared& shared) {
   const auto wavelength_nm = options.wavelength_nm;
   if (wavelength_nm) require_wavelength(*wavelength_nm, fmt::format("--wavelength {:g}", *wavelength_nm));
-  const Lens lens = options.camera.used(options.lens.read(shared), {}, shared);
+  const Lens read = options.lens.read(shared);
+  const Lens lens = options.camera.used(read, {}, shared);
   const FirstOrder data = first_order(lens, wavelength_nm);
   std::optional<SensorGeometry> frame;
   if (!options.camera.sensor.empty()) {
@@ -132,12 +173,14 @@ void info(const InfoCommand& options, const Shared& shared) {
   }
   if (shared.json) {
     nlohmann::ordered_json json = info_json(lens, data);
+    if (!lens.states.empty()) json["states"] = states_json(read, wavelength_nm);
     if (frame) json["sensor_view"] = view_json(frame_view(lens, *frame));
     return print_json(json);
   }
   print_first_order(lens, data);
   if (frame) print_view(frame_view(lens, *frame));
   print_surfaces(lens);
+  print_states(read, wavelength_nm);
 }
 
 }  // namespace

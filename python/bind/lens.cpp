@@ -3,8 +3,10 @@
 
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/transfer_fit.h>
+#include <petzval/lens/lens_states.h>
 
 #include <cmath>
+#include <variant>
 
 #include "glass.h"
 #include "surface.h"
@@ -221,6 +223,19 @@ void bind_lens(nb::module_& module) {
           },
           nb::arg("path"), nb::arg("value").none(),
           "A copy with one entry of its native file altered: altered(\"surfaces[4].thickness_mm\", 0.7).")
+      .def_prop_ro(
+          "states", [](const Lens& self) { return nb::tuple(nb::cast(self.states.names)); },
+          "Names of its zoom and focus positions.")
+      .def(
+          "in_state",
+          [](const Lens& self, const std::variant<double, std::string>& state) {
+            const LensReadOptions options{.glasses = glasses_of(self)};
+            return std::visit(
+                [&](const auto& which) { return std::make_shared<Lens>(in_state(self, which, options)); },
+                state);
+          },
+          nb::arg("state"),
+          "A copy set to a state, by name or by number from 0 on; between two numbers, in proportion.")
       .def("copy", [](const Lens& self) { return std::make_shared<Lens>(self); })
       .def("__copy__", [](const Lens& self) { return std::make_shared<Lens>(self); })
       .def(

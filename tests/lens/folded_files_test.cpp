@@ -249,20 +249,73 @@ TEST(Apertures, ArmsOfASpiderStandAllRound) {
   for (const auto& [x, y] : {std::pair{5.0, 0.6}, {3.0, 3.0}, {-3.0, 3.0}}) EXPECT_FALSE(closed(x, y));
 }
 
+/// Robb and Mercado, Appl. Opt. 22 (1983) 1198, table V: n = N + ν₁ ω + ν₂ ω², ω = Δ / (1 + 2.5 Δ), Δ = λ −
+/// 0.574 µm, of SCHOTT's glasses (BAF10, LAF2, LAF3: Hoya's), as the package opticalglass 1.1.1 (BSD) holds
+/// it. Left out is SF19, whose N cannot be right there. The fits are good to 1 to 3e-5: that is 0.5 % of the
+/// dispersion of the weakest glasses. Of ZKN7 the third number stands apart from all its kind: nd alone is
+/// held.
+TEST(RetiredGlasses, AreThoseOfAPublishedTable) {
+  struct Fit {
+    const char* name;
+    double n, nu1, nu2;
+    double index(double um) const {
+      const double omega = (um - 0.574) / (1 + 2.5 * (um - 0.574));
+      return n + omega * (nu1 + omega * nu2);
+    }
+  };
+  constexpr Fit fits[] = {
+      {"BAF10", 1.671049, -0.0778780, 0.01031800},  {"BAF4", 1.606609, -0.0755870, 0.01294900},
+      {"BAF51", 1.653284, -0.0796720, 0.01193300},  {"BAF52", 1.609531, -0.0719240, 0.01050700},
+      {"BAFN10", 1.671054, -0.0781400, 0.01013800}, {"BAK1", 1.573219, -0.0549510, 0.00073080},
+      {"BAK2", 1.540615, -0.0500250, 0.00048440},   {"BAK4", 1.569563, -0.0559800, 0.00120090},
+      {"BALF4", 1.580348, -0.0595050, 0.00297820},  {"BALF5", 1.548128, -0.0562700, 0.00326700},
+      {"BASF2", 1.665783, -0.1011800, 0.02829300},  {"BK10", 1.498363, -0.0413860, -0.00436190},
+      {"BK7", 1.517385, -0.0447360, -0.00327370},   {"F15", 1.606796, -0.0875310, 0.02066600},
+      {"FK5", 1.487994, -0.0385560, -0.00442900},   {"FK51", 1.486979, -0.0319260, 0.00181940},
+      {"K5", 1.523126, -0.0486030, 0.00051732},     {"KF9", 1.524146, -0.0560400, 0.00387140},
+      {"KZFSN5", 1.655302, -0.0906170, 0.01495100}, {"LAF2", 1.745194, -0.0913110, 0.01266400},
+      {"LAF3", 1.718081, -0.0822300, 0.00865090},   {"LAK10", 1.721031, -0.0788440, 0.00313680},
+      {"LAK21", 1.641269, -0.0590430, -0.00182760}, {"LAK8", 1.713962, -0.0732730, -0.00026128},
+      {"LAK9", 1.691917, -0.0698610, 0.00027097},   {"LAKN12", 1.678788, -0.0677950, -0.00154770},
+      {"LAKN14", 1.697711, -0.0696200, 0.00120830}, {"LAKN22", 1.651973, -0.0643580, 0.00089933},
+      {"LAKN7", 1.652407, -0.0616120, -0.00082255}, {"LASF9", 1.852133, -0.1435200, 0.04828200},
+      {"PSK3", 1.552954, -0.0483120, -0.00295850},  {"SF3", 1.741863, -0.1424900, 0.05525800},
+      {"SF8", 1.690503, -0.1202600, 0.04021300},    {"SK1", 1.611029, -0.0594250, 0.00113380},
+      {"SK10", 1.623593, -0.0604580, 0.00092315},   {"SK11", 1.564512, -0.0513470, -0.00141560},
+      {"SK14", 1.603832, -0.0551150, 0.00151700},   {"SK15", 1.623767, -0.0593300, 0.00003982},
+      {"SK16", 1.621157, -0.0569640, 0.00164150},   {"SK19", 1.614195, -0.0590750, 0.00075367},
+      {"SK2", 1.608157, -0.0592060, 0.00104590},    {"SK4", 1.613477, -0.0577970, -0.00018846},
+      {"SK5", 1.589828, -0.0532930, 0.00206810},    {"SSK2", 1.623147, -0.0645360, 0.00372950},
+      {"SSK4", 1.618460, -0.0618190, 0.00205000},   {"SSKN5", 1.659373, -0.0712310, 0.00607410},
+      {"SSKN8", 1.618614, -0.0682970, 0.00689950},  {"UBK7", 1.517385, -0.0446570, -0.00325110},
+      {"ZKN7", 1.509073, -0.0461350, 0.00280230},
+  };
+  for (const Fit& fit : fits) {
+    const auto retired = find_retired_glass(fit.name);
+    ASSERT_TRUE(retired) << fit.name;
+    const double nd = fit.index(0.5875618);
+    EXPECT_NEAR(nd, retired->nd, 3e-5) << fit.name;
+    const double vd = (nd - 1) / (fit.index(0.4861327) - fit.index(0.6562725));
+    if (std::string(fit.name) != "ZKN7") {
+      EXPECT_NEAR(vd, retired->vd, 0.005 * vd) << fit.name;
+    }
+  }
+}
+
 TEST(RetiredGlasses, AreNearTheirSuccessors) {
   // What a name stands for may differ by the usual spread of a melt a few times over.
-  for (const char* name :
-       {"BK7",    "SK16",  "SSK2",  "KF9",     "PSK3",  "F_SILICA", "LaF2",  "LAKN22", "SF56A", "BASF2",
-        "KZFSN5", "BAF51", "FK51",  "LASFN31", "SSKN5", "ZKN7",     "SFL4",  "BALF4",  "K5",    "BAK4",
-        "LAK10",  "SK14",  "SF64A", "BAFN10",  "UBK7",  "BK10",     "LASF9", "BASF64A"}) {
-    const auto retired = find_retired_glass(name);
-    ASSERT_TRUE(retired) << name;
-    const auto glass = GlassCatalogue::bundled().find(std::string(retired->successor));
-    const auto abbe = glass->abbe();
-    ASSERT_TRUE(abbe) << name;
-    EXPECT_NEAR(abbe->nd, retired->nd, 3e-4) << name;
-    EXPECT_NEAR(abbe->vd, retired->vd, 0.6) << name;
+  std::size_t compared = 0;
+  for (const RetiredGlass& retired : retired_glasses()) {
+    if (retired.successor.empty()) continue;
+    const auto abbe = GlassCatalogue::bundled().find(std::string(retired.successor))->abbe();
+    ASSERT_TRUE(abbe) << retired.name;
+    EXPECT_NEAR(abbe->nd, retired.nd, 3.5e-4) << retired.name;  // LAFN21 is 3.1e-4 off
+    if (retired.vd != 0) {
+      EXPECT_NEAR(abbe->vd, retired.vd, 0.6) << retired.name;
+    }
+    ++compared;
   }
+  EXPECT_GT(compared, 50u);
 }
 
 TEST(RetiredGlasses, AreTakenWithANoteAndMissingOnesNamedTogether) {

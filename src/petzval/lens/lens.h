@@ -73,6 +73,22 @@ struct Fields {
   std::vector<double> values{0.0};
 };
 
+/// An entry of the lens that differs from state to state.
+struct StateRow {
+  std::string path;                 ///< into the native form: "surfaces[4].thickness_mm"
+  std::vector<std::string> values;  ///< a JSON value a state: "0.5", "null"
+};
+
+/// Positions of zoom and focus (lens/lens_states.h sets a lens to one of them).
+struct LensStates {
+  static constexpr std::size_t most = 200;
+  std::vector<std::string> names;  ///< each once, and no numbers
+  std::vector<StateRow> rows;
+
+  bool empty() const { return names.empty(); }
+  std::size_t size() const { return names.size(); }
+};
+
 /// A prescription. A value: alter it as you like, validate() says what is wrong with it.
 ///
 ///     Lens lens;
@@ -93,6 +109,7 @@ struct Lens {
   std::vector<SurfaceGroup> groups = {};   ///< later ones move what earlier ones have moved
   Pose sensor_pose = {};                   ///< of the image surface; image coordinates are the sensor's own
   std::vector<Tolerance> tolerances = {};  ///< that its maker keeps
+  LensStates states = {};                  ///< the lens itself stands in one of them, or as it was altered
 
   /// Index of the stop surface. A valid lens has exactly one.
   std::size_t stop_index() const;

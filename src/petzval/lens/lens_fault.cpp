@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/lens/lens_fault.h>
 #include <petzval/lens/ray_transfer.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace petzval {
 
@@ -94,6 +96,33 @@ Fault tolerances_fault(const Lens& lens) {
     } catch (const InputError& error) {
       return LensFault{fmt::format("tolerances[{}]", i), error.what()};
     }
+  }
+  return {};
+}
+
+/// As far as it can be told without setting the lens to them.
+Fault states_fault(const LensStates& states) {
+  if (states.empty() && !states.rows.empty())
+    return LensFault{"states.names", "is empty; a name for each state would be right"};
+  if (states.size() > LensStates::most)
+    return LensFault{"states.names",
+                     fmt::format("has {} states; at most {} are right", states.size(), LensStates::most)};
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const std::string at = fmt::format("states.names[{}]", i);
+    if (states.names[i].empty() || parse_number(states.names[i]))
+      return LensFault{at, "must be a name that is no number, such as \"wide\""};
+    if (!known.insert(states.names[i]).second)
+      return LensFault{
+          at, fmt::format("\"{}\" stands there twice; each state has a name of its own", states.names[i])};
+  }
+  for (const StateRow& row : states.rows) {
+    if (row.values.size() == states.size()) continue;
+    const std::string at = "states.values." + row.path;
+    if (row.values.size() > states.size())
+      return LensFault{at, fmt::format("has {} values for {} states", row.values.size(), states.size())};
+    return LensFault{at, fmt::format("misses the value of state \"{}\": {} values for {} states",
+                                     states.names[row.values.size()], row.values.size(), states.size())};
   }
   return {};
 }
@@ -236,6 +265,7 @@ std::optional<LensFault> find_fault(const Lens& lens) {
   if (Fault fault = surfaces_fault(lens)) return fault;
   if (Fault fault = poses_fault(lens)) return fault;
   if (Fault fault = tolerances_fault(lens)) return fault;
+  if (Fault fault = states_fault(lens.states)) return fault;
   if (lens.object_distance_mm && !positive(*lens.object_distance_mm))
     return LensFault{"object_distance_mm",
                      "must be positive, in mm from the object to vertex 1, or null for infinity"};

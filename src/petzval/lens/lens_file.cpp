@@ -118,8 +118,12 @@ std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
   }
   write_whole_file(path, text);
   const bool rows_only = text_of == pbrt_text || text_of == iset_text;
-  if (!rows_only) return {};
-  return {path + ": holds one index a gap, and neither fields nor wavelengths: these are left out"};
+  std::vector<std::string> notes;
+  if (rows_only)
+    notes.push_back(path + ": holds one index a gap, and neither fields nor wavelengths: these are left out");
+  if (!lens.states.empty() && (rows_only || text_of == iset_transfer_text))
+    notes.push_back(path + ": holds one state of the lens: the others are left out");
+  return notes;
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/json_setting.h>
 #include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/native_setting.h>
 
 #include <set>
 #include <string_view>
@@ -47,7 +48,9 @@ bool removes(const std::string& key, const json& value) {
   return (value.is_null() && optional.count(key)) || air;
 }
 
-json altered(json root, const std::vector<JsonStep>& steps, const json& value) {
+}  // namespace
+
+json altered_native(json root, const std::vector<JsonStep>& steps, const json& value) {
   json& entry = follow(root, steps);
   if (steps.size() != 3 || steps[0].key != "surfaces" || !steps[1].index) {
     entry = value;
@@ -64,8 +67,6 @@ json altered(json root, const std::vector<JsonStep>& steps, const json& value) {
     surface[key] = value;
   return root;
 }
-
-}  // namespace
 
 namespace {
 
@@ -90,7 +91,7 @@ Lens with_setting(const Lens& lens, const std::string& assigned, const LensReadO
   try {
     const JsonSetting setting =
         parse_json_setting(assignment, "surfaces[4].thickness_mm or aperture.f_number");
-    document.replace(altered(document.root(), setting.steps, setting.value), setting.path, origin);
+    document.replace(altered_native(document.root(), setting.steps, setting.value), setting.path, origin);
   } catch (const InputError& error) {
     throw InputError(origin, error.what());
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/reversed_lens.h>
 
@@ -12,6 +13,7 @@
 namespace petzval {
 
 Lens reversed_lens(const Lens& lens) {
+  if (!lens.states.empty()) return in_every_state(lens, reversed_lens);
   lens.validate();
   require_glass(lens, "turning it round needs");
   require_centred(lens, "centred lenses can be turned round");

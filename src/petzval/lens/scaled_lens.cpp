@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/scaled_lens.h>
 #include <petzval/lens/surface_shape.h>
@@ -10,6 +11,8 @@
 namespace petzval {
 
 Lens scaled_lens(Lens lens, double factor) {
+  if (!lens.states.empty())
+    return in_every_state(lens, [&](const Lens& each) { return scaled_lens(each, factor); });
   if (!(factor > 0) || !std::isfinite(factor))
     throw InputError(fmt::format("a scale factor of {}; it must be positive", factor));
   require_glass(lens, "scaling needs");

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace petzval {
 
@@ -150,7 +151,8 @@ View make_view(const Scene& scene, const LensDrawingOptions& options) {
   view.z_left = z_front - lead;
   const double rays_need = std::min(highest_ray_mm(scene.rays, view.z_left), most_for_rays * y_most);
   view.y_half = std::max(1.06 * std::max(y_most, rays_need), smallest_mm);
-  view.px_per_mm = std::min((options.width_px - side_px) / seen, options.tallest_px / (2 * view.y_half));
+  view.px_per_mm = options.px_per_mm.value_or(
+      std::min((options.width_px - side_px) / seen, options.tallest_px / (2 * view.y_half)));
   view.width_px = seen * view.px_per_mm + side_px;
   view.height_px = 2 * view.y_half * view.px_per_mm;
   return view;
@@ -328,33 +330,88 @@ std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<
   return heights;
 }
 
-std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
-                      const LensDrawingOptions& options) {
+namespace {
+
+constexpr double scale_bar_px = 34;
+
+/// A drawing, laid out.
+struct Sheet {
+  Scene scene;
+  View view;
+  std::vector<std::size_t> rows;  ///< of the surfaces' numbers
+
+  double height_px() const { return view.top_px + view.height_px + scale_bar_px; }
+};
+
+Sheet lay_out_lens(const Lens& lens, const std::vector<DrawnRay>& rays, const LensDrawingOptions& options) {
   if (lens.surfaces.empty()) throw InputError("a lens without surfaces cannot be drawn");
-  constexpr double scale_bar_px = 34, number_gap_px = 6;
-  const Scene scene = make_scene(lens, rays, options);
+  constexpr double number_gap_px = 6;
+  Scene scene = make_scene(lens, rays, options);
   View view = make_view(scene, options);
-  const std::vector<std::size_t> rows =
+  std::vector<std::size_t> rows =
       options.surface_numbers ? number_rows(scene, view) : std::vector<std::size_t>();
   view.top_px = 8 + (options.title.empty() ? 0 : 26) + (options.legend.empty() ? 0 : 20);
   if (!rows.empty())
     view.top_px +=
         number_gap_px + number_row_px * static_cast<double>(1 + *std::max_element(rows.begin(), rows.end()));
+  return {std::move(scene), view, std::move(rows)};
+}
 
-  XmlWriter xml;
-  open_svg(xml, view.width_px, view.top_px + view.height_px + scale_bar_px,
-           "Layout of " + (lens.name.empty() ? "a lens" : lens.name));
+void draw_sheet(XmlWriter& xml, const Sheet& sheet, const LensDrawingOptions& options) {
+  const View& view = sheet.view;
   draw_title_and_legend(xml, options, view.width_px);
-  if (options.surface_numbers) draw_surface_numbers(xml, scene, view, rows);
+  if (options.surface_numbers) draw_surface_numbers(xml, sheet.scene, view, sheet.rows);
   xml.open(
       "svg",
       {{"y", view.top_px}, {"width", view.width_px}, {"height", view.height_px}, {"overflow", "hidden"}});
-  draw_axis_and_image(xml, scene, view);
-  draw_elements(xml, scene, view);
-  draw_rays(xml, scene, view);
-  draw_stop(xml, scene, view, options.azimuth_deg);
+  draw_axis_and_image(xml, sheet.scene, view);
+  draw_elements(xml, sheet.scene, view);
+  draw_rays(xml, sheet.scene, view);
+  draw_stop(xml, sheet.scene, view, options.azimuth_deg);
   xml.close();
   draw_scale_bar(xml, view);
+}
+
+}  // namespace
+
+std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
+                      const LensDrawingOptions& options) {
+  const Sheet sheet = lay_out_lens(lens, rays, options);
+  XmlWriter xml;
+  open_svg(xml, sheet.view.width_px, sheet.height_px(),
+           "Layout of " + (lens.name.empty() ? "a lens" : lens.name));
+  draw_sheet(xml, sheet, options);
+  return std::move(xml).finish();
+}
+
+std::string draw_states(const std::vector<DrawnState>& states) {
+  if (states.empty()) throw InputError("a lens without states cannot be drawn in them");
+  double px_per_mm = std::numeric_limits<double>::infinity();
+  for (const DrawnState& state : states)
+    px_per_mm = std::min(px_per_mm, lay_out_lens(state.lens, state.rays, state.options).view.px_per_mm);
+  std::vector<Sheet> sheets;
+  double width_px = 0, height_px = 0;
+  for (const DrawnState& state : states) {
+    LensDrawingOptions options = state.options;
+    options.px_per_mm = px_per_mm;
+    sheets.push_back(lay_out_lens(state.lens, state.rays, options));
+    width_px = std::max(width_px, sheets.back().view.width_px);
+    height_px += sheets.back().height_px();
+  }
+  XmlWriter xml;
+  open_svg(xml, width_px, height_px, "States of " + states.front().lens.name);
+  double y = 0;
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    // Sensors stand one above the other: what moves is the glass.
+    xml.open("svg", {{"x", width_px - sheets[i].view.width_px},
+                     {"y", y},
+                     {"width", sheets[i].view.width_px},
+                     {"height", sheets[i].height_px()},
+                     {"overflow", "visible"}});
+    draw_sheet(xml, sheets[i], states[i].options);
+    xml.close();
+    y += sheets[i].height_px();
+  }
   return std::move(xml).finish();
 }
 

@@ -28,7 +28,8 @@ struct LensDrawingOptions {
   std::string title;
   std::vector<LegendLabel> legend;  ///< what the colours of the rays mean
   double width_px = 900, tallest_px = 560;
-  bool surface_numbers = true;  ///< counted from 0, as in `surfaces[0]` of the lens file and of --set
+  std::optional<double> px_per_mm;  ///< in place of a size
+  bool surface_numbers = true;      ///< counted from 0, as in `surfaces[0]` of the lens file and of --set
   /// For surfaces whose clear aperture the lens does not give, by surface; 0 or missing: see
   /// drawn_semi_diameters_mm.
   std::vector<double> semi_diameters_mm;
@@ -53,5 +54,15 @@ std::vector<double> drawn_semi_diameters_mm(const Lens& lens, const std::vector<
 /// \throws InputError if the lens has no surfaces.
 std::string draw_lens(const Lens& lens, const std::vector<DrawnRay>& rays,
                       const LensDrawingOptions& options = {});
+
+/// A lens in one of its states, as draw_lens() takes it.
+struct DrawnState {
+  Lens lens;
+  std::vector<DrawnRay> rays;
+  LensDrawingOptions options;
+};
+
+/// States beneath each other, at one scale, their sensors in one line. \throws InputError without any.
+std::string draw_states(const std::vector<DrawnState>& states);
 
 }  // namespace petzval

@@ -86,9 +86,10 @@ std::optional<Material> GlassLookup::successor(const std::string& name,
   const auto abbe = glass->abbe();
   note(fmt::format("glass {} is made no more: {} is taken{}{}", name, other,
                    wanted ? "" : ", of another maker than the file names",
-                   abbe ? fmt::format(", nd {:+.5f} and Vd {:+.2f} from it", abbe->nd - retired->nd,
-                                      abbe->vd - retired->vd)
-                        : std::string()));
+                   !abbe              ? std::string()
+                   : retired->vd == 0 ? fmt::format(", nd {:+.5f} from it", abbe->nd - retired->nd)
+                                      : fmt::format(", nd {:+.5f} and Vd {:+.2f} from it",
+                                                    abbe->nd - retired->nd, abbe->vd - retired->vd)));
   return taken;
 }
 

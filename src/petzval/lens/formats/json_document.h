@@ -60,6 +60,8 @@ class JsonEntry {
   /// \throws InputError if there is a key that is not among these.
   void allow_only(const std::vector<const char*>& keys) const;
 
+  /// As it is, in one line.
+  std::string dump() const { return value_->dump(); }
   std::optional<std::string> long_number() const { return document_->long_number(path_); }
   [[noreturn]] void fail(const std::string& message) const { document_->fail(path_, message); }
 

@@ -7,6 +7,7 @@
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/native.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
@@ -194,6 +195,21 @@ SurfaceGroup read_group(const JsonEntry& entry) {
   return group;
 }
 
+/// {"names": ["wide", "tele"], "values": {"surfaces[4].thickness_mm": [1, 20]}}
+LensStates read_states(const JsonEntry& entry) {
+  entry.allow_only({"names", "values"});
+  LensStates states;
+  for (const JsonEntry& name : entry.at("names").items("a list of names, one a state"))
+    states.names.push_back(name.text("the name of a state"));
+  for (const auto& [path, values] :
+       entry.at("values").members("an object of \"surfaces[4].thickness_mm\": [a value a state]")) {
+    StateRow row{path, {}};
+    for (const JsonEntry& value : values.items("a list, a value a state")) row.values.push_back(value.dump());
+    states.rows.push_back(std::move(row));
+  }
+  return states;
+}
+
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "mirror", "semi_diameter_mm", "apertures", "conic",
@@ -292,7 +308,7 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const JsonEntry format = top.at("format");
   if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
   top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
-                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances"});
+                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances", "states"});
   Lens lens;
   if (const auto name = top.find("name")) lens.name = name->text("a text");
   if (const auto source = top.find("source")) lens.source = source->text("a text");
@@ -313,6 +329,8 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
       lens.tolerances.push_back(read_tolerance(tolerance));
   if (const auto pose = top.find("sensor_pose"); pose && !pose->is_null())
     lens.sensor_pose = read_pose(*pose);
+  if (const auto states = top.find("states"); states && !states->is_null())
+    lens.states = read_states(*states);
   if (!surfaces.empty() && !surfaces.back().find("thickness_mm")) focus_paraxially(lens, document);
   if (const auto fault = find_fault(lens)) document.fail(fault->path, fault->message);
   try {
@@ -320,6 +338,11 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   } catch (const InputError& error) {
     document.fail("", error.what());
   }
+  for (std::size_t i = 0; i < lens.states.size(); ++i) try {
+      in_state(lens, static_cast<double>(i), options);
+    } catch (const InputError& error) {
+      document.fail(fmt::format("states.names[{}]", i), error.what());
+    }
   return lens;
 }
 

@@ -108,6 +108,15 @@ std::string surface_text(const Surface& surface) {
   return text + "}";
 }
 
+std::string states_text(const LensStates& states) {
+  std::vector<std::string> names, rows;
+  for (const std::string& name : states.names) names.push_back(quoted(name));
+  for (const StateRow& row : states.rows)
+    rows.push_back(fmt::format("      {}: [{}]", quoted(row.path), fmt::join(row.values, ", ")));
+  return fmt::format("{{\n    \"names\": [{}],\n    \"values\": {{\n{}\n    }}\n  }}", fmt::join(names, ", "),
+                     fmt::join(rows, ",\n"));
+}
+
 }  // namespace
 
 std::string lens_to_json(const Lens& lens) {
@@ -146,6 +155,7 @@ std::string lens_to_json(const Lens& lens) {
                                   number_text(each.limit)));
     text += fmt::format(",\n  \"tolerances\": [\n{}\n  ]", fmt::join(lines, ",\n"));
   }
+  if (!lens.states.empty()) text += ",\n  \"states\": " + states_text(lens.states);
   return text + "\n}\n";
 }
 

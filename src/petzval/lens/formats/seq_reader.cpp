@@ -8,7 +8,9 @@
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_surfaces.h>
 #include <petzval/lens/formats/seq_system.h>
+#include <petzval/lens/formats/seq_zoom.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/lens_states.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +50,6 @@ const std::map<std::string, SeqKeyword, std::less<>>& keywords() {
     add(SeqRole::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
         "a grating or a hologram");
     add(SeqRole::refused, {"GRN", "UDG", "THM"}, "a graded index");
-    add(SeqRole::refused, {"ZOO"}, "several zoom positions");
     return k;
   }();
   return table;
@@ -142,32 +143,66 @@ void note_unbounded(const Lens& lens, const SeqContext& context) {
   throw InputError(file, surfaces.line_of(i), fmt::format("S{}: {}", i + 1, message));
 }
 
+/// One zoom position.
+Lens read_position(const std::vector<SeqCommand>& commands, const SeqContext& context, GlassLookup& glasses) {
+  SeqSystem system;
+  SeqSurfaces surfaces;
+  SeqFindings findings;
+  for (const SeqCommand& command : commands)
+    if (!surfaces.apply(command, context) && !system.apply(command, context))
+      check_keyword(command, context, surfaces.where(), findings);
+  note_findings(findings, context);
+  Lens lens;
+  surfaces.put_into(lens, system.mm_per_unit, context, glasses);
+  system.put_into(lens, context);
+  if (const auto fault = find_fault(lens)) fail_at(*fault, surfaces, context.file);
+  try {
+    place_image(lens, surfaces, system.mm_per_unit, context);
+  } catch (const InputError& error) {
+    throw InputError(context.file, error.what());
+  }
+  if (const auto fault = find_fault(lens)) fail_at(*fault, surfaces, context.file);
+  return lens;
+}
+
+/// Zoom positions become states, zoom-1 and so on; the lens stands in the first.
+Lens read_positions(const std::vector<SeqCommand>& commands, const SeqContext& context,
+                    GlassLookup& glasses) {
+  const SeqZoom zoom = seq_zoom(commands, context);
+  Lens lens = read_position(seq_at_position(zoom, 0, context), context, glasses);
+  if (zoom.positions < 2) return lens;
+  std::vector<std::string> names{"zoom-1"}, scratch;
+  std::vector<Lens> lenses{lens};
+  const SeqContext silent{context.file, scratch};
+  for (std::size_t i = 1; i < zoom.positions; ++i) {
+    names.push_back(fmt::format("zoom-{}", i + 1));
+    lenses.push_back(read_position(seq_at_position(zoom, i, silent), silent, glasses));
+  }
+  LensStates states = joined_states(std::move(names), lenses).states;
+  const bool same = states.rows.empty();
+  if (!same) lens.states = std::move(states);
+  context.notes.push_back(
+      same ? fmt::format("{}: all {} zoom positions (ZOO) are the same", context.file, zoom.positions)
+           : fmt::format(
+                 "{}: each of {} zoom positions (ZOO) is a state, zoom-1 to zoom-{}; the first is read",
+                 context.file, zoom.positions, zoom.positions));
+  return lens;
+}
+
 }  // namespace
 
 LensFile read_seq(const std::string& text, const std::string& file, const LensReadOptions& options) {
   LensFile result;
   const SeqContext context{file, result.notes};
-  SeqSystem system;
-  SeqSurfaces surfaces;
-  SeqFindings findings;
-  for (const SeqCommand& command : seq_commands(text))
-    if (!surfaces.apply(command, context) && !system.apply(command, context))
-      check_keyword(command, context, surfaces.where(), findings);
-  note_findings(findings, context);
-  Lens& lens = result.lens;
   GlassLookup glasses(options, file, result.notes);
-  surfaces.put_into(lens, system.mm_per_unit, context, glasses);
-  system.put_into(lens, context);
-  if (const auto fault = find_fault(lens)) fail_at(*fault, surfaces, file);
+  result.lens = read_positions(seq_commands(text), context, glasses);
   try {
-    place_image(lens, surfaces, system.mm_per_unit, context);
     glasses.require_all_used();
   } catch (const InputError& error) {
     throw InputError(file, error.what());
   }
-  if (const auto fault = find_fault(lens)) fail_at(*fault, surfaces, file);
-  note_doubtful_curvatures(lens, context);
-  note_unbounded(lens, context);
+  note_doubtful_curvatures(result.lens, context);
+  note_unbounded(result.lens, context);
   return result;
 }
 

@@ -7,9 +7,12 @@
 #include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_glass.h>
+#include <petzval/lens/lens_states.h>
+#include <petzval/lens/pose.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace petzval {
@@ -19,6 +22,9 @@ namespace {
 /// A constant index has no place of its own; as a private glass it stands at two wavelengths, and a reader
 /// takes equal indices for a constant.
 const Material::Table constant_at{{100, 0}, {100000, 0}};
+
+/// How far an object at infinity is.
+constexpr double seq_infinity = 1e13;
 
 [[noreturn]] void refuse(std::size_t surface, const char* key, const std::string& why) {
   throw InputError(fmt::format("surfaces[{}].{}: a .seq file cannot hold {}", surface, key, why));
@@ -201,9 +207,68 @@ std::string seq_wavelengths_text(const Lens& lens) {
 
 }  // namespace
 
-std::string seq_text(const Lens& lens) {
-  lens.validate();
-  constexpr double infinity = 1e13, farthest = 1e10;
+namespace {
+
+/// A .seq file's f-number is that at the object's distance; where that differs from state to state, the
+/// diameter of the entrance pupil says the same.
+Lens with_pupils_for_f_numbers(const Lens& lens) {
+  bool finite = false;
+  for (std::size_t i = 0; i < lens.states.size(); ++i)
+    finite = finite || in_state(lens, static_cast<double>(i)).object_distance_mm;
+  if (!finite || lens.aperture.kind != Aperture::Kind::f_number) return lens;
+  return in_every_state(lens, [](Lens each) {
+    each.aperture = {Aperture::Kind::entrance_pupil_diameter_mm,
+                     first_order(each).entrance_pupil.diameter_mm};
+    return each;
+  });
+}
+
+/// "THI S5" of an entry of the lens, and its value in a state. \throws InputError for one that ZOO has not.
+std::pair<std::string, std::string> seq_zoomed(const std::string& path, const Lens& state) {
+  if (path == "object_distance_mm")
+    return {"THI SO", number_text(state.object_distance_mm.value_or(seq_infinity))};
+  if (path.starts_with("aperture.")) {
+    const std::string text = aperture_text(state);
+    const std::size_t blank = text.find(' ');
+    return {text.substr(0, blank), text.substr(blank + 1)};
+  }
+  const std::size_t close = path.find("].");
+  if (path.starts_with("surfaces[") && close != path.npos) {
+    const auto i = static_cast<std::size_t>(std::atoi(path.c_str() + std::string("surfaces[").size()));
+    const std::string key = path.substr(close + 2);
+    const Surface& surface = state.surfaces[i];
+    if (key == "thickness_mm") return {fmt::format("THI S{}", i + 1), number_text(surface.thickness_mm)};
+    if (key == "radius_mm") return {fmt::format("CUY S{}", i + 1), number_text(surface.curvature_per_mm)};
+    if (key == "conic" && !is_odd_polynomial(surface))
+      return {fmt::format("K S{}", i + 1), number_text(surface.conic)};
+  }
+  throw InputError(
+      fmt::format("states: Petzval writes no states of {} into a .seq file; distances, radii, conics and the "
+                  "aperture are held",
+                  path));
+}
+
+std::string seq_zoom_text(const Lens& lens) {
+  if (lens.states.empty()) return "";
+  require_centred(lens, "Petzval writes states into .seq files for centred lenses");
+  std::string text = fmt::format("ZOO {}\n", lens.states.size());
+  for (const StateRow& row : lens.states.rows) {
+    std::string line;
+    for (std::size_t i = 0; i < lens.states.size(); ++i) {
+      const auto [what, value] = seq_zoomed(row.path, in_state(lens, static_cast<double>(i)));
+      line += (i == 0 ? "ZOO " + what : std::string()) + " " + value;
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string seq_text(const Lens& given) {
+  given.validate();
+  const Lens lens = with_pupils_for_f_numbers(given);
+  constexpr double infinity = seq_infinity, farthest = 1e10;
   if (lens.object_distance_mm && *lens.object_distance_mm >= farthest)
     throw InputError("object_distance_mm: in a .seq file a distance from 1e10 on is infinite");
   std::string private_glasses, surfaces;
@@ -223,7 +288,7 @@ std::string seq_text(const Lens& lens) {
   text += seq_wavelengths_text(lens) + fields_text(lens.fields);
   if (!private_glasses.empty()) text += fmt::format("PRV\n{}END\n", private_glasses);
   text += fmt::format("SO 0.0 {}\n", number_text(lens.object_distance_mm.value_or(infinity)));
-  return text + surfaces + "SI 0.0 0.0\n" + breaks.back() + "GO\n";
+  return text + surfaces + "SI 0.0 0.0\n" + breaks.back() + seq_zoom_text(lens) + "GO\n";
 }
 
 }  // namespace petzval

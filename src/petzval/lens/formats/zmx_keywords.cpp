@@ -17,7 +17,6 @@ enum class Role {
   vignetting_factor,    ///< stands in for real clear apertures, which we trace: a note unless zero
   refused,              ///< changes rays, not modelled
   refused_unless_zero,  ///< the same, but all zeros say that it is not used
-  configurations,       ///< how many the file has; the surfaces hold one of them, a note says so
 };
 
 struct Keyword {
@@ -38,13 +37,13 @@ const Keywords& header_keywords() {
         {"MODE", "NAME", "UNIT", "ENPD", "FNUM", "OBNA", "FLOA", "ENVD", "GCAT", "FTYP", "XFLN", "YFLN",
          "XFLD", "YFLD", "WAVM", "WAVL", "WAVN", "PWAV"});
     // Names and notes; weights of fields and wavelengths; how a program searches, draws and evaluates.
-    add(k, Role::known, {"VERS", "NOTE", "AUTH", "IWDP", "TITL", "LANG", "LUID", "EERA", "DBDT", "RCMF",
-                         "BLNK", "FWGN", "FWGT", "WWGT", "WWGN", "PUPD", "GFAC", "RAIM", "PUSH", "SDMA",
-                         "OMMA", "ROPD", "HYPR", "PICB", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "MOFF"});
+    add(k, Role::known,
+        {"VERS", "NOTE", "AUTH", "IWDP", "TITL", "LANG", "LUID", "EERA", "DBDT", "RCMF", "BLNK",
+         "FWGN", "FWGT", "WWGT", "WWGN", "PUPD", "GFAC", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD",
+         "HYPR", "PICB", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "MOFF", "MNUM"});
     add(k, Role::vignetting_factor,
         {"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "ZVDX", "ZVDY", "ZVCX", "ZVCY", "ZVAN"});
     add(k, Role::refused_unless_zero, {"PFIL"}, "a pupil filter");
-    add(k, Role::configurations, {"MNUM"});
     return k;
   }();
   return table;
@@ -58,9 +57,9 @@ const Keywords& surface_keywords() {
          "OBSC", "SQOB", "ELOB", "SPID", "OBDC"});
     // Names, coatings, drawing, mechanics, physical optics, solves and pickups (their present values are
     // written out), and extra data that none of the surface types read here uses.
-    add(k, Role::known,
-        {"COMM", "COAT", "FIMP", "HIDE", "MIRR", "SLAB", "MEMA", "OEMA", "MAZH", "POPS", "SSID",
-         "VDSZ", "PZUP", "PPAR", "PKUP", "PRAM", "GLCZ", "XDAT", "BLNK", "BRDF", "SCAT", "PRIN"});
+    add(k, Role::known, {"COMM", "COAT", "FIMP", "HIDE", "MIRR", "SLAB", "MEMA", "OEMA", "MAZH",
+                         "POPS", "SSID", "VDSZ", "PZUP", "PPAR", "PKUP", "PRAM", "GLCZ", "TCOM",
+                         "TOLE", "MARA", "CHRA", "XDAT", "BLNK", "BRDF", "SCAT", "PRIN"});
     add(k, Role::refused, {"UDAD", "USAP", "UAPF"}, "a user-defined aperture");
     add(k, Role::refused, {"NSCS", "NSCO", "NSOA", "NSOO", "NSOP", "NSOD"}, "non-sequential objects");
     add(k, Role::refused_unless_zero, {"SCBD"}, "a tilted or decentred surface");
@@ -79,7 +78,6 @@ bool all_zero(const ZmxRecord& record) {
 struct Findings {
   std::set<std::string> unknown;
   bool vignetting = false;
-  std::vector<std::string> notes;
 };
 
 void check_block(const ZmxFile& file, const ZmxBlock& block, const Keywords& keywords, Findings& findings) {
@@ -94,10 +92,6 @@ void check_block(const ZmxFile& file, const ZmxBlock& block, const Keywords& key
       file.fail(block, record.line,
                 fmt::format("{} ({}) is not modelled; remove it from the file", record.keyword, meaning));
     if (role == Role::vignetting_factor && !all_zero(record)) findings.vignetting = true;
-    if (role == Role::configurations && file.number_or(block, record, 0, 1) > 1)
-      findings.notes.push_back(
-          fmt::format("{}:{}: of {} configurations (MNUM) the one written out in the surfaces is read",
-                      file.name, record.line, quotable(record.values[0])));
   }
 }
 
@@ -107,7 +101,7 @@ std::vector<std::string> check_zmx_keywords(const ZmxFile& file) {
   Findings findings;
   check_block(file, file.header, header_keywords(), findings);
   for (const ZmxBlock& block : file.surfaces) check_block(file, block, surface_keywords(), findings);
-  std::vector<std::string> notes = std::move(findings.notes);
+  std::vector<std::string> notes;
   if (findings.vignetting)
     notes.push_back(file.name +
                     ": vignetting factors are not used; the clear apertures vignette by themselves");

@@ -4,11 +4,14 @@
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/field_point.h>
 #include <petzval/lens/formats/zmx.h>
+#include <petzval/lens/formats/zmx_configurations.h>
 #include <petzval/lens/formats/zmx_keywords.h>
 #include <petzval/lens/formats/zmx_surfaces.h>
 #include <petzval/lens/lens_fault.h>
+#include <petzval/lens/lens_states.h>
 
 #include <algorithm>
 #include <cmath>
@@ -170,17 +173,11 @@ void note_unbounded(const ZmxFile& file, const Lens& lens, std::vector<std::stri
                                 unbounded, lens.surfaces.size()));
 }
 
-}  // namespace
-
-LensFile read_zmx(const std::string& text, const std::string& file_name, const LensReadOptions& options) {
-  const ZmxFile file = zmx_records(text, file_name);
-  LensFile result;
-  result.notes = check_zmx_keywords(file);
-  check_environment(file);
-  GlassLookup glasses(options, file_name, result.notes);
-  ZmxContext context{file, glasses, read_unit(file), {}, result.notes};
+/// One configuration. \param notes  what its reader has to say, but for the glasses.
+Lens read_one(const ZmxFile& file, GlassLookup& glasses, std::vector<std::string>& notes) {
+  ZmxContext context{file, glasses, read_unit(file), {}, notes};
   if (const ZmxRecord* catalogues = file.header.find("GCAT")) context.catalogues = catalogues->values;
-  Lens& lens = result.lens;
+  Lens lens;
   if (const ZmxRecord* name = file.header.find("NAME")) lens.name = name->rest;
   lens.object_distance_mm = zmx_object_distance_mm(context);
   put_zmx_surfaces(context, lens);
@@ -189,13 +186,57 @@ LensFile read_zmx(const std::string& text, const std::string& file_name, const L
   lens.fields = read_fields(context);
   read_wavelengths(file, lens);
   if (const auto fault = find_fault(lens))
-    throw InputError(file_name, line_of(file, fault->path), fault->path + " " + fault->message);
+    throw InputError(file.name, line_of(file, fault->path), fault->path + " " + fault->message);
+  return lens;
+}
+
+/// Each configuration becomes a state, config-1 and so on, unless there is something in them that is not
+/// modelled.
+void put_configurations(const ZmxFile& file, GlassLookup& glasses, Lens& lens,
+                        std::vector<std::string>& notes) {
+  const std::size_t count = zmx_configuration_count(file);
+  if (count < 2) return;
+  const auto say = [&](const std::string& text) {
+    notes.push_back(fmt::format("{}:{}: of {} configurations (MNUM) {}", file.name,
+                                file.header.find("MNUM")->line, count, text));
+  };
+  if (const std::string fault = zmx_configurations_fault(file); !fault.empty())
+    return say(fmt::format("the one written out in the surfaces is read: {}", fault));
+  std::vector<std::string> names, scratch;
+  std::vector<Lens> lenses;
+  for (std::size_t i = 1; i <= count; ++i) {
+    names.push_back(fmt::format("config-{}", i));
+    lenses.push_back(read_one(zmx_configuration(file, i), glasses, scratch));
+    if (!zmx_solves_image(file)) continue;
+    const double image_mm = first_order(lenses.back()).paraxial_image_mm;
+    if (!std::isfinite(image_mm))
+      throw InputError(file.name,
+                       fmt::format("configuration {} forms no paraxial image to solve for (MAZH)", i));
+    lenses.back().surfaces.back().thickness_mm = lens.last_sense() * image_mm;
+  }
+  LensStates states = joined_states(std::move(names), lenses).states;
+  if (states.rows.empty()) return say("all are the same");
+  lens.states = std::move(states);
+  say(fmt::format("each is a state, config-1 to config-{}; the one written out in the surfaces is read",
+                  count));
+}
+
+}  // namespace
+
+LensFile read_zmx(const std::string& text, const std::string& file_name, const LensReadOptions& options) {
+  const ZmxFile file = zmx_records(text, file_name);
+  LensFile result;
+  result.notes = check_zmx_keywords(file);
+  check_environment(file);
+  GlassLookup glasses(options, file_name, result.notes);
+  result.lens = read_one(file, glasses, result.notes);
+  put_configurations(file, glasses, result.lens, result.notes);
   try {
     glasses.require_all_used();
   } catch (const InputError& error) {
     throw InputError(file_name, error.what());
   }
-  note_unbounded(file, lens, result.notes);
+  note_unbounded(file, result.lens, result.notes);
   return result;
 }
 

@@ -68,7 +68,10 @@ ZmxFile zmx_records(const std::string& text, const std::string& file) {
   for (TextLine& line : text_lines(text)) {
     if (line.words.empty()) continue;
     if (is_tail) {
-      if (line.words.front() == "MNUM") result.header.records.push_back(record_of(std::move(line)));
+      if (line.words.front() == "MNUM")
+        result.header.records.push_back(record_of(std::move(line)));
+      else if (result.header.find("MNUM") && line.words.front() != "TOL")  // tolerances
+        result.operands.push_back(record_of(std::move(line)));
       continue;
     }
     const bool indented = line.text.front() == ' ' || line.text.front() == '\t';

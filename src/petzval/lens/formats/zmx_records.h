@@ -28,7 +28,8 @@ struct ZmxBlock {
 struct ZmxFile {
   std::string name;
   ZmxBlock header;
-  std::vector<ZmxBlock> surfaces;  ///< 0 is the object, the last one the image
+  std::vector<ZmxBlock> surfaces;   ///< 0 is the object, the last one the image
+  std::vector<ZmxRecord> operands;  ///< behind MNUM: what the configurations set, one value each
 
   /// "SURF 5: " and so on before the message. \throws InputError with file and line.
   [[noreturn]] void fail(const ZmxBlock& block, int line, const std::string& message) const;
@@ -38,9 +39,9 @@ struct ZmxFile {
 };
 
 /// Records of surfaces are indented; what follows the last surface without indent (merit function,
-/// configurations, tolerances) says nothing about the lens as it stands and is left out, but for
-/// the number of configurations, MNUM. \throws InputError
-/// unless the surfaces are numbered from 0 on and there are at least three.
+/// tolerances) says nothing about the lens as it stands and is left out, but for the configurations: their
+/// number, MNUM, joins the header, and what stands behind it are their operands. \throws InputError unless
+/// the surfaces are numbered from 0 on and there are at least three.
 ZmxFile zmx_records(const std::string& text, const std::string& file);
 
 }  // namespace petzval

@@ -6,10 +6,13 @@
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/zmx.h>
+#include <petzval/lens/lens_states.h>
+#include <petzval/lens/pose.h>
 #include <petzval/lens/surface_kind.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 
 namespace petzval {
@@ -254,6 +257,62 @@ std::string zmx_wavelengths_text(const Lens& lens) {
   return text + fmt::format("PWAV {}\n", reference - wavelengths.begin() + 1);
 }
 
+/// Which operand of the configurations an entry of the lens is, and how it holds its value.
+struct ZmxOperand {
+  const char* keyword;
+  std::size_t place;  ///< the surface or field
+  std::string (*value)(const Lens& lens, std::size_t place);
+};
+
+/// \throws InputError for an entry that no operand holds.
+ZmxOperand zmx_operand(const std::string& path) {
+  std::size_t surface = 0;
+  const std::size_t close = path.find("].");
+  const std::string key = close == path.npos ? path : path.substr(close + 2);
+  if (path.starts_with("surfaces[") && close != path.npos)
+    surface = static_cast<std::size_t>(std::atoi(path.c_str() + std::string("surfaces[").size()));
+  if (path == "object_distance_mm")
+    return {"THIC", 0, [](const Lens& lens, std::size_t) {
+              return lens.object_distance_mm ? number_text(*lens.object_distance_mm) : std::string("1e10");
+            }};
+  if (path.starts_with("aperture."))
+    return {"APER", 0, [](const Lens& lens, std::size_t) {
+              const bool na = lens.aperture.kind == Aperture::Kind::image_na;
+              return number_text(na ? 0.5 / lens.aperture.value : lens.aperture.value);
+            }};
+  if (path.starts_with("surfaces[") && key == "thickness_mm")
+    return {"THIC", surface + 1,
+            [](const Lens& lens, std::size_t i) { return number_text(lens.surfaces[i - 1].thickness_mm); }};
+  if (path.starts_with("surfaces[") && key == "radius_mm")
+    return {"CRVT", surface + 1, [](const Lens& lens, std::size_t i) {
+              return number_text(lens.surfaces[i - 1].curvature_per_mm);
+            }};
+  if (path.starts_with("surfaces[") && key == "conic")
+    return {"CONN", surface + 1,
+            [](const Lens& lens, std::size_t i) { return number_text(lens.surfaces[i - 1].conic); }};
+  throw InputError(
+      fmt::format("states: Petzval writes no states of {} into a .zmx file; distances, radii, conics and the "
+                  "aperture are held",
+                  path));
+}
+
+/// MNUM and its operands, all configurations of one before the next.
+std::string zmx_configurations_text(const Lens& lens) {
+  if (lens.states.empty()) return "";
+  require_centred(lens, "Petzval writes states into .zmx files for centred lenses");
+  std::vector<Lens> states;
+  for (std::size_t i = 0; i < lens.states.size(); ++i)
+    states.push_back(in_state(lens, static_cast<double>(i)));
+  std::string text = fmt::format("MNUM {} {}\n", lens.states.size(), present_state(lens).value_or(0) + 1);
+  for (const StateRow& row : lens.states.rows) {
+    const ZmxOperand operand = zmx_operand(row.path);
+    for (std::size_t i = 0; i < states.size(); ++i)
+      text += fmt::format("{} {} {} {} 0 0 0 1 1 1 0 0 \"\" 0\n", operand.keyword, operand.place, i + 1,
+                          operand.value(states[i], operand.place));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string zmx_text(const Lens& lens) {
@@ -277,7 +336,8 @@ std::string zmx_text(const Lens& lens) {
     if (i < lens.surfaces.size())
       text += surface_text(lens, i, lens.surfaces[i].thickness_mm + axis.gap_shift_mm[i + 1], number);
   }
-  return text + fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n", number);
+  text += fmt::format("SURF {}\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ 0\n", number);
+  return text + zmx_configurations_text(lens);
 }
 
 }  // namespace petzval
