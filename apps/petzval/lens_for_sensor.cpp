@@ -44,7 +44,7 @@ ordered_json to_json(const LensOnSensor& lens) {
   const char* unit = lens.view.at_infinity ? "deg" : "mm";
   ordered_json json = {{"lens", lens.lens},
                        {"scale", lens.scale},
-                       {"efl_mm", lens.efl_mm},
+                       {"efl_mm", number_or_null(lens.efl_mm)},
                        {"f_number", number_or_null(lens.f_number)},
                        {"working_f_number", number_or_null(lens.working_f_number)},
                        {"magnification", lens.magnification},

@@ -7,6 +7,7 @@
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/wavelength_range.h>
+#include <petzval/simulate/lens_on_sensor.h>
 
 #include <cctype>
 #include <cmath>
@@ -33,12 +34,6 @@ std::string lower(std::string text) {
 /// Whether the name, what the lens is called or where it comes from has the word, in capitals or not.
 bool mentions(const std::string& name, const Lens& lens, const std::string& word) {
   return lower(name + "\n" + lens.name + "\n" + lens.source).find(lower(word)) != std::string::npos;
-}
-
-/// Two groups of lenses with a common focus, as telecentric lenses are, have next to no power.
-bool is_afocal(const FirstOrder& data) {
-  constexpr double tracks = 1000;
-  return !(std::abs(data.efl_mm) < tracks * data.total_track_mm);
 }
 
 void list(const std::string& word, const Shared& shared) {

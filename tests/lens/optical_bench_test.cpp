@@ -5,6 +5,7 @@
 #include "scratch_file.h"
 
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/lens/surface_shape.h>
 
 #include <map>
@@ -25,7 +26,7 @@ std::string bench_complaint(const std::string& text, const std::string& name = "
   return error_of([&] { read_text(name, text); });
 }
 
-TEST(OpticalBench, ReadsSurfacesGlassesAndTheFirstSetting) {
+TEST(OpticalBench, ReadsSurfacesAndGlasses) {
   const LensFile file = read_bench(bench("", singlet));
   const Lens& lens = file.lens;
   EXPECT_EQ(lens.name, "Sample");
@@ -42,8 +43,21 @@ TEST(OpticalBench, ReadsSurfacesGlassesAndTheFirstSetting) {
   EXPECT_NEAR(first_order(lens).f_number, 8, 1e-9);
   const double f = lens.surfaces[0].material.index(486.1327), c = lens.surfaces[0].material.index(656.2725);
   EXPECT_NEAR(0.5168 / (f - c), 64.17, 1e-6);
-  ASSERT_EQ(file.notes.size(), 1u);
-  expect_mentions(file.notes[0], {"2 settings"});
+  EXPECT_TRUE(file.notes.empty());
+  EXPECT_TRUE(lens.states.empty());
+}
+
+TEST(OpticalBench, HasAStateForEachSettingThatGivesAllGaps) {
+  const std::string rows = "1\t51.68\td1\t1.5168\t25\t64.17\n2\tInfinity\t1\t\t25\n3\tAS\tBf\t\t12\n";
+  const Lens lens = read_bench(bench("", rows, "", "d1\t4\t5\nBf\t96.3\t110\n")).lens;
+  EXPECT_EQ(lens.states.names, (std::vector<std::string>{"setting-1", "setting-2"}));
+  EXPECT_EQ(lens.surfaces[0].thickness_mm, 4);
+  const Lens second = in_state(lens, "setting-2");
+  EXPECT_EQ(second.surfaces[0].thickness_mm, 5);
+  EXPECT_EQ(second.surfaces[2].thickness_mm, 110);
+  EXPECT_EQ(second.fields.values.back(), 12);
+  // The second setting does not say d1.
+  EXPECT_TRUE(read_bench(bench("", rows, "", "d1\t4\nBf\t96.3\t110\n")).lens.states.empty());
 }
 
 TEST(OpticalBench, TakesTheCataloguesGlassWhereIndexAndAbbeNumberAreItsOwn) {

@@ -6,7 +6,9 @@
 
 #include <petzval/base/data_directory.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/lens_states.h>
 
+#include <cmath>
 #include <map>
 
 namespace petzval {
@@ -85,6 +87,34 @@ TEST(PatentLenses, HaveTheFocalLengthsThatOthersState) {
     const FirstOrder data = first_order(file.lens);
     expect_relative(data.efl_mm, stated.at(name).efl_mm, 0.01);
     expect_relative(data.f_number, stated.at(name).f_number, 0.02);
+  }
+}
+
+struct StatedState {
+  const char* lens;
+  double state, efl_mm, magnification;  ///< 0: not stated
+};
+
+/// What the patents print of zoom and focus positions, half of a unit of the last digit and 0.1 % off at
+/// most: the gaps are rounded too.
+TEST(PatentLenses, AreInEveryStateWhatThePatentSays) {
+  const StatedState states[] = {{"wo-2020-170591", 0, 14.4, 0},
+                                {"wo-2020-170591", 1, 16.0, 0},
+                                {"wo-2020-170591", 2, 18.0, 0},
+                                {"wo-2020-170591", 3, 23.3, 0},
+                                {"jp-2019-008031", 0, 14.420, 0},
+                                {"jp-2019-008031", 1, 20.000, 0},
+                                {"jp-2019-008031", 2, 29.101, 0},
+                                {"us-2020-0341250", 1, 57.44, -0.02458},
+                                {"us-2020-0341250", 2, 53.71, -0.18705},
+                                {"us-5751485", 1, 0, -0.5},
+                                {"us-5751485", 2, 0, -1}};
+  for (const StatedState& each : states) {
+    SCOPED_TRACE(each.lens);
+    const FirstOrder data = first_order(in_state(read_lens(each.lens).lens, each.state));
+    if (each.efl_mm != 0) EXPECT_NEAR(data.efl_mm, each.efl_mm, 0.005 + 1e-3 * each.efl_mm);
+    if (each.magnification != 0)
+      EXPECT_NEAR(data.magnification, each.magnification, 5e-6 + 1e-3 * std::abs(each.magnification));
   }
 }
 

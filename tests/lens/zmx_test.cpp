@@ -373,10 +373,10 @@ TEST(ZmxWriter, RefusesWhatItCannotHold) {
 }
 
 TEST(LensFile, UnknownExtensions) {
-  expect_mentions(error_of([] { read_text("lens.txt", "lens"); }), {"lens.txt: ", ".json", ".dat", ".zmx"});
+  expect_mentions(error_of([] { read_text("lens.doc", "lens"); }), {"lens.doc: ", ".json", ".dat", ".zmx"});
   const Lens lens = read_lens("tessar").lens;
-  expect_mentions(error_of([&] { through_file(lens, "lens.txt"); }),
-                  {"lens.txt: ", ".json", ".iset.json", ".dat", ".zmx", ".seq"});
+  expect_mentions(error_of([&] { through_file(lens, "lens.doc"); }),
+                  {"lens.doc: ", ".json", ".iset.json", ".dat", ".zmx", ".seq"});
   expect_mentions(error_of([] { read_lens("tesar"); }), {"tesar", "tessar"});
   EXPECT_EQ(read_text("LENS.ZMX", zmx_example).lens.name, "a made-up lens");
 }

@@ -115,6 +115,11 @@ FieldTableRequest reached(const Camera& camera, std::optional<double> distance_m
   return at;
 }
 
+/// Of what an afocal lens does not have.
+void forget_power(LensOnSensor& lens) {
+  lens.efl_mm = lens.f_number = lens.hyperfocal_m = std::numeric_limits<double>::infinity();
+}
+
 LensOnSensor judged(const Camera& camera, std::optional<double> distance_m,
                     const std::vector<double>& wavelengths_nm, const Context& context) {
   const SensorGeometry& frame = frame_of(camera);
@@ -139,6 +144,7 @@ LensOnSensor judged(const Camera& camera, std::optional<double> distance_m,
   result.by_mtf = mtf_depth(lens, first, at, result.nyquist_cpmm / 2);
   result.hyperfocal_m =
       (first.efl_mm * first.efl_mm / (first.f_number * pixel_mm) + std::abs(first.efl_mm)) / mm_per_m;
+  if (is_afocal(first)) forget_power(result);
   for (const double height_mm : at.fields)
     result.places.push_back(place_of(lens, at, height_mm, result.nyquist_cpmm));
   return result;
@@ -192,6 +198,11 @@ double corner_mtf(const LensOnSensor& lens) {
 }
 
 }  // namespace
+
+bool is_afocal(const FirstOrder& data) {
+  constexpr double tracks = 1000;
+  return !(std::abs(data.efl_mm) < tracks * data.total_track_mm);
+}
 
 LensOnSensor lens_on_sensor(const Camera& camera, std::optional<double> distance_m,
                             const std::vector<double>& wavelengths_nm, const Context& context) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/context.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/report/table.h>
 #include <petzval/simulate/camera.h>
 #include <petzval/simulate/depth_of_field.h>
@@ -27,8 +28,8 @@ struct PlaceOnSensor {
 
 struct LensOnSensor {
   std::string lens;
-  double scale = 1;  ///< of match_lenses(): what the lens was scaled by
-  double efl_mm = 0, f_number = 0, working_f_number = 0;
+  double scale = 1;                                       ///< of match_lenses(): what the lens was scaled by
+  double efl_mm = 0, f_number = 0, working_f_number = 0;  ///< the first two infinite where it is afocal
   double magnification = 0;  ///< paraxial, on the sensor where it stands; 0 at infinity
   FrameView view;            ///< what the sensor sees
   double per_pixel = 0;      ///< in the middle of the object: mm, or degrees at infinity
@@ -41,6 +42,10 @@ struct LensOnSensor {
   double hyperfocal_m = 0;            ///< f²/(N c) + f, c one pixel
   std::vector<PlaceOnSensor> places;  ///< middle, half way, corner
 };
+
+/// Two groups of lenses with a common focus, as telecentric lenses are, have next to no power: more than a
+/// thousand times their track of focal length.
+bool is_afocal(const FirstOrder& data);
 
 /// The camera's lens, with its aperture, before its sensor, and an object at a distance from the sensor plane
 /// (absent: at infinity). Its focus, unless it is a distance or sought, is where the mean MTF at half of

@@ -11,7 +11,8 @@ namespace petzval {
 /// Whether a text has the section `[lens data]`, by which such files are known.
 bool is_optical_bench(const std::string& text);
 
-/// Reads a lens at its first setting: the first column of `[variable distances]`. Glasses are those of the
+/// Reads a lens, with a state for each setting: a column of `[variable distances]`, the first of which it is
+/// left in. Glasses are those of the
 /// catalogue where a row names one with the index that the row gives, else nd and Vd. The lens is open to
 /// the f-number of the file, else to the diameter of its stop; fields go up to half of the angle of view.
 /// \throws InputError with file and line.

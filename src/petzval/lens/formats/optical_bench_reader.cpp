@@ -8,7 +8,7 @@
 #include <petzval/lens/formats/bench_lens.h>
 #include <petzval/lens/formats/glass_lookup.h>
 #include <petzval/lens/formats/optical_bench.h>
-#include <petzval/lens/lens_fault.h>
+#include <petzval/lens/lens_states.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,14 +86,20 @@ class BenchReader {
     }
   }
 
-  /// Of the first setting.
-  std::optional<double> variable(const std::string& name) {
+  /// At a setting, counted from 0.
+  std::optional<double> variable(const std::string& name, std::size_t setting) {
     const auto found = variables_.find(name);
-    if (found == variables_.end() || found->second.values.empty() || is_blank(found->second.values[0]))
-      return {};
-    if (found->second.values[0] == "Infinity") return std::numeric_limits<double>::infinity();
-    line_ = found->second.line;
-    return number(found->second.values[0], "number");
+    if (found == variables_.end()) return {};
+    const auto& [line, values] = found->second;
+    if (setting >= values.size() || is_blank(values[setting])) return {};
+    if (values[setting] == "Infinity") return std::numeric_limits<double>::infinity();
+    line_ = line;
+    return number(values[setting], "number");
+  }
+  /// The same; where a later setting does not say it, as at the first.
+  std::optional<double> usual(const std::string& name, std::size_t setting) {
+    const std::optional<double> own = variable(name, setting);
+    return own ? own : variable(name, 0);
   }
 
   void take_surface(const Cells& cells) {
@@ -165,45 +171,74 @@ class BenchReader {
     return power % 2 == 1 || power + 1 <= 1 + 2 * odd_powers_ ? power + 1 : power + 2;
   }
 
-  void close_gaps() {
-    Lens& lens = made_.lens;
+  /// Nothing where a setting lacks a gap that others give.
+  std::optional<double> gap(std::size_t surface, std::size_t setting) {
+    const std::string& text = gaps_[surface].values[0];
+    if (const std::optional<double> number = parse_number(text)) return number;
+    return is_blank(text) ? std::nullopt : variable(text, setting);
+  }
+
+  void close_gaps(Lens& lens, std::size_t setting, bool& unfocused) {
     for (std::size_t i = 0; i < gaps_.size(); ++i) {
-      const std::string& text = gaps_[i].values[0];
-      const bool last = i + 1 == gaps_.size();
+      const std::optional<double> distance = gap(i, setting);
       line_ = gaps_[i].line;
-      std::optional<double> gap = parse_number(text);
-      if (!gap && !is_blank(text)) gap = variable(text);
-      line_ = gaps_[i].line;
-      if (!gap && !last)
+      if (!distance && i + 1 < gaps_.size())
         fail(fmt::format("the thickness '{}' is neither a number nor given in [variable distances]",
-                         quotable(text)));
-      if (gap && !std::isfinite(*gap)) fail("the thickness is infinite");
-      if (gap) lens.surfaces[i].thickness_mm = *gap;
-      if (!gap) unfocused_ = true;
+                         quotable(gaps_[i].values[0])));
+      if (distance && !std::isfinite(*distance)) fail("the thickness is infinite");
+      if (distance)
+        lens.surfaces[i].thickness_mm = *distance;
+      else
+        unfocused = true;
     }
   }
 
+  LensFile at(std::size_t setting) {
+    LensFile file{made_.lens, {}};
+    Lens& lens = file.lens;
+    BenchFacts facts;
+    close_gaps(lens, setting, facts.unfocused);
+    if (const std::optional<double> object = variable("d0", setting); object && std::isfinite(*object))
+      lens.object_distance_mm = *object;
+    if (const std::optional<double> wide = usual("Aperture Diameter", setting); wide && *wide > 0)
+      lens.surfaces[lens.stop_index()].semi_diameter_mm = *wide / 2;
+    facts.f_number = usual("F-Number", setting);
+    facts.full_angle_deg = usual("Angle of View", setting);
+    facts.image_circle_mm = usual("Image Height", setting);
+    complete_bench_lens(file, facts, setting == 0 ? no_dispersion_ : std::vector<std::size_t>{}, file_);
+    return file;
+  }
+
+  /// Settings that give all of their gaps; where there is but one, no back focus is needed.
+  std::vector<std::size_t> settings() {
+    std::size_t columns = 1;
+    for (const auto& [name, row] : variables_) columns = std::max(columns, row.values.size());
+    std::vector<std::size_t> whole{0};
+    const bool focused = gap(gaps_.size() - 1, 0).has_value();
+    for (std::size_t setting = 1; focused && setting < columns; ++setting) {
+      bool all = variable("d0", setting) || variable("Focal Length", setting);
+      for (std::size_t i = 0; all && i < gaps_.size(); ++i) all = gap(i, setting).has_value();
+      if (all) whole.push_back(setting);
+    }
+    return whole;
+  }
+
   LensFile finished() {
-    Lens& lens = made_.lens;
-    if (lens.surfaces.empty())
+    if (made_.lens.surfaces.empty())
       throw InputError(file_, "[lens data] is empty; it should have a row a surface");
-    if (std::ranges::none_of(lens.surfaces, &Surface::stop))
+    if (std::ranges::none_of(made_.lens.surfaces, &Surface::stop))
       throw InputError(file_,
                        "has no stop; a row of [lens data] with AS in place of a radius would be right");
-    close_gaps();
-    if (const std::optional<double> object = variable("d0"); object && std::isfinite(*object))
-      lens.object_distance_mm = *object;
-    Surface& stop = lens.surfaces[lens.stop_index()];
-    if (const std::optional<double> wide = variable("Aperture Diameter"); wide && *wide > 0)
-      stop.semi_diameter_mm = *wide / 2;
-    BenchFacts facts;
-    facts.f_number = variable("F-Number");
-    facts.full_angle_deg = variable("Angle of View");
-    facts.image_circle_mm = variable("Image Height");
-    facts.unfocused = unfocused_;
-    if (!patent_.empty()) lens.source = fmt::format("{} (Optical Bench)", patent_);
-    note_settings();
-    complete_bench_lens(made_, facts, no_dispersion_, file_);
+    if (!patent_.empty()) made_.lens.source = fmt::format("{} (Optical Bench)", patent_);
+    std::vector<std::string> names;
+    std::vector<Lens> lenses;
+    for (const std::size_t setting : settings()) {
+      LensFile file = at(setting);
+      if (setting == 0) made_.notes.insert(made_.notes.end(), file.notes.begin(), file.notes.end());
+      names.push_back(fmt::format("setting-{}", setting + 1));
+      lenses.push_back(std::move(file.lens));
+    }
+    made_.lens = lenses.size() == 1 ? lenses[0] : joined_states(std::move(names), lenses);
     require_used();
     return std::move(made_);
   }
@@ -216,20 +251,6 @@ class BenchReader {
     }
   }
 
-  void note_settings() {
-    const auto focal_lengths = variables_.find("Focal Length");
-    if (focal_lengths == variables_.end()) return;
-    std::size_t settings = 0;
-    for (const auto& [name, row] : variables_) settings = std::max(settings, row.values.size());
-    while (settings > 1 && std::ranges::all_of(variables_, [&](const auto& each) {
-             return each.second.values.size() < settings || is_blank(each.second.values[settings - 1]);
-           }))
-      --settings;
-    if (settings > 1)
-      made_.notes.push_back(fmt::format(
-          "{}: holds the lens at {} settings of zoom or focus; the first is read", file_, settings));
-  }
-
   std::string file_;
   LensFile made_;
   GlassLookup glasses_;
@@ -240,7 +261,6 @@ class BenchReader {
   std::vector<std::string> names_;
   std::vector<NamedRow> gaps_;
   std::vector<std::size_t> no_dispersion_;
-  bool unfocused_ = false;
 };
 
 }  // namespace
