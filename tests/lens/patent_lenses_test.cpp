@@ -112,9 +112,12 @@ TEST(PatentLenses, AreInEveryStateWhatThePatentSays) {
   for (const StatedState& each : states) {
     SCOPED_TRACE(each.lens);
     const FirstOrder data = first_order(in_state(read_lens(each.lens).lens, each.state));
-    if (each.efl_mm != 0) EXPECT_NEAR(data.efl_mm, each.efl_mm, 0.005 + 1e-3 * each.efl_mm);
-    if (each.magnification != 0)
+    if (each.efl_mm != 0) {
+      EXPECT_NEAR(data.efl_mm, each.efl_mm, 0.005 + 1e-3 * each.efl_mm);
+    }
+    if (each.magnification != 0) {
       EXPECT_NEAR(data.magnification, each.magnification, 5e-6 + 1e-3 * std::abs(each.magnification));
+    }
   }
 }
 
