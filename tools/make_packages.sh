@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes what people install, in FOLDER: the source release, the Debian packages and the Python wheel.
 # Usage: tools/make_packages.sh FOLDER [--try] [source] [deb] [wheel]     (without names: all three)
-# --try, as root: each is used in a bare Debian 12 (debootstrap, in FOLDER/bare), the wheel in Debian 13 as well.
+# --try, as root: each is used in a bare Debian 12 of its own (debootstrap, in FOLDER/bare), the wheel in Debian 13 as well.
 # PYTHON: another than python3, for the wheel.
 set -euo pipefail
 
@@ -26,10 +26,12 @@ done
 version=$(sed -n 's/^project(petzval VERSION \([0-9.]*\).*/\1/p' "$here/CMakeLists.txt")
 mkdir -p "$folder"
 
-# bare SUITE PACKAGES: a system with nothing else, in FOLDER/bare/SUITE.
+# bare NAME SUITE PACKAGES: a system with nothing else, in FOLDER/bare/NAME.
 bare() {
   local root=$folder/bare/$1
-  [[ -e $root/etc/debian_version ]] || debootstrap --variant=minbase --include="$2" "$1" "$root" >"$folder/debootstrap.log"
+  mkdir -p "$folder/bare/archives"
+  [[ -e $root/etc/debian_version ]] ||
+    debootstrap --variant=minbase --cache-dir="$folder/bare/archives" --include="$3" "$2" "$root" >"$folder/debootstrap.log"
 }
 
 in_bare() {
@@ -44,11 +46,12 @@ make_source() {
 }
 
 try_source() { # as somebody would who has downloaded it
-  bare bookworm bash,ca-certificates
-  rm -rf "$folder/bare/bookworm/opt/petzval-$version"
-  tar -xzf "$folder/petzval-$version.tar.gz" -C "$folder/bare/bookworm/opt"
-  in_bare bookworm "/opt/petzval-$version/petzval-demo"
-  test -s "$folder/bare/bookworm/opt/petzval-$version/demo-pictures/index.html"
+  bare source bookworm bash,ca-certificates
+  local root=$folder/bare/source
+  rm -rf "$root/opt/petzval-$version"
+  tar -xzf "$folder/petzval-$version.tar.gz" -C "$root/opt"
+  in_bare source "/opt/petzval-$version/petzval-demo"
+  test -s "$root/opt/petzval-$version/demo-pictures/index.html"
 }
 
 make_deb() {
@@ -57,14 +60,23 @@ make_deb() {
   mv "$folder"/cpack/petzval{,-dev}_"$version"_*.deb "$folder"
 }
 
-try_deb() {
-  bare bookworm bash,ca-certificates
-  local root=$folder/bare/bookworm
-  cp "$folder"/petzval_"$version"_*.deb "$root/opt"
-  in_bare bookworm apt-get update --quiet
-  in_bare bookworm bash -c 'apt-get install --quiet --yes --no-install-recommends /opt/petzval_*.deb'
-  in_bare bookworm bash -c 'cd /opt && petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 \
+# block PAGE FILE: the block of a document that is that file.
+block() { sed -n "/^\`\`\`[a-z]* $2\$/,/^\`\`\`\$/{//!p}" "$here/docs/$1"; }
+
+try_deb() { # the program, then the library by the project of docs/HOWTO_CPP.md
+  bare deb bookworm bash,ca-certificates
+  local root=$folder/bare/deb file
+  cp "$folder"/petzval{,-dev}_"$version"_*.deb "$root/opt"
+  in_bare deb apt-get update --quiet
+  in_bare deb bash -c 'apt-get install --quiet --yes --no-install-recommends /opt/petzval_*.deb'
+  in_bare deb bash -c 'cd /opt && petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 \
     --wavelengths 450,550,650 --quiet -o shot.dng -o shot.png && petzval measure colour shot.png | tail -1 && petzval --version'
+  in_bare deb bash -c 'apt-get install --quiet --yes --no-install-recommends g++ cmake make /opt/petzval-dev_*.deb'
+  rm -rf "$root/opt/gaps"
+  mkdir "$root/opt/gaps"
+  for file in CMakeLists.txt main.cpp; do block HOWTO_CPP.md $file >"$root/opt/gaps/$file"; done
+  in_bare deb bash -c 'cd /opt/gaps && cmake -S . -B build -D CMAKE_BUILD_TYPE=Release && cmake --build build && build/gaps'
+  test -s "$root/opt/gaps/gap-400um.png"
 }
 
 make_wheel() {
@@ -77,17 +89,18 @@ make_wheel() {
 }
 
 try_wheel() { # without any of the libraries, with Python 3.11 and 3.13
-  local suite root python
+  local suite name root python
   for suite in bookworm trixie; do
-    bare $suite bash,ca-certificates
-    in_bare $suite apt-get update --quiet
-    in_bare $suite apt-get install --quiet --yes --no-install-recommends python3 python3-venv python3-pip
-    root=$folder/bare/$suite
-    python=$(in_bare $suite python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    name=wheel-$suite
+    bare $name $suite bash,ca-certificates
+    in_bare $name apt-get update --quiet
+    in_bare $name apt-get install --quiet --yes --no-install-recommends python3 python3-venv python3-pip
+    root=$folder/bare/$name
+    python=$(in_bare $name python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
     "$folder/tools/bin/pip" download --quiet --only-binary :all: --python-version "$python" --dest "$root/opt" numpy nanobind-backend
     cp "$folder"/petzval-"$version"-*.whl "$root/opt"
-    in_bare $suite bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
-    in_bare $suite /opt/v/bin/python -W ignore -c '
+    in_bare $name bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
+    in_bare $name /opt/v/bin/python -W ignore -c '
 import sys
 import petzval as pz
 sensor = pz.Sensor("example-vga", {"columns": 64, "rows": 48, "pitch_um": 50})

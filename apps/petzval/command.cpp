@@ -114,11 +114,34 @@ std::string advice_on(const std::string& way, const std::string& option) {
       {"petzval image", "--lux", "--illuminance 500 would be right"},
       {"petzval image", "--iso", "--gain would be right; the output tells the ISO speed of the sensor"},
       {"petzval lens", "--lp-per-mm", "--frequencies 100 (cycles/mm) would be right"},
+      {"petzval image", "--size",
+       "the sensor says how many pixels there are: --sensor 200x150@5, or --sensor-set columns=200 "
+       "--sensor-set rows=150, would be right"},
       {"petzval image", "--aperture", "--f-number would be right"},
       {"petzval target", "--aperture", "--f-number would be right"},
       {"petzval lens", "--aperture", "--f-number would be right"}};
   for (const Advice& each : known)
     if (way.starts_with(each.way) && option == each.option) return each.words;
+  return "";
+}
+
+/// The same for commands.
+std::string advice_on_command(const std::string& way, const std::string& word) {
+  struct Advice {
+    const char *way, *word, *words;
+  };
+  static constexpr Advice known[] = {
+      {"petzval lens", "dof", "lens for-sensor tells the depth of field"},
+      {"petzval lens", "fov", "lens for-sensor tells the field of view"},
+      {"petzval lens", "set", "--set 'surfaces[4].thickness_mm=0.7' alters the lens in every command"},
+      {"petzval lens", "focus", "--focus 400mm focuses the lens in every command"},
+      {"petzval lens", "vignetting", "lens illumination tells it"},
+      {"petzval lens", "show", "lens info tells numbers, lens draw makes a drawing"},
+      {"petzval", "mtf", "lens mtf computes it of a lens, sfr measures it in a picture"},
+      {"petzval", "psf", "lens psf would be right"},
+      {"petzval", "list", "lens list, sensor list and scene list would be right"}};
+  for (const Advice& each : known)
+    if (way == each.way && word == each.word) return each.words;
   return "";
 }
 
@@ -153,9 +176,12 @@ void refuse_unknown_words(const CLI::App& program, const std::vector<std::string
     std::vector<std::string> names;
     for (const CLI::App* command : known) names.push_back(command->get_name());
     const auto found = std::find(names.begin(), names.end(), word);
-    if (found == names.end())
+    if (found == names.end()) {
+      if (const std::string advice = advice_on_command(way, word); !advice.empty())
+        throw InputError(fmt::format("{} has no command '{}'; {}", at->get_name(), word, advice));
       throw InputError(fmt::format("{} has no command '{}'; the nearest are {} (see {} --help)",
                                    at->get_name(), word, fmt::join(nearest_names(word, names), ", "), way));
+    }
     way += " " + word;
     at = known[static_cast<std::size_t>(found - names.begin())];
   }

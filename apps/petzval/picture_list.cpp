@@ -21,7 +21,8 @@ std::vector<std::string> files_of(const std::string& folder, const std::vector<s
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
     const std::string path = at->path().string();
-    if (std::ranges::count(extensions, extension_of(path)) && !at->is_directory(ignored))
+    const bool sheet = at->path().filename() == "contact-sheet.png";  // what a sweep made of the others
+    if (std::ranges::count(extensions, extension_of(path)) && !at->is_directory(ignored) && !sheet)
       files.push_back(path);
   }
   if (error) throw InputError(folder, fmt::format("the folder cannot be listed: {}", error.message()));

@@ -163,6 +163,12 @@ void bind_psf(nb::module_& module) {
           "values", [](nb::handle self) { return psf_view(self, nb::cast<PsfStack&>(self).values, true); },
           "A view (field, wavelength, y, x) of float32, without a copy.")
       .def_prop_ro(
+          "shape",
+          [](const PsfStack& s) {
+            return nb::make_tuple(s.fields.size(), s.wavelengths_nm.size(), s.size, s.size);
+          },
+          "(fields, wavelengths, y, x), as of `values`.")
+      .def_prop_ro(
           "captured",
           [](nb::handle self) { return psf_view(self, nb::cast<PsfStack&>(self).captured, false); },
           "(field, wavelength): share of the light inside the window.")

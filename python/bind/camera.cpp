@@ -328,17 +328,26 @@ Camera CameraInPython::value() const {
   return camera;
 }
 
+namespace {
+
+bool is_name(const nb::object& word) {
+  return nb::isinstance<nb::str>(word) || nb::hasattr(word, "__fspath__");
+}
+
+}  // namespace
+
 std::shared_ptr<Lens> lens_from(const nb::object& lens) {
   if (lens.is_none()) return nullptr;
-  if (nb::isinstance<nb::str>(lens)) return nb::cast<std::shared_ptr<Lens>>(nb::type<Lens>()(lens));
-  return nb::cast<std::shared_ptr<Lens>>(lens);
+  if (is_name(lens)) return nb::cast<std::shared_ptr<Lens>>(nb::type<Lens>()(nb::str(lens)));
+  if (nb::isinstance<Lens>(lens)) return nb::cast<std::shared_ptr<Lens>>(lens);
+  throw nb::type_error("`lens`: a name, a path or a Lens would be right");
 }
 
 std::shared_ptr<Sensor> sensor_from(const nb::object& sensor) {
   if (sensor.is_none()) return nullptr;
-  if (nb::isinstance<nb::str>(sensor))
-    return std::make_shared<Sensor>(read_sensor(nb::cast<std::string>(sensor)));
-  return nb::cast<std::shared_ptr<Sensor>>(sensor);
+  if (is_name(sensor)) return std::make_shared<Sensor>(read_sensor(nb::cast<std::string>(nb::str(sensor))));
+  if (nb::isinstance<Sensor>(sensor)) return nb::cast<std::shared_ptr<Sensor>>(sensor);
+  throw nb::type_error("`sensor`: a name, a path, a Sensor, or 768x576@6.25 would be right");
 }
 
 Lens lens_to_look_at(const nb::object& lens_or_camera) {
@@ -347,6 +356,8 @@ Lens lens_to_look_at(const nb::object& lens_or_camera) {
     lens.validate();  // Python may have altered any number of it
     return lens;
   }
+  if (!nb::isinstance<CameraInPython>(lens_or_camera))
+    throw nb::type_error("a Lens or a Camera would be right");
   const Camera camera = std::get<Camera>(optics_of(nb::cast<const CameraInPython&>(lens_or_camera)));
   Call call;
   return call([&](const Context& context) { return lens_in_use(camera, context); });

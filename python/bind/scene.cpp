@@ -180,7 +180,12 @@ void bind_request(nb::module_& module) {
 SceneChoice scene_from(const nb::object& scene) {
   if (nb::isinstance<nb::str>(scene)) return SceneRequest{nb::cast<std::string>(scene), {}};
   if (nb::isinstance<Scene>(scene)) return nb::cast<Scene>(scene);
-  return nb::cast<SceneRequest>(scene);
+  if (nb::hasattr(scene, "__fspath__")) return SceneRequest{nb::cast<std::string>(nb::str(scene)), {}};
+  if (nb::isinstance<SceneRequest>(scene)) return nb::cast<SceneRequest>(scene);
+  throw nb::type_error(
+      "`scene`: a name, a path, a SceneRequest or a Scene would be right; Scene(radiance, wavelengths_nm) "
+      "and "
+      "Scene.from_reflectance(reflectance, wavelengths_nm) make one of an array");
 }
 
 void bind_scene(nb::module_& module) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The examples of docs/PYTHON.md and of examples/ do what they say."""
+"""The examples in Python of docs/ and of examples/ do what they say."""
 
 import doctest
 import importlib.util
@@ -18,12 +18,13 @@ import petzval as pz
 ROOT = pathlib.Path(__file__).parents[2]
 
 
-def test_python_page(tmp_path, monkeypatch):
+@pytest.mark.parametrize("page, least", [("PYTHON.md", 20), ("HOWTO_RESTORATION.md", 10)])
+def test_page(page, least, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / "docs" / "PYTHON.md").read_text()
+    text = (ROOT / "docs" / page).read_text()
     unfenced = re.sub(r"^```.*$", "", text, flags=re.MULTILINE)
-    examples = doctest.DocTestParser().get_doctest(unfenced, {}, "PYTHON.md", "docs/PYTHON.md", 0)
-    assert len(examples.examples) > 20
+    examples = doctest.DocTestParser().get_doctest(unfenced, {}, page, f"docs/{page}", 0)
+    assert len(examples.examples) > least
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", pz.Note)
         runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)

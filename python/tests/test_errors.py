@@ -64,6 +64,22 @@ def test_notes_are_warnings(camera):
             camera.image(pz.SceneRequest("studio", wavelengths_nm=[550]), method="none")
 
 
+def test_other_types_are_refused_with_what_would_be_right(tmp_path):
+    camera = pz.Camera("edmund-54852", sensor="32x24@100")
+    with pytest.raises(TypeError, match="from_reflectance"):
+        camera.image(np.zeros((24, 32, 3), np.float32))
+    with pytest.raises(TypeError, match="a Lens would be right"):
+        pz.Camera(5)
+    with pytest.raises(TypeError, match="768x576@6.25"):
+        pz.Camera("edmund-54852", sensor=(32, 24))
+    pz.Lens("edmund-54852").save(str(tmp_path / "mine.json"))
+    assert pz.Camera(tmp_path / "mine.json").lens.efl_mm == camera.lens.efl_mm
+    with pytest.raises(pz.InputError, match=r"field 5 \(paraxial_image_height_mm\)"):
+        camera.psf([5], field_type="paraxial_image_height_mm", wavelengths_nm=[550])
+    stack = camera.psf([0], wavelengths_nm=[550], size=32)
+    assert stack.shape == stack.values.shape
+
+
 # Of parts of the library that the package does not have: tables of other programs and their making, and plans of image
 # formation by hand.
 NOT_IN_PYTHON = {"clip_negative", "curves", "flicker", "fps", "g_axis_sr", "ghost_neglect", "ghost_threshold", "nodes", "port",

@@ -52,8 +52,20 @@ class FirstWords(ProgramTest):
                               "--scene-distance"),
                              (["image", "wall", "--lens", "double-gauss", "--sensor", "64x48@4", "--exposure", "1ms",
                                "-o", "x.exr"], "third-inch-1280x960"),
+                             (["image", "wall", "--lens", "double-gauss", "--sensor", "imx363", "--size", "200x150", "-o", "x.png"],
+                              "--sensor-set columns=200"),
+                             (["lens", "for-sensor", "double-gauss", "--sensor", "imx250", "--distance", "1m"], "2448x2048@3.45"),
+                             (["lens", "dof", "double-gauss"], "lens for-sensor"),
+                             (["mtf", "double-gauss"], "lens mtf"),
                              (["lens", "scale", "double-gauss", "-o", "x.json"], "--efl")):
             self.assert_refused(*words, words=[right])
+
+    def test_sharpness_of_a_sweep(self):
+        """The folder of a sweep is measured picture by picture, and its contact sheet is none of them."""
+        self.assert_succeeds("sweep", "image", "slanted-edge", "--lens", "double-gauss", "--sensor", "64x48@5", "--wavelengths", "550",
+                             "--method", "none", "--vary", "f-number=5.6,8", "-o", "edges")
+        self.assertTrue((self.folder / "edges" / "contact-sheet.png").exists())
+        self.assert_refused("sfr", "edges", words=["none of the 2 pictures", "clipped"])  # white is the brightest pixel
 
     def test_other_trades_words(self):
         self.write("room.pbrt", "WorldBegin\n")

@@ -29,6 +29,12 @@ foreach(gap 6.008 6.200 6.400)
   endif()
 endforeach()
 
+# The how-to page of C++, as it stands, where somebody has installed into $HOME/petzval.
+file(MAKE_DIRECTORY ${SCRATCH}/stranger)
+file(CREATE_LINK ${SCRATCH}/moved ${SCRATCH}/stranger/petzval SYMBOLIC)
+run(${CMAKE_COMMAND} -E env HOME=${SCRATCH}/stranger CXX=${COMPILER} "CXXFLAGS=${FLAGS}" CMAKE_GENERATOR=Ninja
+    ${PYTHON} ${TREE}/tests/docs/run_examples.py ${SCRATCH}/moved/bin/petzval ${TREE}/docs/HOWTO_CPP.md)
+
 if(EXISTS ${SCRATCH}/moved/bin/petzval)
   # A lens that is nowhere but in the moved tree: found there or not at all.
   set(lenses ${SCRATCH}/moved/share/petzval/lenses)

@@ -6,6 +6,8 @@ continues it); the lines up to the next command are all that it prints, on stdou
 for any number of lines, "..." inside a line for any text within that line. A command must succeed, unless the
 document shows it failing with "petzval: error:". The commands of a document run in one folder, in order.
 
+A block whose mark is followed by a file's name (```cpp main.cpp) is a file of that folder, there before the first command.
+
     run_examples.py PROGRAM DOCUMENT...
 """
 
@@ -18,6 +20,7 @@ import tempfile
 from dataclasses import dataclass
 
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"^```[a-z]+ ([\w-][\w.-]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 @dataclass
@@ -79,6 +82,8 @@ def run_document(path, program):
     """Runs all examples of a document; a list of complaints."""
     complaints = []
     with tempfile.TemporaryDirectory() as folder:
+        for name, content in FILE.findall(path.read_text()):
+            (pathlib.Path(folder) / name).write_text(content)
         for example in find_examples(path.read_text()):
             complaint = run(example, folder, program)
             if complaint:

@@ -71,6 +71,13 @@ class RunExamples(unittest.TestCase):
     def test_other_blocks_are_left_alone(self):
         self.assertEqual(run_examples.find_examples("```sh\n$ rm -r\n```\n\n    $ petzval\n"), [])
 
+    def test_blocks_with_a_name_are_files(self):
+        page = "```cpp a.cpp\nint x;\n```\n\n```cpp\nint y;\n```\n\n```console\n$ cat a.cpp\nint x;\n$ ls\na.cpp\n```\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "page.md"
+            path.write_text(page)
+            self.assertEqual(run_examples.run_document(path, "/bin/true"), [])
+
     def test_a_document_keeps_its_folder(self):
         self.assertEqual(self.complaints("$ petzval one > file", "$ cat file", "one"), [])
 

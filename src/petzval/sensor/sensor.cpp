@@ -86,7 +86,15 @@ std::pair<std::string, std::string> sensor_file(const std::string& text) {
   if (text.find('@') != std::string::npos && !std::filesystem::exists(text))
     throw InputError(
         fmt::format("sensor {}: a geometry is written 768x576@6.25 (columns x rows @ pitch in µm)", text));
-  const std::string path = find_data_file("sensors", ".json", text, "sensor");
+  std::string path;
+  try {
+    path = find_data_file("sensors", ".json", text, "sensor");
+  } catch (const InputError& error) {
+    ErrorParts parts = error.parts();
+    if (!parts.remedy.empty())
+      parts.remedy += "; 2448x2048@3.45 (columns x rows @ pitch in µm) is an ideal one";
+    throw InputError(std::move(parts));
+  }
   return {read_whole_file(path, max_file_bytes), path};
 }
 

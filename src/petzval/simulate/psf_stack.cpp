@@ -16,9 +16,12 @@ namespace {
 
 using AtPoint = std::function<void(std::size_t at, const FieldTracer& tracer, const ChiefRay& chief)>;
 
-[[noreturn]] void refuse(const Lens& lens, double field, double wavelength_nm) {
+/// \param point  counted over fields, then wavelengths.
+[[noreturn]] void refuse(const Lens& lens, const FieldTableRequest& at, std::size_t point) {
   throw InputError(
-      fmt::format("{}: no ray passes at field {:g} and {:g} nm", lens.name, field, wavelength_nm));
+      fmt::format("{}: no ray passes at field {:g} ({}) and {:g} nm; a smaller field would be right",
+                  lens.name, at.fields[point / at.wavelengths_nm.size()], to_string(at.field_kind),
+                  at.wavelengths_nm[point % at.wavelengths_nm.size()]));
 }
 
 /// Every field and wavelength, by threads.
@@ -31,7 +34,7 @@ void for_each_point(const Lens& lens, const FieldTableRequest& at, const AtPoint
     FieldTracer tracer(lens, nm, at.clip, at.azimuth_deg);
     tracer.set_losses(at.losses);
     const std::optional<ChiefRay> chief = tracer.chief_ray(object_fields[i / wavelengths]);
-    if (!chief) refuse(lens, at.fields[i / wavelengths], nm);
+    if (!chief) refuse(lens, at, i);
     work(i, tracer, *chief);
   });
 }
@@ -43,7 +46,7 @@ PsfOptions common_options(const Lens& lens, const FieldTableRequest& at, const P
   std::vector<PsfPlan> plans(at.fields.size() * at.wavelengths_nm.size());
   for_each_point(lens, at, [&](std::size_t i, const FieldTracer& tracer, const ChiefRay& chief) {
     const std::optional<PsfPlan> plan = plan_psf(tracer, chief, options);
-    if (!plan) refuse(lens, at.fields[i / at.wavelengths_nm.size()], tracer.tracer().wavelength_nm());
+    if (!plan) refuse(lens, at, i);
     plans[i] = *plan;
   });
   double finest_um = HUGE_VAL, widest_um = 0;
@@ -73,7 +76,7 @@ PsfStack psf_stack(const Lens& lens, const FieldTableRequest& at, const PsfOptio
     stack.captured.resize(count), stack.image_height_mm.resize(count);
     for_each_point(lens, asked, [&](std::size_t i, const FieldTracer& tracer, const ChiefRay& chief) {
       const std::optional<Psf> psf = point_spread(tracer, chief, common);
-      if (!psf) refuse(lens, asked.fields[i / asked.wavelengths_nm.size()], tracer.tracer().wavelength_nm());
+      if (!psf) refuse(lens, asked, i);
       std::ranges::copy(psf->values,
                         stack.values.begin() + static_cast<std::ptrdiff_t>(i * stack.psf_cells()));
       stack.captured[i] = psf->captured, stack.image_height_mm[i] = chief.image_height_mm;
