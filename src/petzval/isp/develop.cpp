@@ -3,6 +3,7 @@
 #include <petzval/isp/develop.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace petzval {
 
@@ -71,13 +72,13 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   if (step) step("denoise", planes);
 
   if (planes.values.size() == 1) {
-    planes = rendered(planes, {}, options.space);
+    planes = rendered(std::move(planes), {}, options.space);
   } else if (!options.colours) {
     planes = as_they_are(planes);
   } else {
     const CameraMatrix matrix = options.matrix ? *options.matrix : camera_matrix(raw, done.neutral);
     done.temperature_k = matrix.temperature_k;
-    planes = rendered(planes, matrix, options.space);
+    planes = rendered(std::move(planes), matrix, options.space);
   }
   if (step) step("colour", planes);
   if (options.sharpen_amount != 0) sharpen(planes, options.sharpen_amount, options.sharpen_sigma_px);
