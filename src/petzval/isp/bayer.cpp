@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace petzval {
 
@@ -25,12 +26,36 @@ class Patch {
   std::vector<float> values_;
 };
 
+/// In what the picture is interpolated: the light itself …
+struct LightCurve {
+  float in(float light) const { return light; }
+  float out(float value) const { return value; }
+};
+
+/// … or the root of it, with a tangent for values below black. The toe keeps the slope finite there.
+class RootCurve {
+ public:
+  explicit RootCurve(double toe)
+      : toe_(static_cast<float>(toe)),
+        root_(static_cast<float>(std::sqrt(toe))),
+        slope_(static_cast<float>(0.5 / std::sqrt(toe))) {}
+  float in(float light) const {
+    const float root = std::sqrt(std::max(light, 0.0f) + toe_) - root_;
+    return light > 0 ? root : light * slope_;
+  }
+  float out(float value) const { return value > 0 ? value * (value + 2 * root_) : value / slope_; }
+
+ private:
+  float toe_, root_, slope_;
+};
+
 /// Some rows of the mosaic, mirrored into a margin on all four sides. Local row r is row first + r − margin.
 struct Strip {
   int first, rows, columns, margin;
   Patch values;
 
-  Strip(const LinearMosaic& mosaic, int first_row, int row_count, int margin_pixels)
+  template <typename Curve>
+  Strip(const LinearMosaic& mosaic, int first_row, int row_count, int margin_pixels, const Curve& curve)
       : first(first_row),
         rows(row_count + 2 * margin_pixels),
         columns(mosaic.columns + 2 * margin_pixels),
@@ -39,11 +64,10 @@ struct Strip {
     for (int r = 0; r < rows; ++r) {
       const std::span<const float> from = mosaic.row(mirrored(first + r - margin, mosaic.rows));
       float* into = values.row(r);
-      std::copy(from.begin(), from.end(), into + margin);
+      for (int c = 0; c < mosaic.columns; ++c) into[margin + c] = curve.in(from[static_cast<std::size_t>(c)]);
       for (int c = 0; c < margin; ++c) {
-        into[c] = from[static_cast<std::size_t>(mirrored(c - margin, mosaic.columns))];
-        into[columns - 1 - c] =
-            from[static_cast<std::size_t>(mirrored(mosaic.columns + margin - 1 - c, mosaic.columns))];
+        into[c] = into[margin + mirrored(c - margin, mosaic.columns)];
+        into[columns - 1 - c] = into[margin + mirrored(mosaic.columns + margin - 1 - c, mosaic.columns)];
       }
     }
   }
@@ -60,13 +84,13 @@ Planes empty_colours(const LinearMosaic& mosaic) {
 }
 
 /// Calls work(strip, rows of the picture in it) for all strips of the picture.
-template <typename Work>
-void for_strips(const LinearMosaic& mosaic, int margin, const Work& work) {
+template <typename Curve, typename Work>
+void for_strips(const LinearMosaic& mosaic, int margin, const Curve& curve, const Work& work) {
   const int strips = (mosaic.rows + strip_rows - 1) / strip_rows;
   parallel_for(static_cast<std::size_t>(strips), [&](std::size_t i) {
     const int first = static_cast<int>(i) * strip_rows;
     const int count = std::min(strip_rows, mosaic.rows - first);
-    work(Strip(mosaic, first, count, margin), count);
+    work(Strip(mosaic, first, count, margin, curve), count);
   });
 }
 
@@ -164,12 +188,71 @@ float opposite_difference(const float* d, std::ptrdiff_t w) {
   return (10 * near - far) / 32;
 }
 
+template <typename Curve>
+Planes interpolated_by_gradients(const LinearMosaic& mosaic, const Curve& curve) {
+  Planes planes = empty_colours(mosaic);
+  // 2 for the line estimates, 1 and 2 for their changes, 4 for the directions, 3 for the other colour, 1 for
+  // green pixels.
+  constexpr int margin = 14;
+  for_strips(mosaic, margin, curve, [&](const Strip& strip, int count) {
+    const std::ptrdiff_t w = strip.columns;
+    Patch dh(strip.rows, strip.columns), dv(strip.rows, strip.columns), d(strip.rows, strip.columns);
+    line_differences(strip, mosaic.mosaic, 1, dh);
+    line_differences(strip, mosaic.mosaic, w, dv);
+    weighted_differences(strip, dh, dv, changes(dh, strip, 1, w), changes(dv, strip, w, 1), d);
+
+    // d holds green − own at red and blue pixels; `other` gets green minus the other colour there.
+    Patch other(strip.rows, strip.columns);
+    for (int r = 12; r < strip.rows - 12; ++r) {
+      const int start = strip.channel(mosaic.mosaic, r, 12) == 1 ? 13 : 12;
+      for (int c = start; c < strip.columns - 12; c += 2)
+        other.row(r)[c] = opposite_difference(d.row(r) + c, w);
+    }
+    for (int r = margin; r < margin + count; ++r) {
+      const float *p = strip.values.row(r), *own_d = d.row(r), *other_d = other.row(r);
+      const std::size_t base =
+          static_cast<std::size_t>(strip.first + r - margin) * static_cast<std::size_t>(mosaic.columns);
+      float* out[3] = {planes.values[0].data() + base, planes.values[1].data() + base,
+                       planes.values[2].data() + base};
+      const std::span<const float> measured = mosaic.row(strip.first + r - margin);
+      for (int c = margin; c < strip.columns - margin; ++c) {
+        const int own = strip.channel(mosaic.mosaic, r, c), x = c - margin;
+        if (own != 1) {
+          const float green = p[c] + own_d[c];
+          out[own][x] = measured[static_cast<std::size_t>(x)];
+          out[1][x] = curve.out(green);
+          out[2 - own][x] = curve.out(green - other_d[c]);
+          continue;
+        }
+        // Neighbours in the row are of one colour, those in the column of the other.
+        const int in_row = strip.channel(mosaic.mosaic, r, c + 1);
+        const float row_own = own_d[c - 1] + own_d[c + 1], row_other = other_d[c - 1] + other_d[c + 1];
+        const float column_own = own_d[c - w] + own_d[c + w], column_other = other_d[c - w] + other_d[c + w];
+        out[1][x] = measured[static_cast<std::size_t>(x)];
+        out[in_row][x] = curve.out(p[c] - 0.25f * (row_own + column_other));
+        out[2 - in_row][x] = curve.out(p[c] - 0.25f * (column_own + row_other));
+      }
+    }
+  });
+  return planes;
+}
+
+/// The mean of the mosaic, the same for any number of threads.
+double mean_of(const LinearMosaic& mosaic) {
+  std::vector<double> sums(static_cast<std::size_t>(mosaic.rows));
+  parallel_for(sums.size(), [&](std::size_t row) {
+    const std::span<const float> values = mosaic.row(static_cast<int>(row));
+    sums[row] = std::accumulate(values.begin(), values.end(), 0.0);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(mosaic.values.size());
+}
+
 }  // namespace
 
 Planes bayer_malvar(const LinearMosaic& mosaic) {
   Planes planes = empty_colours(mosaic);
   constexpr int margin = 2;
-  for_strips(mosaic, margin, [&](const Strip& strip, int count) {
+  for_strips(mosaic, margin, LightCurve(), [&](const Strip& strip, int count) {
     const std::ptrdiff_t w = strip.columns;
     for (int r = margin; r < margin + count; ++r)
       for (int c = margin; c < strip.columns - margin; ++c) {
@@ -195,50 +278,12 @@ Planes bayer_malvar(const LinearMosaic& mosaic) {
 }
 
 Planes bayer_gradient(const LinearMosaic& mosaic) {
-  Planes planes = empty_colours(mosaic);
-  // 2 for the line estimates, 1 and 2 for their changes, 4 for the directions, 3 for the other colour, 1 for
-  // green pixels.
-  constexpr int margin = 14;
-  for_strips(mosaic, margin, [&](const Strip& strip, int count) {
-    const std::ptrdiff_t w = strip.columns;
-    Patch dh(strip.rows, strip.columns), dv(strip.rows, strip.columns), d(strip.rows, strip.columns);
-    line_differences(strip, mosaic.mosaic, 1, dh);
-    line_differences(strip, mosaic.mosaic, w, dv);
-    weighted_differences(strip, dh, dv, changes(dh, strip, 1, w), changes(dv, strip, w, 1), d);
+  return interpolated_by_gradients(mosaic, LightCurve());
+}
 
-    // d holds green − own at red and blue pixels; `other` gets green minus the other colour there.
-    Patch other(strip.rows, strip.columns);
-    for (int r = 12; r < strip.rows - 12; ++r) {
-      const int start = strip.channel(mosaic.mosaic, r, 12) == 1 ? 13 : 12;
-      for (int c = start; c < strip.columns - 12; c += 2)
-        other.row(r)[c] = opposite_difference(d.row(r) + c, w);
-    }
-    for (int r = margin; r < margin + count; ++r) {
-      const float *p = strip.values.row(r), *own_d = d.row(r), *other_d = other.row(r);
-      const std::size_t base =
-          static_cast<std::size_t>(strip.first + r - margin) * static_cast<std::size_t>(mosaic.columns);
-      float* out[3] = {planes.values[0].data() + base, planes.values[1].data() + base,
-                       planes.values[2].data() + base};
-      for (int c = margin; c < strip.columns - margin; ++c) {
-        const int own = strip.channel(mosaic.mosaic, r, c), x = c - margin;
-        if (own != 1) {
-          const float green = p[c] + own_d[c];
-          out[own][x] = p[c];
-          out[1][x] = green;
-          out[2 - own][x] = green - other_d[c];
-          continue;
-        }
-        // Neighbours in the row are of one colour, those in the column of the other.
-        const int in_row = strip.channel(mosaic.mosaic, r, c + 1);
-        const float row_own = own_d[c - 1] + own_d[c + 1], row_other = other_d[c - 1] + other_d[c + 1];
-        const float column_own = own_d[c - w] + own_d[c + w], column_other = other_d[c - w] + other_d[c + w];
-        out[1][x] = p[c];
-        out[in_row][x] = p[c] - 0.25f * (row_own + column_other);
-        out[2 - in_row][x] = p[c] - 0.25f * (column_own + row_other);
-      }
-    }
-  });
-  return planes;
+Planes bayer_root_gradient(const LinearMosaic& mosaic) {
+  constexpr double share = 1.0 / 64, least = 1e-9;
+  return interpolated_by_gradients(mosaic, RootCurve(std::max(least, share * mean_of(mosaic))));
 }
 
 }  // namespace petzval
