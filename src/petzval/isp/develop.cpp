@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/isp/develop.h>
+#include <petzval/isp/mosaic_denoise.h>
 
 #include <algorithm>
 #include <utility>
@@ -42,8 +43,8 @@ Planes as_they_are(const Planes& planes) {
 }  // namespace
 
 const std::vector<std::string>& develop_step_names() {
-  static const std::vector<std::string> names = {"linear",  "defects", "shading", "white-balance", "demosaic",
-                                                 "denoise", "colour",  "sharpen", "tone"};
+  static const std::vector<std::string> names = {"linear",   "defects", "shading", "denoise", "white-balance",
+                                                 "demosaic", "colour",  "sharpen", "tone"};
   return names;
 }
 
@@ -60,6 +61,8 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   tell_mosaic("defects", mosaic);
   if (options.flat) correct_shading(mosaic, linearised(*options.flat));
   tell_mosaic("shading", mosaic);
+  denoise_mosaic(mosaic, options.denoise_strength, noise_scale(raw), noise_offset(raw));
+  tell_mosaic("denoise", mosaic);
   done.neutral = neutral_for(raw, mosaic, options);
   balance_white(mosaic, done.neutral);
   tell_mosaic("white-balance", mosaic);
@@ -68,8 +71,6 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   Planes planes = demosaiced(mosaic, done.demosaic);
   mosaic = {};
   if (step) step("demosaic", planes);
-  denoise(planes, options.denoise_strength, noise_scale(raw), noise_offset(raw));
-  if (step) step("denoise", planes);
 
   if (planes.values.size() == 1) {
     planes = rendered(std::move(planes), {}, options.space);
