@@ -19,8 +19,8 @@ double noise_scale(const RawImage& raw) {
   return raw.dn_per_e / range(raw);
 }
 double noise_offset(const RawImage& raw) {
-  const double k = noise_scale(raw);
-  return k * k * raw.read_noise_e * raw.read_noise_e;
+  const double k = noise_scale(raw), step = 1 / range(raw);
+  return k * k * raw.read_noise_e * raw.read_noise_e + step * step / 12;
 }
 
 std::vector<double> neutral_for(const RawImage& raw, const LinearMosaic& mosaic,

@@ -17,7 +17,7 @@ constexpr int side = 8;  // of the squares
 constexpr int stride = 2;
 constexpr int band_rows = 48;    // that are aggregated at once
 constexpr int least_plane = 24;  // no coarser copy is made of smaller ones
-constexpr float cut = 2.7F;      // standard deviations: of 64 coefficients of noise every second leaves one
+constexpr float cut = 2.7F;      // standard deviations: of noise, seven coefficients in a thousand are left
 
 using Square = std::array<float, side * side>;
 
@@ -44,30 +44,67 @@ std::vector<float> cosines_of(int n) {
   return c;
 }
 
-/// Cosine transforms of squares, there and back.
+/// Cosine transforms of squares, there and back. Cosines are even or odd about the middle, so that sums and
+/// differences of opposite samples take half the products.
 class SquareTransform {
  public:
   SquareTransform() {
     const std::vector<float> c = cosines_of(side);
-    for (int k = 0; k < side; ++k)
-      for (int i = 0; i < side; ++i) {
-        forward_[static_cast<std::size_t>(k * side + i)] = c[static_cast<std::size_t>(k * side + i)];
-        back_[static_cast<std::size_t>(i * side + k)] = c[static_cast<std::size_t>(k * side + i)];
+    for (std::size_t k = 0; k < half; ++k)
+      for (std::size_t i = 0; i < half; ++i) {
+        even_[k * half + i] = c[2 * k * side + i];
+        odd_[k * half + i] = c[(2 * k + 1) * side + i];
       }
   }
-  Square forward(const Square& x) const { return product(product(forward_, x), back_); }
-  Square back(const Square& x) const { return product(product(back_, x), forward_); }
+  /// Coefficients, columns and rows exchanged.
+  Square forward(const Square& x) const { return columns_forward(transposed(columns_forward(x))); }
+  Square back(const Square& x) const { return columns_back(transposed(columns_back(x))); }
 
  private:
-  static Square product(const Square& a, const Square& b) {
-    Square result{};
+  static constexpr std::size_t half = side / 2;
+
+  static Square transposed(const Square& x) {
+    Square result;
     for (std::size_t i = 0; i < side; ++i)
-      for (std::size_t k = 0; k < side; ++k)
-        for (std::size_t j = 0; j < side; ++j) result[i * side + j] += a[i * side + k] * b[k * side + j];
+      for (std::size_t j = 0; j < side; ++j) result[j * side + i] = x[i * side + j];
+    return result;
+  }
+  Square columns_forward(const Square& x) const {
+    Square sums, result;  // sums of opposite rows, then differences
+    for (std::size_t i = 0; i < half; ++i)
+      for (std::size_t j = 0; j < side; ++j) {
+        const float a = x[i * side + j], b = x[(side - 1 - i) * side + j];
+        sums[i * side + j] = a + b;
+        sums[(half + i) * side + j] = a - b;
+      }
+    for (std::size_t k = 0; k < half; ++k)
+      for (std::size_t j = 0; j < side; ++j) {
+        float even = 0, odd = 0;
+        for (std::size_t i = 0; i < half; ++i) {
+          even += even_[k * half + i] * sums[i * side + j];
+          odd += odd_[k * half + i] * sums[(half + i) * side + j];
+        }
+        result[2 * k * side + j] = even;
+        result[(2 * k + 1) * side + j] = odd;
+      }
+    return result;
+  }
+  Square columns_back(const Square& x) const {
+    Square result;
+    for (std::size_t i = 0; i < half; ++i)
+      for (std::size_t j = 0; j < side; ++j) {
+        float even = 0, odd = 0;
+        for (std::size_t k = 0; k < half; ++k) {
+          even += even_[k * half + i] * x[2 * k * side + j];
+          odd += odd_[k * half + i] * x[(2 * k + 1) * side + j];
+        }
+        result[i * side + j] = even + odd;
+        result[(side - 1 - i) * side + j] = even - odd;
+      }
     return result;
   }
 
-  Square forward_{}, back_{};
+  std::array<float, half * half> even_{}, odd_{};
 };
 
 NoisyPlane with_margin(const NoisyPlane& plane, int margin) {
@@ -210,11 +247,14 @@ class UnitVariance {
 /// The mosaic as planes, one for each place of its period, and back.
 class Phases {
  public:
-  explicit Phases(const LinearMosaic& mosaic)
+  /// \param top, left  rows and columns of the first period that lie outside the picture.
+  Phases(const LinearMosaic& mosaic, int top, int left)
       : down_(mosaic.mosaic.rows),
         across_(mosaic.mosaic.columns),
-        rows_((mosaic.rows + down_ - 1) / down_),
-        columns_((mosaic.columns + across_ - 1) / across_) {}
+        top_(top),
+        left_(left),
+        rows_((mosaic.rows + top + down_ - 1) / down_),
+        columns_((mosaic.columns + left + across_ - 1) / across_) {}
 
   template <typename In>
   std::vector<NoisyPlane> taken_apart(const LinearMosaic& mosaic, const In& in) const {
@@ -222,23 +262,23 @@ class Phases {
     parallel_for(static_cast<std::size_t>(rows_), [&](std::size_t row) {
       const int r = static_cast<int>(row);
       for (int k = 0; k < down_ * across_; ++k) {
-        const int line = inside(r * down_ + k / across_, mosaic.rows, down_);
+        const int line = inside(r * down_ + k / across_ - top_, mosaic.rows, down_);
         for (int c = 0; c < columns_; ++c)
-          planes[static_cast<std::size_t>(k)].row(r)[c] = in(mosaic.row(
-              line)[static_cast<std::size_t>(inside(c * across_ + k % across_, mosaic.columns, across_))]);
+          planes[static_cast<std::size_t>(k)].row(r)[c] = in(mosaic.row(line)[static_cast<std::size_t>(
+              inside(c * across_ + k % across_ - left_, mosaic.columns, across_))]);
       }
     });
     return planes;
   }
 
-  template <typename Out>
-  void put_together(const std::vector<NoisyPlane>& planes, const Out& out, LinearMosaic& mosaic) const {
-    parallel_for(static_cast<std::size_t>(mosaic.rows), [&](std::size_t row) {
-      const int r = static_cast<int>(row);
-      const std::span<float> values = mosaic.row(r);
-      for (int c = 0; c < mosaic.columns; ++c)
-        values[static_cast<std::size_t>(c)] = out(
-            planes[static_cast<std::size_t>(r % down_ * across_ + c % across_)].row(r / down_)[c / across_]);
+  /// Adds them to a picture of the mosaic's size.
+  void add(const std::vector<NoisyPlane>& planes, NoisyPlane& picture) const {
+    parallel_for(static_cast<std::size_t>(picture.rows), [&](std::size_t row) {
+      const int r = static_cast<int>(row) + top_;
+      for (int c = 0; c < picture.columns; ++c)
+        picture.row(static_cast<int>(row))[c] +=
+            planes[static_cast<std::size_t>(r % down_ * across_ + (c + left_) % across_)].row(
+                r / down_)[(c + left_) / across_];
     });
   }
 
@@ -267,10 +307,12 @@ class Phases {
   }
 
  private:
-  /// Where the picture ends within a period, the period before it stands in.
-  static int inside(int index, int count, int period) { return index < count ? index : index - period; }
+  /// Where the picture ends within a period, the one beside it stands in.
+  static int inside(int index, int count, int period) {
+    return index < 0 ? index + period : index < count ? index : index - period;
+  }
 
-  int down_, across_, rows_, columns_;
+  int down_, across_, top_, left_, rows_, columns_;
 };
 
 }  // namespace
@@ -282,15 +324,28 @@ void denoise_mosaic(LinearMosaic& mosaic, double strength, double noise_scale, d
       mosaic.columns < mosaic.mosaic.columns)
     return;
   const UnitVariance unit(noise_scale, noise_offset);
-  const Phases phases(mosaic);
   // Noise that is said to be s times as strong is unit in values that are divided by s.
   const auto scale = static_cast<float>(1 / strength);
-  std::vector<NoisyPlane> planes = phases.taken_apart(mosaic, [&](float x) { return scale * unit.in(x); });
-  phases.mix(planes, false);
-  for (NoisyPlane& plane : planes) plane = denoised(plane);
-  phases.mix(planes, true);
-  phases.put_together(
-      planes, [&](float y) { return unit.out(y / scale); }, mosaic);
+  // Neighbours across the border of two periods differ as those within one do: the mean of four divisions.
+  NoisyPlane sum(mosaic.columns, mosaic.rows);
+  int divisions = 0;
+  for (int top = 0; top < mosaic.mosaic.rows; top += std::max(1, mosaic.mosaic.rows / 2))
+    for (int left = 0; left < mosaic.mosaic.columns; left += std::max(1, mosaic.mosaic.columns / 2)) {
+      const Phases phases(mosaic, top, left);
+      std::vector<NoisyPlane> planes =
+          phases.taken_apart(mosaic, [&](float x) { return scale * unit.in(x); });
+      phases.mix(planes, false);
+      for (NoisyPlane& plane : planes) plane = denoised(plane);
+      phases.mix(planes, true);
+      phases.add(planes, sum);
+      ++divisions;
+    }
+  const float share = 1 / (scale * static_cast<float>(divisions));
+  parallel_for(static_cast<std::size_t>(mosaic.rows), [&](std::size_t row) {
+    const std::span<float> values = mosaic.row(static_cast<int>(row));
+    for (int c = 0; c < mosaic.columns; ++c)
+      values[static_cast<std::size_t>(c)] = unit.out(share * sum.row(static_cast<int>(row))[c]);
+  });
 }
 
 }  // namespace petzval
