@@ -39,7 +39,9 @@ void DevelopChoice::add_to(CLI::App& command, bool after_light) {
       ->capture_default_str();
   command.add_option("--flat", flat, "A raw file of a uniform surface, to correct the shading by");
   command.add_flag("--keep-defects", keep_defects, "Leave hot and dead pixels as they are");
-  command.add_option("--denoise", given.denoise_strength, "Strength in units of the noise (1 to 3); 0: off")
+  command
+      .add_option("--denoise", given.denoise_strength,
+                  "Strength in units of the noise of the raw file; 1 is right for it, 0: off")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   command.add_option("--sharpen", given.sharpen_amount, "Amount of unsharp masking (0.5); 0: off")

@@ -233,24 +233,8 @@ TEST(Develop, EveryStepIsTold) {
 }
 
 TEST(Filters, DoWhatTheySay) {
-  Planes planes{
-      40,
-      40,
-      {std::vector<float>(1600, 0.5f), std::vector<float>(1600, 0.4f), std::vector<float>(1600, 0.3f)}};
-  for (std::size_t i = 0; i < 1600; ++i) planes.values[0][i] += (i * 7919 % 101) * 1e-4f;
-  const Planes noisy = planes;
-  denoise(planes, 3, 1e-5, 1e-5);
-  const auto spread = [](const Planes& p) {
-    double sum = 0, square = 0;
-    for (const float v : p.values[0])
-      sum += static_cast<double>(v), square += static_cast<double>(v) * static_cast<double>(v);
-    return std::sqrt(square / 1600 - sum / 1600 * (sum / 1600));
-  };
-  EXPECT_LT(spread(planes), 0.5 * spread(noisy));
   Planes step{40, 1, {std::vector<float>(40, 0.0f)}};
   for (std::size_t i = 20; i < 40; ++i) step.values[0][i] = 1;
-  denoise(step, 2, 1e-4, 1e-4);
-  EXPECT_NEAR(step.values[0][19], 0, 1e-3f) << "edges stay";
   sharpen(step, 0.5, 1);
   EXPECT_LT(step.values[0][19], -0.1f);
   EXPECT_GT(step.values[0][20], 1.1f);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace petzval {
 
@@ -25,12 +26,55 @@ class Patch {
   std::vector<float> values_;
 };
 
+/// The light itself is interpolated.
+struct LightCurve {
+  float in(float light) const { return light; }
+};
+
+/// Interpolation by gradients as it was published.
+struct PublishedGradients : LightCurve {
+  float out(float value) const { return value; }
+  /// The mean of the differences from p on along a step.
+  float difference(const float* p, std::ptrdiff_t step) const {
+    return (p[0] + p[step] + p[2 * step] + p[3 * step] + p[4 * step]) / 5;
+  }
+  float weight(float change) const {
+    constexpr float floor = 1e-10f;  // where nothing changes, all directions count alike
+    return 1 / (change * change + floor);
+  }
+  /// Of a difference from the four nearest and the eight next ones on diagonals.
+  float from_diagonals(float near, float far) const { return (10 * near - far) / 32; }
+};
+
+/// In the root of the light, of values below black likewise with their sign, so that noise about black keeps
+/// its mean. The toe keeps the slope finite there. Differences are averaged over two pixels, as few as even
+/// out what the two kinds of rows or columns differ by, for in a picture that a lens has blurred they change
+/// as smoothly as all else and a longer mean is biased; weights and the share of the far ones were chosen on
+/// photographs (docs/DEVELOPMENT.md).
+class RootGradients {
+ public:
+  explicit RootGradients(double toe)
+      : toe_(static_cast<float>(toe)), root_(static_cast<float>(std::sqrt(toe))) {}
+  float in(float light) const { return std::copysign(std::sqrt(std::abs(light) + toe_) - root_, light); }
+  float out(float value) const { return value * (std::abs(value) + 2 * root_); }
+  float difference(const float* p, std::ptrdiff_t step) const { return (p[0] + p[step]) / 2; }
+  float weight(float change) const {
+    const float inverse = PublishedGradients().weight(change);
+    return inverse * inverse;
+  }
+  float from_diagonals(float near, float far) const { return (8 * near - far) / 24; }
+
+ private:
+  float toe_, root_;
+};
+
 /// Some rows of the mosaic, mirrored into a margin on all four sides. Local row r is row first + r − margin.
 struct Strip {
   int first, rows, columns, margin;
   Patch values;
 
-  Strip(const LinearMosaic& mosaic, int first_row, int row_count, int margin_pixels)
+  template <typename Curve>
+  Strip(const LinearMosaic& mosaic, int first_row, int row_count, int margin_pixels, const Curve& curve)
       : first(first_row),
         rows(row_count + 2 * margin_pixels),
         columns(mosaic.columns + 2 * margin_pixels),
@@ -39,11 +83,10 @@ struct Strip {
     for (int r = 0; r < rows; ++r) {
       const std::span<const float> from = mosaic.row(mirrored(first + r - margin, mosaic.rows));
       float* into = values.row(r);
-      std::copy(from.begin(), from.end(), into + margin);
+      for (int c = 0; c < mosaic.columns; ++c) into[margin + c] = curve.in(from[static_cast<std::size_t>(c)]);
       for (int c = 0; c < margin; ++c) {
-        into[c] = from[static_cast<std::size_t>(mirrored(c - margin, mosaic.columns))];
-        into[columns - 1 - c] =
-            from[static_cast<std::size_t>(mirrored(mosaic.columns + margin - 1 - c, mosaic.columns))];
+        into[c] = into[margin + mirrored(c - margin, mosaic.columns)];
+        into[columns - 1 - c] = into[margin + mirrored(mosaic.columns + margin - 1 - c, mosaic.columns)];
       }
     }
   }
@@ -60,13 +103,13 @@ Planes empty_colours(const LinearMosaic& mosaic) {
 }
 
 /// Calls work(strip, rows of the picture in it) for all strips of the picture.
-template <typename Work>
-void for_strips(const LinearMosaic& mosaic, int margin, const Work& work) {
+template <typename Curve, typename Work>
+void for_strips(const LinearMosaic& mosaic, int margin, const Curve& curve, const Work& work) {
   const int strips = (mosaic.rows + strip_rows - 1) / strip_rows;
   parallel_for(static_cast<std::size_t>(strips), [&](std::size_t i) {
     const int first = static_cast<int>(i) * strip_rows;
     const int count = std::min(strip_rows, mosaic.rows - first);
-    work(Strip(mosaic, first, count, margin), count);
+    work(Strip(mosaic, first, count, margin, curve), count);
   });
 }
 
@@ -137,31 +180,91 @@ Patch changes(const Patch& differences, const Strip& strip, std::ptrdiff_t w, st
 }
 
 /// Green minus red at red pixels, green minus blue at blue ones: four directions, weighted.
+template <typename Rule>
 void weighted_differences(const Strip& strip, const Patch& dh, const Patch& dv, const Patch& ch,
-                          const Patch& cv, Patch& differences) {
-  constexpr float floor = 1e-10f;  // of squared sums: where nothing changes, all directions count alike
+                          const Patch& cv, const Rule& rule, Patch& differences) {
   const std::ptrdiff_t w = strip.columns;
   for (int r = 9; r < strip.rows - 9; ++r) {
     const float *h = dh.row(r), *v = dv.row(r), *gh = ch.row(r), *gv = cv.row(r);
     float* out = differences.row(r);
     for (int c = 9; c < strip.columns - 9; ++c) {
-      const float n = five(gv + c, -4 * w, w), s = five(gv + c, 0, w);
-      const float west = five(gh + c, -4, 1), east = five(gh + c, 0, 1);
-      const float wn = 1 / (n * n + floor), ws = 1 / (s * s + floor);
-      const float ww = 1 / (west * west + floor), we = 1 / (east * east + floor);
-      const float sum = wn * five(v + c, -4 * w, w) + ws * five(v + c, 0, w) + ww * five(h + c, -4, 1) +
-                        we * five(h + c, 0, 1);
-      out[c] = sum / (5 * (wn + ws + ww + we));
+      const float north = rule.weight(five(gv + c, -4 * w, w)), south = rule.weight(five(gv + c, 0, w));
+      const float west = rule.weight(five(gh + c, -4, 1)), east = rule.weight(five(gh + c, 0, 1));
+      const float sum = north * rule.difference(v + c, -w) + south * rule.difference(v + c, w) +
+                        west * rule.difference(h + c, -1) + east * rule.difference(h + c, 1);
+      out[c] = sum / (north + south + west + east);
     }
   }
 }
 
-/// The difference of the other kind at a red or blue pixel, from the diagonal ones; 32 times it.
-float opposite_difference(const float* d, std::ptrdiff_t w) {
+/// The difference of the other kind at a red or blue pixel, from the diagonal ones.
+template <typename Rule>
+float opposite_difference(const float* d, std::ptrdiff_t w, const Rule& rule) {
   const float near = d[-w - 1] + d[-w + 1] + d[w - 1] + d[w + 1];
   const float far = d[-3 * w - 1] + d[-3 * w + 1] + d[3 * w - 1] + d[3 * w + 1] + d[-w - 3] + d[-w + 3] +
                     d[w - 3] + d[w + 3];
-  return (10 * near - far) / 32;
+  return rule.from_diagonals(near, far);
+}
+
+template <typename Rule>
+Planes interpolated_by_gradients(const LinearMosaic& mosaic, const Rule& rule) {
+  Planes planes = empty_colours(mosaic);
+  // 2 for the line estimates, 1 and 2 for their changes, 4 for the directions, 3 for the other colour, 1 for
+  // green pixels.
+  constexpr int margin = 14;
+  for_strips(mosaic, margin, rule, [&](const Strip& strip, int count) {
+    const std::ptrdiff_t w = strip.columns;
+    Patch dh(strip.rows, strip.columns), dv(strip.rows, strip.columns), d(strip.rows, strip.columns);
+    line_differences(strip, mosaic.mosaic, 1, dh);
+    line_differences(strip, mosaic.mosaic, w, dv);
+    weighted_differences(strip, dh, dv, changes(dh, strip, 1, w), changes(dv, strip, w, 1), rule, d);
+
+    // d holds green − own at red and blue pixels; `other` gets green minus the other colour there.
+    Patch other(strip.rows, strip.columns);
+    for (int r = 12; r < strip.rows - 12; ++r) {
+      const int start = strip.channel(mosaic.mosaic, r, 12) == 1 ? 13 : 12;
+      for (int c = start; c < strip.columns - 12; c += 2)
+        other.row(r)[c] = opposite_difference(d.row(r) + c, w, rule);
+    }
+    for (int r = margin; r < margin + count; ++r) {
+      const float *p = strip.values.row(r), *own_d = d.row(r), *other_d = other.row(r);
+      const std::size_t base =
+          static_cast<std::size_t>(strip.first + r - margin) * static_cast<std::size_t>(mosaic.columns);
+      float* out[3] = {planes.values[0].data() + base, planes.values[1].data() + base,
+                       planes.values[2].data() + base};
+      const std::span<const float> measured = mosaic.row(strip.first + r - margin);
+      for (int c = margin; c < strip.columns - margin; ++c) {
+        const int own = strip.channel(mosaic.mosaic, r, c), x = c - margin;
+        if (own != 1) {
+          const float green = p[c] + own_d[c];
+          out[own][x] = measured[static_cast<std::size_t>(x)];
+          out[1][x] = rule.out(green);
+          out[2 - own][x] = rule.out(green - other_d[c]);
+          continue;
+        }
+        // Neighbours in the row are of one colour, those in the column of the other.
+        const int in_row = strip.channel(mosaic.mosaic, r, c + 1);
+        const float row_own = own_d[c - 1] + own_d[c + 1], row_other = other_d[c - 1] + other_d[c + 1];
+        const float column_own = own_d[c - w] + own_d[c + w], column_other = other_d[c - w] + other_d[c + w];
+        out[1][x] = measured[static_cast<std::size_t>(x)];
+        out[in_row][x] = rule.out(p[c] - 0.25f * (row_own + column_other));
+        out[2 - in_row][x] = rule.out(p[c] - 0.25f * (column_own + row_other));
+      }
+    }
+  });
+  return planes;
+}
+
+/// The mean magnitude of the mosaic, the same for any number of threads.
+double mean_magnitude(const LinearMosaic& mosaic) {
+  std::vector<double> sums(static_cast<std::size_t>(mosaic.rows));
+  parallel_for(sums.size(), [&](std::size_t row) {
+    const std::span<const float> values = mosaic.row(static_cast<int>(row));
+    sums[row] = std::accumulate(values.begin(), values.end(), 0.0, [](double sum, float value) {
+      return sum + std::abs(static_cast<double>(value));
+    });
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(mosaic.values.size());
 }
 
 }  // namespace
@@ -169,7 +272,7 @@ float opposite_difference(const float* d, std::ptrdiff_t w) {
 Planes bayer_malvar(const LinearMosaic& mosaic) {
   Planes planes = empty_colours(mosaic);
   constexpr int margin = 2;
-  for_strips(mosaic, margin, [&](const Strip& strip, int count) {
+  for_strips(mosaic, margin, LightCurve(), [&](const Strip& strip, int count) {
     const std::ptrdiff_t w = strip.columns;
     for (int r = margin; r < margin + count; ++r)
       for (int c = margin; c < strip.columns - margin; ++c) {
@@ -195,50 +298,12 @@ Planes bayer_malvar(const LinearMosaic& mosaic) {
 }
 
 Planes bayer_gradient(const LinearMosaic& mosaic) {
-  Planes planes = empty_colours(mosaic);
-  // 2 for the line estimates, 1 and 2 for their changes, 4 for the directions, 3 for the other colour, 1 for
-  // green pixels.
-  constexpr int margin = 14;
-  for_strips(mosaic, margin, [&](const Strip& strip, int count) {
-    const std::ptrdiff_t w = strip.columns;
-    Patch dh(strip.rows, strip.columns), dv(strip.rows, strip.columns), d(strip.rows, strip.columns);
-    line_differences(strip, mosaic.mosaic, 1, dh);
-    line_differences(strip, mosaic.mosaic, w, dv);
-    weighted_differences(strip, dh, dv, changes(dh, strip, 1, w), changes(dv, strip, w, 1), d);
+  return interpolated_by_gradients(mosaic, PublishedGradients());
+}
 
-    // d holds green − own at red and blue pixels; `other` gets green minus the other colour there.
-    Patch other(strip.rows, strip.columns);
-    for (int r = 12; r < strip.rows - 12; ++r) {
-      const int start = strip.channel(mosaic.mosaic, r, 12) == 1 ? 13 : 12;
-      for (int c = start; c < strip.columns - 12; c += 2)
-        other.row(r)[c] = opposite_difference(d.row(r) + c, w);
-    }
-    for (int r = margin; r < margin + count; ++r) {
-      const float *p = strip.values.row(r), *own_d = d.row(r), *other_d = other.row(r);
-      const std::size_t base =
-          static_cast<std::size_t>(strip.first + r - margin) * static_cast<std::size_t>(mosaic.columns);
-      float* out[3] = {planes.values[0].data() + base, planes.values[1].data() + base,
-                       planes.values[2].data() + base};
-      for (int c = margin; c < strip.columns - margin; ++c) {
-        const int own = strip.channel(mosaic.mosaic, r, c), x = c - margin;
-        if (own != 1) {
-          const float green = p[c] + own_d[c];
-          out[own][x] = p[c];
-          out[1][x] = green;
-          out[2 - own][x] = green - other_d[c];
-          continue;
-        }
-        // Neighbours in the row are of one colour, those in the column of the other.
-        const int in_row = strip.channel(mosaic.mosaic, r, c + 1);
-        const float row_own = own_d[c - 1] + own_d[c + 1], row_other = other_d[c - 1] + other_d[c + 1];
-        const float column_own = own_d[c - w] + own_d[c + w], column_other = other_d[c - w] + other_d[c + w];
-        out[1][x] = p[c];
-        out[in_row][x] = p[c] - 0.25f * (row_own + column_other);
-        out[2 - in_row][x] = p[c] - 0.25f * (column_own + row_other);
-      }
-    }
-  });
-  return planes;
+Planes bayer_root_gradient(const LinearMosaic& mosaic) {
+  constexpr double share = 1.0 / 64, least = 1e-9;
+  return interpolated_by_gradients(mosaic, RootGradients(std::max(least, share * mean_magnitude(mosaic))));
 }
 
 }  // namespace petzval

@@ -42,6 +42,6 @@ std::vector<double> neutral_of_white(const RawImage& raw, Xyz white);
 double correlated_temperature_k(Chromaticity chromaticity);
 
 /// Linear RGB of the display from white-balanced planes: three planes. One channel becomes three equal ones.
-Planes rendered(const Planes& balanced, const CameraMatrix& matrix, DisplaySpace space);
+Planes rendered(Planes balanced, const CameraMatrix& matrix, DisplaySpace space);
 
 }  // namespace petzval

@@ -130,6 +130,9 @@ const std::vector<DemosaicMethod>& demosaic_methods() {
        true, bayer_hamilton_adams},
       {"gradient", "Pekkucuksen & Altunbasak 2010: colour differences, weighted by their gradients", true,
        bayer_gradient},
+      {"root-gradient",
+       "gradient, in the root of the light: even noise, and differences as the eye sees them", true,
+       bayer_root_gradient},
       {"general", "bilinear, and the detail of the pixel's own channel handed to the others", false,
        general}};
   return methods;
@@ -145,7 +148,7 @@ const DemosaicMethod& demosaic_method(const std::string& name) {
 }
 
 const DemosaicMethod& usual_demosaic_method(const LinearMosaic& mosaic) {
-  return demosaic_method(is_bayer(mosaic) ? "gradient" : "general");
+  return demosaic_method(is_bayer(mosaic) ? "root-gradient" : "general");
 }
 
 bool is_bayer(const LinearMosaic& mosaic) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/isp/develop.h>
+#include <petzval/isp/mosaic_denoise.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace petzval {
 
@@ -17,8 +19,8 @@ double noise_scale(const RawImage& raw) {
   return raw.dn_per_e / range(raw);
 }
 double noise_offset(const RawImage& raw) {
-  const double k = noise_scale(raw);
-  return k * k * raw.read_noise_e * raw.read_noise_e;
+  const double k = noise_scale(raw), step = 1 / range(raw);
+  return k * k * raw.read_noise_e * raw.read_noise_e + step * step / 12;
 }
 
 std::vector<double> neutral_for(const RawImage& raw, const LinearMosaic& mosaic,
@@ -41,8 +43,8 @@ Planes as_they_are(const Planes& planes) {
 }  // namespace
 
 const std::vector<std::string>& develop_step_names() {
-  static const std::vector<std::string> names = {"linear",  "defects", "shading", "white-balance", "demosaic",
-                                                 "denoise", "colour",  "sharpen", "tone"};
+  static const std::vector<std::string> names = {"linear",   "defects", "shading", "denoise", "white-balance",
+                                                 "demosaic", "colour",  "sharpen", "tone"};
   return names;
 }
 
@@ -59,6 +61,8 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   tell_mosaic("defects", mosaic);
   if (options.flat) correct_shading(mosaic, linearised(*options.flat));
   tell_mosaic("shading", mosaic);
+  denoise_mosaic(mosaic, options.denoise_strength, noise_scale(raw), noise_offset(raw));
+  tell_mosaic("denoise", mosaic);
   done.neutral = neutral_for(raw, mosaic, options);
   balance_white(mosaic, done.neutral);
   tell_mosaic("white-balance", mosaic);
@@ -67,17 +71,15 @@ Planes develop_planes(const RawImage& raw, const DevelopOptions& options, Develo
   Planes planes = demosaiced(mosaic, done.demosaic);
   mosaic = {};
   if (step) step("demosaic", planes);
-  denoise(planes, options.denoise_strength, noise_scale(raw), noise_offset(raw));
-  if (step) step("denoise", planes);
 
   if (planes.values.size() == 1) {
-    planes = rendered(planes, {}, options.space);
+    planes = rendered(std::move(planes), {}, options.space);
   } else if (!options.colours) {
     planes = as_they_are(planes);
   } else {
     const CameraMatrix matrix = options.matrix ? *options.matrix : camera_matrix(raw, done.neutral);
     done.temperature_k = matrix.temperature_k;
-    planes = rendered(planes, matrix, options.space);
+    planes = rendered(std::move(planes), matrix, options.space);
   }
   if (step) step("colour", planes);
   if (options.sharpen_amount != 0) sharpen(planes, options.sharpen_amount, options.sharpen_sigma_px);

@@ -43,9 +43,9 @@ struct DevelopReport {
 /// Told of each step with what it made; the planes of a mosaic are one.
 using DevelopStep = std::function<void(const std::string& name, const Planes& planes)>;
 
-/// Black level and linearity → defects → shading → white balance → demosaic → denoising → colour matrix →
+/// Black level and linearity → defects → shading → denoising → white balance → demosaic → colour matrix →
 /// sharpening → exposure and tone: linear light of the display, 0 to 1 and beyond. Names of the steps:
-/// "linear", "defects", "shading", "white-balance", "demosaic", "denoise", "colour", "sharpen", "tone".
+/// "linear", "defects", "shading", "denoise", "white-balance", "demosaic", "colour", "sharpen", "tone".
 /// \throws InputError for options that do not fit the image.
 Planes develop_planes(const RawImage& raw, const DevelopOptions& options = {},
                       DevelopReport* report = nullptr, const DevelopStep& step = {});

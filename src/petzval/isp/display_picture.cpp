@@ -41,14 +41,18 @@ class CodeTable {
   std::vector<float> table_;
 };
 
-std::vector<std::uint16_t> codes(const Planes& planes, int bits) {
+/// Channels interleaved; `Code` holds as many bits or more.
+template <typename Code>
+std::vector<Code> codes(const Planes& planes, int bits) {
   const CodeTable code(bits);
   const std::size_t channels = planes.values.size(), columns = static_cast<std::size_t>(planes.columns);
-  std::vector<std::uint16_t> samples(planes.values[0].size() * channels);
+  std::vector<Code> samples(planes.values[0].size() * channels);
   parallel_for(static_cast<std::size_t>(planes.rows), [&](std::size_t row) {
-    for (std::size_t c = 0; c < columns; ++c)
-      for (std::size_t k = 0; k < channels; ++k)
-        samples[(row * columns + c) * channels + k] = code(planes.values[k][row * columns + c]);
+    for (std::size_t k = 0; k < channels; ++k) {
+      const float* const from = planes.values[k].data() + row * columns;
+      Code* const to = samples.data() + row * columns * channels + k;
+      for (std::size_t c = 0; c < columns; ++c) to[c * channels] = static_cast<Code>(code(from[c]));
+    }
   });
   return samples;
 }
@@ -56,11 +60,10 @@ std::vector<std::uint16_t> codes(const Planes& planes, int bits) {
 void write_tiff_picture(const std::string& path, const Planes& planes, int bits, const std::string& icc,
                         const std::string& provenance) {
   TiffImage image{planes.columns, planes.rows, static_cast<int>(planes.values.size()), {}, icc, provenance};
-  std::vector<std::uint16_t> samples = codes(planes, bits);
   if (bits == 8)
-    image.samples = std::vector<std::uint8_t>(samples.begin(), samples.end());
+    image.samples = codes<std::uint8_t>(planes, bits);
   else
-    image.samples = std::move(samples);
+    image.samples = codes<std::uint16_t>(planes, bits);
   write_tiff(path, image);
 }
 
@@ -74,7 +77,7 @@ void write_png_picture(const std::string& path, const Planes& planes, int bits, 
   image.transfer = srgb ? PngTransfer::srgb : PngTransfer::unstated;
   if (!srgb) image.icc_profile = icc;
   image.text["Description"] = provenance;
-  image.samples = codes(planes, bits);
+  image.samples = codes<std::uint16_t>(planes, bits);
   write_png(path, image);
 }
 
@@ -83,9 +86,8 @@ void write_jpeg_picture(const std::string& path, const Planes& planes, int bits,
   constexpr int jpeg_bits = 8;
   if (bits != jpeg_bits)
     throw InputError(path, "a .jpg has 8 bits; `bits` 8, or a .png or .tif, would be right");
-  const std::vector<std::uint16_t> samples = codes(planes, bits);
   JpegImage image{planes.columns, planes.rows, static_cast<int>(planes.values.size()), {}, icc};
-  image.samples.assign(samples.begin(), samples.end());
+  image.samples = codes<std::uint8_t>(planes, bits);
   write_jpeg(path, image, options);
 }
 

@@ -46,42 +46,6 @@ std::vector<float> blurred(const std::vector<float>& plane, int columns, int row
 
 }  // namespace
 
-void denoise(Planes& planes, double strength, double noise_scale, double noise_offset, int radius) {
-  if (!(strength > 0) || noise_scale + noise_offset <= 0) return;
-  const Planes before = planes;
-  const auto columns = static_cast<std::size_t>(planes.columns);
-  const std::size_t channels = planes.values.size();
-  parallel_for(static_cast<std::size_t>(planes.rows), [&](std::size_t row) {
-    std::vector<float> sums(channels);
-    for (int c = 0; c < planes.columns; ++c) {
-      const std::size_t here = row * columns + static_cast<std::size_t>(c);
-      double variance = 0;
-      for (std::size_t k = 0; k < channels; ++k)
-        variance += noise_scale * std::max(0.0, static_cast<double>(before.values[k][here])) + noise_offset;
-      const auto inverse = static_cast<float>(1 / (2 * strength * strength * variance));
-      std::fill(sums.begin(), sums.end(), 0.0f);
-      float total = 0;
-      for (int dr = -radius; dr <= radius; ++dr)
-        for (int dc = -radius; dc <= radius; ++dc) {
-          const int r = std::clamp(static_cast<int>(row) + dr, 0, planes.rows - 1),
-                    k = std::clamp(c + dc, 0, planes.columns - 1);
-          const std::size_t there = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(k);
-          float difference = 0;
-          for (std::size_t i = 0; i < channels; ++i) {
-            const float d = before.values[i][there] - before.values[i][here];
-            difference += d * d;
-          }
-          const float spread =
-              2.0f * static_cast<float>(dr * dr + dc * dc) / static_cast<float>(radius * radius);
-          const float weight = std::exp(-difference * inverse - spread);
-          total += weight;
-          for (std::size_t i = 0; i < channels; ++i) sums[i] += weight * before.values[i][there];
-        }
-      for (std::size_t i = 0; i < channels; ++i) planes.values[i][here] = sums[i] / total;
-    }
-  });
-}
-
 void sharpen(Planes& planes, double amount, double sigma_px) {
   constexpr double greatest_px = 50;
   if (!(sigma_px > 0 && sigma_px <= greatest_px))

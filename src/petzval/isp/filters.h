@@ -6,12 +6,6 @@
 
 namespace petzval {
 
-/// Bilateral filter (Tomasi & Manduchi, ICCV 1998) over (2·radius + 1)² pixels: a neighbour counts by its
-/// distance in the picture (a Gaussian of radius/2) and by its difference from the pixel over all planes
-/// together, measured in `strength` times the noise at that level. \param noise_scale, noise_offset  variance
-/// of the noise at a value x: scale · x + offset.
-void denoise(Planes& planes, double strength, double noise_scale, double noise_offset, int radius = 3);
-
 /// Unsharp masking: adds `amount` times the difference from a Gaussian blur of standard deviation `sigma_px`.
 /// \throws InputError for a sigma that is not above 0 or exceeds 50 pixels.
 void sharpen(Planes& planes, double amount, double sigma_px);

@@ -7,7 +7,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -88,6 +87,44 @@ class SameChannel {
       if (found.count == neighbour_count) break;
     }
     return found;
+  }
+
+  /// For each column of a row, whether its pixel lies outside the range of its eight neighbours by more than
+  /// that range: most pixels do not, and are told apart here side by side. Pixels whose neighbours are not
+  /// all where they usually are, near the borders, count as outside.
+  void mark_outside(const std::vector<float>& values, int row, std::vector<unsigned char>& outside) const {
+    outside.assign(static_cast<std::size_t>(mosaic_.columns), 1);
+    const int period = mosaic_.mosaic.columns;
+    const auto width = static_cast<std::ptrdiff_t>(mosaic_.columns);
+    std::vector<unsigned char> of_phase(outside.size());
+    for (int phase = 0; phase < period; ++phase) {
+      const Places& places = places_[static_cast<std::size_t>((row % mosaic_.mosaic.rows) * period + phase)];
+      if (places.size() < neighbour_count) continue;
+      std::array<std::ptrdiff_t, neighbour_count> steps{};
+      int first = 0, last = mosaic_.columns;
+      bool whole = true;
+      for (std::size_t i = 0; i < neighbour_count; ++i) {
+        const auto [down, right] = places[i];
+        whole = whole && row + down >= 0 && row + down < mosaic_.rows;
+        first = std::max(first, -right);
+        last = std::min(last, mosaic_.columns - right);
+        steps[i] = down * width + right;
+      }
+      if (!whole) continue;
+      const float* const line = values.data() + row * width;
+      for (int c = first; c < last; ++c) {
+        float low = line[c + steps[0]], high = low;
+        for (std::size_t i = 1; i < neighbour_count; ++i) {
+          const float other = line[c + steps[i]];
+          low = other < low ? other : low;
+          high = other > high ? other : high;
+        }
+        const float below = low - line[c], above = line[c] - high, beyond = below > above ? below : above;
+        of_phase[static_cast<std::size_t>(c)] = !(beyond <= 0 || beyond <= high - low);
+      }
+      for (int c = phase; c < last; c += period)
+        if (c >= first) outside[static_cast<std::size_t>(c)] = of_phase[static_cast<std::size_t>(c)];
+    }
   }
 
   /// How far a pixel stands above the darkest of its neighbours (or below the brightest), as a share of that.
@@ -194,18 +231,21 @@ LinearMosaic linearised(const RawImage& raw) {
 int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offset,
                     std::span<const PixelPlace> known, double threshold) {
   const SameChannel same(mosaic);
-  const std::vector<float> with_known = mosaic.values;
   const std::set<std::size_t> bad = indices_of(known, mosaic);
   for (const PixelPlace& place : known) {
-    Neighbours around = same.of(with_known, place.row, place.column, &bad);
+    // Known bad pixels are passed over, so that none of those written here is read.
+    Neighbours around = same.of(mosaic.values, place.row, place.column, &bad);
     if (around.count > 0) mosaic.values[same.index(place.row, place.column)] = around.median();
   }
-  const std::vector<float> before = mosaic.values;
-  std::atomic<int> replaced = static_cast<int>(bad.size());
+  // Changes are made when all are known: the neighbours of a pixel are those that were measured.
+  const std::vector<float>& before = mosaic.values;
+  std::vector<std::vector<std::pair<int, float>>> changes(static_cast<std::size_t>(mosaic.rows));
   parallel_for(static_cast<std::size_t>(mosaic.rows), [&](std::size_t row) {
-    int here = 0;
+    const int r = static_cast<int>(row);
+    std::vector<unsigned char> outside;
+    same.mark_outside(before, r, outside);
     for (int c = 0; c < mosaic.columns; ++c) {
-      const int r = static_cast<int>(row);
+      if (!outside[static_cast<std::size_t>(c)]) continue;
       Neighbours around = same.of(before, r, c);
       if (around.count < neighbour_count) continue;
       const auto [low, high] = around.range();
@@ -218,11 +258,15 @@ int correct_defects(LinearMosaic& mosaic, double noise_scale, double noise_offse
       // defect.
       if (beyond <= threshold * noise || beyond <= static_cast<double>(high - low)) continue;
       if (is_detail(same, before, r, c, value > high, noise)) continue;
-      mosaic.values[same.index(r, c)] = around.median();
-      ++here;
+      changes[row].emplace_back(c, around.median());
     }
-    replaced += here;
   });
+  int replaced = static_cast<int>(bad.size());
+  for (int r = 0; r < mosaic.rows; ++r)
+    for (const auto& [column, value] : changes[static_cast<std::size_t>(r)]) {
+      mosaic.values[same.index(r, column)] = value;
+      ++replaced;
+    }
   return replaced;
 }
 

@@ -122,6 +122,8 @@ TiffStream::TiffStream(std::unique_ptr<State> state) : state_(std::move(state)) 
 TiffStream::TiffStream(std::string path, std::uint64_t expected_bytes) : state_(new State) {
   state_->path = std::move(path);
   state_->writing = true;
+  constexpr std::size_t room_for_tags = 1 << 16;
+  state_->bytes.reserve(expected_bytes + room_for_tags);  // it would grow, and be copied, piece by piece
   state_->handle = open(*state_, expected_bytes > big_tiff_from ? "w8l" : "wl");
   require(state_->handle != nullptr);
 }
