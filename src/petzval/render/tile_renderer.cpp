@@ -43,14 +43,10 @@ class TileRenderer {
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
     task_.camera.trace(group, task_.sampling, places_, rays_);
-    arriving_ = Lanes::all(0);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (i % paths_between_questions == 0) check_stop();
       follow(i, group);
     }
-    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
-      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
-          static_cast<double>(arriving_[lane]);
   }
 
   void start_sample(int group, int index, Pixel pixel) {
@@ -83,7 +79,9 @@ class TileRenderer {
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
                       (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, light);
-    arriving_ += light.arriving;
+    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
+      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
+          static_cast<double>(light.arriving[lane]);
     if (first.met) add_first(i, group, first);
   }
 
@@ -117,6 +115,11 @@ class TileRenderer {
     // As WavelengthGroups::band(), for lanes that have one.
     const auto band = static_cast<std::size_t>(group + lane * task_.world.groups.count());
     const PixelWindow& all = whole_.window;
+    if (!all.contains(pixel.column, pixel.row)) {
+      const PixelWindow& picture = whole_.whole;
+      return result_.outside.push_back(
+          {band * picture.size() + picture.index(pixel.column, pixel.row), value});
+    }
     if (!tile_.contains(pixel.column, pixel.row))
       return result_.strays[static_cast<std::size_t>(group)].push_back(
           {band * all.size() + all.index(pixel.column, pixel.row), value});
@@ -144,7 +147,6 @@ class TileRenderer {
   bool half_;
   Film& whole_;
   Film film_;  ///< of the tile
-  Lanes arriving_ = Lanes::all(0);
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;

@@ -82,6 +82,12 @@ struct RenderRequest {
   /// samples may then be asked for. Empty: none.
   std::string checkpoint = {};
   double checkpoint_seconds = 60;
+  /// A piece of the picture for one of several processes, whose checkpoints merge_renderings() puts together:
+  /// pixels (column, row, columns, rows), and samples a pixel from the first up to the second. Absent: all.
+  std::optional<std::array<int, 4>> region = {};
+  std::optional<std::array<int, 2>> sample_range = {};
+
+  bool is_piece() const { return region || sample_range; }
 };
 
 /// What only the library's own files look into.
@@ -153,6 +159,12 @@ Rendering render_scene(const PreparedScene& scene, const Context& context = {},
 /// (add_layers). A sun is hidden if something stands between it and the lens. \throws InputError for a camera
 /// without a lens, and as flare_layers(); Cancelled.
 FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options, const Context& context = {});
+/// Puts the pieces of one picture together, given by their checkpoints in any order: the file becomes the
+/// checkpoint that one process would have left, bit for bit, and the same request without a piece goes on
+/// from there. \throws InputError for pieces of different pictures or versions, and for pixels and samples
+/// that two of them have, or none; Failure; Cancelled.
+void merge_renderings(const std::vector<std::string>& pieces, const std::string& checkpoint,
+                      const Context& context = {});
 /// prepare_scene() and render_scene() in one.
 Rendering render_scene(const RenderRequest& request, const Context& context = {});
 
