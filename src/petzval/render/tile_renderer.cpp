@@ -38,7 +38,7 @@ class TileRenderer {
   }
 
   void take_samples(int group, SampleRange range) {
-    samples_.clear(), places_.clear();
+    samples_.clear(), places_.clear(), times_.clear();
     for (int index = range.first; index < range.last; ++index)
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
@@ -60,6 +60,9 @@ class TileRenderer {
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
     if (task_.camera.bends()) places_.back().bend = samples_.back().next2();
+    if (const auto& motion = task_.options.motion)
+      times_.push_back(motion->opens(pixel.row + 0.5, task_.sensor.rows) +
+                       motion->exposure() * samples_.back().next2()[0]);
     // In turn from a random start: every wavelength leads equally often.
     places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
                                            static_cast<std::uint32_t>(task_.world.groups.lanes(group)));
@@ -72,8 +75,10 @@ class TileRenderer {
     ++result_.passed;
     const ClippingPlanes::Part part = task_.options.clipping.part_of(ray.origin, ray.direction);
     if (!(part.to > part.from)) return;
-    const Vector3 origin = task_.world_from_camera.point(ray.origin + part.from * ray.direction);
-    const Vector3 along = task_.world_from_camera.direction(ray.direction), direction = normalised(along);
+    if (task_.options.motion) moved_ = task_.options.motion->world_from_camera(times_[i]);
+    const Transform& place = task_.options.motion ? moved_ : task_.world_from_camera;
+    const Vector3 origin = place.point(ray.origin + part.from * ray.direction);
+    const Vector3 along = place.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
     const PathLight light =
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
@@ -82,7 +87,7 @@ class TileRenderer {
     for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
       result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
           static_cast<double>(light.arriving[lane]);
-    if (first.met) add_first(i, group, first);
+    if (first.met) add_first(i, group, first, place);
   }
 
   void add_light(std::size_t i, int group, const PathLight& light) {
@@ -128,11 +133,11 @@ class TileRenderer {
     if (half_) film_.half[within] += value;
   }
 
-  void add_first(std::size_t i, int group, const FirstSurface& first) {
+  void add_first(std::size_t i, int group, const FirstSurface& first, const Transform& place) {
     const Pixel pixel = pixel_of(i);
     const std::size_t at = tile_.index(pixel.column, pixel.row), plane = tile_.size();
     film_.met[static_cast<std::size_t>(group) * plane + at] += 1;
-    film_.depth[at] += task_.world_from_camera.inverse_point(first.position).z;
+    film_.depth[at] += place.inverse_point(first.position).z;
     film_.normal[at] += first.normal.x;
     film_.normal[plane + at] += first.normal.y;
     film_.normal[2 * plane + at] += first.normal.z;
@@ -150,6 +155,8 @@ class TileRenderer {
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;
+  std::vector<double> times_;  ///< of the samples, if the camera moves
+  Transform moved_;            ///< where it then is
   std::vector<CameraRay> rays_;
 };
 

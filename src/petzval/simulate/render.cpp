@@ -30,6 +30,7 @@ render::RenderOptions sampling_of(const PreparedScene& scene, const Context& con
   if (const auto& at = request.region)
     options.piece.region = {(*at)[0], (*at)[1], (*at)[0] + (*at)[2], (*at)[1] + (*at)[3]};
   options.piece.samples = request.sample_range;
+  options.motion = scene.world->camera.motion;
   if (!request.checkpoint.empty()) options.fingerprint = render_fingerprint(scene, options);
   return options;
 }
@@ -72,7 +73,8 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, const
   }
   Rendering picture = result_within(context, [&](const ProgressCallback& progress) {
     render::SceneCamera camera = scene_camera(scene);
-    camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
+    // Where lamps are seen is known of a camera that stands.
+    if (!camera.motion) camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
     options.window = camera.crop;
     return render_picture(world, *camera.make(world.groups), camera.world_from_camera, scene.film, options,
                           progress);

@@ -57,6 +57,12 @@ struct RenderRequest {
   /// Where the camera stands and what is in the middle of its picture [scene units, world space]; absent: as
   /// in the scene, or, with one of them alone, the middle of the scene.
   std::optional<std::array<double, 3>> camera_at = {}, look_at = {};
+  /// How the camera moves from there while its shutter is open, and what is in the middle of its picture
+  /// [scene units, world space]; absent: not.
+  std::optional<std::array<double, 3>> camera_move = {}, look_move = {};
+  /// Of the time from the first row's beginning to the last row's end: by how much the last row begins later
+  /// than the first, from 0, all at once, to below 1. For a camera that moves.
+  double rolling_shutter = 0;
   std::optional<double> field_of_view_deg = {};  ///< of a camera without a lens, across the picture's width
 
   std::vector<double> wavelengths_nm = {};  ///< empty: 400 to 700 in steps of 10
