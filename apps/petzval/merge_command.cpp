@@ -4,8 +4,11 @@
 #include <petzval/simulate/render.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "command.h"
+#include "output_option.h"
 
 namespace petzval::app {
 
