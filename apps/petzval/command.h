@@ -117,6 +117,7 @@ void add_measure_command(CLI::App& app, Shared& shared);
 void add_sweep_command(CLI::App& app, Shared& shared);
 void add_demo_command(CLI::App& app, Shared& shared);
 void add_handout_command(CLI::App& app, Shared& shared);
+void add_merge_command(CLI::App& app, Shared& shared);
 void add_live_command(CLI::App& app, Shared& shared);
 void add_dataset_commands(CLI::App& app, Shared& shared);
 

@@ -45,6 +45,7 @@ void add_all_commands(CLI::App& program, Shared& shared) {
   add_sweep_command(program, shared);
   add_demo_command(program, shared);
   add_handout_command(program, shared);
+  add_merge_command(program, shared);
   add_live_command(program, shared);
   add_dataset_commands(program, shared);
   add_help_commands(program);

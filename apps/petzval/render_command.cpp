@@ -135,6 +135,21 @@ PreparedScene prepared(const RenderRequest& request, const Context& context, con
   return shared.renders ? shared.renders->prepare(request, context) : prepare_scene(request, context);
 }
 
+/// One piece of the picture, into its checkpoint: what the command would write waits for all pieces.
+void render_piece(const PreparedScene& scene, const Context& context, const Shared& shared) {
+  const Rendering piece = render_scene(scene, context);
+  if (shared.json)
+    return print_json({{"scene", scene.request.scene},
+                       {"columns", piece.irradiance.columns()},
+                       {"rows", piece.irradiance.rows()},
+                       {"samples_per_pixel", piece.samples_per_pixel},
+                       {"camera_rays", piece.rays},
+                       {"checkpoint", scene.request.checkpoint}});
+  if (!shared.quiet)
+    fmt::print("{}: the sums of {} x {} pixels, {} samples each\n", scene.request.checkpoint,
+               piece.irradiance.columns(), piece.irradiance.rows(), piece.samples_per_pixel);
+}
+
 void run_render(const RenderCommand& command, const CLI::App& app, const Shared& shared) {
   if (command.list) return print_scenes(rows_of_worlds(), shared.json);
   if (command.choice.request.scene.empty())
@@ -169,7 +184,8 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   RenderSeconds seconds{seconds_since(start), 0};
   const auto begin = std::chrono::steady_clock::now();
   std::optional<FlareLayers> layers;
-  if (flare.any()) layers = scene_flare(scene, flare, context);
+  if (flare.any() && !request.is_piece()) layers = scene_flare(scene, flare, context);
+  if (request.is_piece()) return render_piece(scene, context, shared);
   Rendering picture = render_or_save(command, scene, outputs, context);
   if (layers) add_layers(*layers, picture.irradiance);
   seconds.light = seconds_since(begin);
@@ -213,6 +229,34 @@ void add_focus_options(RenderCommand& options, CLI::App& command) {
       ->check(output_file());
 }
 
+/// What one of several processes renders.
+void add_piece_options(RenderRequest& request, CLI::App& command) {
+  command
+      .add_option_function<std::vector<int>>(
+          "--region",
+          [&request](const std::vector<int>& at) {
+            request.region = {at[0], at[1], at[2], at[3]};
+          },
+          "Only pixels from column X and row Y on, W x H of them: a piece, which goes into --checkpoint "
+          "alone; "
+          "petzval merge puts pieces together")
+      ->delimiter(',')
+      ->expected(4)
+      ->check(CLI::Range(0, 1 << 24))
+      ->type_name("X,Y,W,H");
+  command
+      .add_option_function<std::vector<int>>(
+          "--sample-range",
+          [&request](const std::vector<int>& at) {
+            request.sample_range = {at[0], at[1]};
+          },
+          "Only samples from FIRST up to LAST of those of --spp, likewise")
+      ->delimiter(':')
+      ->expected(2)
+      ->check(CLI::Range(0, 1 << 24))
+      ->type_name("FIRST:LAST");
+}
+
 void add_sampling_options(RenderRequest& request, CLI::App& command) {
   command
       .add_option("--spp", request.samples_per_pixel,
@@ -231,6 +275,7 @@ void add_sampling_options(RenderRequest& request, CLI::App& command) {
           "then adds samples")
       ->check(output_file());
   command.add_option("--checkpoint-seconds", request.checkpoint_seconds, "How often")->capture_default_str();
+  add_piece_options(request, command);
 }
 
 }  // namespace

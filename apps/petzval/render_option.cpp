@@ -53,6 +53,19 @@ void add_camera_options(RenderChoice& choice, CLI::App& command) {
                   "--camera-at the middle of the scene")
       ->type_name("X,Y,Z");
   command
+      .add_option("--camera-move", choice.camera_move,
+                  "X,Y,Z: how the camera moves while its shutter is open [scene units]")
+      ->type_name("X,Y,Z");
+  command
+      .add_option("--look-move", choice.look_move,
+                  "X,Y,Z: how what is in the middle of the picture moves meanwhile; alone, the camera turns")
+      ->type_name("X,Y,Z");
+  command
+      .add_option("--rolling-shutter", request.rolling_shutter,
+                  "Share of that time by which the last row begins after the first; 0: all at once")
+      ->check(CLI::Range(0.0, 0.999999))
+      ->capture_default_str();
+  command
       .add_option("--field-of-view", request.field_of_view_deg,
                   "Across the picture, of a camera without a lens [deg]")
       ->check(positive_number());
@@ -194,6 +207,8 @@ RenderRequest RenderChoice::read(const Shared& shared) const {
   result.camera = seen.camera(shared);
   result.camera_at = place_of(camera_at, "--camera-at");
   result.look_at = place_of(look_at, "--look-at");
+  result.camera_move = place_of(camera_move, "--camera-move");
+  result.look_move = place_of(look_move, "--look-move");
   if (camera.lens.path_or_name.empty()) {
     // The scene may have a lens.
     result.camera.blades = camera.blades.of_unknown_lens();

@@ -29,7 +29,7 @@ struct RenderChoice {
   RenderRequest request;  ///< what options say as they stand
   CameraChoice camera;
   AutofocusChoice autofocus;
-  std::string camera_at, look_at;
+  std::string camera_at, look_at, camera_move, look_move;
   std::string size, wavelengths, sampling = "exit-pupil", camera_origin = "film";
 
   void add_to(CLI::App& command);

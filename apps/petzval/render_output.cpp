@@ -8,6 +8,7 @@
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/spectral_exr.h>
 #include <petzval/simulate/scene_segments.h>
+#include <petzval/simulate/scene_truth.h>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +114,13 @@ void RenderOutputs::add_to(CLI::App& command) {
           "Also write which shape, placed object and material the middle of each pixel sees, by their "
           "number in the scene, -1 for none: rows x columns x 3 (.npy)")
       ->check(output_file());
+  command
+      .add_option(
+          "--flow", flow,
+          "Also write how far what the middle of each pixel sees moves to the right and down in the picture, "
+          "from the beginning of its exposure to the end, with --camera-move or --look-move: rows x columns "
+          "x 2 [pixels] (.npy)")
+      ->check(output_file());
   command.add_flag(
       "--layers", layers,
       "Every .exr of the light also has depth (Z), normals (N.X, N.Y, N.Z) and reflectance (T.550,0nm)");
@@ -138,7 +146,7 @@ OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const 
     require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
   if (layers && std::ranges::none_of(pictures, [](const auto& path) { return extension_of(path) == ".exr"; }))
     throw InputError("--layers are written beside the light: -o picture.exr would be right");
-  for (const std::string* path : {&depth, &normals, &albedo, &segments})
+  for (const std::string* path : {&depth, &normals, &albedo, &segments, &flow})
     if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
   return shot.checked(sensor, pictures, command);
 }
@@ -149,7 +157,8 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
   for (const std::string& path : pictures) outputs.push_back({"--output", path});
   for (const auto& [option, path] :
        {NamedFile{"--depth", depth}, NamedFile{"--normals", normals}, NamedFile{"--albedo", albedo},
-        NamedFile{"--segments", segments}, NamedFile{"--ghost-layer", flare.ghost_layer}})
+        NamedFile{"--segments", segments}, NamedFile{"--flow", flow},
+        NamedFile{"--ghost-layer", flare.ghost_layer}})
     if (!path.empty()) outputs.push_back({option, path});
   for (const auto& [option, path] : others)
     if (!path.empty()) outputs.push_back({option, path});
@@ -167,6 +176,11 @@ Outputs RenderOutputs::write(const Rendering& picture, const PreparedScene& scen
   Outputs made = write_outputs(picture.irradiance, pictures, sensor, all, files, context);
   write_first_surfaces(*this, picture, files);
   if (!segments.empty()) write_segments(segments, segments_seen(scene, context), files);
+  if (!flow.empty())
+    write_npy(files.stage(flow),
+              std::vector<std::size_t>{static_cast<std::size_t>(picture.irradiance.rows()),
+                                       static_cast<std::size_t>(picture.irradiance.columns()), 2},
+              flow_seen(scene, context));
   if (layers_of_flare) flare.write(*layers_of_flare, files);
   files.commit();
   return made;

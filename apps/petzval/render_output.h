@@ -18,6 +18,7 @@ struct RenderOutputs {
   std::vector<std::string> pictures;   ///< of the light, and of what the sensor makes of it
   std::string depth, normals, albedo;  ///< of the first surfaces
   std::string segments;                ///< which things they are of
+  std::string flow;                    ///< of a camera that moves
   bool layers = false;                 ///< these in every .exr of the light, too
   ShotChoice shot;
   FlareChoice flare;

@@ -54,12 +54,17 @@ Rendering render(const CameraInPython& camera, const std::string& scene, Maybe<s
                  const std::string& checkpoint, const std::string& sampling,
                  Maybe<std::array<double, 2>> focus_pixel, Maybe<std::array<double, 3>> camera_at,
                  Maybe<std::array<double, 3>> look_at, Maybe<double> field_of_view_deg, double light_scale,
-                 int threads, std::uint64_t seed, const nb::object& progress) {
-  const RenderRequest asked =
+                 Maybe<std::array<double, 3>> camera_move, Maybe<std::array<double, 3>> look_move,
+                 double rolling_shutter, Maybe<std::array<int, 4>> region,
+                 Maybe<std::array<int, 2>> sample_range, int threads, std::uint64_t seed,
+                 const nb::object& progress) {
+  RenderRequest asked =
       request(camera, scene, size, wavelengths_nm, samples_per_pixel, noise, first_surfaces, zones, pinhole,
               film_diagonal_mm, aperture_diameter_mm, diffraction, max_depth, scene_unit_mm, sky_cd_m2,
               absolute_spectra, skip_unsupported, checkpoint, sampling, focus_pixel, camera_at, look_at,
               field_of_view_deg, light_scale);
+  asked.camera_move = camera_move, asked.look_move = look_move, asked.rolling_shutter = rolling_shutter;
+  asked.region = region, asked.sample_range = sample_range;
   Call call({threads, seed, progress});
   return call([&](const Context& context) { return render_scene(asked, context); });
 }
@@ -166,15 +171,31 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "", nb::arg("sampling") = "exit-pupil",
       nb::arg("focus_pixel").none() = nb::none(), nb::arg("camera_at").none() = nb::none(),
       nb::arg("look_at").none() = nb::none(), nb::arg("field_of_view_deg").none() = nb::none(),
-      nb::arg("light_scale") = 1.0, nb::arg("threads") = 0, nb::arg("seed") = 1,
-      nb::arg("progress").none() = nb::none(),
+      nb::arg("light_scale") = 1.0, nb::arg("camera_move").none() = nb::none(),
+      nb::arg("look_move").none() = nb::none(), nb::arg("rolling_shutter") = 0.0,
+      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),
+      nb::arg("threads") = 0, nb::arg("seed") = 1, nb::arg("progress").none() = nb::none(),
       "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the "
       "sensor, path-traced through every "
       "surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS error over mean "
       "light is reached. `zones`: "
       "(left, right, top, bottom) in fractions of the picture, for focus \"auto\". `focus_pixel`: (column, "
       "row) of what is to be sharp. `camera_at`, `look_at`: (x, y, z) [scene units]; "
-      "`field_of_view_deg`: across the picture, without a lens. Raises InputError; Cancelled.");
+      "`field_of_view_deg`: across the picture, without a lens. `camera_move`, `look_move`: how the camera "
+      "and what is in the middle of its picture move while the shutter is open [scene units]; "
+      "`rolling_shutter`: share of that time by which the last row begins after the first. `region` (column, "
+      "row, columns, rows) and `sample_range` (first, end): a piece for `checkpoint`, which "
+      "merge_renderings() puts together with others. Raises InputError; Cancelled.");
+  module.def(
+      "merge_renderings",
+      [](const std::vector<std::string>& pieces, const std::string& checkpoint, const nb::object& progress) {
+        Call call({0, 1, progress});
+        call([&](const Context& context) { merge_renderings(pieces, checkpoint, context); });
+      },
+      nb::arg("pieces"), nb::arg("checkpoint"), nb::kw_only(), nb::arg("progress").none() = nb::none(),
+      "Puts the pieces of a picture together, the checkpoints of Camera.render() with `region` or "
+      "`sample_range`, in any order: `checkpoint` becomes what one process would have left, the same bytes. "
+      "Raises InputError; Cancelled.");
   module.def(
       "list_unsupported",
       [](const std::string& scene) {

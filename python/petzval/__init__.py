@@ -17,7 +17,7 @@ from ._petzval import (Camera, Edge, Edges, FirstOrder, FocusRun, Frame, GainMod
                        LensOnSensor, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
                        Scene, SceneRequest, Sensor, SensorTest, SpectralImage, Surface, SurfaceList, TableCamera,
                        analyses, bundled_names, chart_names, compare, compare_lenses, data_directory, develop,
-                       list_unsupported, match_lenses, measure_colour, set_data_directory, sfr, target, target_chart_names, test_sensor)
+                       list_unsupported, match_lenses, measure_colour, merge_renderings, set_data_directory, sfr, target, target_chart_names, test_sensor)
 from ._petzval import _set_default_data_directory, _version
 from ._sweep import sweep
 from ._tables import Analysis, Table, TracedRays

@@ -15,10 +15,11 @@ import pathlib
 
 import numpy as np
 
+from ._dataset_formats import to_bop, to_coco, to_zarr
 from ._errors import InputError
 from ._petzval import _dataset_parts, _dataset_state, _estimate_dataset, _make_dataset, _verify_dataset
 
-__all__ = ["Dataset", "compute", "estimate", "info", "make", "verify"]
+__all__ = ["Dataset", "compute", "estimate", "info", "make", "to_bop", "to_coco", "to_zarr", "verify"]
 
 
 def _recipe(recipe):
@@ -74,7 +75,7 @@ class Dataset:
     """The items of the parts that are done, in order: a sequence of dicts, as torch.utils.data.DataLoader takes it.
 
     Each has "facts" (what was drawn, camera, exposure), "picture" (rows x columns x 3, uint8 or uint16) and what the
-    recipe names as truth: "sharp", "psf", "rays", "depth", "normals", "albedo", "electrons", "irradiance" as arrays,
+    recipe names as truth: "sharp", "psf", "rays", "depth", "normals", "albedo", "masks", "flow", "electrons", "irradiance" as arrays,
     "raw" as the bytes of a .dng. `only`: read just these. `transform(item)`: what is given in an item's place.
     Pictures need Pillow. Items that failed are left out.
     """

@@ -246,6 +246,46 @@ class Render(ProgramTest):
             self.assertEqual((self.folder / "added.npy").read_bytes(), (self.folder / "whole.npy").read_bytes(), samples)
         self.assert_refused(*self.rendering("x.npy", spp=16), words=["c.petzval", "32 samples", "--spp"])
 
+    def piece(self, name, **changed):
+        """Renders a piece of the picture into NAME.sums."""
+        self.assert_succeeds(*self.rendering("none.npy", checkpoint=name + ".sums", spp=48, checkpoint_seconds=None, **changed))
+
+    def test_pieces_of_a_picture_are_the_bytes_of_one_process(self):
+        # 23 columns and 31 rows part tiles of 16 pixels; dgauss-50mm parts colours, so that light of one piece lands in another.
+        self.piece("a", region="0,0,23,48", threads=1)
+        self.piece("b", region="23,0,41,31", sample_range="16:48")
+        self.piece("c", region="23,0,41,31", sample_range="0:16")
+        self.piece("d", region="23,31,41,17")
+        self.assertFalse((self.folder / "none.npy").exists())
+        self.assert_succeeds(*self.rendering("whole.npy", spp=48, checkpoint="whole.sums"))
+        for order in ("abcd", "dbca"):
+            self.assert_succeeds("merge", *[name + ".sums" for name in order], "-o", "merged.sums")
+            self.assertEqual((self.folder / "merged.sums").read_bytes(), (self.folder / "whole.sums").read_bytes(), order)
+        self.assert_succeeds(*self.rendering("merged.npy", spp=48, checkpoint="merged.sums"))
+        self.assertEqual((self.folder / "merged.npy").read_bytes(), (self.folder / "whole.npy").read_bytes())
+        # What does not fit together.
+        for pieces, words in (("abc", ["no piece has pixel 23,31 in pass 1"]), ("abcda", ["a.sums", "has pixel 0,0 in pass 1"]),
+                              ("abd", ["no piece has pixel 23,0 in pass 1"])):
+            self.assert_refused("merge", *[name + ".sums" for name in pieces], "-o", "x.sums", words=words)
+        self.piece("e", region="23,31,41,17", seed=4)
+        self.assert_refused("merge", *[name + ".sums" for name in "abce"], "-o", "x.sums", words=["e.sums", "seed 4", "a.sums has", "seed 3"])
+        data = (self.folder / "d.sums").read_bytes()
+        (self.folder / "f.sums").write_bytes(data[:-30] + bytes([data[-30] ^ 1]) + data[-29:])
+        self.assert_refused("merge", *[name + ".sums" for name in "abcf"], "-o", "x.sums", words=["f.sums", "damaged"])
+        # Another version, whose text is as long.
+        at = data.index(b"petzval ", 30) + len("petzval ")
+        (self.folder / "f.sums").write_bytes(data[:at] + b"9" + data[at + 1:])
+        self.assert_refused("merge", *[name + ".sums" for name in "abcf"], "-o", "x.sums", words=["f.sums", '"petzval 9', "a.sums has"])
+        self.assertFalse((self.folder / "x.sums").exists())
+
+    def test_refuses_pieces_that_are_none(self):
+        for changed, words in (({"region": "60,0,5,5"}, ["--region", "0,0 to 63,47"]), ({"region": "0,0,0,5"}, ["--region"]),
+                               ({"sample_range": "8:16"}, ["--sample-range 8:16", "multiples of 16 from 0 to 256"]),
+                               ({"sample_range": "0:16", "checkpoint": None}, ["--checkpoint"]),
+                               ({"region": "0,0,5,5", "spp": 12}, ["--spp 12", "16 or more"]),
+                               ({"region": "0,0,5,5", "noise": .1}, ["--noise"]), ({"region": "0,0,5"}, ["--region"])):
+            self.assert_refused(*self.rendering("x.npy", **changed), words=words)
+
     def test_exposes_and_develops_as_sense_and_develop_do(self):
         sensor = ("--sensor", "third-inch-1280x960")
         light = ("render", "s.pbrt", *LENS, *sensor, "--size", "32x24", "--spp", "8", "--quiet")

@@ -5,6 +5,7 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/dataset/flat_truth.h>
 #include <petzval/dataset/item.h>
+#include <petzval/dataset/object_masks.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
@@ -13,6 +14,7 @@
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
+#include <petzval/simulate/scene_truth.h>
 #include <petzval/tolerance/tolerancing.h>
 
 #include <cmath>
@@ -177,6 +179,9 @@ class ItemInMaking {
     request.wavelengths_nm = recipe_.wavelengths_nm;
     request.camera_at = draw_.place("camera");
     request.look_at = draw_.place("look");
+    request.camera_move = draw_.place("camera_move");
+    request.look_move = draw_.place("look_move");
+    request.rolling_shutter = draw_.number("rolling_shutter", 0);
     request.light_scale = draw_.number("light_scale", 1);
     request.samples_per_pixel = recipe_.samples_per_pixel;
     request.first_surfaces =
@@ -187,7 +192,17 @@ class ItemInMaking {
   void render(const PreparedScene& scene) {
     const Rendering rendering = render_scene(scene, context_);
     if (scene.lens) tell_lens(first_order(*scene.lens));
-    shoot(rendering.irradiance, *scene.request.camera.sensor);
+    const double exposure_s = shoot(rendering.irradiance, *scene.request.camera.sensor);
+    tell_pose(scene);
+    if (recipe_.has(Truth::sharp))
+      add_sharp(render_sharp(scene, context_).irradiance, *scene.request.camera.sensor, exposure_s);
+    const SensorGeometry& film = scene.film;
+    const std::size_t film_rows = static_cast<std::size_t>(film.rows),
+                      film_columns = static_cast<std::size_t>(film.columns);
+    if (recipe_.has(Truth::rays)) add_rays(rays_seen(scene, context_), film);
+    if (recipe_.has(Truth::flow))
+      add(npy_of(scratch_, "flow.npy", {film_rows, film_columns, 2}, flow_seen(scene, context_)));
+    if (recipe_.has(Truth::masks)) add_masks(object_masks(segments_seen(scene, context_)));
     if (!rendering.first_surfaces) return;
     const render::FirstSurfaces& first = *rendering.first_surfaces;
     const std::size_t rows = rows_of(rendering.irradiance), columns = columns_of(rendering.irradiance),
@@ -282,16 +297,40 @@ class ItemInMaking {
     item_.facts["psf"] = {{"columns_px", grid.columns}, {"rows_px", grid.rows}};
   }
 
+  void add_rays(const std::vector<float>& rays, const SensorGeometry& frame) {
+    add(npy_of(scratch_, "rays.npy",
+               {static_cast<std::size_t>(frame.rows), static_cast<std::size_t>(frame.columns), 2}, rays));
+    if (const auto fit = fit_intrinsics(rays, frame)) item_.facts["intrinsics"] = intrinsics_json(*fit);
+  }
+
+  void add_masks(const ObjectMasks& masks) {
+    add(file_of(scratch_, "masks.npy", [&](const std::string& path) {
+      write_npy(path,
+                std::array{static_cast<std::size_t>(masks.rows), static_cast<std::size_t>(masks.columns),
+                           std::size_t{2}},
+                masks.values);
+    }));
+    json& objects = item_.facts["objects"] = json::array();
+    for (const SeenObject& each : masks.objects)
+      objects.push_back({{"object", each.number},
+                         {"placed", each.placed},
+                         {"pixels", each.pixels},
+                         {"box_px", {each.left, each.top, each.columns, each.rows}}});
+  }
+
+  void tell_pose(const PreparedScene& scene) {
+    json& camera = item_.facts["camera"];
+    camera = {{"scene_unit_mm", scene.request.scene_unit_mm}, {"world_from_camera", camera_pose(scene)}};
+    if (scene.request.camera_move || scene.request.look_move)
+      camera["world_from_camera_at_end"] = camera_pose(scene, 1);
+  }
+
   void add_rays_and_depths(const ImagePlan& plan, const ImageReport& report) {
     if (!recipe_.has(Truth::rays) && !recipe_.has(Truth::depth)) return;
     const std::vector<float> rays = pixel_rays(plan.table, plan.frame);
     const std::size_t rows = static_cast<std::size_t>(plan.frame.rows),
                       columns = static_cast<std::size_t>(plan.frame.columns);
-    if (recipe_.has(Truth::rays)) {
-      add(npy_of(scratch_, "rays.npy", {rows, columns, 2}, rays));
-      if (const auto fit = fit_intrinsics(rays, plan.frame))
-        item_.facts["intrinsics"] = intrinsics_json(*fit);
-    }
+    if (recipe_.has(Truth::rays)) add_rays(rays, plan.frame);
     if (recipe_.has(Truth::depth))
       add(npy_of(scratch_, "depth.npy", {rows, columns},
                  pixel_depths(plan.scene, rays, report.pupil_to_sensor_mm)));

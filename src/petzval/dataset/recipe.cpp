@@ -18,8 +18,8 @@ constexpr std::uint32_t first_purpose = 0x44530000;  // "DS"
 }  // namespace
 
 const std::vector<std::string>& truth_names() {
-  static const std::vector<std::string> names = {"raw",  "irradiance", "electrons", "sharp", "psf",
-                                                 "rays", "depth",      "normals",   "albedo"};
+  static const std::vector<std::string> names = {"raw",   "irradiance", "electrons", "sharp", "psf", "rays",
+                                                 "depth", "normals",    "albedo",    "masks", "flow"};
   return names;
 }
 
@@ -54,6 +54,16 @@ const std::vector<RecipeParameter>& recipe_parameters() {
       {"analog_gain", "of the sensor; absent: 1", false, tiny, 1e6},
       {"white_balance", "as `petzval develop` takes it; absent: as-shot", true, 0, 0},
       {"brightness_ev", "of the developed picture", false, -40, 40},
+      {"camera_move_x", "of the camera while its shutter is open [scene units]; all three or none", false,
+       -any, any},
+      {"camera_move_y", "as camera_move_x", false, -any, any},
+      {"camera_move_z", "as camera_move_x", false, -any, any},
+      {"look_move_x", "of what is in the middle of the picture meanwhile; all three or none", false, -any,
+       any},
+      {"look_move_y", "as look_move_x", false, -any, any},
+      {"look_move_z", "as look_move_x", false, -any, any},
+      {"rolling_shutter", "share of that time by which the last row begins after the first", false, 0,
+       0.999999},
   };
   return all;
 }

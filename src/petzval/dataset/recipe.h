@@ -26,7 +26,9 @@ enum class Truth {
   rays,        ///< tangents of the direction that every pixel sees: [row][column][right, down], .npy
   depth,       ///< of three-dimensional scenes and of those with depth: [row][column] [m], .npy
   normals,     ///< of three-dimensional scenes, world space: [row][column][3], .npy
-  albedo       ///< of three-dimensional scenes: [row][column][band], .npy
+  albedo,      ///< of three-dimensional scenes: [row][column][band], .npy
+  masks,       ///< of three-dimensional scenes: [row][column][object, material], whole numbers, .npy
+  flow         ///< of a camera that moves in one: [row][column][right, down] [pixels], .npy
 };
 /// Their names, in order.
 const std::vector<std::string>& truth_names();

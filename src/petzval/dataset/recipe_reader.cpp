@@ -200,10 +200,12 @@ void check(const JsonEntry& root, const Recipe& recipe) {
   for (const char* name : {"scene_distance_m", "scene_angle_deg", "luminance_cd_m2", "illuminant"})
     if (has(name) && !has("scene"))
       entry.fail(fmt::format("has {}, which is of flat scenes, and a world", name));
-  for (const char* name : {"camera_x", "camera_y", "camera_z", "look_x", "look_y", "look_z", "light_scale"})
+  for (const char* name :
+       {"camera_x", "camera_y", "camera_z", "look_x", "look_y", "look_z", "light_scale", "camera_move_x",
+        "camera_move_y", "camera_move_z", "look_move_x", "look_move_y", "look_move_z", "rolling_shutter"})
     if (has(name) && !has("world"))
       entry.fail(fmt::format("has {}, which is of a world, and a flat scene", name));
-  for (const std::string what : {"camera", "look"}) {
+  for (const std::string what : {"camera", "look", "camera_move", "look_move"}) {
     const bool x = recipe.parameters.contains(what + "_x"), y = recipe.parameters.contains(what + "_y"),
                z = recipe.parameters.contains(what + "_z");
     if (x != y || y != z)
@@ -217,10 +219,14 @@ void check(const JsonEntry& root, const Recipe& recipe) {
   if (!recipe.is_rendered()) {
     needs(Truth::normals, "needs a world");
     needs(Truth::albedo, "needs a world");
+    needs(Truth::masks, "needs a world");
+    needs(Truth::flow, "needs a world");
   } else {
-    needs(Truth::sharp, "is made of flat scenes only");
     needs(Truth::psf, "is made of flat scenes only");
-    needs(Truth::rays, "is made of flat scenes only");
+    if (!has("camera_move_x") && !has("look_move_x")) {
+      needs(Truth::flow, "needs a camera that moves: camera_move_x or look_move_x");
+      if (has("rolling_shutter")) entry.fail("has rolling_shutter and a camera that stands still");
+    }
   }
 }
 

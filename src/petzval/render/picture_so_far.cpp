@@ -13,11 +13,16 @@ namespace {
 std::vector<std::uint8_t> lamps_of(const Film& film) {
   const std::size_t pixels = film.window.size();
   std::vector<double> light(pixels, 0.0);
-  for (std::size_t i = 0; i < film.light.size(); ++i) light[i % pixels] += film.light[i];
+  for (std::size_t i = 0; i < film.light.size(); ++i) light[i % pixels] += film.light[i].value();
   std::vector<std::uint8_t> lamps(pixels);
   std::ranges::transform(film.lamps, light, lamps.begin(),
-                         [](double lamp, double all) { return lamp > all / 2 ? 1 : 0; });
+                         [](const ExactSum& lamp, double all) { return lamp.value() > all / 2 ? 1 : 0; });
   return std::ranges::count(lamps, 1) > 0 ? lamps : std::vector<std::uint8_t>();
+}
+
+/// Samples a pixel of a group that are in a film.
+int samples_of(const Film& film, const Passes& passes, int group) {
+  return passes.taken(group, film.end_pass()) - passes.taken(group, film.first_pass);
 }
 
 /// The light of the scene, as it falls on what is seen: each band has as many rays as its group.
@@ -25,8 +30,8 @@ std::optional<Spectrum> illuminant_of(const Film& film, const WavelengthGroups& 
                                       const Passes& passes) {
   std::vector<double> light;
   for (int band = 0; band < static_cast<int>(film.arriving.size()); ++band)
-    light.push_back(film.arriving[static_cast<std::size_t>(band)] /
-                    std::max(1, passes.taken(band % groups.count(), film.passes)));
+    light.push_back(film.arriving[static_cast<std::size_t>(band)].value() /
+                    std::max(1, samples_of(film, passes, band % groups.count())));
   const double most = *std::ranges::max_element(light);
   if (light.size() < 2 || !(most > 0)) return {};
   for (double& value : light) value /= most;
@@ -41,19 +46,21 @@ FirstSurfaces first_surfaces(const Film& film, int groups, int samples_per_pixel
   first.albedo.assign(film.albedo.size(), 0);
   for (std::size_t i = 0; i < pixels; ++i) {
     double met = 0;
-    for (std::size_t at = i; at < film.met.size(); at += pixels) met += film.met[at];
+    for (std::size_t at = i; at < film.met.size(); at += pixels) met += film.met[at].value();
     if (!(met > 0)) continue;
     first.share[i] = static_cast<float>(met / samples_per_pixel);
-    first.depth[i] = static_cast<float>(film.depth[i] / met);
-    const Vector3 normal = normalised({film.normal[i], film.normal[pixels + i], film.normal[2 * pixels + i]});
+    first.depth[i] = static_cast<float>(film.depth[i].value() / met);
+    const Vector3 normal = normalised(
+        {film.normal[i].value(), film.normal[pixels + i].value(), film.normal[2 * pixels + i].value()});
     first.normal[3 * i] = static_cast<float>(normal.x);
     first.normal[3 * i + 1] = static_cast<float>(normal.y);
     first.normal[3 * i + 2] = static_cast<float>(normal.z);
     for (std::size_t band = 0; band * pixels < film.albedo.size(); ++band) {
       // Of the rays that carried this band.
-      const double carried = film.met[band % static_cast<std::size_t>(groups) * pixels + i];
+      const double carried = film.met[band % static_cast<std::size_t>(groups) * pixels + i].value();
       if (carried > 0)
-        first.albedo[band * pixels + i] = static_cast<float>(film.albedo[band * pixels + i] / carried);
+        first.albedo[band * pixels + i] =
+            static_cast<float>(film.albedo[band * pixels + i].value() / carried);
     }
   }
   return first;
@@ -73,11 +80,12 @@ Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const
   const std::size_t pixels = film.window.size();
   for (int band = 0; band < result.irradiance.bands(); ++band) {
     const std::span<float> plane = result.irradiance.band(band);
-    const double samples = std::max(1, passes.taken(band % groups.count(), film.passes));
+    const double samples = std::max(1, samples_of(film, passes, band % groups.count()));
     for (std::size_t i = 0; i < pixels; ++i)
-      plane[i] = static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i] / samples);
+      plane[i] =
+          static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i].value() / samples);
   }
-  result.samples_per_pixel = passes.taken(film.passes);
+  result.samples_per_pixel = passes.taken(film.end_pass()) - passes.taken(film.first_pass);
   result.rays = film.rays, result.passed = film.passed;
   if (film.has_first_surfaces())
     result.first_surfaces = first_surfaces(film, groups.count(), result.samples_per_pixel);
@@ -92,6 +100,8 @@ void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool
         for (const Stray& stray : tile.strays[group]) film.light[stray.at] += stray.light;
   });
   for (const TileResult& tile : results) {
+    if (tile.done)
+      for (const Stray& stray : tile.outside) film.outside[stray.at] += stray.light;
     if (half)
       for (const std::vector<Stray>& strays : tile.strays)
         for (const Stray& stray : strays) film.half[stray.at % film.half.size()] += stray.light;
@@ -114,8 +124,9 @@ std::optional<Rendering> picture_of_stopped_pass(const std::vector<PixelWindow>&
   if (first) return picture;
   for (int band = 0; band < picture.irradiance.bands(); ++band) {
     const int group = band % groups.count();
-    const double before = std::max(1, passes.taken(group, film.passes));
-    const auto share = static_cast<float>(before / std::max(1, passes.taken(group, film.passes + 1)));
+    const int before = std::max(1, samples_of(film, passes, group));
+    const int now = passes.taken(group, film.end_pass() + 1) - passes.taken(group, film.first_pass);
+    const float share = static_cast<float>(before) / static_cast<float>(std::max(1, now));
     const std::span<float> plane = picture.irradiance.band(band);
     for (std::size_t i = 0; i < tiles.size(); ++i)
       if (results[i].done)

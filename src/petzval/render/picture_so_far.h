@@ -13,7 +13,7 @@ namespace petzval::render {
 Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
                          const Photosite& photosite, const Passes& passes);
 
-/// Adds what tiles found elsewhere than in themselves: in the order of the tiles, whoever finished first.
+/// Adds what tiles found elsewhere than in themselves.
 void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool half, Film& film);
 
 /// The picture of a pass that was stopped: its tiles that are done have a pass more than the others, which

@@ -3,6 +3,7 @@
 #include <petzval/base/context.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/stop.h>
+#include <petzval/render/film/checkpoint.h>
 #include <petzval/render/film/noise.h>
 #include <petzval/render/passes.h>
 #include <petzval/render/picture_so_far.h>
@@ -39,18 +40,44 @@ PixelWindow checked_window(const SensorGeometry& sensor, const RenderOptions& op
   return window;
 }
 
+/// \returns passes [first, last). \throws InputError.
+std::array<int, 2> passes_of_piece(const FilmPiece& piece, const PixelWindow& whole, const Passes& passes,
+                                   const WavelengthGroups& groups, const RenderOptions& options) {
+  if (piece.is_whole()) return {0, passes.count()};
+  if (options.noise > 0)
+    throw InputError("`noise` is that of a whole picture; pieces are rendered with `samples_per_pixel`");
+  if (const auto& region = piece.region;
+      region && (region->left < whole.left || region->top < whole.top || region->right > whole.right ||
+                 region->bottom > whole.bottom || region->columns() < 1 || region->rows() < 1))
+    throw InputError(fmt::format("`region` is not within the picture, pixels {},{} to {},{}", whole.left,
+                                 whole.top, whole.right - 1, whole.bottom - 1));
+  const int each = samples_a_pass(groups), most = effective_samples(groups, options.samples_per_pixel);
+  // A last pass of fewer samples is not kept in checkpoints; who has all pieces makes it.
+  if (passes.full() == 0)
+    throw InputError(fmt::format("`samples_per_pixel` {}: pieces have {} or more", most, each));
+  if (!piece.samples) return {0, passes.full()};
+  const auto [first, last] = *piece.samples;
+  const int kept = passes.full() * each;
+  if (first < 0 || last <= first || last > kept || first % each != 0 || last % each != 0)
+    throw InputError(fmt::format("`sample_range` {}:{}: multiples of {} from 0 to {} would be right", first,
+                                 last, each, kept));
+  return {first / each, last / each};
+}
+
 /// Of the light of all bands.
 double noise_now(const Film& film) {
   std::vector<double> whole(film.half.size(), 0.0);
-  for (std::size_t i = 0; i < film.light.size(); ++i) whole[i % whole.size()] += film.light[i];
-  return estimated_noise(film.window, whole, film.half, film.passes);
+  for (std::size_t i = 0; i < film.light.size(); ++i) whole[i % whole.size()] += film.light[i].value();
+  std::vector<double> half;
+  for (const ExactSum& each : film.half) half.push_back(each.value());
+  return estimated_noise(film.window, whole, half, film.passes);
 }
 
 /// Renders one pass into the film. Where it is stopped, the tiles that are done have it, and `results` tell
 /// which.
 void add_pass(const TileTask& task, const std::vector<PixelWindow>& tiles, const Passes& passes, Film& film,
               std::vector<TileResult>& results, const std::function<void(double)>& told) {
-  const std::vector<SampleRange> ranges = passes.ranges(film.passes);
+  const std::vector<SampleRange> ranges = passes.ranges(film.end_pass());
   const bool half = !film.half.empty() && film.passes % 2 == 1;
   results.assign(tiles.size(), {});
   std::atomic<std::size_t> done{0};
@@ -70,10 +97,10 @@ struct Outlook {
 };
 
 /// \param before  the last one, which stands while the halves are not equal.
-Outlook outlook(const Film& film, const Passes& passes, double wanted_noise, Outlook before) {
+Outlook outlook(const Film& film, int wanted_passes, double wanted_noise, Outlook before) {
   Outlook result = before;
-  result.done = film.passes >= passes.count();
-  if (!result.noise) result.likely_passes = passes.count();
+  result.done = film.passes >= wanted_passes;
+  if (!result.noise) result.likely_passes = wanted_passes;
   if (film.half.empty() || film.passes % 2 == 1 || film.passes < 2) return result;
   const double noise = noise_now(film);
   result.noise = noise;
@@ -81,11 +108,15 @@ Outlook outlook(const Film& film, const Passes& passes, double wanted_noise, Out
   // Error falls with the root of the number of samples, or faster.
   if (!result.done)
     result.likely_passes = std::clamp(film.passes * std::pow(noise / wanted_noise, 2), film.passes + 2.0,
-                                      static_cast<double>(passes.count()));
+                                      static_cast<double>(wanted_passes));
   return result;
 }
 
 }  // namespace
+
+int samples_a_pass(const WavelengthGroups& groups) {
+  return Passes::indices_a_pass * groups.count();
+}
 
 int effective_samples(const WavelengthGroups& groups, int samples_per_pixel) {
   return std::max(samples_per_pixel, groups.count());
@@ -97,19 +128,23 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
   const PixelWindow window = checked_window(sensor, options);
   const FilmSampling sampling(window, options.photosite);
-  Film film(window, static_cast<int>(world.groups.wavelengths_nm().size()), world.groups.count(),
-            options.first_surfaces, options.noise > 0);
   const Passes passes(world.groups, options);
+  const auto [first_pass, end_pass] = passes_of_piece(options.piece, window, passes, world.groups, options);
+  const int wanted_passes = end_pass - first_pass;
+  Film film(options.piece.region.value_or(window), static_cast<int>(world.groups.wavelengths_nm().size()),
+            world.groups.count(), options.first_surfaces, options.noise > 0);
+  film.whole = window, film.first_pass = first_pass;
   const bool keeps = !options.checkpoint.empty();
-  if (keeps && read_checkpoint(options.checkpoint, film, options.fingerprint) && film.passes > passes.full())
+  if (keeps && read_checkpoint(options.checkpoint, film, options.fingerprint) &&
+      film.end_pass() > passes.full())
     throw InputError(options.checkpoint,
                      fmt::format("has {} samples a pixel; as many `samples_per_pixel` or more would be right",
-                                 film.passes * Passes::indices_a_pass * world.groups.count()));
+                                 film.end_pass() * samples_a_pass(world.groups)));
 
   const TileTask task{world, camera, world_from_camera, sensor, sampling, options};
-  const std::vector<PixelWindow> tiles = tiles_of(window);
+  const std::vector<PixelWindow> tiles = tiles_of(film.window);
   const int resumed_at = film.passes;
-  Outlook ahead = outlook(film, passes, options.noise, {});
+  Outlook ahead = outlook(film, wanted_passes, options.noise, {});
   auto saved = std::chrono::steady_clock::now();
   std::optional<Film> full = keeps ? std::optional(film) : std::nullopt;  // after full passes alone
   int saved_passes = film.passes;
@@ -144,9 +179,9 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       if (picture) options.so_far(*std::move(picture));
       throw;
     }
-    if (keeps && film.passes <= passes.full()) full = film;
-    ahead = outlook(film, passes, options.noise, ahead);
-    if (options.after_pass) go_on = options.after_pass(film.passes, passes.count());
+    if (keeps && film.end_pass() <= passes.full()) full = film;
+    ahead = outlook(film, wanted_passes, options.noise, ahead);
+    if (options.after_pass) go_on = options.after_pass(film.passes, wanted_passes);
     if (keeps && (ahead.done || !go_on || due(saved, options.checkpoint_seconds))) {
       save();
       saved = std::chrono::steady_clock::now();

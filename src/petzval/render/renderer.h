@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/progress.h>
+#include <petzval/render/camera/camera_motion.h>
 #include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/film_camera.h>
 #include <petzval/render/film/film.h>
@@ -10,9 +11,20 @@
 #include <petzval/render/rendering.h>
 #include <petzval/sensor/sensor.h>
 
+#include <array>
 #include <optional>
 
 namespace petzval::render {
+
+/// What one of several processes renders of a picture. Pieces are put together from their checkpoints
+/// (merge_checkpoints), which then is what one process would have left.
+struct FilmPiece {
+  std::optional<PixelWindow> region;  ///< pixels of the picture; absent: all
+  /// Samples a pixel [first, last) of all; multiples of those of a pass (samples_a_pass()). Absent: all.
+  std::optional<std::array<int, 2>> samples;
+
+  bool is_whole() const { return !region && !samples; }
+};
 
 struct RenderOptions {
   /// Camera paths a pixel. Each serves the up to eight wavelengths of one group; at least one for every group
@@ -25,9 +37,11 @@ struct RenderOptions {
   std::uint64_t seed = 1;
   PathOptions path;
   ClippingPlanes clipping;
-  std::optional<PixelWindow> window;  ///< only these pixels are rendered
+  std::optional<PixelWindow> window;  ///< only these pixels are rendered: the whole picture
+  FilmPiece piece;                    ///< and of it this
   Photosite photosite;  ///< over which each pixel's value is a mean, and the low-pass filter before it
   bool first_surfaces = false;
+  std::optional<CameraMotion> motion;  ///< of the camera: each sample is taken at a time of its own
   /// A file to resume from and to save to; empty: none. Kept when the picture is done, or stopped: more
   /// samples are added to those in it.
   std::string checkpoint;
@@ -50,6 +64,9 @@ struct RenderOptions {
 Rendering render_picture(const World& world, const FilmCamera& camera, const Transform& world_from_camera,
                          const SensorGeometry& film, const RenderOptions& options,
                          const ProgressCallback& progress = {});
+
+/// Samples a pixel of one pass over the picture.
+int samples_a_pass(const WavelengthGroups& groups);
 
 /// How many paths a pixel are really taken: at least one for every group of wavelengths.
 int effective_samples(const WavelengthGroups& groups, int samples_per_pixel);

@@ -38,19 +38,15 @@ class TileRenderer {
   }
 
   void take_samples(int group, SampleRange range) {
-    samples_.clear(), places_.clear();
+    samples_.clear(), places_.clear(), times_.clear();
     for (int index = range.first; index < range.last; ++index)
       for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
     rays_.assign(places_.size(), {});
     task_.camera.trace(group, task_.sampling, places_, rays_);
-    arriving_ = Lanes::all(0);
     for (std::size_t i = 0; i < places_.size(); ++i) {
       if (i % paths_between_questions == 0) check_stop();
       follow(i, group);
     }
-    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
-      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
-          static_cast<double>(arriving_[lane]);
   }
 
   void start_sample(int group, int index, Pixel pixel) {
@@ -64,6 +60,9 @@ class TileRenderer {
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
     if (task_.camera.bends()) places_.back().bend = samples_.back().next2();
+    if (const auto& motion = task_.options.motion)
+      times_.push_back(motion->opens(pixel.row + 0.5, task_.sensor.rows) +
+                       motion->exposure() * samples_.back().next2()[0]);
     // In turn from a random start: every wavelength leads equally often.
     places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
                                            static_cast<std::uint32_t>(task_.world.groups.lanes(group)));
@@ -76,15 +75,19 @@ class TileRenderer {
     ++result_.passed;
     const ClippingPlanes::Part part = task_.options.clipping.part_of(ray.origin, ray.direction);
     if (!(part.to > part.from)) return;
-    const Vector3 origin = task_.world_from_camera.point(ray.origin + part.from * ray.direction);
-    const Vector3 along = task_.world_from_camera.direction(ray.direction), direction = normalised(along);
+    if (task_.options.motion) moved_ = task_.options.motion->world_from_camera(times_[i]);
+    const Transform& place = task_.options.motion ? moved_ : task_.world_from_camera;
+    const Vector3 origin = place.point(ray.origin + part.from * ray.direction);
+    const Vector3 along = place.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
     const PathLight light =
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
                       (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, light);
-    arriving_ += light.arriving;
-    if (first.met) add_first(i, group, first);
+    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
+      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
+          static_cast<double>(light.arriving[lane]);
+    if (first.met) add_first(i, group, first, place);
   }
 
   void add_light(std::size_t i, int group, const PathLight& light) {
@@ -117,6 +120,11 @@ class TileRenderer {
     // As WavelengthGroups::band(), for lanes that have one.
     const auto band = static_cast<std::size_t>(group + lane * task_.world.groups.count());
     const PixelWindow& all = whole_.window;
+    if (!all.contains(pixel.column, pixel.row)) {
+      const PixelWindow& picture = whole_.whole;
+      return result_.outside.push_back(
+          {band * picture.size() + picture.index(pixel.column, pixel.row), value});
+    }
     if (!tile_.contains(pixel.column, pixel.row))
       return result_.strays[static_cast<std::size_t>(group)].push_back(
           {band * all.size() + all.index(pixel.column, pixel.row), value});
@@ -125,11 +133,11 @@ class TileRenderer {
     if (half_) film_.half[within] += value;
   }
 
-  void add_first(std::size_t i, int group, const FirstSurface& first) {
+  void add_first(std::size_t i, int group, const FirstSurface& first, const Transform& place) {
     const Pixel pixel = pixel_of(i);
     const std::size_t at = tile_.index(pixel.column, pixel.row), plane = tile_.size();
     film_.met[static_cast<std::size_t>(group) * plane + at] += 1;
-    film_.depth[at] += task_.world_from_camera.inverse_point(first.position).z;
+    film_.depth[at] += place.inverse_point(first.position).z;
     film_.normal[at] += first.normal.x;
     film_.normal[plane + at] += first.normal.y;
     film_.normal[2 * plane + at] += first.normal.z;
@@ -144,10 +152,11 @@ class TileRenderer {
   bool half_;
   Film& whole_;
   Film film_;  ///< of the tile
-  Lanes arriving_ = Lanes::all(0);
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;
+  std::vector<double> times_;  ///< of the samples, if the camera moves
+  Transform moved_;            ///< where it then is
   std::vector<CameraRay> rays_;
 };
 

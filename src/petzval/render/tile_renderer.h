@@ -36,7 +36,8 @@ struct Stray {
 struct TileResult {
   bool done = false;
   std::vector<std::vector<Stray>> strays;  ///< by group of wavelengths
-  std::vector<double> arriving;            ///< for Film::arriving
+  std::vector<Stray> outside;              ///< beyond the film's window: into Film::outside
+  std::vector<ExactSum> arriving;          ///< for Film::arriving
   std::uint64_t rays = 0, passed = 0;
 };
 

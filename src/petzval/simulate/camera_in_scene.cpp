@@ -61,13 +61,20 @@ void place_camera(const RenderRequest& request, const std::optional<Lens>& lens,
   render::SceneCamera& camera = world.camera;
   if (request.field_of_view_deg) set_field_of_view(*request.field_of_view_deg, camera);
   const bool stands = world.description->has_camera || request.camera_at;
-  if (stands && !request.camera_at && !request.look_at) return;
+  const bool moves = request.camera_move || request.look_move;
+  if (stands && !request.camera_at && !request.look_at && !moves) return;
 
   const Ball ball = ball_of(*world.world);
   const Transform was = camera.world_from_camera;
-  const Vector3 target = request.look_at ? vector_of(*request.look_at) : ball.middle;
+  Vector3 target = request.look_at ? vector_of(*request.look_at) : ball.middle;
   Vector3 eye = was.point({0, 0, 0});
   if (request.camera_at) eye = vector_of(*request.camera_at);
+  if (stands && !request.camera_at && !request.look_at) {
+    // It stands as the scene has it, and only moves; what is in the middle of its picture is as far as the
+    // scene's middle, which matters where one of the two stays.
+    const Vector3 ahead = normalised(was.direction({0, 0, 1}));
+    target = eye + std::max(dot(ball.middle - eye, ahead), 1e-3 * ball.radius) * ahead;
+  }
   if (!stands) {
     const double distance = ball.radius / std::sin(narrow_view(lens, camera) / 2);
     eye = target - distance * normalised(was.direction({0, 0, 1}));
@@ -79,15 +86,32 @@ void place_camera(const RenderRequest& request, const std::optional<Lens>& lens,
   const Vector3 aim = target - eye;
   Vector3 up = normalised(was.direction({0, 1, 0}));
   if (length(cross(aim, up)) < 1e-6 * length(aim)) up = normalised(was.direction({0, 0, 1}));
+  std::optional<Transform> looks;
   try {
-    const Transform looks = Transform::look_at(eye, target, up);
-    camera.world_from_camera = looks.inverse();
+    looks = Transform::look_at(eye, target, up).inverse();
+    camera.world_from_camera = *looks;
   } catch (const InputError&) {
     throw InputError("`camera_at` and `look_at` are one place; two would be right");
   }
   // A scene that is seen in a mirror stays so.
   if (was.swaps_handedness() != camera.world_from_camera.swaps_handedness())
     camera.world_from_camera = camera.world_from_camera * Transform::scaling({-1, 1, 1});
+  if (!moves) return;
+  const auto by = [](const std::optional<std::array<double, 3>>& move) {
+    return move ? vector_of(*move) : Vector3{0, 0, 0};
+  };
+  camera.motion = {.eye = eye,
+                   .target = target,
+                   .eye_move = by(request.camera_move),
+                   .target_move = by(request.look_move),
+                   .up = up,
+                   .mirrored = was.swaps_handedness() != looks->swaps_handedness(),
+                   .row_share = request.rolling_shutter};
+  for (const double time : {0.25, 0.5, 0.75, 1.0}) try {
+      camera.motion->world_from_camera(time);
+    } catch (const InputError&) {
+      throw InputError("`camera_move` brings the camera to what it looks at; less would be right");
+    }
 }
 
 }  // namespace petzval

@@ -49,6 +49,15 @@ void check(const RenderRequest& request) {
   if (request.focus_pixel && request.camera.image_distance_mm)
     throw InputError(
         "`focus_pixel` and `image_distance_mm` both place the sensor; one of them would be right");
+  if (!(request.rolling_shutter >= 0 && request.rolling_shutter < 1))
+    throw InputError(
+        fmt::format("`rolling_shutter` {}: from 0 to below 1 would be right", request.rolling_shutter));
+  if (request.rolling_shutter > 0 && !request.camera_move && !request.look_move)
+    throw InputError("`rolling_shutter` is for a camera that moves; `camera_move` or `look_move` moves it");
+  if (request.is_piece() && request.checkpoint.empty())
+    throw InputError("a piece of a picture is its sums; `checkpoint` would name the file that they go into");
+  if (request.region && ((*request.region)[2] < 1 || (*request.region)[3] < 1))
+    throw InputError("`region` has no pixels; column, row, columns and rows would be right");
   if (!request.autofocus.zones.empty() && !is_automatic(request))
     throw InputError(
         "`zones` are for automatic focus; together with `focus` or `image_distance_mm`, which place the "

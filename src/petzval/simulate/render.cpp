@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/version.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/render/film/checkpoint.h>
 #include <petzval/render/lamps.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/framing.h>
@@ -26,6 +27,10 @@ render::RenderOptions sampling_of(const PreparedScene& scene, const Context& con
   options.first_surfaces = request.first_surfaces;
   options.checkpoint = request.checkpoint;
   options.checkpoint_seconds = request.checkpoint_seconds;
+  if (const auto& at = request.region)
+    options.piece.region = {(*at)[0], (*at)[1], (*at)[0] + (*at)[2], (*at)[1] + (*at)[3]};
+  options.piece.samples = request.sample_range;
+  options.motion = scene.world->camera.motion;
   if (!request.checkpoint.empty()) options.fingerprint = render_fingerprint(scene, options);
   return options;
 }
@@ -68,7 +73,8 @@ Rendering render_scene(const PreparedScene& scene, const Context& context, const
   }
   Rendering picture = result_within(context, [&](const ProgressCallback& progress) {
     render::SceneCamera camera = scene_camera(scene);
-    camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
+    // Where lamps are seen is known of a camera that stands.
+    if (!camera.motion) camera.options.lamps = render::lamps_of(world, camera.world_from_camera);
     options.window = camera.crop;
     return render_picture(world, *camera.make(world.groups), camera.world_from_camera, scene.film, options,
                           progress);
@@ -108,6 +114,13 @@ FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options,
                       world.groups.wavelengths_nm(),
                       options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{},
                       visible, context);
+}
+
+void merge_renderings(const std::vector<std::string>& pieces, const std::string& checkpoint,
+                      const Context& context) {
+  run_within(context, [&](const ProgressCallback& progress) {
+    render::merge_checkpoints(pieces, checkpoint, progress);
+  });
 }
 
 Rendering render_scene(const RenderRequest& request, const Context& context) {

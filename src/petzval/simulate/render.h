@@ -57,6 +57,12 @@ struct RenderRequest {
   /// Where the camera stands and what is in the middle of its picture [scene units, world space]; absent: as
   /// in the scene, or, with one of them alone, the middle of the scene.
   std::optional<std::array<double, 3>> camera_at = {}, look_at = {};
+  /// How the camera moves from there while its shutter is open, and what is in the middle of its picture
+  /// [scene units, world space]; absent: not.
+  std::optional<std::array<double, 3>> camera_move = {}, look_move = {};
+  /// Of the time from the first row's beginning to the last row's end: by how much the last row begins later
+  /// than the first, from 0, all at once, to below 1. For a camera that moves.
+  double rolling_shutter = 0;
   std::optional<double> field_of_view_deg = {};  ///< of a camera without a lens, across the picture's width
 
   std::vector<double> wavelengths_nm = {};  ///< empty: 400 to 700 in steps of 10
@@ -82,6 +88,12 @@ struct RenderRequest {
   /// samples may then be asked for. Empty: none.
   std::string checkpoint = {};
   double checkpoint_seconds = 60;
+  /// A piece of the picture for one of several processes, whose checkpoints merge_renderings() puts together:
+  /// pixels (column, row, columns, rows), and samples a pixel from the first up to the second. Absent: all.
+  std::optional<std::array<int, 4>> region = {};
+  std::optional<std::array<int, 2>> sample_range = {};
+
+  bool is_piece() const { return region || sample_range; }
 };
 
 /// What only the library's own files look into.
@@ -153,6 +165,12 @@ Rendering render_scene(const PreparedScene& scene, const Context& context = {},
 /// (add_layers). A sun is hidden if something stands between it and the lens. \throws InputError for a camera
 /// without a lens, and as flare_layers(); Cancelled.
 FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options, const Context& context = {});
+/// Puts the pieces of one picture together, given by their checkpoints in any order: the file becomes the
+/// checkpoint that one process would have left, bit for bit, and the same request without a piece goes on
+/// from there. \throws InputError for pieces of different pictures or versions, and for pixels and samples
+/// that two of them have, or none; Failure; Cancelled.
+void merge_renderings(const std::vector<std::string>& pieces, const std::string& checkpoint,
+                      const Context& context = {});
 /// prepare_scene() and render_scene() in one.
 Rendering render_scene(const RenderRequest& request, const Context& context = {});
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/render/film/exact_sum.h>
 #include <petzval/simulate/prepared_world.h>
 #include <petzval/simulate/render_estimate.h>
 
@@ -31,7 +32,7 @@ double bytes_of(const PreparedScene& scene) {
       bands + 1 + (scene.request.noise > 0 ? 1 : 0) + (layers ? bands + groups.count() + 4 : 0);
   const double picture = bands + (layers ? bands + 5 : 0);
   const double pixels = static_cast<double>(scene.film.columns) * scene.film.rows;
-  return pixels * (sums * sizeof(double) * (kept ? 2 : 1) + picture * sizeof(float));
+  return pixels * (sums * sizeof(render::ExactSum) * (kept ? 2 : 1) + picture * sizeof(float));
 }
 
 }  // namespace
@@ -45,6 +46,7 @@ RenderEstimate estimate_render(const PreparedScene& scene, const Context& contex
   RenderRequest& request = probe.request;
   const int groups = scene.world->world->groups.count();
   request.checkpoint.clear();
+  request.region.reset(), request.sample_range.reset();
   request.first_surfaces = false;
   request.samples_per_pixel = probe_samples_a_group * groups;
   const double wanted = request.noise;

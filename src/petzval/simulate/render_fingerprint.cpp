@@ -67,6 +67,12 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
     text += fmt::format("field of view {}\n", camera.perspective.field_of_view_deg);
   for (const auto& row : camera.world_from_camera.matrix())
     text += fmt::format("camera's place {}\n", fmt::join(row, " "));
+  if (const auto& motion = camera.motion)
+    text += fmt::format(
+        "camera looks at {} {} {}, moves {} {} {} and looks {} {} {} further, rolling shutter {}\n",
+        motion->target.x, motion->target.y, motion->target.z, motion->eye_move.x, motion->eye_move.y,
+        motion->eye_move.z, motion->target_move.x, motion->target_move.y, motion->target_move.z,
+        motion->row_share);
   const StopBlades blades = camera.lens ? camera.lens->stop_blades() : StopBlades{};
   text += fmt::format("blades {} turned by {}\ndiffraction {}\n", blades.count, blades.rotation_deg,
                       request.diffraction);

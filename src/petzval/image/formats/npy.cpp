@@ -157,6 +157,11 @@ void write_npy(const std::string& path, std::span<const std::size_t> shape, std:
   write_array(path, "<f8", shape, values);
 }
 
+void write_npy(const std::string& path, std::span<const std::size_t> shape,
+               std::span<const std::int32_t> values) {
+  write_array(path, "<i4", shape, values);
+}
+
 void write_npy(const std::string& path, const SpectralImage& image) {
   write_image(path, image, [](int) {});
 }

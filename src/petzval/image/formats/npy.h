@@ -5,6 +5,7 @@
 #include <petzval/image/spectral_image.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <variant>
@@ -19,10 +20,12 @@ struct NpyArray {
   std::variant<std::vector<float>, std::vector<double>> values;
 };
 
-/// Writes float32 or float64, little-endian, version 1.0: `numpy.load(path)` opens it.
+/// Writes float32, float64 or int32, little-endian, version 1.0: `numpy.load(path)` opens it.
 /// \throws InputError if `values` does not fill `shape`, and as WholeFile; Failure.
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const float> values);
 void write_npy(const std::string& path, std::span<const std::size_t> shape, std::span<const double> values);
+void write_npy(const std::string& path, std::span<const std::size_t> shape,
+               std::span<const std::int32_t> values);
 /// An image as float32 of shape (rows, columns, bands) [W·m⁻²·nm⁻¹]; a large one (is_large_npy) in Fortran
 /// order.
 void write_npy(const std::string& path, const SpectralImage& image);

@@ -2,6 +2,7 @@
 // The camera that a scene file asks for, and what the user wants instead.
 #pragma once
 
+#include <petzval/render/camera/camera_motion.h>
 #include <petzval/render/camera/clipping_planes.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/camera/perspective_camera.h>
@@ -42,7 +43,8 @@ struct SceneCamera {
   SceneFocus focus;  ///< of a scene's lens; the lens is not focused yet
   PerspectiveOptions perspective;
   LensCameraOptions options;
-  Transform world_from_camera;
+  Transform world_from_camera;         ///< when exposure begins
+  std::optional<CameraMotion> motion;  ///< while it lasts; absent: none
   ClippingPlanes clipping;
   std::optional<PixelWindow> crop;  ///< what is rendered of the film; absent: all of it
   std::vector<std::string> notes;

@@ -2,42 +2,48 @@
 // Where light is gathered.
 #pragma once
 
+#include <petzval/render/film/exact_sum.h>
 #include <petzval/render/film/pixel_window.h>
 #include <petzval/render/path_tracer.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 
-#include <string>
+#include <cstdint>
+#include <map>
 #include <vector>
 
 namespace petzval::render {
 
-/// Sums over samples; doubles, so that a million of them lose nothing.
+/// Sums over samples, the same bits in whatever order they are gathered.
 struct Film {
   PixelWindow window;
-  std::vector<double> light;  ///< sums over samples, [band][pixel]
-  std::vector<double> half;   ///< of every second pass, summed over bands: tells the noise if that is wanted
-  std::vector<double> lamps;  ///< light that comes straight from a lamp, summed over bands
+  std::vector<ExactSum> light;  ///< sums over samples, [band][pixel]
+  std::vector<ExactSum> half;  ///< of every second pass, summed over bands: tells the noise if that is wanted
+  std::vector<ExactSum> lamps;  ///< light that comes straight from a lamp, summed over bands
   /// Of first surfaces, if wanted: how many rays of each group of wavelengths met one, and sums over them.
-  std::vector<double> met, depth, normal, albedo;  ///< [group][pixel], [pixel], [3][pixel], [band][pixel]
-  std::vector<double> arriving;  ///< light that comes straight to what is seen, summed over rays, [band]
+  std::vector<ExactSum> met, depth, normal, albedo;  ///< [group][pixel], [pixel], [3][pixel], [band][pixel]
+  std::vector<ExactSum> arriving;  ///< light that comes straight to what is seen, summed over rays, [band]
+  std::map<std::uint64_t, ExactSum>
+      outside;        ///< of `light`, beyond the window: by band · whole.size() + pixel of `whole`
+  PixelWindow whole;  ///< the picture that the window is a piece of
   std::uint64_t rays = 0, passed = 0;
-  int passes = 0;  ///< rounds of samples that are in the sums
+  int first_pass = 0;  ///< of the rounds of samples that are in the sums
+  int passes = 0;      ///< how many of them are
 
   /// \throws InputError if it would not fit into memory.
   Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, bool noise);
+  int end_pass() const { return first_pass + passes; }
   bool has_first_surfaces() const { return !met.empty(); }
 
   /// The sums of a window within this one; and how they are put back.
   Film part(const PixelWindow& tile) const;
   void put(const Film& tile);
 
+  /// Adds the sums of a piece: those of a window within this one, and what fell beside it into this one.
+  /// Its passes are left to the caller.
+  void add(const Film& piece);
+
  private:
   Film() = default;
 };
-
-/// Saves a film, whole or not at all, and reads it back. `fingerprint` says what is being rendered.
-/// \throws InputError if a file is damaged or belongs to another picture; Failure.
-void write_checkpoint(const std::string& path, const Film& film, const std::string& fingerprint);
-bool read_checkpoint(const std::string& path, Film& film, const std::string& fingerprint);
 
 }  // namespace petzval::render

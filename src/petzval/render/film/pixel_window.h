@@ -10,6 +10,7 @@ namespace petzval::render {
 struct PixelWindow {
   int left = 0, top = 0, right = 0, bottom = 0;
 
+  friend bool operator==(const PixelWindow&, const PixelWindow&) = default;
   int columns() const { return right - left; }
   int rows() const { return bottom - top; }
   std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
