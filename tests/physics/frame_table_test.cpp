@@ -8,12 +8,15 @@
 #include <petzval/base/units.h>
 #include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/image_formation.h>
+#include <petzval/imaging/image_table.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "counted_light.h"
 
@@ -87,6 +90,73 @@ TEST(TableOverFrame, ALensDecentredAsAWholeMovesThePicture) {
   // Both keep 1e-3; PSFs of the one are summed waves, of the other counted rays where waves would take long.
   EXPECT_LT(off, 2e-3);
   EXPECT_GT(difference(moved, centred), 0.1);
+}
+
+Lens bladed_gauss(double f_number, int blades, double rotation_deg) {
+  MountedLens camera(read_lens("dgauss-50mm").lens);
+  camera.set_f_number(f_number);
+  camera.focus_at_m({});
+  camera.set_blades({blades, rotation_deg});
+  return camera.lens();
+}
+
+TEST(TableOverFrame, PlacesThatALensTreatsAlikeHaveTheSamePsf) {
+  // The least turn of the blades leaves no mirror image: every place is computed then.
+  TableOptions options;
+  options.wavelengths_nm = {nm};
+  options.max_image_height_mm = 12;
+  options.half_frame_mm = {10, 7};
+  options.frame_places = 7;
+  for (const int blades : {6, 7}) {
+    const LensDataTable alike = build_lens_data_table(bladed_gauss(5.6, blades, 0), options),
+                        each = build_lens_data_table(bladed_gauss(5.6, blades, 1e-6), options);
+    ASSERT_EQ(alike.places(), each.places());
+    for (std::size_t place = 0; place < alike.places(); ++place) {
+      const Psf &a = alike.psf[place], &b = each.psf[place];
+      ASSERT_EQ(a.size, b.size) << place;
+      double square = 0, total = 0;
+      for (std::size_t i = 0; i < a.values.size(); ++i) {
+        square += std::pow(double(a.values[i]) - double(b.values[i]), 2);
+        total += std::pow(double(b.values[i]), 2);
+      }
+      // The error of the quadrature, of which stop_blades_test allows 3e-4 of the peak.
+      EXPECT_LT(std::sqrt(square / total), 3e-4) << blades << " blades, " << alike.frame->name(place);
+      EXPECT_NEAR(alike.g_source_sr[place] / each.g_source_sr[place], 1, 1e-5);
+      // In the middle any direction will do.
+      const double turned = alike.frame->psf_azimuth_deg[place] - each.frame->psf_azimuth_deg[place];
+      EXPECT_NEAR(place == alike.places() / 2 ? 0 : std::remainder(turned, 360), 0, 1e-6);
+    }
+  }
+}
+
+TEST(TableOverFrame, FewPsfsSayWhatADenseLatticeDoes) {
+  const Scene scene = checkerboard(48);
+  // PSFs far smaller than pixels, and at f/5.6 a spot at the rim as wide as one.
+  for (const auto& [f_number, sensor] :
+       {std::pair{11.0, SensorGeometry{180, 120, 200}}, std::pair{5.6, SensorGeometry{360, 240, 100}}}) {
+    const Lens lens = bladed_gauss(f_number, 7, 0);
+    TableOptions options;
+    options.wavelengths_nm = {nm};
+    options.max_image_height_mm = sensor.half_diagonal_mm() + 1;
+    options.half_frame_mm = {sensor.width_mm() / 2 + 0.5, sensor.height_mm() / 2 + 0.5};
+    TableOptions many = options;
+    many.frame_places = 33;
+    const LensDataTable dense = build_lens_data_table(lens, many);
+    for (const double tolerance : {1e-2, 1e-3}) {
+      const LensDataTable few = build_image_table(lens, options, {sensor.pitch_um / 2, tolerance});
+      const auto psfs = [](const LensDataTable& table) {
+        return std::ranges::count_if(table.psf, [](const Psf& psf) { return psf.size > 0; });
+      };
+      ImagingOptions imaging;
+      imaging.product.tolerance = tolerance;
+      const double off =
+          difference(form_image(scene, few, sensor, imaging), form_image(scene, dense, sensor, imaging));
+      std::printf("f/%g to %g: %td PSFs of %td, off by %.2e\n", f_number, tolerance, psfs(few), psfs(dense),
+                  off);
+      EXPECT_LT(off, tolerance);
+      EXPECT_LT(psfs(few), psfs(dense) / 8);
+    }
+  }
 }
 
 /// One element decentred, a surface tilted, the sensor askew.

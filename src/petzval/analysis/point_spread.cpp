@@ -33,13 +33,18 @@ struct Extent {
   double widest = 0, narrowest = 0;                    ///< of the pupil in direction cosines
   double reach_s_mm = 0, low_t_mm = 0, high_t_mm = 0;  ///< of the rays about the chief ray's image
   double lambda_mm = 0;                                ///< in the image space
+  /// In no direction before others: the largest distance of a ray, and the width of an ellipse of the
+  /// pupil's moments where it is narrowest; 0: not known.
+  double reach_about_mm = 0, narrowest_about = 0;
 
   double lambda_n_mm() const { return lambda_mm / widest; }
   /// The largest distance of a ray from the chief ray, along s or t.
-  double reach_mm() const { return std::max({reach_s_mm, -low_t_mm, high_t_mm}); }
+  double reach_mm() const {
+    return narrowest_about > 0 ? reach_about_mm : std::max({reach_s_mm, -low_t_mm, high_t_mm});
+  }
   /// How much of a window lies around the rays.
   double margin_mm() const {
-    const double airy_mm = lambda_mm / narrowest;
+    const double airy_mm = lambda_mm / (narrowest_about > 0 ? narrowest_about : narrowest);
     return std::max(margin_lambda_n * airy_mm, least_half_width_lambda_n * airy_mm - reach_mm());
   }
 };
@@ -49,7 +54,24 @@ Extent extent_of(const SmoothPupil& pupil) {
           pupil.low_t_mm, pupil.high_t_mm,   pupil.lambda_n_mm() * pupil.widest()};
 }
 
-std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
+/// The moments of a pupil over its exit directions, as sums over its nodes.
+struct PupilMoments {
+  double sum = 0, a = 0, b = 0, aa = 0, ab = 0, bb = 0;
+
+  void add(double weight, double alpha, double beta) {
+    sum += weight, a += weight * alpha, b += weight * beta;
+    aa += weight * alpha * alpha, ab += weight * alpha * beta, bb += weight * beta * beta;
+  }
+  /// Of the ellipse that has them; a disk's width is four times its deviation along a direction.
+  double narrowest() const {
+    const double x = aa / sum - a * a / (sum * sum), y = bb / sum - b * b / (sum * sum),
+                 xy = ab / sum - a * b / (sum * sum);
+    return 4 * std::sqrt(std::max(0.0, 0.5 * (x + y - std::hypot(x - y, 2 * xy))));
+  }
+};
+
+/// \param about  the measures that no direction is put before others in, too.
+std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief, bool about = false) {
   const std::optional<PupilBoundary> pupil = tracer.object_pupil(chief, scout_azimuths);
   if (!pupil) return {};
   std::vector<PupilNode> nodes = pupil_nodes(*pupil, scout_radial);
@@ -57,8 +79,14 @@ std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
     nodes.push_back({pupil->rim(i)[0], pupil->rim(i)[1], 0});
   Extent extent;
   double low = 2, high = -2, left = 2, right = -2;
-  for (const WaveRay& ray : trace_wave_rays(tracer, chief, *pupil, nodes)) {
+  PupilMoments moments;
+  const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *pupil, nodes);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const WaveRay& ray = rays[i];
     if (!ray.passes) continue;
+    moments.add(nodes[i].weight, ray.alpha, ray.beta);
+    if (pupil->mirrored()) moments.add(nodes[i].weight, -ray.alpha, ray.beta);
+    if (about) extent.reach_about_mm = std::max(extent.reach_about_mm, std::hypot(ray.s_mm, ray.t_mm));
     low = std::min(low, ray.beta);
     high = std::max(high, ray.beta);
     left = std::min(left, pupil->mirrored() ? -std::abs(ray.alpha) : ray.alpha);
@@ -71,17 +99,19 @@ std::optional<Extent> scout(const FieldTracer& tracer, const ChiefRay& chief) {
   if (!(high > low) || !(alpha_width > 0)) return {};
   extent.widest = std::max(alpha_width, high - low);
   extent.narrowest = std::min(alpha_width, high - low);
+  if (about) extent.narrowest_about = moments.narrowest();
   extent.lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm / tracer.tracer().image_index();
   return extent;
 }
 
 /// Nodes that integrate e^{iB…} to rounding: B rad of phase at the rim need B + O(B^⅓) azimuths (the
-/// trapezoid rule aliases only the B-th harmonic and above) and half as many Gauss-Legendre nodes.
+/// trapezoid rule aliases only the B-th harmonic and above). Along a radius it turns by B, of which
+/// Gauss-Legendre nodes need a quarter and O(B^⅓).
 int azimuths_for(double phase) {
   return 2 * static_cast<int>(std::ceil(0.5 * (phase + 5 * std::cbrt(phase) + 64)));
 }
 int radial_for(double phase) {
-  return static_cast<int>(std::ceil(0.5 * phase + 3 * std::cbrt(phase) + 12));
+  return static_cast<int>(std::ceil(0.25 * phase + 3 * std::cbrt(0.5 * phase) + 12));
 }
 
 /// \param coarsest_lambda_n  PsfOptions::coarsest_sample_um.
@@ -97,7 +127,7 @@ int samples_per_cell(double cell_lambda_n, double coarsest_lambda_n) {
 /// \param growth  of a chosen window.
 PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double growth) {
   const double lambda_n_um = extent.lambda_n_mm() * um_per_mm;
-  const double margin_mm = growth * extent.margin_mm();
+  const double margin_mm = growth * options.margin * extent.margin_mm();
   const double width_um = 2 * (extent.reach_mm() + margin_mm) * um_per_mm;
   const int most = options.size > 0 ? options.size : std::max(options.largest_size, smallest_size);
   PsfPlan plan;
@@ -106,8 +136,11 @@ PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double grow
   if (options.size > 0) {
     plan.size = options.size;
   } else {
-    const double cells = std::ceil(width_um / plan.spacing_um / size_step) * size_step;
+    const bool exact = options.exact_window && options.spacing_um == 0;
+    const int step = exact ? 2 : size_step;
+    const double cells = std::ceil(width_um / plan.spacing_um / step) * step;
     plan.size = static_cast<int>(std::clamp(cells, double(smallest_size), double(most)));
+    if (exact) plan.spacing_um = width_um / plan.size;
   }
   plan.samples_per_cell =
       samples_per_cell(plan.spacing_um / lambda_n_um, options.coarsest_sample_um / lambda_n_um);
@@ -219,7 +252,7 @@ std::optional<Psf> point_spread(const FieldTracer& tracer, const ChiefRay& chief
       bladed || !tracer.tracer().is_centred() || options.radial_nodes > 0 || options.azimuths > 0;
   if (const auto pupil = own_nodes ? std::nullopt : fit_pupil(tracer, chief))
     return point_spread(*pupil, options);
-  const std::optional<Extent> extent = scout(tracer, chief);
+  const std::optional<Extent> extent = scout(tracer, chief, options.exact_window);
   if (!extent) return {};
   return sum_in_window(*extent, options, [&](const PsfPlan& plan) -> std::optional<Psf> {
     const double width_mm = plan.size * plan.spacing_um * mm_per_um + 2 * extent->reach_mm();

@@ -30,6 +30,10 @@ struct PsfOptions {
   double spacing_um = 0;
   int largest_size = 256;      ///< of a chosen size
   double wanted_share = 0.99;  ///< of the light, inside a chosen window
+  double margin = 1;           ///< about the rays of a chosen window, over what it would be
+  /// A chosen window is exactly as wide as it is to be, by a spacing that divides it, and so follows closely
+  /// from place to place; else it is a multiple of eight cells.
+  bool exact_window = false;
   double widest_wave_window_lambda_n = 500;
   /// Cells may hold samples of a smooth pupil's light as far apart as this, beyond 0.6 λN: for light that is
   /// then added up over many of them.

@@ -36,7 +36,7 @@ class FrameMtf {
             std::abs(frame.y_mm[place / frame.x_mm.size()]) > half_y)
           continue;
         const std::size_t entry = table.index(place, wavelength);
-        if (table.g_source_sr.at(entry) == 0) continue;
+        if (table.g_source_sr.at(entry) == 0 || !table.has_psf(entry)) continue;
         add(table.psf.at(entry), sensor.pitch_um, 1);
         ++weights;
       }

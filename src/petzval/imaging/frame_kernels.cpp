@@ -41,8 +41,11 @@ std::array<FieldShare, 4> lattice_shares(const std::vector<double>& places_mm, d
 PsfReach frame_reach(const LensDataTable& table, double wavelength_nm, double cell_um,
                      const LightCentres& centres) {
   PsfReach reach;
-  for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm))
+  for (const auto& [wavelength, weight] : bracketing_wavelengths(table, wavelength_nm)) {
+    const PsfLattice lattice = psf_lattice(table, wavelength);
+    const std::size_t columns = table.frame->x_mm.size();
     for (std::size_t place = 0; place < table.places(); ++place) {
+      if (!lattice.holds(place % columns, place / columns)) continue;
       const std::size_t entry = table.index(place, wavelength);
       const Psf& psf = table.psf.at(entry);
       if (!has_light(psf))
@@ -55,6 +58,7 @@ PsfReach frame_reach(const LensDataTable& table, double wavelength_nm, double ce
       const auto [s_mm, t_mm] = PsfAxes{std::cos(azimuth), std::sin(azimuth)}.to_own(x_mm, y_mm);
       add_to_reach(psf, extent_of(psf, t_mm * um_per_mm, s_mm * um_per_mm), cell_um, reach);
     }
+  }
   return reach;
 }
 
@@ -69,6 +73,9 @@ FrameKernels::FrameKernels(const LensDataTable& table, double wavelength_nm, dou
     Layer layer;
     layer.wavelength = wavelength;
     layer.weight = weight;
+    layer.lattice = psf_lattice(table, wavelength);
+    for (const std::size_t column : layer.lattice.columns) layer.x_mm.push_back(table.frame->x_mm[column]);
+    for (const std::size_t row : layer.lattice.rows) layer.y_mm.push_back(table.frame->y_mm[row]);
     layer.entries = std::make_unique<Entry[]>(table.places());
     for (std::size_t place = 0; place < table.places(); ++place) {
       const double azimuth = radians(table.frame->psf_azimuth_deg[table.index(place, wavelength)]);
@@ -84,6 +91,7 @@ void FrameKernels::find_spreads(const LightCentres& centres, Layer& layer) const
   std::vector<Spread> spreads(table_.places());
   parallel_for(spreads.size(), [&](std::size_t place) {
     const std::size_t entry = table_.index(place, layer.wavelength);
+    if (!table_.has_psf(entry)) return;
     const LightMoments light = light_moments(table_.psf[entry], 0);
     const auto mean = [&](double sum) { return sum / light.sum; };
     const double s = mean(light.sums.mean[0]), t = mean(light.sums.mean[1]);
@@ -98,9 +106,8 @@ void FrameKernels::find_spreads(const LightCentres& centres, Layer& layer) const
         (n * n * ss + 2 * c * n * st + c * c * tt) / square};
   });
   const auto spline = [&](const auto& of) {
-    std::vector<double> values;
-    for (const Spread& spread : spreads) values.push_back(of(spread));
-    return LatticeSpline(table_.frame->x_mm, table_.frame->y_mm, std::move(values));
+    return spline_of_psfs(*table_.frame, layer.lattice,
+                          [&](std::size_t place) { return of(spreads[place]); });
   };
   layer.mean_x = spline([](const Spread& spread) { return spread.mean[0]; });
   layer.mean_y = spline([](const Spread& spread) { return spread.mean[1]; });
@@ -138,14 +145,16 @@ const SmoothPsf& FrameKernels::psf(const Layer& layer, std::size_t place) const 
   return *entry.psf;
 }
 
-std::vector<FrameKernels::Share> FrameKernels::shares_at(const std::array<double, 2>& chief_mm) const {
-  const FramePlaces& frame = *table_.frame;
-  const auto across = lattice_shares(frame.x_mm, chief_mm[0]), down = lattice_shares(frame.y_mm, chief_mm[1]);
+std::vector<FrameKernels::Share> FrameKernels::shares_at(const Layer& layer,
+                                                         const std::array<double, 2>& chief_mm) const {
+  const auto across = lattice_shares(layer.x_mm, chief_mm[0]), down = lattice_shares(layer.y_mm, chief_mm[1]);
   std::vector<Share> shares;
   for (const FieldShare& row : down)
     for (const FieldShare& column : across)
       if (const double weight = row.weight * column.weight; weight != 0)
-        shares.push_back({frame.place(column.field, row.field), weight});
+        shares.push_back(
+            {table_.frame->place(layer.lattice.columns[column.field], layer.lattice.rows[row.field]),
+             weight});
   return shares;
 }
 
@@ -159,11 +168,10 @@ std::array<double, 2> FrameKernels::known_chief_mm(double x_mm, double y_mm) con
 
 Kernel FrameKernels::kernel_at(double x_mm, double y_mm) const {
   const std::array<double, 2> chief_mm = known_chief_mm(x_mm, y_mm);
-  const std::vector<Share> shares = shares_at(chief_mm);
   Kernel kernel(reach_.radius), part(reach_.radius);
   for (const Layer& layer : layers_) {
     const Spread spread = layer.spread_at(chief_mm[0], chief_mm[1]);
-    for (const Share& share : shares) {
+    for (const Share& share : shares_at(layer, chief_mm)) {
       const double c = layer.cosines[share.place], n = layer.sines[share.place];
       const auto [s, t] = PsfAxes{c, n}.to_own(spread.mean[0], spread.mean[1]);
       const double ss = c * c * spread.xx + 2 * c * n * spread.xy + n * n * spread.yy,
@@ -183,12 +191,13 @@ Kernel FrameKernels::kernel_at(double x_mm, double y_mm) const {
 }
 
 void FrameKernels::prepare(const std::vector<std::array<double, 2>>& places_mm) const {
-  std::set<std::size_t> needed;
+  std::set<std::pair<std::size_t, std::size_t>> needed;  // layer, place
   for (const auto& [x_mm, y_mm] : places_mm)
-    for (const Share& share : shares_at(known_chief_mm(x_mm, y_mm))) needed.insert(share.place);
-  const std::vector<std::size_t> places(needed.begin(), needed.end());
-  parallel_for(places.size() * layers_.size(),
-               [&](std::size_t i) { psf(layers_[i / places.size()], places[i % places.size()]); });
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+      for (const Share& share : shares_at(layers_[i], known_chief_mm(x_mm, y_mm)))
+        needed.emplace(i, share.place);
+  const std::vector<std::pair<std::size_t, std::size_t>> order(needed.begin(), needed.end());
+  parallel_for(order.size(), [&](std::size_t i) { psf(layers_[order[i].first], order[i].second); });
 }
 
 double FrameKernels::coefficients() const {

@@ -52,6 +52,8 @@ class FrameKernels : public KernelMaker {
   struct Layer {
     std::size_t wavelength = 0;
     double weight = 1;
+    PsfLattice lattice;
+    std::vector<double> x_mm, y_mm;            ///< of its columns and rows
     std::unique_ptr<Entry[]> entries;          ///< [place]
     std::vector<double> cosines, sines;        ///< of the azimuths of PSFs
     LatticeSpline mean_x, mean_y, xx, xy, yy;  ///< [cells]
@@ -63,7 +65,7 @@ class FrameKernels : public KernelMaker {
   };
   /// Where the chief ray lands whose light has its centre at a place; beyond the lattice, on its edge.
   std::array<double, 2> known_chief_mm(double x_mm, double y_mm) const;
-  std::vector<Share> shares_at(const std::array<double, 2>& chief_mm) const;
+  std::vector<Share> shares_at(const Layer& layer, const std::array<double, 2>& chief_mm) const;
   const SmoothPsf& psf(const Layer& layer, std::size_t place) const;
   void find_spreads(const LightCentres& centres, Layer& layer) const;
 

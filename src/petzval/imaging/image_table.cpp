@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/frame_kernels.h>
 #include <petzval/imaging/height_kernels.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/image_table.h>
+#include <petzval/optics/frame_build.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 namespace petzval {
@@ -83,6 +87,151 @@ class FrameRings {
  private:
   static constexpr int places = 32;  ///< along a side of a quadrant
   std::vector<double> height_mm_;
+};
+
+/// Columns or rows of a lattice from one with PSFs to the next, the first and the last interval halved
+/// towards the rim so many times: there cubics end, and light changes most.
+struct LatticeGrade {
+  std::size_t step;
+  int rim_halvings;
+
+  std::vector<std::size_t> of(std::size_t count) const {
+    constexpr std::size_t fewest = 4;  // a cubic's
+    std::size_t apart = step;
+    while (apart > 1 && ((count - 1) % apart != 0 || (count - 1) / apart + 1 < fewest)) apart /= 2;
+    std::vector<std::size_t> taken;
+    for (std::size_t i = 0; i < count; i += apart) taken.push_back(i);
+    std::size_t from_rim = apart;
+    for (int i = 0; i < rim_halvings && apart == step && from_rim > 1; ++i) {
+      from_rim /= 2;
+      taken.insert(taken.begin() + 1, from_rim);
+      taken.insert(taken.end() - 1, count - 1 - from_rim);
+    }
+    return taken;
+  }
+};
+
+/// Finds the places over a frame that an image needs.
+class PlaceChoice {
+ public:
+  PlaceChoice(FrameTable& parts, const SpreadWanted& wanted)
+      : parts_(parts), wanted_(wanted), wavelength_(parts.table().wavelengths_nm.size() / 2) {}
+
+  std::vector<std::size_t> places(const ProgressCallback& progress) {
+    const std::array only{wavelength_};
+    constexpr std::array grades{LatticeGrade{4, 0}, LatticeGrade{4, 1}, LatticeGrade{4, 2},
+                                LatticeGrade{2, 1}};
+    std::vector<std::size_t> chosen(frame().count());
+    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    for (const LatticeGrade& grade : grades) {
+      const PsfLattice lattice{grade.of(frame().x_mm.size()), grade.of(frame().y_mm.size())};
+      const std::vector<Mesh> meshes = meshes_of(lattice);
+      if (meshes.empty()) break;
+      std::vector<std::size_t> middles;
+      for (const Mesh& mesh : meshes) middles.push_back(mesh.middle);
+      parts_.add_psfs(places_of(lattice), only, progress);
+      parts_.add_psfs(middles, only, progress);
+      if (!says_enough(places_of(lattice), meshes)) continue;
+      chosen = places_of(lattice);
+      break;
+    }
+    for (std::size_t place = 0; place < frame().count(); ++place) parts_.remove_psf(place, wavelength_);
+    return chosen;
+  }
+
+ private:
+  /// Between columns and rows with PSFs.
+  struct Mesh {
+    std::size_t middle;
+    double share;    ///< of the lattice
+    double side_mm;  ///< the shorter
+  };
+
+  const FramePlaces& frame() const { return *parts_.table().frame; }
+  std::vector<std::size_t> places_of(const PsfLattice& lattice) const {
+    std::vector<std::size_t> places;
+    for (const std::size_t row : lattice.rows)
+      for (const std::size_t column : lattice.columns) places.push_back(frame().place(column, row));
+    return places;
+  }
+  /// Those with a place in the middle, where there is light.
+  std::vector<Mesh> meshes_of(const PsfLattice& lattice) const {
+    const std::vector<double>&x = frame().x_mm, &y = frame().y_mm;
+    const double all = (x.back() - x.front()) * (y.back() - y.front());
+    std::vector<Mesh> meshes;
+    for (std::size_t j = 0; j + 1 < lattice.rows.size(); ++j)
+      for (std::size_t i = 0; i + 1 < lattice.columns.size(); ++i) {
+        const std::size_t left = lattice.columns[i], right = lattice.columns[i + 1], top = lattice.rows[j],
+                          bottom = lattice.rows[j + 1];
+        const std::size_t middle = frame().place((left + right) / 2, (top + bottom) / 2);
+        const double width_mm = x[right] - x[left], height_mm = y[bottom] - y[top];
+        if (middle != frame().place(left, top) &&
+            parts_.table().g_source_sr[parts_.table().index(middle, wavelength_)] > 0)
+          meshes.push_back({middle, width_mm * height_mm / all, std::min(width_mm, height_mm)});
+      }
+    return meshes;
+  }
+  FrameKernels kernels_of(const LensDataTable& table) const {
+    const bool preview = wanted_.tolerance >= ImagingOptions::of_a_preview;
+    return {table,
+            table.wavelengths_nm[0],
+            wanted_.cell_um,
+            {},
+            preview ? LatticeSteps::coarse : LatticeSteps::fine};
+  }
+  /// The PSFs of the middle wavelength at some places.
+  LensDataTable spread_at(const std::vector<std::size_t>& places) const {
+    const LensDataTable& table = parts_.table();
+    LensDataTable part;
+    part.wavelengths_nm = {table.wavelengths_nm[wavelength_]};
+    part.frame = FramePlaces{frame().x_mm, frame().y_mm, {}, {}, {}};
+    part.psf.resize(frame().count());
+    part.frame->psf_azimuth_deg.resize(frame().count());
+    for (const std::size_t place : places) {
+      part.psf[place] = table.psf[table.index(place, wavelength_)];
+      part.frame->psf_azimuth_deg[place] = frame().psf_azimuth_deg[table.index(place, wavelength_)];
+    }
+    return part;
+  }
+  /// The PSF of one place at every place of a mesh.
+  LensDataTable spread_about(std::size_t place) const {
+    const LensDataTable& table = parts_.table();
+    const std::size_t entry = table.index(place, wavelength_);
+    const double azimuth = frame().psf_azimuth_deg[entry];
+    LensDataTable part;
+    part.wavelengths_nm = {table.wavelengths_nm[wavelength_]};
+    part.frame = FramePlaces{{0, 1}, {0, 1}, {}, {}, {azimuth, azimuth, azimuth, azimuth}};
+    part.psf.assign(part.frame->count(), table.psf[entry]);
+    return part;
+  }
+
+  /// Whether the PSFs of a lattice say closely enough how light spreads in the middles of its meshes.
+  bool says_enough(const std::vector<std::size_t>& places, const std::vector<Mesh>& meshes) const {
+    // In the middles a mixture is at its worst: over the meshes it is off by half as much, or less.
+    constexpr double of_tolerance = 1, of_centre = 0.3;
+    const LensDataTable few = spread_at(places);
+    const FrameKernels kernels = kernels_of(few);
+    const std::size_t columns = frame().x_mm.size();
+    std::vector<double> squares(meshes.size()), moved(meshes.size());
+    parallel_for(meshes.size(), [&](std::size_t i) {
+      const std::size_t place = meshes[i].middle;
+      const Kernel said = kernels.kernel_at(frame().x_mm[place % columns], frame().y_mm[place / columns]);
+      const LensDataTable one = spread_about(place);
+      const Kernel own = kernels_of(one).kernel_at(0, 0);
+      squares[i] = meshes[i].share * std::pow(difference(said, own), 2);
+      const auto said_at = said.moments().mean, own_at = own.moments().mean;
+      const double mm =
+          std::hypot(said_at[0] - own_at[0], said_at[1] - own_at[1]) * wanted_.cell_um * mm_per_um;
+      moved[i] = 4 * mm / meshes[i].side_mm;  // as in FieldChoice::says_enough()
+    });
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    return std::sqrt(sum) <= of_tolerance * wanted_.tolerance &&
+           *std::ranges::max_element(moved) <= of_centre * wanted_.tolerance;
+  }
+
+  FrameTable& parts_;
+  const SpreadWanted wanted_;
+  std::size_t wavelength_;
 };
 
 /// Finds the fields that an image needs.
@@ -176,6 +325,14 @@ LensDataTable build_image_table(const Lens& lens, const TableOptions& options, c
       (options.places == TableOptions::Places::automatic && needs_places_over_frame(lens));
   constexpr std::size_t least_fields = 2 * first_intervals + 1;
   constexpr double samples_a_cell = 6;
+  if (needs_places_over_frame(lens) && over_frame) {
+    FrameTable parts(lens, options);
+    const std::vector<std::size_t> places = PlaceChoice(parts, wanted).places({});
+    std::vector<std::size_t> wavelengths(parts.table().wavelengths_nm.size());
+    std::iota(wavelengths.begin(), wavelengths.end(), std::size_t{0});
+    parts.add_psfs(places, wavelengths, progress);
+    return std::move(parts).finished();
+  }
   if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview ||
       static_cast<std::size_t>(options.field_count) < least_fields)
     return build_lens_data_table(lens, options, progress);

@@ -17,8 +17,13 @@ struct SpreadWanted {
 /// is compared with what they say of it (HeightKernels), at the middle wavelength. Where its kernel differs
 /// by more than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to
 /// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at. Light is
-/// then sampled no finer than a sixth of a cell asks for. Finer pictures, and places over the frame, have the
-/// table of build_lens_data_table(). \throws InputError as that.
+/// then sampled no finer than a sixth of a cell asks for. Finer pictures have the table of
+/// build_lens_data_table().
+///
+/// Places over the frame have PSFs on every fourth row and column of their lattice, more towards its rim
+/// where they are needed, on every second or on all, at any tolerance: the fewest that tell the kernels in
+/// the middles of their meshes, at the middle wavelength, to the tolerance (RMS; over whole meshes that is
+/// half as much) and a wall to three tenths of it. \throws InputError as build_lens_data_table().
 LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
                                 const ProgressCallback& progress = {});
 

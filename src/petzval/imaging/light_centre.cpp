@@ -46,7 +46,35 @@ void fill_between(const LensDataTable& table, std::size_t wavelength, std::vecto
   }
 }
 
+/// The centres of places without PSFs, along x' and y': the spline through those with one.
+void fill_between(const LensDataTable& table, std::size_t wavelength,
+                  std::vector<std::array<double, 2>>& centres_mm) {
+  const FramePlaces& frame = *table.frame;
+  const PsfLattice lattice = psf_lattice(table, wavelength);
+  if (lattice.columns.size() * lattice.rows.size() == frame.count()) return;
+  for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+    const LatticeSpline between = spline_of_psfs(
+        frame, lattice, [&](std::size_t place) { return centres_mm[table.index(place, wavelength)][axis]; });
+    for (std::size_t j = 0; j < frame.y_mm.size(); ++j)
+      for (std::size_t i = 0; i < frame.x_mm.size(); ++i)
+        if (!lattice.holds(i, j))
+          centres_mm[table.index(frame.place(i, j), wavelength)][axis] =
+              between(frame.x_mm[i], frame.y_mm[j]);
+  }
+}
+
 }  // namespace
+
+LatticeSpline spline_of_psfs(const FramePlaces& frame, const PsfLattice& lattice,
+                             const std::function<double(std::size_t place)>& value) {
+  std::vector<double> x_mm, y_mm, values;
+  for (const std::size_t column : lattice.columns) x_mm.push_back(frame.x_mm[column]);
+  for (const std::size_t row : lattice.rows) {
+    y_mm.push_back(frame.y_mm[row]);
+    for (const std::size_t column : lattice.columns) values.push_back(value(frame.place(column, row)));
+  }
+  return {std::move(x_mm), std::move(y_mm), std::move(values)};
+}
 
 std::vector<std::pair<std::size_t, double>> bracketing_wavelengths(const LensDataTable& table,
                                                                    double wavelength_nm) {
@@ -70,6 +98,7 @@ void LightCentres::find_over_frame(const LensDataTable& table) {
   const FramePlaces& frame = *table.frame;
   frame_offsets_mm_.resize(table.psf.size());
   parallel_for(frame_offsets_mm_.size(), [&](std::size_t entry) {
+    if (!table.has_psf(entry)) return;
     const LightMoments light = light_moments(table.psf[entry], 0);
     if (!(light.sum > 0)) return;
     const double s = light.sums.mean[0] / light.sum * mm_per_um,
@@ -77,6 +106,7 @@ void LightCentres::find_over_frame(const LensDataTable& table) {
     const double a = radians(frame.psf_azimuth_deg[entry]);
     frame_offsets_mm_[entry] = {s * std::cos(a) - t * std::sin(a), s * std::sin(a) + t * std::cos(a)};
   });
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) fill_between(table, w, frame_offsets_mm_);
   constexpr double most_of_step = 0.5;
   for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
     bool tame = true;

@@ -2,10 +2,12 @@
 // Where the light of a chief ray's point lands on average: the radial curves by which a cell looks out.
 #pragma once
 
+#include <petzval/numeric/lattice_spline.h>
 #include <petzval/optics/table_interpolation.h>
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,10 @@ class LightCentres {
   std::vector<double> offsets_mm_;  ///< [field][wavelength], as in the table
   std::vector<std::array<double, 2>> frame_offsets_mm_;
 };
+
+/// Of a number that each PSF over the frame has. \param lattice  where PSFs lie.
+LatticeSpline spline_of_psfs(const FramePlaces& frame, const PsfLattice& lattice,
+                             const std::function<double(std::size_t place)>& value);
 
 /// The radial curves of a lens at one wavelength over the height of the centre of light.
 class LightProfile {

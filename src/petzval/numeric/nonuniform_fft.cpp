@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/numeric/fft.h>
+#include <petzval/numeric/mass_spreading.h>
 #include <petzval/numeric/nonuniform_fft.h>
 #include <petzval/numeric/spreading_kernel.h>
 
@@ -76,16 +77,12 @@ class Band {
 
  private:
   void spread_point(std::size_t j, int start, int count) {
-    const SpreadingKernel& kernel = spreading_kernel();
-    double along[SpreadingKernel::lanes], across[SpreadingKernel::lanes];
     const GridPlace x = place_on_grid(points_.x[j], columns_);
-    kernel.values(x.offset, along);
-    kernel.values(place_on_grid(points_.y[j], rows_).offset, across);
-    for (int i = std::max(0, -start); i < std::min(width, count - start); ++i) {
-      double* line = row_cells(start + i) + x.first;
-      const double weight = across[i] * points_.mass[j];
-      for (int c = 0; c < width; ++c) line[c] += weight * along[c];
-    }
+    const double y_offset = place_on_grid(points_.y[j], rows_).offset;
+    const int top = std::max(0, -start), end = std::min(width, count - start);
+    if (top < end)
+      spread_mass({x.offset, y_offset, points_.mass[j]}, top, end, row_cells(start + top) + x.first,
+                  static_cast<std::ptrdiff_t>(stride_));
   }
 
   const PointMasses& points_;

@@ -4,6 +4,8 @@
 #include <petzval/numeric/quadrature.h>
 
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <utility>
 
 namespace petzval {
@@ -18,14 +20,9 @@ std::pair<double, double> legendre(int n, double x) {
   return {current, n * (x * current - previous) / (x * x - 1)};
 }
 
-}  // namespace
-
-QuadratureRule gauss_legendre(int n, double from, double to) {
-  if (n < 1) throw InputError("a Gauss-Legendre rule needs at least one node");
+/// The rule on [−1, 1], of which the half x ≥ 0 says everything, the largest x first.
+QuadratureRule half_rule(int n) {
   QuadratureRule rule;
-  rule.nodes.resize(static_cast<std::size_t>(n));
-  rule.weights.resize(static_cast<std::size_t>(n));
-  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   for (int i = 0; i < (n + 1) / 2; ++i) {
     // Tricomi's first guess, then Newton; four steps reach rounding for any n.
     double x = 2 * i + 1 == n ? 0.0 : std::cos(pi * (i + 0.75) / (n + 0.5));
@@ -34,11 +31,36 @@ QuadratureRule gauss_legendre(int n, double from, double to) {
       x -= value / slope;
     }
     const double slope = n == 1 ? 1.0 : legendre(n, x).second;
-    const double weight = 2 / ((1 - x * x) * slope * slope);
-    const auto low = static_cast<std::size_t>(i), high = static_cast<std::size_t>(n - 1 - i);
-    rule.nodes[low] = middle - half * x;
-    rule.nodes[high] = middle + half * x;
-    rule.weights[low] = rule.weights[high] = half * weight;
+    rule.nodes.push_back(x);
+    rule.weights.push_back(2 / ((1 - x * x) * slope * slope));
+  }
+  return rule;
+}
+
+/// Each thread makes a rule once: a pupil with blades asks for six of them and more.
+const QuadratureRule& known_half_rule(int n) {
+  constexpr std::size_t most_rules = 256;
+  thread_local std::map<int, QuadratureRule> rules;
+  const auto found = rules.find(n);
+  if (found != rules.end()) return found->second;
+  if (rules.size() == most_rules) rules.clear();
+  return rules.emplace(n, half_rule(n)).first->second;
+}
+
+}  // namespace
+
+QuadratureRule gauss_legendre(int n, double from, double to) {
+  if (n < 1) throw InputError("a Gauss-Legendre rule needs at least one node");
+  const QuadratureRule& half_of = known_half_rule(n);
+  QuadratureRule rule;
+  rule.nodes.resize(static_cast<std::size_t>(n));
+  rule.weights.resize(static_cast<std::size_t>(n));
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  for (std::size_t low = 0; low < half_of.nodes.size(); ++low) {
+    const std::size_t high = static_cast<std::size_t>(n) - 1 - low;
+    rule.nodes[low] = middle - half * half_of.nodes[low];
+    rule.nodes[high] = middle + half * half_of.nodes[low];
+    rule.weights[low] = rule.weights[high] = half * half_of.weights[low];
   }
   return rule;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace petzval {
@@ -15,6 +16,7 @@ class SpreadingKernel {
   static constexpr int width = 14;
   static constexpr double oversampling = 1.5;
   static constexpr int lanes = 16;  ///< width rounded up to full vectors
+  static constexpr int degree = 15;
 
   SpreadingKernel();
 
@@ -28,11 +30,15 @@ class SpreadingKernel {
         out[i] = out[i] * t + coefficients_[static_cast<std::size_t>(power)][static_cast<std::size_t>(i)];
   }
 
+  /// Of that power of 2 · offset − 1, `lanes` of them: those of values().
+  const double* coefficients(int power) const {
+    return coefficients_[static_cast<std::size_t>(power)].data();
+  }
+
   /// 1/φ̂ at frequencies 0 … highest of a grid of `size` cells.
   std::vector<double> correction(int highest, int size) const;
 
  private:
-  static constexpr int degree = 15;
   std::array<std::array<double, lanes>, degree + 1> coefficients_{};  ///< [power of t][grid point]
 };
 

@@ -147,6 +147,8 @@ std::vector<double> choose_fields(const Lens& lens, const TableOptions& options)
   return fields;
 }
 
+}  // namespace
+
 TableOptions completed(const Lens& lens, TableOptions options) {
   options.validate();
   if (options.wavelengths_nm.empty()) options.wavelengths_nm = lens.wavelengths_nm;
@@ -159,8 +161,6 @@ TableOptions completed(const Lens& lens, TableOptions options) {
   }
   return options;
 }
-
-}  // namespace
 
 void TableOptions::validate() const {
   for (const double wavelength : wavelengths_nm)
@@ -180,9 +180,6 @@ void TableOptions::validate() const {
     throw InputError(fmt::format("a PSF of {0} × {0} samples; 8 to 4096 a side, or 0 to choose", psf_size));
 }
 
-namespace {
-
-/// What a table says of the lens as a whole.
 LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
   LensDataTable table;
   table.lens_name = lens.name;
@@ -197,8 +194,6 @@ LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
   table.wavelengths_nm = options.wavelengths_nm;
   return table;
 }
-
-}  // namespace
 
 bool needs_places_over_frame(const Lens& lens) {
   return !is_round(lens) || lens.stop_blades().count > 0;
@@ -302,20 +297,18 @@ LensDataTable HeightTable::finished() && {
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,
                                     const ProgressCallback& progress) {
   using Places = TableOptions::Places;
-  if (asked.places == Places::over_frame ||
-      (asked.places == Places::automatic && needs_places_over_frame(lens))) {
-    const TableOptions options = completed(lens, asked);
-    LensDataTable table = blank_table(lens, options);
-    fill_frame(lens, options, table, progress);
-    table.validate();
-    return table;
-  }
-  HeightTable parts(lens, asked);
   const auto all = [](std::size_t count) {
     std::vector<std::size_t> numbers(count);
     std::iota(numbers.begin(), numbers.end(), std::size_t{0});
     return numbers;
   };
+  if (asked.places == Places::over_frame ||
+      (asked.places == Places::automatic && needs_places_over_frame(lens))) {
+    FrameTable parts(lens, asked);
+    parts.add_psfs(all(parts.table().places()), all(parts.table().wavelengths_nm.size()), progress);
+    return std::move(parts).finished();
+  }
+  HeightTable parts(lens, asked);
   parts.add_psfs(all(parts.table().fields.size()), all(parts.table().wavelengths_nm.size()), progress);
   return std::move(parts).finished();
 }

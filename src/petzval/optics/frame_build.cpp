@@ -13,6 +13,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
+#include <set>
+#include <utility>
 
 namespace petzval {
 
@@ -153,11 +155,13 @@ FramePlaces lay_frame(const Lens& lens, const TableOptions& options) {
   const double reach_mm = std::max(frame_reach_mm(lens, options, options.wavelengths_nm.front(), frame),
                                    frame_reach_mm(lens, options, options.wavelengths_nm.back(), frame));
   const Vector2 half{frame[0] + reach_mm, frame[1] + reach_mm};
-  // An odd number, so that the axis has a place.
-  constexpr int fewest = 5;
+  // An odd number, so that the axis has a place; from nine on 4 n + 1, so that every second and every fourth
+  // make lattices too.
+  constexpr int fewest = 5, step = 4;
   const auto places = [&](double of) {
     const int count = static_cast<int>(std::lround(options.frame_places * of / std::max(half[0], half[1])));
-    return std::max(fewest, count | 1);
+    if (count <= 2 * step) return std::max(fewest, count | 1);
+    return (count + step - 2) / step * step + 1;
   };
   FramePlaces places_of_frame;
   places_of_frame.x_mm = even_places(half[0], places(half[0]));
@@ -215,95 +219,189 @@ std::vector<std::optional<SeenObject>> seen_objects(const Lens& lens, const Tabl
   return seen;
 }
 
-/// One place at one wavelength; whether light arrives.
-bool fill_place(const Lens& lens, const TableOptions& options, double wavelength_nm, double dark_area,
-                const Vector2& seen, LensDataTable& table, std::size_t entry) {
-  const double sign = towards_positive_image(lens);
-  TurnedChief at(lens, wavelength_nm, options, {sign * seen[0], sign * seen[1]});
+}  // namespace
+
+FrameTable::FrameTable(const Lens& lens, const TableOptions& options)
+    : lens_(lens),
+      options_(completed(lens, options)),
+      symmetry_(frame_symmetry(lens)),
+      table_(blank_table(lens, options_)) {
+  table_.frame = lay_frame(lens, options_);
+  find_light();
+  choose_windows();
+}
+
+void FrameTable::choose_windows() {
+  // How far diffracted light is spread depends on where its window ends. Where some windows had to grow until
+  // they hold enough, and others not, or corners of squares lie across a star's rays here and along them
+  // there, what lies between would be told wrongly: all are round and grow alike.
+  constexpr double above_wanted = 1e-3, growth = 1.25;
+  constexpr int most_growths = 8;
+  psf_options_ = psf_options_of(options_);
+  psf_options_.exact_window = true;
+  const double wanted = psf_options_.wanted_share + above_wanted;
+  const std::size_t middle = table_.places() / 2, wavelength = table_.wavelengths_nm.size() / 2,
+                    place = light_of(middle, wavelength), entry = table_.index(place, wavelength);
+  PsfOptions once = psf_options_;
+  once.wanted_share = 0;
+  const double sign = towards_positive_image(lens_);
+  const TurnedChief at(lens_, table_.wavelengths_nm[wavelength], options_,
+                       {sign * table_.frame->object_x[entry], sign * table_.frame->object_y[entry]});
+  for (int i = 0; i < most_growths && at.chief; ++i) {
+    const std::optional<Psf> psf = point_spread(at.tracer, *at.chief, once);
+    if (!psf || round_psf(*psf).captured >= wanted) break;
+    once.margin *= growth;
+  }
+  psf_options_.margin = once.margin;
+}
+
+void FrameTable::find_light() {
+  FramePlaces& frame = *table_.frame;
+  const std::size_t places = frame.count(), wavelengths = table_.wavelengths_nm.size(),
+                    entries = places * wavelengths;
+  for (std::vector<double>* values :
+       {&frame.object_x, &frame.object_y, &frame.psf_azimuth_deg, &table_.g_source_sr, &table_.g_sensor_sr})
+    values->resize(entries);
+  table_.psf.resize(entries);
+  made_.resize(entries);
+  lit_.assign(entries, 0);
+
+  std::vector<double> dark_area(wavelengths, 0.0);
+  parallel_for(wavelengths, [&](std::size_t w) {
+    FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
+    if (const auto axis = tracer.chief_ray(0))
+      if (const auto pupil = tracer.object_pupil(*axis)) dark_area[w] = dark_pupil_share * pupil->area();
+    const auto seen = seen_objects(lens_, options_, table_.wavelengths_nm[w], frame);
+    for (std::size_t place = 0; place < places; ++place)
+      if (seen[place]) {
+        frame.object_x[table_.index(place, w)] = seen[place]->object[0];
+        frame.object_y[table_.index(place, w)] = seen[place]->object[1];
+        lit_[table_.index(place, w)] = 1;
+      }
+  });
+  const auto twin = [&](std::size_t place) { return twin_of(symmetry_, frame, place); };
+  parallel_for(entries, [&](std::size_t i) {
+    const std::size_t w = i / places, place = i % places;
+    if (twin(place).place == place && lit_[table_.index(place, w)] != 0)
+      lit_[table_.index(place, w)] = illuminate(place, w, dark_area[w]) ? 1 : 0;
+  });
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    for (std::size_t place = 0; place < places; ++place) {
+      const FrameTwin of = twin(place);
+      const std::size_t here = table_.index(place, w), there = table_.index(of.place, w);
+      lit_[here] = lit_[there];
+      table_.g_source_sr[here] = table_.g_source_sr[there];
+      table_.g_sensor_sr[here] = table_.g_sensor_sr[there];
+      frame.psf_azimuth_deg[here] = of.azimuth_deg(frame.psf_azimuth_deg[there]);
+    }
+    extend_into_darkness(w);
+  }
+}
+
+bool FrameTable::illuminate(std::size_t place, std::size_t wavelength, double dark_area) {
+  const std::size_t entry = table_.index(place, wavelength);
+  const double sign = towards_positive_image(lens_);
+  const Vector2 object{sign * table_.frame->object_x[entry], sign * table_.frame->object_y[entry]};
+  TurnedChief at(lens_, table_.wavelengths_nm[wavelength], options_, object);
   if (!at.chief) return false;
   const auto lit = at.tracer.object_pupil(*at.chief);
   if (!lit || !(lit->area() > dark_area)) return false;
-  at.tracer.set_losses(options.losses);
-  const std::optional<SmoothPupil> pupil =
-      at.tracer.tracer().is_centred() ? fit_pupil(at.tracer, *at.chief) : std::nullopt;
-  std::optional<Psf> psf;
-  if (pupil) psf = point_spread(*pupil, psf_options_of(options));
-  if (!psf) psf = point_spread(at.tracer, *at.chief, psf_options_of(options));
-  if (!psf) return false;
+  at.tracer.set_losses(options_.losses);
   const std::optional<double> area = object_area(at);
   if (!area) return false;
-  table.g_source_sr[entry] = *area * (pupil ? pupil->flux : at.tracer.object_flux(*at.chief));
-  table.g_sensor_sr[entry] = at.tracer.g_sensor_sr(*at.chief);
-  table.psf[entry] = *psf;
+  table_.g_source_sr[entry] = *area * at.tracer.object_flux(*at.chief);
+  table_.g_sensor_sr[entry] = at.tracer.g_sensor_sr(*at.chief);
   // A PSF's t points away from the axis, in axes turned with the field: the other way where the image lies
   // there.
   const double half_turn = at.chief->image_height_mm < 0 ? 180 : 0;
-  double azimuth = azimuth_of({sign * seen[0], sign * seen[1]}) + half_turn;
+  double azimuth = azimuth_of(object) + half_turn;
   if (azimuth > 180) azimuth -= 360;
-  table.frame->psf_azimuth_deg[entry] = azimuth;
+  table_.frame->psf_azimuth_deg[entry] = azimuth;
   return true;
 }
 
-/// Places without light look on as those farther in do.
-void extend_into_darkness(std::size_t wavelength, const std::vector<char>& lit, LensDataTable& table) {
-  FramePlaces& frame = *table.frame;
-  const OutwardOrder outward(frame);
-  std::vector<std::size_t> light_of(frame.count());  // whose PSF stands for it
-  for (const std::size_t place : outward.order()) {
-    light_of[place] = place;
-    if (lit[place] != 0) continue;
-    const std::size_t inner = outward.inner(place), second = outward.inner(inner);
-    const std::size_t here = table.index(place, wavelength), next = table.index(inner, wavelength),
-                      further = table.index(second, wavelength);
-    light_of[place] = light_of[inner];
+void FrameTable::make_psf(std::size_t place, std::size_t wavelength) {
+  const std::size_t entry = table_.index(place, wavelength);
+  const double sign = towards_positive_image(lens_);
+  TurnedChief at(lens_, table_.wavelengths_nm[wavelength], options_,
+                 {sign * table_.frame->object_x[entry], sign * table_.frame->object_y[entry]});
+  at.tracer.set_losses(options_.losses);
+  const std::optional<SmoothPupil> pupil =
+      at.tracer.tracer().is_centred() ? fit_pupil(at.tracer, *at.chief) : std::nullopt;
+  std::optional<Psf> psf;
+  if (pupil) psf = point_spread(*pupil, psf_options_);
+  if (!psf) psf = point_spread(at.tracer, *at.chief, psf_options_);
+  // A fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
+  if (pupil) table_.g_source_sr[entry] *= pupil->flux / at.tracer.object_flux(*at.chief);
+  if (psf) made_[entry] = round_psf(*psf);
+}
+
+std::size_t FrameTable::light_of(std::size_t place, std::size_t wavelength) const {
+  const OutwardOrder outward(*table_.frame);
+  while (lit_[table_.index(place, wavelength)] == 0) {
+    const std::size_t inner = outward.inner(place);
     if (inner == place)
       throw InputError(
           fmt::format("{}: no ray passes the stop in the middle of the frame at {:g} nm; check stop "
                       "and clear apertures",
-                      table.lens_name, table.wavelengths_nm[wavelength]));
+                      table_.lens_name, table_.wavelengths_nm[wavelength]));
+    place = inner;
+  }
+  return place;
+}
+
+void FrameTable::extend_into_darkness(std::size_t wavelength) {
+  FramePlaces& frame = *table_.frame;
+  const OutwardOrder outward(frame);
+  for (const std::size_t place : outward.order()) {
+    const std::size_t here = table_.index(place, wavelength);
+    if (lit_[here] != 0) continue;
+    frame.psf_azimuth_deg[here] =
+        frame.psf_azimuth_deg[table_.index(light_of(place, wavelength), wavelength)];
+    const std::size_t inner = outward.inner(place), next = table_.index(inner, wavelength),
+                      further = table_.index(outward.inner(inner), wavelength);
     frame.object_x[here] = 2 * frame.object_x[next] - frame.object_x[further];
     frame.object_y[here] = 2 * frame.object_y[next] - frame.object_y[further];
-    const std::size_t light = table.index(light_of[place], wavelength);
-    frame.psf_azimuth_deg[here] = frame.psf_azimuth_deg[light];
-    table.psf[here] = table.psf[light];
-    table.g_source_sr[here] = table.g_sensor_sr[here] = 0;
+    table_.g_source_sr[here] = table_.g_sensor_sr[here] = 0;
   }
 }
 
-}  // namespace
-
-void fill_frame(const Lens& lens, const TableOptions& options, LensDataTable& table,
-                const ProgressCallback& progress) {
-  table.frame = lay_frame(lens, options);
-  FramePlaces& frame = *table.frame;
-  const std::size_t places = frame.count(), wavelengths = table.wavelengths_nm.size(),
-                    entries = places * wavelengths;
-  for (std::vector<double>* values :
-       {&frame.object_x, &frame.object_y, &frame.psf_azimuth_deg, &table.g_source_sr, &table.g_sensor_sr})
-    values->resize(entries);
-  table.psf.resize(entries);
-
-  std::vector<std::vector<std::optional<SeenObject>>> seen(wavelengths);
-  std::vector<double> dark_area(wavelengths, 0.0);
-  parallel_for(wavelengths, [&](std::size_t w) {
-    seen[w] = seen_objects(lens, options, table.wavelengths_nm[w], frame);
-    FieldTracer tracer(lens, table.wavelengths_nm[w], options.clip);
-    if (const auto axis = tracer.chief_ray(0))
-      if (const auto pupil = tracer.object_pupil(*axis)) dark_area[w] = dark_pupil_share * pupil->area();
-  });
-  std::atomic<std::size_t> done{0};
-  std::vector<std::vector<char>> lit(wavelengths, std::vector<char>(places, 0));
-  parallel_for(entries, [&](std::size_t i) {
-    const std::size_t w = i / places, place = i % places, entry = table.index(place, w);
-    if (const auto& object = seen[w][place]) {
-      frame.object_x[entry] = object->object[0];
-      frame.object_y[entry] = object->object[1];
-      lit[w][place] =
-          fill_place(lens, options, table.wavelengths_nm[w], dark_area[w], object->object, table, entry);
+void FrameTable::add_psfs(std::span<const std::size_t> places, std::span<const std::size_t> wavelengths,
+                          const ProgressCallback& progress) {
+  const FramePlaces& frame = *table_.frame;
+  std::set<std::pair<std::size_t, std::size_t>> missing;  // wavelength and place, each with its own PSF
+  for (const std::size_t w : wavelengths)
+    for (const std::size_t place : places) {
+      const std::size_t twin = twin_of(symmetry_, frame, light_of(place, w)).place;
+      if (made_[table_.index(twin, w)].size == 0) missing.emplace(w, twin);
     }
-    if (progress) progress(static_cast<double>(++done) / static_cast<double>(entries), "lens data table");
+  const std::vector<std::pair<std::size_t, std::size_t>> order(missing.begin(), missing.end());
+  std::atomic<std::size_t> done{0};
+  parallel_for(order.size(), [&](std::size_t i) {
+    make_psf(order[i].second, order[i].first);
+    if (progress)
+      progress(static_cast<double>(++done) / static_cast<double>(order.size()), "lens data table");
   });
-  for (std::size_t w = 0; w < wavelengths; ++w) extend_into_darkness(w, lit[w], table);
+  for (const std::size_t w : wavelengths)
+    for (const std::size_t place : places) {
+      const FrameTwin twin = twin_of(symmetry_, frame, light_of(place, w));
+      const Psf& made = made_[table_.index(twin.place, w)];
+      if (made.size == 0)
+        throw InputError(fmt::format("{}: no ray passes at {} and {:g} nm", table_.lens_name,
+                                     frame.name(twin.place), table_.wavelengths_nm[w]));
+      const std::size_t here = table_.index(place, w);
+      table_.psf[here] = twin.mirrored() ? mirrored_psf(made) : made;
+      if (lit_[here] != 0) table_.g_source_sr[here] = table_.g_source_sr[table_.index(twin.place, w)];
+    }
+}
+
+void FrameTable::remove_psf(std::size_t place, std::size_t wavelength) {
+  table_.psf[table_.index(place, wavelength)] = {};
+}
+
+LensDataTable FrameTable::finished() && {
+  table_.validate();
+  return std::move(table_);
 }
 
 }  // namespace petzval

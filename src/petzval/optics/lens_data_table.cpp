@@ -125,11 +125,15 @@ void require_psfs(const LensDataTable& table) {
   if (table.psf.size() != expected)
     refuse(fmt::format("there are {} PSFs; {} {} × {} wavelengths need {}", table.psf.size(), table.places(),
                        table.frame ? "places" : "fields", table.wavelengths_nm.size(), expected));
-  // What lies between two fields may be left out.
+  // What lies between two fields, or between rows and columns of a lattice, may be left out.
   const std::size_t row = table.wavelengths_nm.size();
+  std::vector<PsfLattice> lattices;
+  for (std::size_t w = 0; table.frame && w < row; ++w) lattices.push_back(psf_lattice(table, w));
   const auto left_out = [&](std::size_t i) {
-    return !table.frame && i >= row && i + row < expected && table.psf[i].size == 0 &&
-           table.psf[i].values.empty();
+    if (table.psf[i].size != 0 || !table.psf[i].values.empty()) return false;
+    if (!table.frame) return i >= row && i + row < expected;
+    const std::size_t columns = table.frame->x_mm.size(), place = i / row;
+    return !lattices[i % row].holds(place % columns, place / columns);
   };
   std::vector<std::string> faults(expected);
   parallel_for(expected, [&](std::size_t i) {
@@ -225,6 +229,23 @@ std::string FramePlaces::name(std::size_t place) const {
 
 std::string LensDataTable::place_name(std::size_t place) const {
   return frame ? frame->name(place) : fmt::format("field {}", fields[place]);
+}
+
+bool PsfLattice::holds(std::size_t column, std::size_t row) const {
+  return std::ranges::binary_search(columns, column) && std::ranges::binary_search(rows, row);
+}
+
+PsfLattice psf_lattice(const LensDataTable& table, std::size_t wavelength) {
+  const FramePlaces& frame = *table.frame;
+  const std::size_t last_column = frame.x_mm.size() - 1, last_row = frame.y_mm.size() - 1;
+  PsfLattice lattice;
+  for (std::size_t i = 0; i <= last_column; ++i)
+    if (i == 0 || i == last_column || table.has_psf(table.index(frame.place(i, 0), wavelength)))
+      lattice.columns.push_back(i);
+  for (std::size_t j = 0; j <= last_row; ++j)
+    if (j == 0 || j == last_row || table.has_psf(table.index(frame.place(0, j), wavelength)))
+      lattice.rows.push_back(j);
+  return lattice;
 }
 
 void require_by_height(const LensDataTable& table, const char* what) {

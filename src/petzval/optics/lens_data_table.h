@@ -51,8 +51,9 @@ struct LensDataTable {
   std::vector<double> real_image_height_mm;  ///< |height| of the real chief ray on the image surface
   std::vector<double> g_source_sr;           ///< flux per area of chief-ray image, per radiance
   std::vector<double> g_sensor_sr;           ///< irradiance of a uniform wall, per radiance
-  /// Of fields between two others it may be empty (size 0): light is spread there as the PSFs about it say.
-  /// Such tables are for one image (build_image_table()); files hold none.
+  /// Of fields between two others, and of rows and columns of a lattice between two others, it may be empty
+  /// (size 0): light is spread there as the PSFs about it say. Such tables are for one image
+  /// (build_image_table()); files hold none.
   std::vector<Psf> psf;
 
   bool has_psf(std::size_t entry) const { return psf[entry].size > 0; }
@@ -73,6 +74,15 @@ struct LensDataTable {
   /// sr).
   void validate() const;
 };
+
+/// Rows and columns of a lattice over the frame at whose crossings PSFs lie: all, or some with the outermost
+/// among them.
+struct PsfLattice {
+  std::vector<std::size_t> columns, rows;
+
+  bool holds(std::size_t column, std::size_t row) const;
+};
+PsfLattice psf_lattice(const LensDataTable& table, std::size_t wavelength);
 
 /// \throws InputError if places lie over the frame, saying what knows tables by field height only.
 void require_by_height(const LensDataTable& table, const char* what);
