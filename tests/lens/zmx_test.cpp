@@ -251,7 +251,8 @@ TEST(ZmxReader, ExtendedAspheres) {
 }
 
 TEST(ZmxReader, ReadsTheConfigurationThatIsWrittenOut) {
-  const auto notes = read_zmx_text(zmx_changed("TOL TOFF", "MNUM 2\nTHIC 1 1 4.5\nTHIC 1 2 5\nTOL TOFF")).notes;
+  const auto notes =
+      read_zmx_text(zmx_changed("TOL TOFF", "MNUM 2\nTHIC 1 1 4.5\nTHIC 1 2 5\nTOL TOFF")).notes;
   ASSERT_EQ(notes.size(), 1u);
   expect_mentions(notes[0], {"lens.zmx:60: of 2 configurations"});
   EXPECT_TRUE(read_zmx_text(zmx_changed("TOL TOFF", "MNUM 1 1\nTOL TOFF")).notes.empty());

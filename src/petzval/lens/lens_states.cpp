@@ -218,6 +218,23 @@ Lens joined_states(std::vector<std::string> names, const std::vector<Lens>& lens
   return lens;
 }
 
+LensStates states_beside(const Lens& lens, std::vector<std::string> names, std::vector<Lens> lenses) {
+  const std::size_t count = lenses.size();
+  if (names.size() != count)
+    throw InputError(fmt::format("{} names for {} states of a lens", names.size(), count));
+  // The lens itself as one more, which is taken away again: what is the same in all states may differ from
+  // it.
+  constexpr const char* itself = "as written";
+  if (count >= LensStates::most)
+    throw InputError(fmt::format("{} states; fewer than {} are right", count, LensStates::most));
+  names.emplace_back(itself);
+  lenses.push_back(lens);
+  LensStates states = joined_states(std::move(names), lenses).states;
+  states.names.pop_back();
+  for (StateRow& row : states.rows) row.values.pop_back();
+  return states;
+}
+
 Lens in_every_state(const Lens& lens, const std::function<Lens(const Lens&)>& alter) {
   Lens single = lens;
   single.states = {};
@@ -229,7 +246,7 @@ Lens in_every_state(const Lens& lens, const std::function<Lens(const Lens&)>& al
     state.states = {};
     lenses.push_back(alter(state));
   }
-  altered.states = joined_states(lens.states.names, lenses).states;
+  altered.states = states_beside(altered, lens.states.names, std::move(lenses));
   return altered;
 }
 

@@ -34,6 +34,10 @@ std::optional<std::size_t> present_state(const Lens& lens);
 /// \throws InputError if they differ in their number of surfaces, or there are not as many names as lenses.
 Lens joined_states(std::vector<std::string> names, const std::vector<Lens>& lenses);
 
+/// The states that lenses are, of a lens that need not stand in any of them. \throws InputError as
+/// joined_states().
+LensStates states_beside(const Lens& lens, std::vector<std::string> names, std::vector<Lens> lenses);
+
 /// Does something to a lens and, where it has states, to each of them.
 Lens in_every_state(const Lens& lens, const std::function<Lens(const Lens&)>& alter);
 

@@ -241,11 +241,37 @@ std::pair<std::string, std::string> seq_zoomed(const std::string& path, const Le
     if (key == "radius_mm") return {fmt::format("CUY S{}", i + 1), number_text(surface.curvature_per_mm)};
     if (key == "conic" && !is_odd_polynomial(surface))
       return {fmt::format("K S{}", i + 1), number_text(surface.conic)};
+    if (key == "semi_diameter_mm" && surface.semi_diameter_mm)
+      return {fmt::format("CIR S{}", i + 1), number_text(*surface.semi_diameter_mm)};
+    const bool table = std::holds_alternative<Material::Table>(surface.material.kind()) ||
+                       std::holds_alternative<Material::Constant>(surface.material.kind());
+    if (key == "glass" && !surface.material.is_air() && !table) {
+      std::string unused;
+      return {fmt::format("GLA S{}", i + 1),
+              std::visit(SeqGlassText{i, unused}, surface.material.kind()).substr(1)};
+    }
   }
   throw InputError(
-      fmt::format("states: Petzval writes no states of {} into a .seq file; distances, radii, conics and the "
-                  "aperture are held",
+      fmt::format("states: Petzval writes no states of {} into a .seq file; distances, radii, conics, clear "
+                  "apertures, glasses, fields and the aperture are held",
                   path));
+}
+
+/// "ZOO YAN F2 5 4", a line a field.
+std::string seq_zoomed_fields(const Lens& lens) {
+  constexpr const char* names[] = {"YAN", "YOB", "YIM", "YRI"};
+  std::string text;
+  for (std::size_t k = 0; k < lens.fields.values.size(); ++k) {
+    text += fmt::format("ZOO {} F{}", names[static_cast<std::size_t>(lens.fields.kind)], k + 1);
+    for (std::size_t i = 0; i < lens.states.size(); ++i) {
+      const Lens state = in_state(lens, static_cast<double>(i));
+      if (state.fields.values.size() != lens.fields.values.size())
+        throw InputError("states: a .seq file holds as many fields in every state");
+      text += fmt::format(" {}", number_text(state.fields.values[k]));
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 std::string seq_zoom_text(const Lens& lens) {
@@ -253,10 +279,14 @@ std::string seq_zoom_text(const Lens& lens) {
   require_centred(lens, "Petzval writes states into .seq files for centred lenses");
   std::string text = fmt::format("ZOO {}\n", lens.states.size());
   for (const StateRow& row : lens.states.rows) {
+    if (row.path == "fields.values") {
+      text += seq_zoomed_fields(lens);
+      continue;
+    }
     std::string line;
     for (std::size_t i = 0; i < lens.states.size(); ++i) {
       const auto [what, value] = seq_zoomed(row.path, in_state(lens, static_cast<double>(i)));
-      line += (i == 0 ? "ZOO " + what : std::string()) + " " + value;
+      line += i == 0 ? fmt::format("ZOO {} {}", what, value) : fmt::format(" {}", value);
     }
     text += line + "\n";
   }

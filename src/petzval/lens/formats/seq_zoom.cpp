@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/glass/packed_catalogue.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/seq_zoom.h>
 

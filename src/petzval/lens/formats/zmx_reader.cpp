@@ -214,7 +214,7 @@ void put_configurations(const ZmxFile& file, GlassLookup& glasses, Lens& lens,
                        fmt::format("configuration {} forms no paraxial image to solve for (MAZH)", i));
     lenses.back().surfaces.back().thickness_mm = lens.last_sense() * image_mm;
   }
-  LensStates states = joined_states(std::move(names), lenses).states;
+  LensStates states = states_beside(lens, std::move(names), std::move(lenses));
   if (states.rows.empty()) return say("all are the same");
   lens.states = std::move(states);
   say(fmt::format("each is a state, config-1 to config-{}; the one written out in the surfaces is read",

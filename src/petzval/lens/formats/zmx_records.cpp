@@ -64,14 +64,18 @@ double ZmxFile::number_or(const ZmxBlock& block, const ZmxRecord& record, std::s
 ZmxFile zmx_records(const std::string& text, const std::string& file) {
   ZmxFile result;
   result.name = file;
-  bool surface_is_indented = false, is_tail = false;
+  bool surface_is_indented = false, is_tail = false, has_operands = false;
   for (TextLine& line : text_lines(text)) {
     if (line.words.empty()) continue;
     if (is_tail) {
-      if (line.words.front() == "MNUM")
+      if (line.words.front() == "MNUM") {
         result.header.records.push_back(record_of(std::move(line)));
-      else if (result.header.find("MNUM") && line.words.front() != "TOL")  // tolerances
+        has_operands = true;
+      } else if (line.words.front() == "TOL") {  // tolerances
+        has_operands = false;
+      } else if (has_operands) {
         result.operands.push_back(record_of(std::move(line)));
+      }
       continue;
     }
     const bool indented = line.text.front() == ' ' || line.text.front() == '\t';
@@ -87,7 +91,8 @@ ZmxFile zmx_records(const std::string& text, const std::string& file) {
     }
     if (surface_is_indented && !indented) {
       is_tail = true;
-      if (record.keyword == "MNUM") result.header.records.push_back(std::move(record));
+      has_operands = record.keyword == "MNUM";
+      if (has_operands) result.header.records.push_back(std::move(record));
       continue;
     }
     surface_is_indented = surface_is_indented || indented;

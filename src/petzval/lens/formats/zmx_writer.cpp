@@ -257,59 +257,115 @@ std::string zmx_wavelengths_text(const Lens& lens) {
   return text + fmt::format("PWAV {}\n", reference - wavelengths.begin() + 1);
 }
 
-/// Which operand of the configurations an entry of the lens is, and how it holds its value.
+[[noreturn]] void refuse_state(const std::string& path) {
+  throw InputError(
+      fmt::format("states: Petzval writes no states of {} into a .zmx file; distances, radii, conics, clear "
+                  "apertures, glasses "
+                  "of catalogues, the stop, the aperture and fields are held",
+                  path));
+}
+
+/// A glass by its name, "" for air.
+std::string state_glass(const Surface& surface, const std::string& path) {
+  if (surface.material.is_air() && !surface.mirror) return "\"\"";
+  const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&surface.material.kind());
+  if (!glass || (*glass)->name.find_first_of(" \t\"") != std::string::npos) refuse_state(path);
+  return (*glass)->name;
+}
+
+/// One operand of the configurations, and its value in each.
 struct ZmxOperand {
-  const char* keyword;
+  std::string keyword;
   std::size_t place;  ///< the surface or field
-  std::string (*value)(const Lens& lens, std::size_t place);
+  std::vector<std::string> values;
 };
 
-/// \throws InputError for an entry that no operand holds.
-ZmxOperand zmx_operand(const std::string& path) {
-  std::size_t surface = 0;
+/// What an entry of a surface is. \throws InputError for one that no operand holds.
+ZmxOperand zmx_surface_operand(const std::vector<Lens>& states, const std::string& path) {
   const std::size_t close = path.find("].");
-  const std::string key = close == path.npos ? path : path.substr(close + 2);
-  if (path.starts_with("surfaces[") && close != path.npos)
-    surface = static_cast<std::size_t>(std::atoi(path.c_str() + std::string("surfaces[").size()));
-  if (path == "object_distance_mm")
-    return {"THIC", 0, [](const Lens& lens, std::size_t) {
-              return lens.object_distance_mm ? number_text(*lens.object_distance_mm) : std::string("1e10");
-            }};
-  if (path.starts_with("aperture."))
-    return {"APER", 0, [](const Lens& lens, std::size_t) {
-              const bool na = lens.aperture.kind == Aperture::Kind::image_na;
-              return number_text(na ? 0.5 / lens.aperture.value : lens.aperture.value);
-            }};
-  if (path.starts_with("surfaces[") && key == "thickness_mm")
-    return {"THIC", surface + 1,
-            [](const Lens& lens, std::size_t i) { return number_text(lens.surfaces[i - 1].thickness_mm); }};
-  if (path.starts_with("surfaces[") && key == "radius_mm")
-    return {"CRVT", surface + 1, [](const Lens& lens, std::size_t i) {
-              return number_text(lens.surfaces[i - 1].curvature_per_mm);
-            }};
-  if (path.starts_with("surfaces[") && key == "conic")
-    return {"CONN", surface + 1,
-            [](const Lens& lens, std::size_t i) { return number_text(lens.surfaces[i - 1].conic); }};
-  throw InputError(
-      fmt::format("states: Petzval writes no states of {} into a .zmx file; distances, radii, conics and the "
-                  "aperture are held",
-                  path));
+  if (!path.starts_with("surfaces[") || close == path.npos) refuse_state(path);
+  const auto i = static_cast<std::size_t>(std::atoi(path.c_str() + std::string("surfaces[").size()));
+  const std::string key = path.substr(close + 2);
+  ZmxOperand operand{"", i + 1, {}};
+  for (const Lens& state : states) {
+    const Surface& surface = state.surfaces[i];
+    if (key == "thickness_mm")
+      operand.keyword = "THIC", operand.values.push_back(number_text(surface.thickness_mm));
+    else if (key == "radius_mm")
+      operand.keyword = "CRVT", operand.values.push_back(number_text(surface.curvature_per_mm));
+    else if (key == "conic")
+      operand.keyword = "CONN", operand.values.push_back(number_text(surface.conic));
+    else if (key == "semi_diameter_mm" && surface.semi_diameter_mm)
+      operand.keyword = "APMX", operand.values.push_back(number_text(*surface.semi_diameter_mm));
+    else if (key == "glass")
+      operand.keyword = "GLSS", operand.values.push_back(state_glass(surface, path));
+    else if (key == "stop")
+      operand = {"STPS", 0, std::move(operand.values)},
+      operand.values.push_back(fmt::format("{}", state.stop_index() + 1));
+    else
+      refuse_state(path);
+  }
+  return operand;
+}
+
+std::vector<ZmxOperand> zmx_operands(const std::vector<Lens>& states, const std::string& path) {
+  std::vector<std::string> values;
+  if (path == "object_distance_mm") {
+    for (const Lens& state : states)
+      values.push_back(state.object_distance_mm ? number_text(*state.object_distance_mm)
+                                                : std::string("1e10"));
+    return {{"THIC", 0, values}};
+  }
+  if (path.starts_with("aperture.") &&
+      states.front().aperture.kind != Aperture::Kind::stop_semi_diameter_mm) {
+    for (const Lens& state : states) {
+      const bool na = state.aperture.kind == Aperture::Kind::image_na;
+      values.push_back(number_text(na ? 0.5 / state.aperture.value : state.aperture.value));
+    }
+    return {{"APER", 0, values}};
+  }
+  if (path == "fields.values") {
+    std::vector<ZmxOperand> operands;
+    for (std::size_t k = 0; k < states.front().fields.values.size(); ++k) {
+      operands.push_back({"YFIE", k + 1, {}});
+      for (const Lens& state : states) {
+        if (state.fields.values.size() != states.front().fields.values.size()) refuse_state(path);
+        operands.back().values.push_back(number_text(state.fields.values[k]));
+      }
+    }
+    return operands;
+  }
+  return {zmx_surface_operand(states, path)};
+}
+
+std::vector<Lens> all_states(const Lens& lens) {
+  std::vector<Lens> states;
+  for (std::size_t i = 0; i < lens.states.size(); ++i)
+    states.push_back(in_state(lens, static_cast<double>(i)));
+  return states;
+}
+
+/// The lens with the glasses of all its states.
+Lens with_all_glasses(Lens lens) {
+  for (const Lens& state : all_states(lens))
+    lens.surfaces.insert(lens.surfaces.end(), state.surfaces.begin(), state.surfaces.end());
+  return lens;
 }
 
 /// MNUM and its operands, all configurations of one before the next.
 std::string zmx_configurations_text(const Lens& lens) {
   if (lens.states.empty()) return "";
   require_centred(lens, "Petzval writes states into .zmx files for centred lenses");
-  std::vector<Lens> states;
-  for (std::size_t i = 0; i < lens.states.size(); ++i)
-    states.push_back(in_state(lens, static_cast<double>(i)));
-  std::string text = fmt::format("MNUM {} {}\n", lens.states.size(), present_state(lens).value_or(0) + 1);
-  for (const StateRow& row : lens.states.rows) {
-    const ZmxOperand operand = zmx_operand(row.path);
-    for (std::size_t i = 0; i < states.size(); ++i)
-      text += fmt::format("{} {} {} {} 0 0 0 1 1 1 0 0 \"\" 0\n", operand.keyword, operand.place, i + 1,
-                          operand.value(states[i], operand.place));
-  }
+  const std::vector<Lens> states = all_states(lens);
+  std::string text = fmt::format("MNUM {} {}\n", states.size(), present_state(lens).value_or(0) + 1);
+  std::set<std::string> written;
+  for (const StateRow& row : lens.states.rows)
+    for (const ZmxOperand& operand : zmx_operands(states, row.path)) {
+      if (!written.insert(fmt::format("{} {}", operand.keyword, operand.place)).second) continue;
+      for (std::size_t i = 0; i < states.size(); ++i)
+        text += fmt::format("{} {} {} {} 0 0 0 1 1 1 0 0 \"\" 0\n", operand.keyword, operand.place, i + 1,
+                            operand.values[i]);
+    }
   return text;
 }
 
@@ -317,7 +373,7 @@ std::string zmx_configurations_text(const Lens& lens) {
 
 std::string zmx_text(const Lens& lens) {
   lens.validate();
-  const std::vector<std::string> catalogues = catalogue_order(lens);
+  const std::vector<std::string> catalogues = catalogue_order(with_all_glasses(lens));
   std::string text = fmt::format("MODE SEQ\nNAME {}\nNOTE 0 {}\nUNIT MM X W X CM MR CPMM\n",
                                  one_line(lens.name), one_line(lens.source));
   text += aperture_text(lens.aperture);
