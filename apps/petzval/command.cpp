@@ -134,8 +134,6 @@ std::string advice_on_command(const std::string& way, const std::string& word) {
       {"petzval lens", "dof", "lens for-sensor tells the depth of field"},
       {"petzval lens", "fov", "lens for-sensor tells the field of view"},
       {"petzval lens", "set", "--set 'surfaces[4].thickness_mm=0.7' alters the lens in every command"},
-      {"petzval lens", "focus", "--focus 400mm focuses the lens in every command"},
-      {"petzval lens", "vignetting", "lens illumination tells it"},
       {"petzval lens", "show", "lens info tells numbers, lens draw makes a drawing"},
       {"petzval", "mtf", "lens mtf computes it of a lens, sfr measures it in a picture"},
       {"petzval", "psf", "lens psf would be right"},
