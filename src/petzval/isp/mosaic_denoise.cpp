@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 namespace petzval {
 
@@ -123,11 +125,11 @@ Square square_at(const NoisyPlane& plane, int r, int c) {
   return square;
 }
 
-/// Shrinks the coefficients of one square. \returns its weight in the mean of all that overlap: what little
-/// noise is left counts more.
-float cut_small(Square& coefficients, const Square&) {
+/// Shrinks the coefficients of one square. \param about_zero  the mean too. \returns its weight in the mean
+/// of all that overlap: what little noise is left counts more.
+float cut_small(Square& coefficients, const Square&, bool about_zero) {
   int kept = 1;
-  for (std::size_t i = 1; i < coefficients.size(); ++i) {
+  for (std::size_t i = about_zero ? 0 : 1; i < coefficients.size(); ++i) {
     const bool keep = std::abs(coefficients[i]) > cut;
     coefficients[i] = keep ? coefficients[i] : 0;
     kept += keep;
@@ -135,9 +137,9 @@ float cut_small(Square& coefficients, const Square&) {
   return 1 / static_cast<float>(kept);
 }
 
-float shrink_by_estimate(Square& coefficients, const Square& estimate) {
+float shrink_by_estimate(Square& coefficients, const Square& estimate, bool about_zero) {
   float energy = 1;
-  for (std::size_t i = 1; i < coefficients.size(); ++i) {
+  for (std::size_t i = about_zero ? 0 : 1; i < coefficients.size(); ++i) {
     const float e = estimate[i] * estimate[i], gain = e / (e + 1);
     coefficients[i] *= gain;
     energy += gain * gain;
@@ -148,7 +150,7 @@ float shrink_by_estimate(Square& coefficients, const Square& estimate) {
 /// One pass over all squares of a plane with a margin of `side`; the margin of the result is not filled.
 /// \param estimate  of the picture without noise, for the second pass.
 template <typename Shrink>
-NoisyPlane pass(const NoisyPlane& noisy, const NoisyPlane* estimate, const Shrink& shrink) {
+NoisyPlane pass(const NoisyPlane& noisy, const NoisyPlane* estimate, bool about_zero, const Shrink& shrink) {
   const SquareTransform transform;
   NoisyPlane result(noisy.columns, noisy.rows);
   const int inner = noisy.rows - 2 * side, bands = (inner + band_rows - 1) / band_rows;
@@ -160,7 +162,7 @@ NoisyPlane pass(const NoisyPlane& noisy, const NoisyPlane* estimate, const Shrin
       for (int c = 0; c + side <= noisy.columns; c += stride) {
         Square square = transform.forward(square_at(noisy, r, c));
         const float weight =
-            shrink(square, estimate ? transform.forward(square_at(*estimate, r, c)) : square);
+            shrink(square, estimate ? transform.forward(square_at(*estimate, r, c)) : square, about_zero);
         square = transform.back(square);
         for (int i = std::max(0, first - r); i < std::min(side, last - r); ++i) {
           float* const sum = sums.row(r + i - first) + c;
@@ -210,13 +212,15 @@ void add_doubled(NoisyPlane& plane, const NoisyPlane& half) {
   }
 }
 
-NoisyPlane denoised(const NoisyPlane& plane) {
+/// \param about_zero  the plane is a difference of pixels of one channel, which has detail but no level.
+NoisyPlane denoised(const NoisyPlane& plane, bool about_zero) {
   NoisyPlane wide = with_margin(plane, side);
-  const NoisyPlane first = with_margin(without_margin(pass(wide, nullptr, cut_small), side), side);
-  NoisyPlane fine = without_margin(pass(wide, &first, shrink_by_estimate), side);
-  if (std::min(plane.columns, plane.rows) < least_plane) return fine;
+  const NoisyPlane first =
+      with_margin(without_margin(pass(wide, nullptr, about_zero, cut_small), side), side);
+  NoisyPlane fine = without_margin(pass(wide, &first, about_zero, shrink_by_estimate), side);
+  if (about_zero || std::min(plane.columns, plane.rows) < least_plane) return fine;
   // What is coarse is better known from the picture of half the size, for squares there are twice as large.
-  NoisyPlane coarse = denoised(halved(plane));
+  NoisyPlane coarse = denoised(halved(plane), about_zero);
   const NoisyPlane found = halved(fine);
   for (std::size_t i = 0; i < coarse.values.size(); ++i) coarse.values[i] -= found.values[i];
   add_doubled(fine, coarse);
@@ -243,6 +247,56 @@ class UnitVariance {
  private:
   double gain_, variance_;
 };
+
+/// Orthonormal sums and differences of the places in a mosaic's period.
+struct PhaseBasis {
+  std::vector<float> vectors;  ///< one after the other
+  std::size_t of_channels;     ///< the first ones; those behind are differences within a channel
+
+  explicit PhaseBasis(const Mosaic& mosaic);
+};
+
+/// The sum; channels against each other, the most frequent first; then whatever cosines over the period add.
+PhaseBasis::PhaseBasis(const Mosaic& mosaic) : of_channels(0) {
+  const std::size_t count = mosaic.cells.size();
+  const int most = *std::max_element(mosaic.cells.begin(), mosaic.cells.end());
+  std::vector<std::pair<std::ptrdiff_t, int>> channels;
+  for (int channel = 0; channel <= most; ++channel)
+    if (const auto n = std::count(mosaic.cells.begin(), mosaic.cells.end(), channel); n > 0)
+      channels.emplace_back(-n, channel);
+  std::sort(channels.begin(), channels.end());
+  of_channels = channels.size();
+
+  std::vector<std::vector<double>> found;
+  const auto add = [&](std::vector<double> vector) {
+    for (int twice = 0; twice < 2; ++twice)
+      for (const std::vector<double>& other : found) {
+        const double along = std::inner_product(vector.begin(), vector.end(), other.begin(), 0.0);
+        for (std::size_t i = 0; i < count; ++i) vector[i] -= along * other[i];
+      }
+    const double length = std::sqrt(std::inner_product(vector.begin(), vector.end(), vector.begin(), 0.0));
+    constexpr double nothing_new = 1e-6;
+    if (length < nothing_new) return;
+    for (double& value : vector) value /= length;
+    found.push_back(std::move(vector));
+  };
+  add(std::vector<double>(count, 1));
+  for (const auto& [n, channel] : channels) {
+    std::vector<double> indicator(count);
+    for (std::size_t i = 0; i < count; ++i) indicator[i] = mosaic.cells[i] == channel ? 1 : 0;
+    add(std::move(indicator));
+  }
+  const std::vector<float> down = cosines_of(mosaic.rows), across = cosines_of(mosaic.columns);
+  const auto rows = static_cast<std::size_t>(mosaic.rows), columns = static_cast<std::size_t>(mosaic.columns);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::vector<double> cosines(count);
+    for (std::size_t i = 0; i < count; ++i)
+      cosines[i] = static_cast<double>(down[k / columns * rows + i / columns]) *
+                   static_cast<double>(across[k % columns * columns + i % columns]);
+    add(std::move(cosines));
+  }
+  for (const std::vector<double>& vector : found) vectors.insert(vectors.end(), vector.begin(), vector.end());
+}
 
 /// The mosaic as planes, one for each place of its period, and back.
 class Phases {
@@ -282,25 +336,19 @@ class Phases {
     });
   }
 
-  /// Sums and differences of the planes in place of these: orthonormal cosines. \param back  the reverse.
-  void mix(std::vector<NoisyPlane>& planes, bool back) const {
-    const std::vector<float> vertical = cosines_of(down_), horizontal = cosines_of(across_);
-    const int count = down_ * across_;
+  /// Sums and differences of the planes in place of these, and back.
+  void mix(std::vector<NoisyPlane>& planes, const PhaseBasis& basis, bool back) const {
+    const std::size_t count = planes.size();
     parallel_for(static_cast<std::size_t>(rows_), [&](std::size_t row) {
       const int r = static_cast<int>(row);
-      std::vector<float> old(static_cast<std::size_t>(count));
+      std::vector<float> old(count);
       for (int c = 0; c < columns_; ++c) {
-        for (int k = 0; k < count; ++k)
-          old[static_cast<std::size_t>(k)] = planes[static_cast<std::size_t>(k)].row(r)[c];
-        for (int k = 0; k < count; ++k) {
+        for (std::size_t k = 0; k < count; ++k) old[k] = planes[k].row(r)[c];
+        for (std::size_t k = 0; k < count; ++k) {
           float sum = 0;
-          for (int i = 0; i < count; ++i) {
-            const int to = back ? i : k, from = back ? k : i;
-            sum += vertical[static_cast<std::size_t>(to / across_ * down_ + from / across_)] *
-                   horizontal[static_cast<std::size_t>(to % across_ * across_ + from % across_)] *
-                   old[static_cast<std::size_t>(i)];
-          }
-          planes[static_cast<std::size_t>(k)].row(r)[c] = sum;
+          for (std::size_t i = 0; i < count; ++i)
+            sum += (back ? basis.vectors[i * count + k] : basis.vectors[k * count + i]) * old[i];
+          planes[k].row(r)[c] = sum;
         }
       }
     });
@@ -320,13 +368,21 @@ class Phases {
 void denoise_mosaic(LinearMosaic& mosaic, double strength, double noise_scale, double noise_offset) {
   if (!(strength >= 0) || std::isinf(strength))
     throw InputError(fmt::format("a denoising strength of {:g}; 0 or more would be right", strength));
-  if (strength == 0 || !(noise_scale > 0) || mosaic.rows < mosaic.mosaic.rows ||
-      mosaic.columns < mosaic.mosaic.columns)
+  if (strength == 0) return;
+  // Sums and differences of a longer period would take the time of its square.
+  constexpr std::size_t longest = 64;
+  if (mosaic.mosaic.cells.size() > longest)
+    throw InputError(
+        fmt::format("a mosaic whose period has {} pixels is not denoised; up to {} are, and "
+                    "strength 0 would be right",
+                    mosaic.mosaic.cells.size(), longest));
+  if (!(noise_scale > 0) || mosaic.rows < mosaic.mosaic.rows || mosaic.columns < mosaic.mosaic.columns)
     return;
   const UnitVariance unit(noise_scale, noise_offset);
   // Noise that is said to be s times as strong is unit in values that are divided by s.
   const auto scale = static_cast<float>(1 / strength);
   // Neighbours across the border of two periods differ as those within one do: the mean of four divisions.
+  const PhaseBasis basis(mosaic.mosaic);
   NoisyPlane sum(mosaic.columns, mosaic.rows);
   int divisions = 0;
   for (int top = 0; top < mosaic.mosaic.rows; top += std::max(1, mosaic.mosaic.rows / 2))
@@ -334,9 +390,9 @@ void denoise_mosaic(LinearMosaic& mosaic, double strength, double noise_scale, d
       const Phases phases(mosaic, top, left);
       std::vector<NoisyPlane> planes =
           phases.taken_apart(mosaic, [&](float x) { return scale * unit.in(x); });
-      phases.mix(planes, false);
-      for (NoisyPlane& plane : planes) plane = denoised(plane);
-      phases.mix(planes, true);
+      phases.mix(planes, basis, false);
+      for (std::size_t k = 0; k < planes.size(); ++k) planes[k] = denoised(planes[k], k >= basis.of_channels);
+      phases.mix(planes, basis, true);
       phases.add(planes, sum);
       ++divisions;
     }
