@@ -149,7 +149,7 @@ void estimate(const EstimateChoice& choice, const Shared& shared) {
   fmt::print("  time     {:.3g} CPU s an item ({:.2g} of standard error), {:.3g} CPU hours in all\n",
              each.cpu_s, each.cpu_error_s, each.cpu_s * items / seconds_an_hour);
   fmt::print("  bytes    {} an item, {} in all\n", size_text(each.bytes), size_text(each.bytes * items));
-  fmt::print("  memory   {} a process\n", size_text(each.memory_bytes));
+  fmt::print("  memory   {} a process of one thread\n", size_text(each.memory_bytes));
   if (each.failed) note(shared, fmt::format("{} of {} items could not be made", each.failed, each.probed));
 }
 

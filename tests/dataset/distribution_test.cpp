@@ -108,8 +108,11 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
            {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"grade\": \"high\"", "a grade without a build"},
            {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"camera_x\": 1", "camera_x"},
            {"\"items\": 10", "\"items\": 10, \"truth\": [\"normals\"]", "needs a world"},
+           {"\"items\": 10", "\"items\": 10, \"truth\": [\"masks\"]", "needs a world"},
+           {"\"scene\": \"studio\"", "\"world\": \"spheres\", \"rolling_shutter\": 0.5", "stands still"},
+           {"\"scene\": \"studio\"", "\"world\": \"spheres\", \"camera_move_x\": 0.5", "all three"},
            {"\"items\": 10", "\"items\": 10, \"truth\": [\"depths\"]",
-            "depth, normals, albedo would be right"},
+            "depth, normals, albedo, masks, flow would be right"},
            {"\"items\": 10", "\"items\": 10, \"psf_grid\": {\"size\": 30}", "is even"},
            {"\"items\": 10", "\"items\": 10, \"wavelengths_nm\": \"700:10:400\"", "wavelengths_nm"},
            {"\"items\": 10", "\"itemz\": 10", "itemz"}})
