@@ -5,6 +5,7 @@
 #include <petzval/base/units.h>
 #include <petzval/optics/lens_data_table.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -232,7 +233,8 @@ std::string LensDataTable::place_name(std::size_t place) const {
 }
 
 bool PsfLattice::holds(std::size_t column, std::size_t row) const {
-  return std::ranges::binary_search(columns, column) && std::ranges::binary_search(rows, row);
+  return std::binary_search(columns.begin(), columns.end(), column) &&
+         std::binary_search(rows.begin(), rows.end(), row);
 }
 
 PsfLattice psf_lattice(const LensDataTable& table, std::size_t wavelength) {
