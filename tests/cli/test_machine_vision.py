@@ -69,7 +69,7 @@ class MachineVision(ProgramTest):
         self.assertEqual(names, set(LENSES) | set(TELECENTRIC))
         self.assertEqual({row["name"] for row in self.json_of("lens", "list", "TELECENTRIC")["rows"]}, set(TELECENTRIC))
         self.assertIn("afocal", self.petzval("lens", "list", "telecentric").stdout)
-        afocal = self.json_of("lens", "for-sensor", "telecentric-0.5x", "--sensor", "icx625-mono", "--distance", "200mm")["rows"][0]
+        afocal = self.json_of("lens", "for-sensor", "telecentric-0.5x", "--sensor", "icx625-mono", "--distance", "298.44mm")["rows"][0]
         self.assertEqual([afocal["efl_mm"], afocal["f_number"], afocal["hyperfocal_m"]], [None, None, None])
         self.assertNotIn("telecentric", self.petzval("lens", "list", "teaching").stdout)
         self.assert_refused("lens", "list", "zoom", words=["machine vision"])

@@ -92,7 +92,7 @@ inline std::string upgrade_request(const Handshake& how) {
                      " HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
   const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) text += std::string(name) + ": " + value + "\r\n";
+    if (!value.empty()) text.append(name).append(": ").append(value).append("\r\n");
   };
   add("Host", how.host);
   add("Origin", how.origin);
