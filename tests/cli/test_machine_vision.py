@@ -72,7 +72,7 @@ class MachineVision(ProgramTest):
         afocal = self.json_of("lens", "for-sensor", "telecentric-0.5x", "--sensor", "icx625-mono", "--distance", "298.44mm")["rows"][0]
         self.assertEqual([afocal["efl_mm"], afocal["f_number"], afocal["hyperfocal_m"]], [None, None, None])
         self.assertNotIn("telecentric", self.petzval("lens", "list", "teaching").stdout)
-        self.assert_refused("lens", "list", "zoom", words=["machine vision"])
+        self.assert_refused("lens", "list", "periscope", words=["machine vision"])
 
 
 if __name__ == "__main__":
