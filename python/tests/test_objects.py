@@ -282,3 +282,20 @@ def test_electrons_of_a_raw_image(camera):
     raw = camera.expose(light, seed=1)
     assert raw.electrons.shape == (raw.rows, raw.columns)
     assert raw.electrons * raw.dn_per_e + raw.black_level == pytest.approx(raw.linear_values, abs=1e-9)
+
+
+def test_states_of_a_zoom_lens_are_the_patents():
+    lens = pz.Lens("zoom-14-24mm")
+    assert list(lens.states)[:4] == ["wide", "18mm", "20mm", "tele"]
+    for state, efl_mm in (("wide", 14.42), ("tele", 23.29)):
+        assert abs(lens.in_state(state).efl_mm / efl_mm - 1) < 1e-3
+    between = lens.in_state("0.5").efl_mm
+    assert lens.in_state("wide").efl_mm < between < lens.in_state("18mm").efl_mm
+    with pytest.raises(pz.Error, match="tele"):
+        lens.in_state("telly")
+
+
+def test_lenses_from_patents_have_names_of_their_own():
+    names = pz.bundled_names("lenses/patents")
+    assert len(names) > 50 and "us-7558005-a" in names
+    assert abs(pz.Lens("us-7558005-a").efl_mm / 4.55 - 1) < 0.01
