@@ -100,6 +100,7 @@ TEST(OpticalBench, SaysWhatIsWrongAndWhere) {
   expect_mentions(bench_complaint(bench("", "1\t51.68\t4\t1.5\t25\t64\n")), {"has no stop"});
   expect_mentions(bench_complaint(bench("", singlet, "9\t51.68\t0\t1e-3\n")), {"no surface '9'"});
   expect_mentions(bench_complaint(bench("", "")), {"[lens data] is empty"});
+  expect_mentions(bench_complaint(bench("AsphericalOddCount\t1e99\n", singlet)), {":4:", "1 to 20"});
 }
 
 TEST(FlareSim, ReadsRowsOfSemiApertures) {

@@ -18,6 +18,7 @@ namespace petzval {
 namespace {
 
 constexpr std::size_t most_surfaces = 1000;
+constexpr int most_odd_powers = 20;
 /// A catalogue's glass stands for that of a row if it has its nd and Vd: patents give five digits and four.
 constexpr double same_nd = 1e-4, same_vd = 0.15;
 
@@ -72,9 +73,7 @@ class BenchReader {
       made_.lens.name = cells[1];
     } else if (section_ == "[constants]") {
       if (cells[0] == "AsphericalA2") first_power_ = 2;
-      if (cells[0] == "AsphericalOddCount")
-        first_power_ = 3,
-        odd_powers_ = cells.size() > 1 ? static_cast<int>(number(cells[1], "number of odd powers")) : 1;
+      if (cells[0] == "AsphericalOddCount") take_odd_powers(cells);
     } else if (section_ == "[variable distances]") {
       variables_[cells[0]] = {line_, {cells.begin() + 1, cells.end()}};
     } else if (section_ == "[lens data]") {
@@ -84,6 +83,13 @@ class BenchReader {
     } else if (section_ == "[patent info]" && cells.size() > 1) {
       if (cells[0] == "number") patent_ = cells[1];
     }
+  }
+
+  void take_odd_powers(const Cells& cells) {
+    const std::optional<int> count = cells.size() > 1 ? parse_integer(cells[1]) : 1;
+    if (!count || *count < 1 || *count > most_odd_powers)
+      fail(fmt::format("AsphericalOddCount is the number of odd powers, 1 to {}", most_odd_powers));
+    first_power_ = 3, odd_powers_ = *count;
   }
 
   /// At a setting, counted from 0.
@@ -238,17 +244,13 @@ class BenchReader {
       names.push_back(fmt::format("setting-{}", setting + 1));
       lenses.push_back(std::move(file.lens));
     }
-    made_.lens = lenses.size() == 1 ? lenses[0] : joined_states(std::move(names), lenses);
-    require_used();
-    return std::move(made_);
-  }
-
-  void require_used() {
     try {
+      made_.lens = lenses.size() == 1 ? lenses[0] : joined_states(std::move(names), lenses);
       glasses_.require_all_used();
     } catch (const InputError& error) {
       throw InputError(file_, error.what());
     }
+    return std::move(made_);
   }
 
   std::string file_;
