@@ -8,7 +8,7 @@ namespace petzval::render {
 
 /// A sum in fixed point, 128 bits wide: what is added is rounded towards 0 to a multiple of 2⁻⁷² (2·10⁻²²),
 /// once, and the rest is exact. So the parts of a sum may be gathered by anybody in any order, and put
-/// together they are the bits of one sum; sums of doubles are not. One value counts as at most 2³¹, and 2²⁴
+/// together they are the bits of one sum; sums of doubles are not. One value counts as at most 2³⁰, and 2²⁴
 /// of them always fit.
 class ExactSum {
  public:
@@ -29,7 +29,7 @@ class ExactSum {
 
  private:
   __extension__ typedef __int128 Units;
-  static constexpr double most = 0x1p31, units_in_one = 0x1p72;
+  static constexpr double most = 0x1p30, units_in_one = 0x1p72;
 
   Units units_ = 0;
 };
