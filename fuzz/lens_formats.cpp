@@ -3,9 +3,11 @@
 
 #include <petzval/base/text_lines.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/formats/flaresim.h>
 #include <petzval/lens/formats/iset.h>
 #include <petzval/lens/formats/iset_transfer.h>
 #include <petzval/lens/formats/native.h>
+#include <petzval/lens/formats/optical_bench.h>
 #include <petzval/lens/formats/pbrt.h>
 #include <petzval/lens/formats/seq.h>
 #include <petzval/lens/formats/zmx.h>
@@ -72,6 +74,13 @@ bool try_lens(std::string_view bytes, Read read, Write write) {
   return true;
 }
 
+Lens read_optical_bench_text(const std::string& bytes) {
+  return read_optical_bench(decoded_text(bytes), "fuzz", options()).lens;
+}
+Lens read_flaresim_text(const std::string& bytes) {
+  return read_flaresim(decoded_text(bytes), "fuzz").lens;
+}
+
 Lens read_native_text(const std::string& text) {
   return read_native(JsonDocument(text, "fuzz"), options());
 }
@@ -92,6 +101,20 @@ Lens read_iset_transfer_text(const std::string& text) {
   return read_iset_transfer(JsonDocument(text, "fuzz")).lens;
 }
 
+/// Of formats that are only read: the lens must survive its native form.
+template <typename Read>
+bool try_read_only(std::string_view bytes, Read read) {
+  std::optional<Lens> lens;
+  if (!accepted([&] { lens = read(std::string(bytes)); })) return false;
+  lens->validate();
+  accepted([&] { first_order(*lens); });
+  const std::string text = lens_to_json(*lens);
+  const std::string again = lens_to_json(read_native_text(text));
+  if (again != text) std::fprintf(stderr, "%s\nbecame\n%s\n", text.c_str(), again.c_str());
+  require(again == text, "a lens that its native form does not hold");
+  return true;
+}
+
 }  // namespace
 
 bool try_native(std::string_view bytes) {
@@ -105,6 +128,12 @@ bool try_seq(std::string_view bytes) {
 }
 bool try_pbrt(std::string_view bytes) {
   return try_lens(bytes, read_pbrt_text, pbrt_text);
+}
+bool try_optical_bench(std::string_view bytes) {
+  return try_read_only(bytes, read_optical_bench_text);
+}
+bool try_flaresim(std::string_view bytes) {
+  return try_read_only(bytes, read_flaresim_text);
 }
 bool try_iset_transfer(std::string_view bytes) {
   return try_lens(bytes, read_iset_transfer_text, iset_transfer_text);

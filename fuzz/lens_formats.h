@@ -13,6 +13,8 @@ bool try_native(std::string_view bytes);
 bool try_zmx(std::string_view bytes);
 bool try_seq(std::string_view bytes);
 bool try_pbrt(std::string_view bytes);
+bool try_optical_bench(std::string_view bytes);
+bool try_flaresim(std::string_view bytes);
 bool try_iset(std::string_view bytes);
 bool try_iset_transfer(std::string_view bytes);
 

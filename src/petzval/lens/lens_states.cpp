@@ -213,6 +213,8 @@ Lens joined_states(std::vector<std::string> names, const std::vector<Lens>& lens
   StateDifferences differences;
   differences.compare("", forms);
   Lens lens = lenses.front();
+  // In the order in which a file gives them back.
+  std::ranges::sort(differences.rows, {}, &StateRow::path);
   lens.states = {std::move(names), std::move(differences.rows)};
   lens.validate();
   return lens;
