@@ -10,6 +10,8 @@ from petzval_cli import ProgramTest, leaf_commands
 RAYS = "x_mm,y_mm,z_mm,L,M,N,wavelength_nm\n0,0,-10,0,0,1,587.56\n0,1,-10,0,0,1,587.56\n"
 # Commands that take long for what they do: tests of their own run them.
 SLOW = [["demo"]]
+# Pieces of a picture of 16 x 12 pixels, for petzval merge.
+PIECES = {"left.sums": "0,0,8,12", "right.sums": "8,0,8,12"}
 
 
 class HelpExamples(ProgramTest):
@@ -29,6 +31,9 @@ class HelpExamples(ProgramTest):
             self.write(word, RAYS)
         elif word.endswith((".zmx", ".dat")):
             self.assert_succeeds("lens", "convert", "us-2532751" if word.endswith(".zmx") else "wide-22mm", word)
+        elif word in PIECES:
+            self.assert_succeeds("render", "spheres", "--lens", "dgauss-50mm", "--size", "16x12", "--spp", "4", "--wavelengths", "550",
+                                 "--region", PIECES[word], "--checkpoint", word, "-o", "pieces.npy")
         elif word.endswith((".h5", ".hdf5")):
             self.assert_succeeds("optics", "build", "edmund-54852", "--sensor", "64x48@6.25", "-o", word)
         elif word.endswith(".mat"):
