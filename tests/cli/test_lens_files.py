@@ -96,6 +96,19 @@ class LensFiles(ProgramTest):
         self.assertEqual(self.json_of("lens", "info", "cooke-triplet", "--set", "aperture.stop_semi_diameter_mm=3")
                          ["stop_semi_diameter_mm"], 3)
 
+    def test_convert_solves_missing_apertures(self):
+        def apertures(*options):
+            self.assert_succeeds("lens", "convert", "us-5831776", "out.json", *options)
+            return [surface.get("semi_diameter_mm") for surface in json.loads((self.folder / "out.json").read_text())["surfaces"]]
+
+        given, solved = apertures(), apertures("--apertures", "from-fields")
+        self.assertIn(None, given)
+        self.assertNotIn(None, solved)
+        # What the file gives stays, and so does what the lens is open to.
+        self.assertEqual([a for a, b in zip(solved, given) if b is not None], [b for b in given if b is not None])
+        before, after = (self.json_of("lens", "info", name)["f_number"] for name in ("us-5831776", "out.json"))
+        self.assertAlmostEqual(after, before, places=9)
+
     def test_a_telecentric_lens_has_no_f_number(self):
         """The stop at the rear focal point of a thin lens of f = 50: the entrance pupil is infinitely far."""
         surfaces = [{"radius_mm": 50, "thickness_mm": 0, "glass": {"index": 1.5}}, {"radius_mm": -50, "thickness_mm": 50},
