@@ -6,6 +6,8 @@
 #include <petzval/scene/illuminant_swap.h>
 #include <petzval/scene/spectral_cube.h>
 
+#include <utility>
+
 #include "call.h"
 
 namespace petzval::python {
@@ -128,10 +130,15 @@ Scene of_reflectance(
                    SceneQuantity::reflectance);
 }
 
-Array<float> radiance_view(nb::handle self) {
+/// To be written, unless the samples stand beside figures, which would not follow.
+nb::object radiance_view(nb::handle self) {
   auto& scene = nb::cast<Scene&>(self);
-  return bands_view(scene.bands() > 0 ? scene.band(0).data() : nullptr, scene.rows(), scene.columns(),
-                    scene.bands(), self);
+  const bool drawn = scene.drawing() != nullptr;
+  const float* values = scene.bands() > 0 ? std::as_const(scene).band(0).data() : nullptr;
+  const nb::object view =
+      nb::cast(bands_view(const_cast<float*>(values), scene.rows(), scene.columns(), scene.bands(), self));
+  if (drawn) view.attr("flags").attr("writeable") = false;
+  return view;
 }
 
 nb::object depth_view(nb::handle self) {
@@ -206,7 +213,11 @@ void bind_scene(nb::module_& module) {
                   nb::arg("horizontal_angle_deg") = 40.0, nb::arg("distance_m").none() = nb::none(),
                   nb::arg("depth_m").none() = nb::none(), nb::arg("depth_from") = "sensor",
                   "Of reflectances (row, column, wavelength), 0 to 1, under a light.")
-      .def_prop_ro("radiance", radiance_view, "A view (row, column, wavelength) of float32, without a copy.")
+      .def_prop_ro(
+          "radiance", radiance_view,
+          "A view (row, column, wavelength) of float32 [W/m2/sr/nm], without a copy. Of a chart it is "
+          "read-only: its figures are drawn anew on every sensor; Scene(radiance.copy(), ...) makes a "
+          "scene of the samples.")
       .def_prop_ro("depth_m", depth_view, "A view (row, column) of the depths [m], or None.")
       .def_prop_ro("wavelengths_nm", [](const Scene& s) { return tuple_of(s.wavelengths_nm()); })
       .def_prop_ro("columns", &Scene::columns)

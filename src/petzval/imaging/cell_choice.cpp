@@ -18,6 +18,8 @@ namespace petzval {
 namespace {
 
 constexpr int most_cells = 8;
+constexpr int steps_below_samples = 6;  ///< of drawings
+constexpr double finest_shown_cpp = 0.5;
 
 /// The MTF of a table's PSFs along both axes, RMS over the frame.
 class FrameMtf {
@@ -152,37 +154,50 @@ DetailSpectrum detail_of(const Scene& scene, int band) {
     columns = across;
     rows = down;
   }
+  if (scene.drawing() == nullptr || detail.variances.empty()) return detail;
+  detail.drawn = true;
+  for (int step = 0; step < steps_below_samples; ++step) {
+    detail.variances.insert(detail.variances.begin(), detail.variances.front() / 2);
+    detail.finest_side /= 2;
+  }
   return detail;
 }
 
-double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
-                      int cells, const LightPath& path, const std::function<double(double)>& mtf) {
+SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
+                             int cells, const LightPath& path, const std::function<double(double)>& mtf) {
   const PixelTaps taps = pixel_taps(site, cells, path);
   // Where in its octave the detail of a square's side lies [cycles a side], evenly.
   constexpr std::array<double, 4> places{0.28, 0.34, 0.40, 0.46};
-  double error = 0, light = detail.mean * detail.mean;
-  double side = 1;  // of the smallest square [samples]
+  double error = 0, finer = 0, light = detail.mean * detail.mean;
+  double side = detail.finest_side;  // of the smallest square [samples]
   for (const double variance : detail.variances) {
     for (const double place : places) {
       const double cycles = place / side, f = cycles * samples_per_pixel;
+      const auto add = [&](double contrast, double at) {
+        const double share = variance / double(places.size()) * contrast * contrast;
+        (detail.drawn && at > finest_shown_cpp ? finer : error) +=
+            share * std::pow(taps_error(taps, site, path, at, mtf), 2);
+        light += share * std::pow(site.transform(at, 0).real() * mtf(at), 2);
+      };
+      if (detail.drawn) {
+        add(1, f);
+        continue;
+      }
       // Straight lines between samples: less of this, and some of its images beyond the samples' own
       // frequency.
-      for (const double of_sample : {cycles, 1 - cycles}) {
-        const double contrast = std::pow(sinc(of_sample), 2), at = of_sample / cycles * f;
-        const double share = variance / double(places.size()) * contrast * contrast;
-        error += share * std::pow(taps_error(taps, site, path, at, mtf), 2);
-        light += share * std::pow(site.transform(at, 0).real() * mtf(at), 2);
-      }
+      for (const double of_sample : {cycles, 1 - cycles})
+        add(std::pow(sinc(of_sample), 2), of_sample / cycles * f);
     }
     side *= 2;
   }
-  return light > 0 ? std::sqrt(error / light) : 0;
+  if (!(light > 0)) return {};
+  return {std::sqrt(error / light), std::sqrt(finer / light)};
 }
 
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options) {
   const int asked = options.supersample;
-  if (options.method == BlurMethod::none) return {options.cells_per_pixel(), 0};
+  if (options.method == BlurMethod::none) return {options.cells_per_pixel(), {}};
   const int middle = scene.bands() / 2;
   const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
   const FrameMtf mtf(table, wavelength_nm, sensor);
@@ -196,7 +211,7 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   // One cell holds little more than what the tolerance of a preview asks for.
   const double tolerance = options.product.tolerance;
   CellChoice choice = with(options.is_preview() ? 1 : 2);
-  while (choice.cells < most_cells && choice.error > tolerance / 2) choice = with(choice.cells + 1);
+  while (choice.cells < most_cells && choice.sampling.error > tolerance / 2) choice = with(choice.cells + 1);
   return choice;
 }
 

@@ -11,22 +11,34 @@ namespace petzval {
 /// What of a scene's contrast is how fine: one band of it.
 struct DetailSpectrum {
   double mean = 0;
-  /// The variance within squares of 2, 4, 8 … samples that is not within those of half the side.
+  /// The variance within squares of 2, 4, 8 … times the finest side that is not within those of half the
+  /// side.
   std::vector<double> variances;
+  double finest_side = 1;  ///< [samples]
+  bool drawn = false;      ///< figures, not straight lines between samples
 };
+/// Of a drawing, below the samples: an edge is met by half as many squares of half the side, so each step
+/// down has half the variance.
 DetailSpectrum detail_of(const Scene& scene, int band);
 
+/// A relative L2 error of a picture.
+struct SamplingError {
+  double error = 0;
+  double finer = 0;  ///< what detail of a drawing finer than pixels can hold adds, which `error` leaves out
+};
+
 /// The relative L2 error of a picture whose pixels are so many cells wide, whatever the blur method: detail
-/// that cells cannot hold, and kernels' samples that mistake one frequency for another.
+/// that cells cannot hold, and kernels' samples that mistake one frequency for another. The edges of a
+/// drawing have no end of detail; what is promised of it ends at half a cycle a pixel.
 ///
 /// \param samples_per_pixel  of the scene, along a side. \param mtf  of the lens over cycles/pixel.
-double sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
-                      int cells, const LightPath& path, const std::function<double(double)>& mtf);
+SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,
+                             int cells, const LightPath& path, const std::function<double(double)>& mtf);
 
 /// How many cells a pixel gets, and the sampling_error() that they leave.
 struct CellChoice {
   int cells = 1;
-  double error = 0;
+  SamplingError sampling = {};
 };
 
 /// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and

@@ -93,7 +93,7 @@ class DepthImaging {
     const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
     const CellChoice choice = choose_cells(planar.light(scene_.bands() / 2), table, sensor_, options);
     options.supersample = choice.cells;
-    says().sampling_error = choice.error;
+    says().sampling_error = choice.sampling.error;
     return options;
   }
 

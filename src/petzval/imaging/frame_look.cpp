@@ -63,6 +63,24 @@ ScenePlace FrameLook::place(double x_mm, double y_mm) const {
           std::max(0.0, g_source_sr_(x_mm, y_mm))};
 }
 
+std::optional<ImagePlace> FrameLook::image_of(double column, double row, ImagePlace near) const {
+  constexpr int rounds = 30;
+  constexpr double near_enough_samples = 1e-9;
+  ImagePlace place = near;
+  for (int round = 0; round < rounds; ++round) {
+    const LatticeSpline::Tangent right = right_.at(place.x_mm, place.y_mm),
+                                 down = down_.at(place.x_mm, place.y_mm);
+    const double too_right = right.value - (column - middle_column_),
+                 too_low = down.value - (row - middle_row_);
+    if (std::hypot(too_right, too_low) <= near_enough_samples * (1 + std::hypot(column, row))) return place;
+    const double determinant = right.along_x * down.along_y - right.along_y * down.along_x;
+    place.x_mm -= (too_right * down.along_y - too_low * right.along_y) / determinant;
+    place.y_mm -= (too_low * right.along_x - too_right * down.along_x) / determinant;
+    if (!std::isfinite(place.x_mm) || !std::isfinite(place.y_mm)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 double FrameLook::samples_per_mm_at(double x_mm, double y_mm) const {
   const LatticeSpline::Tangent right = right_.at(x_mm, y_mm), down = down_.at(x_mm, y_mm);
   return std::max(std::hypot(right.along_x, right.along_y), std::hypot(down.along_x, down.along_y));

@@ -22,6 +22,7 @@ class FrameLook : public SceneLook {
             const Scene& scene);
 
   ScenePlace place(double x_mm, double y_mm) const override;
+  std::optional<ImagePlace> image_of(double column, double row, ImagePlace near) const override;
   void cut(double x_mm, double y_mm, double pitch_mm, int most, std::vector<ScenePart>& parts) const override;
   void look(const CellRow& cells, RowView& view) const override;
   double samples_per_mm_at(double x_mm, double y_mm) const override;

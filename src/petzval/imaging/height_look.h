@@ -27,6 +27,7 @@ class HeightLook : public SceneLook {
              double largest_height_mm);
 
   ScenePlace place(double x_mm, double y_mm) const override { return around(x_mm, y_mm).place(x_mm, y_mm); }
+  std::optional<ImagePlace> image_of(double column, double row, ImagePlace near) const override;
   void cut(double x_mm, double y_mm, double pitch_mm, int most, std::vector<ScenePart>& parts) const override;
   void look(const CellRow& cells, RowView& view) const override {
     view.look({steps_.data(), steps_per_square_, last_height_squared_}, cells);
@@ -67,6 +68,7 @@ class HeightLook : public SceneLook {
   double last_height_mm_, last_height_squared_, steps_per_square_;
   double finest_samples_per_mm_ = 0;
   std::vector<SceneMapStep> steps_;
+  std::vector<double> radii_;  ///< ρ at the steps; empty if it does not grow throughout
 };
 
 }  // namespace petzval

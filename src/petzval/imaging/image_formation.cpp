@@ -229,7 +229,8 @@ void form_aimed_bands(const Scene& scene, const LensDataTable& table, const Sens
   const CellChoice choice = choose_cells(scene, table, sensor, asked);
   ImagingOptions options = asked;
   options.supersample = choice.cells;
-  says.sampling_error = choice.error;
+  says.sampling_error = choice.sampling.error;
+  says.finer_detail_error = choice.sampling.finer;
   const SensorGeometry frame = options.cells_of(sensor);
   const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
   for (const SceneAim& aim : aims) check_coverage(scene, plans, frame, options.surround, says.notes, aim);

@@ -78,6 +78,7 @@ struct ImagingReport {
   ProductPlan product = {};
   int scene_points_per_cell = 1;  ///< parts of a cell whose means over the scene are taken: this squared
   double sampling_error = 0;      ///< of the cells, estimated for the middle band
+  double finer_detail_error = 0;  ///< what finer detail of a chart than pixels can hold adds
   /// Relative L2 error of the picture, of cells and blur together: ProductPlan::estimated_error.
   double estimated_error() const { return std::hypot(sampling_error, product.estimated_error); }
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds

@@ -7,6 +7,7 @@
 #include <petzval/sensor/sensor.h>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace petzval {
@@ -15,6 +16,11 @@ namespace petzval {
 /// arrives.
 struct ScenePlace {
   double column, row, g_source_sr;  ///< g_source 0: no chief ray lands here
+};
+
+/// A place of the image [mm].
+struct ImagePlace {
+  double x_mm = 0, y_mm = 0;
 };
 
 /// What a part of a cell sees: a rectangle of the scene about a place, its sides in samples.
@@ -37,6 +43,9 @@ class SceneLook {
   virtual ~SceneLook() = default;
 
   virtual ScenePlace place(double x_mm, double y_mm) const = 0;
+  /// The place that sees one of the scene (in samples, as place() gives them); beyond the last height and the
+  /// lattice it goes on smoothly. Absent where there is none, or more than one. \param near  where to begin.
+  virtual std::optional<ImagePlace> image_of(double column, double row, ImagePlace near) const = 0;
   /// What a cell sees about a place, cut into as many parts a side, at most `most`, as make none of them
   /// wider than a sample.
   virtual void cut(double x_mm, double y_mm, double pitch_mm, int most,

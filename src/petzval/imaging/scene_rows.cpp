@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
+#include <petzval/imaging/drawn_cells.h>
 #include <petzval/imaging/panorama_band.h>
 #include <petzval/imaging/plane_sampling.h>
 #include <petzval/imaging/scene_rows.h>
@@ -42,12 +43,15 @@ struct Stretch {
 SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
                      Surround surround, const SceneAim& aim)
     : scene_(scene),
+      band_(static_cast<std::size_t>(band)),
       map_(map),
       grid_(grid),
       parts_(parts),
       surround_(surround),
       aimed_(aim, scene),
       radiance_(scene.band(band)) {
+  if (const SceneDrawing* drawing = scene.drawing(); drawing != nullptr && aimed_.is_straight())
+    drawn_ = DrawnCells::make(*drawing, band, map.look(), grid);
   if (scene.is_panorama())
     panorama_ = std::make_unique<PanoramaBand>(
         scene, band,
@@ -56,20 +60,20 @@ SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const Se
 
 SceneRows::~SceneRows() = default;
 
-double SceneRows::mean_radiance(const Rectangle& seen) const {
+double SceneRows::mean(std::span<const float> samples, const Rectangle& seen) const {
   const Stretch across(seen.column, seen.width, scene_.columns(), surround_),
       down(seen.row, seen.height, scene_.rows(), surround_);
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const float* samples = radiance_.data() + down.samples[i] * static_cast<std::size_t>(scene_.columns());
+    const float* row = samples.data() + down.samples[i] * static_cast<std::size_t>(scene_.columns());
     double of_row = 0;
-    for (std::size_t j = 0; j < 3; ++j) of_row += across.weights[j] * double(samples[across.samples[j]]);
+    for (std::size_t j = 0; j < 3; ++j) of_row += across.weights[j] * double(row[across.samples[j]]);
     sum += down.weights[i] * of_row;
   }
   return sum;
 }
 
-double SceneRows::cell(double x_mm, double y_mm) const {
+double SceneRows::cell(std::span<const float> samples, double x_mm, double y_mm) const {
   thread_local std::vector<ScenePart> parts;
   map_.look().cut(x_mm, y_mm, grid_.pitch_um * mm_per_um, parts_, parts);
   double sum = 0;
@@ -88,29 +92,57 @@ double SceneRows::cell(double x_mm, double y_mm) const {
     if (std::isnan(seen.right)) continue;
     const double column = aimed_.is_straight() ? place.column : scene_.columns() / 2.0 + seen.right;
     const double row = aimed_.is_straight() ? place.row : scene_.rows() / 2.0 + seen.down;
-    sum += place.g_source_sr * mean_radiance({column, row, side(part.width * seen.widening),
+    sum += place.g_source_sr * mean(samples, {column, row, side(part.width * seen.widening),
                                               side(part.height * seen.heightening)});
   }
   return sum / double(parts.size());
 }
 
-void SceneRows::write(std::size_t row, float* irradiance) const {
+void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
+                              float* irradiance) const {
   const auto columns = static_cast<std::size_t>(grid_.columns);
-  const double pitch_mm = grid_.pitch_um * mm_per_um, y_mm = grid_.y_mm(double(row) + 0.5);
+  const double y_mm = grid_.y_mm(double(row) + 0.5);
   // From a cell's middle to the farthest sample that it needs, and one more for rounding.
-  const PlaneView view{radiance_.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
-  RowView cells;
-  if (!panorama_) {
-    map_.look().look({pitch_mm, y_mm, columns}, cells);
-    aimed_.turn(cells);
-  }
+  const PlaneView view{samples.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
   const std::size_t at_once = sampled_at_once();
   for (std::size_t column = 0; column < columns;) {
     if (!panorama_) column = sample_row(view, cells, 1, column, irradiance);
     const std::size_t end = panorama_ ? columns : std::min(columns, column + at_once);
     for (; column < end; ++column)
-      irradiance[column] = static_cast<float>(cell(grid_.x_mm(double(column) + 0.5), y_mm));
+      irradiance[column] = static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), y_mm));
   }
+}
+
+bool SceneRows::is_inside(const RowView& cells, std::size_t column) const {
+  if (column < cells.dark || column >= cells.g_source_sr.size() - cells.dark) return false;
+  const auto fits = [](double from_middle, float side, int size) {
+    return std::abs(from_middle) + double(side) / 2 < size / 2.0;
+  };
+  return fits(cells.right[column], cells.width[column], scene_.columns()) &&
+         fits(cells.down[column], cells.height[column], scene_.rows());
+}
+
+void SceneRows::write(std::size_t row, float* irradiance) const {
+  const auto columns = static_cast<std::size_t>(grid_.columns);
+  RowView cells;
+  if (!panorama_) {
+    map_.look().look({grid_.pitch_um * mm_per_um, grid_.y_mm(double(row) + 0.5), columns}, cells);
+    aimed_.turn(cells);
+  }
+  if (!drawn_) return write_samples(row, cells, radiance_, irradiance);
+  const SceneDrawing& drawing = *scene_.drawing();
+  const float ground = drawing.ground[band_];
+  if (drawing.texture) {
+    write_samples(row, cells, *drawing.texture, irradiance);
+  } else {
+    std::copy_n(cells.g_source_sr.begin(), columns, irradiance);
+  }
+  for (std::size_t column = 0; column < columns; ++column) irradiance[column] *= ground;
+  drawn_->draw(row, cells.g_source_sr, {irradiance, columns});
+  for (std::size_t column = 0; column < columns; ++column)
+    if (!is_inside(cells, column))
+      irradiance[column] = static_cast<float>(
+          cell(radiance_, grid_.x_mm(double(column) + 0.5), grid_.y_mm(double(row) + 0.5)));
 }
 
 CellPlane ideal_irradiance(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,

@@ -12,6 +12,7 @@
 
 namespace petzval {
 
+class DrawnCells;
 class PanoramaBand;
 
 /// Irradiance before blur, radiance × g_source, on the rows of a grid: the mean of each cell over what it
@@ -22,6 +23,9 @@ class PanoramaBand;
 /// neighbouring cells meet, and the mean is exact. So the flux of each sample is the same wherever it falls
 /// on the cells, to the square of the angle by which the map turns them. A cell that sees more than a sample
 /// along a side is cut into parts that do not. In a panorama parts count at their middles.
+///
+/// Of a chart whose drawing is known the samples serve only along the edge of the scene; elsewhere its
+/// figures cover cells by exact areas (DrawnCells).
 class SceneRows {
  public:
   /// \param parts  a cell is cut into at most parts × parts. \param surround  what lies beyond the scene;
@@ -41,10 +45,16 @@ class SceneRows {
   struct Rectangle {
     double column, row, width, height;
   };
-  double mean_radiance(const Rectangle& seen) const;
-  double cell(double x_mm, double y_mm) const;
+  double mean(std::span<const float> samples, const Rectangle& seen) const;
+  /// Mean of samples × g_source over a cell.
+  double cell(std::span<const float> samples, double x_mm, double y_mm) const;
+  void write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
+                     float* irradiance) const;
+  /// Whether a cell of a row sees the inside of the scene.
+  bool is_inside(const RowView& cells, std::size_t column) const;
 
   const Scene& scene_;
+  std::size_t band_;
   const SceneMap& map_;
   SensorGeometry grid_;
   int parts_;
@@ -52,6 +62,7 @@ class SceneRows {
   AimedPlane aimed_;
   std::span<const float> radiance_;
   std::unique_ptr<PanoramaBand> panorama_;
+  std::unique_ptr<DrawnCells> drawn_;
 };
 
 /// All rows of SceneRows.

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstddef>
+#include <memory>
+#include <utility>
 
 namespace petzval {
 
@@ -76,36 +78,48 @@ void ChartCanvas::use(const Paint& paint) {
 }
 
 void ChartCanvas::fill(const Paint& paint) {
-  modulate(paint, [](int, std::span<double> factors) { std::fill(factors.begin(), factors.end(), 1.0); });
-}
-
-void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
-  use(paint);
-  const int first = static_cast<int>(std::clamp(std::floor(shape.top()), 0.0, static_cast<double>(rows())));
-  const int end = static_cast<int>(std::clamp(std::ceil(shape.bottom()), 0.0, static_cast<double>(rows())));
-  if (first >= end) return;
-  const std::size_t width = static_cast<std::size_t>(columns());
-  parallel_for(static_cast<std::size_t>(end - first), [&](std::size_t index) {
-    const std::size_t row = static_cast<std::size_t>(first) + index;
-    std::vector<double> coverage(width);
-    shape.coverage(static_cast<int>(row), coverage);
-    const auto is_covered = [](double area) { return area > 0; };
-    const auto first_pixel = std::find_if(coverage.begin(), coverage.end(), is_covered);
-    const auto end_pixel =
-        std::find_if(coverage.rbegin(), std::make_reverse_iterator(first_pixel), is_covered).base();
-    const auto mix = [&](std::span<float> plane, float value) {
-      float* pixel = plane.data() + row * width + static_cast<std::size_t>(first_pixel - coverage.begin());
-      for (auto area = first_pixel; area != end_pixel; ++area, ++pixel)
-        *pixel = static_cast<float>(*pixel + *area * (value - *pixel));
-    };
-    for (int band = 0; band < scene_.bands(); ++band)
-      mix(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
-    mix(luminous_reflectance_, paint.luminous_reflectance);
-  });
+  set_ground(paint, [](int, std::span<double> factors) { std::fill(factors.begin(), factors.end(), 1.0); });
 }
 
 void ChartCanvas::modulate(const Paint& paint,
                            const std::function<void(int row, std::span<double> factors)>& factor) {
+  auto texture = std::make_shared<std::vector<float>>(scene_.band_size());
+  set_ground(paint, [&](int row, std::span<double> factors) {
+    factor(row, factors);
+    std::transform(factors.begin(), factors.end(), texture->begin() + std::ptrdiff_t(row) * columns(),
+                   [](double value) { return static_cast<float>(value); });
+  });
+  drawing_.texture = std::move(texture);
+}
+
+void ChartCanvas::draw(const Shape& shape, const Paint& paint) {
+  if (shape.empty()) return;
+  use(paint);
+  mix(shape, paint);
+  drawing_.figures.push_back({std::make_shared<const Shape>(shape), paint.reflectance});
+}
+
+void ChartCanvas::mix(const Shape& shape, const Paint& paint) {
+  const std::size_t width = static_cast<std::size_t>(columns());
+  const ShapeInPicture in_picture(shape, columns(), rows());
+  parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t row) {
+    thread_local std::vector<double> coverage;
+    coverage.resize(width);
+    const auto [from, end] = in_picture.coverage(static_cast<int>(row), coverage);
+    const auto mix_plane = [&, first = from, last = end](std::span<float> plane, float value) {
+      for (std::size_t column = first; column < last; ++column) {
+        float& pixel = plane[row * width + column];
+        pixel = static_cast<float>(pixel + coverage[column] * (value - pixel));
+      }
+    };
+    for (int band = 0; band < scene_.bands(); ++band)
+      mix_plane(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
+    mix_plane(luminous_reflectance_, paint.luminous_reflectance);
+  });
+}
+
+void ChartCanvas::set_ground(const Paint& paint,
+                             const std::function<void(int row, std::span<double> factors)>& factor) {
   use(paint);
   const std::size_t width = static_cast<std::size_t>(columns());
   parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t row) {
@@ -118,6 +132,7 @@ void ChartCanvas::modulate(const Paint& paint,
       set(scene_.band(band), paint.reflectance[static_cast<std::size_t>(band)]);
     set(luminous_reflectance_, paint.luminous_reflectance);
   });
+  drawing_ = {paint.reflectance, {}, {}};
 }
 
 void ChartCanvas::note_unmeasured_bands() {
@@ -146,6 +161,12 @@ Scene ChartCanvas::lit() && {
   });
   scene_.illuminant = illuminant_.scaled(level);
   note_unmeasured_bands();
+  if (!drawing_.figures.empty() && drawing_.ground.size() == light_.size()) {
+    std::vector<double> factors = light_;
+    for (double& factor : factors) factor *= level;
+    drawing_.scale(factors);
+    scene_.set_drawing(std::move(drawing_));
+  }
   return std::move(scene_);
 }
 

@@ -37,7 +37,8 @@ struct Paint {
 };
 
 /// A chart in the making: a scene whose bands hold reflectances until it is lit. Shapes are painted one over
-/// the other; a pixel that a shape covers in part becomes a mixture by area.
+/// the other; a pixel that a shape covers in part becomes a mixture by area. A ground with shapes on it is
+/// kept as the scene's drawing(), too.
 class ChartCanvas {
  public:
   /// Black. \throws InputError as Scene, for an unknown illuminant, or one without light at any of the
@@ -65,6 +66,8 @@ class ChartCanvas {
 
  private:
   void use(const Paint& paint);
+  void set_ground(const Paint& paint, const std::function<void(int row, std::span<double> factors)>& factor);
+  void mix(const Shape& shape, const Paint& paint);
   void note_unmeasured_bands();
 
   ChartOptions options_;
@@ -74,6 +77,7 @@ class ChartCanvas {
   Scene scene_;
   std::vector<float> luminous_reflectance_;
   WavelengthRange known_nm_;  ///< of all paints used
+  SceneDrawing drawing_;      ///< in reflectances
 };
 
 }  // namespace petzval

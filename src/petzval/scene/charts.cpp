@@ -15,24 +15,6 @@ namespace {
 
 constexpr double edge_dark = 0.2, edge_light = 0.8;
 
-/// Integral from 0 to u of the square wave that is +1 on [0, 1), −1 on [1, 2), and so on.
-double square_wave_integral(double u) {
-  const double phase = u - 2 * std::floor(u / 2);
-  return phase < 1 ? phase : 2 - phase;
-}
-
-/// Mean of that square wave over each of `count` pixels; the middle of the row of pixels lies at u =
-/// squares/2.
-std::vector<double> square_wave(int count, double pixels_per_square, int squares) {
-  std::vector<double> means;
-  for (int i = 0; i < count; ++i) {
-    const double from = (i - count / 2.0) / pixels_per_square + squares / 2.0;
-    const double to = from + 1 / pixels_per_square;
-    means.push_back((square_wave_integral(to) - square_wave_integral(from)) * pixels_per_square);
-  }
-  return means;
-}
-
 }  // namespace
 
 Scene checkerboard_chart(const ChartOptions& options, int squares_across) {
@@ -41,14 +23,17 @@ Scene checkerboard_chart(const ChartOptions& options, int squares_across) {
         fmt::format("a checkerboard of {} squares across; 1 to {} (a sample each) would be right",
                     squares_across, options.columns));
   ChartCanvas canvas(options);
+  canvas.fill(canvas.flat_paint(0));
   const double size = static_cast<double>(options.columns) / squares_across;
-  // The board is a product of two square waves, and so is its mean over a pixel.
-  const std::vector<double> across = square_wave(options.columns, size, squares_across);
-  const std::vector<double> down = square_wave(options.rows, size, squares_across);
-  canvas.modulate(canvas.flat_paint(1), [&](int row, std::span<double> factors) {
-    for (std::size_t x = 0; x < factors.size(); ++x)
-      factors[x] = std::clamp(0.5 + 0.5 * across[x] * down[static_cast<std::size_t>(row)], 0.0, 1.0);
-  });
+  // Rows of squares above and below that of the corner at the middle, or about the middle.
+  const double top = options.rows / 2.0 - squares_across * size / 2;
+  const int first = static_cast<int>(std::floor(-top / size)),
+            end = static_cast<int>(std::ceil((options.rows - top) / size));
+  Shape white;
+  for (int j = first; j < end; ++j)
+    for (int i = ((j % 2) + 2) % 2; i < squares_across; i += 2)
+      white.add_rectangle(i * size, top + j * size, (i + 1) * size, top + (j + 1) * size);
+  canvas.draw(white, canvas.flat_paint(1));
   return std::move(canvas).lit();
 }
 

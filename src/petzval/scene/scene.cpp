@@ -93,6 +93,7 @@ Scene::Scene(int columns, int rows, std::vector<double> wavelengths_nm, double h
 }
 
 std::span<float> Scene::band(int index) {
+  drawing_.reset();
   return radiance_.all().subspan(static_cast<std::size_t>(index) * band_size(), band_size());
 }
 
@@ -110,6 +111,7 @@ void Scene::make_panorama(PanoramaView view) {
   if (!std::isfinite(view.yaw_deg) || !std::isfinite(view.pitch_deg))
     throw InputError("a view of a panorama must be a finite angle");
   view_ = view;
+  forget_drawing();
 }
 
 double Scene::tangent_per_sample() const {
@@ -172,10 +174,17 @@ void Scene::set_mean_luminance_cd_m2(double luminance) {
 void Scene::scale(double factor) {
   if (!(factor > 0 && std::isfinite(factor)))
     throw InputError(fmt::format("radiance times {}: a positive factor would be right", factor));
-  for_each_band([factor](std::size_t, std::span<float> values) {
-    for (float& value : values) value = static_cast<float>(value * factor);
-  });
+  scale_bands(std::vector<double>(wavelengths_nm_.size(), factor));
   if (illuminant) illuminant = illuminant->scaled(factor);
+}
+
+void Scene::scale_bands(std::span<const double> factors) {
+  std::optional<SceneDrawing> drawing = std::move(drawing_);
+  for_each_band([&](std::size_t index, std::span<float> values) {
+    for (float& value : values) value = static_cast<float>(value * factors[index]);
+  });
+  if (drawing) drawing->scale(factors);
+  drawing_ = std::move(drawing);
 }
 
 Scene Scene::resampled(std::span<const double> wavelengths_nm) const {

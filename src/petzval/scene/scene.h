@@ -4,11 +4,13 @@
 
 #include <petzval/base/large_floats.h>
 #include <petzval/colour/spectrum.h>
+#include <petzval/scene/scene_drawing.h>
 
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -57,6 +59,7 @@ class Scene {
   std::size_t band_size() const {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   }
+  /// To be written: what is known of the scene beyond its samples, drawing(), is given up.
   std::span<float> band(int index);
   std::span<const float> band(int index) const;
   /// All bands, one after the other.
@@ -93,12 +96,21 @@ class Scene {
   void set_mean_luminance_cd_m2(double luminance);
   /// Multiplies all radiance and the illuminant. \throws InputError unless the factor is positive and finite.
   void scale(double factor);
+  /// Multiplies the radiance of each band.
+  void scale_bands(std::span<const double> factors);
   /// The scene at other wavelengths, its radiance kept (BandResampling). \throws InputError for one outside
   /// the bands.
   Scene resampled(std::span<const double> wavelengths_nm) const;
   /// \throws InputError at the first NaN, infinity or negative radiance, and the first NaN or negative depth,
   /// naming band, row and column; for a depth map of another size, or of a panorama.
   void validate() const;
+
+  /// The figures that the samples show, where they are known: image formation lays them on its cells, so that
+  /// edges are as sharp on any sensor. Null: the samples are all there is.
+  const SceneDrawing* drawing() const { return drawing_ ? &*drawing_ : nullptr; }
+  /// Of the samples as they are.
+  void set_drawing(SceneDrawing drawing) { drawing_ = std::move(drawing); }
+  void forget_drawing() { drawing_.reset(); }
 
   std::string name;
   std::optional<Spectrum>
@@ -130,6 +142,7 @@ class Scene {
   std::optional<double> distance_m_;
   std::optional<PanoramaView> view_;  ///< of a panorama
   LargeFloats radiance_;
+  std::optional<SceneDrawing> drawing_;
 };
 
 }  // namespace petzval

@@ -136,6 +136,7 @@ Scene read_chart(const std::string& text, const NamedChart& chart, const SceneOp
     throw InputError(fmt::format(
         "scene {}: its depths are multiples of a finite `scene.distance_m` (1 m unless given)", text));
   Scene scene = make_chart(text, chart, chart_options(options));
+  if (options.columns || options.rows) scene.forget_drawing();  // these samples were asked for
   set_level(scene, options);
   return with_settled_light(std::move(scene), options.band_width_nm);
 }

@@ -14,7 +14,9 @@ namespace petzval {
 
 /// What the user may say about a scene; what is left open comes from the file or is the chart's own default.
 struct SceneOptions {
-  std::optional<int> columns = {}, rows = {};  ///< charts only (768 × 576); a file has its size
+  /// Charts only; a file has its size. Absent: 768 × 576 samples and, of most charts, their drawing
+  /// (Scene::drawing).
+  std::optional<int> columns = {}, rows = {};
   std::vector<double> wavelengths_nm = {};  ///< empty: the file's bands; default_bands_nm() where it has none
   std::optional<double> horizontal_angle_deg = {};  ///< replaces the file's; 40 for charts and photographs
   std::optional<double> width_m = {};               ///< of the scene at its distance, in place of its angle

@@ -83,9 +83,7 @@ void widen_bands(Scene& scene, const std::optional<Spectrum>& light, std::option
   if (width_nm) {
     const std::vector<double> factors =
         band_light(Spectrum({1, 1e6}, {1, 1}), scene.wavelengths_nm(), width_nm);
-    scene.for_each_band([&](std::size_t band, std::span<float> values) {
-      for (float& value : values) value = static_cast<float>(value * factors[band]);
-    });
+    scene.scale_bands(factors);
     if (!scene.illuminant) return;
     std::vector<double> white;
     for (std::size_t i = 0; i < factors.size(); ++i)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace petzval {
@@ -57,11 +58,7 @@ void Shape::add_polygon(std::span<const Point> corners) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     Edge edge{corners[i], corners[(i + 1) % corners.size()]};
     if (turned) std::swap(edge.from, edge.to);
-    edges_.push_back(edge);
-    top_ = std::min(top_, edge.from.y);
-    bottom_ = std::max(bottom_, edge.from.y);
-    top_ = std::min(top_, edge.to.y);
-    bottom_ = std::max(bottom_, edge.to.y);
+    add_edge(edge);
   }
 }
 
@@ -86,38 +83,102 @@ void Shape::add_square(Point centre, double side, double angle_rad) {
                                     {centre.x - c - s, centre.y - s + c}}});
 }
 
-void Shape::coverage(int row, std::span<double> pixels) const {
-  std::vector<double> differences(pixels.size() + 1, 0.0);
-  const double width = static_cast<double>(pixels.size());
-  for (const Edge& edge : edges_) {
-    // The part of the edge within this row; going up it opens the shape, going down it closes it.
-    const double low = std::max<double>(row, std::min(edge.from.y, edge.to.y));
-    const double high = std::min<double>(row + 1.0, std::max(edge.from.y, edge.to.y));
-    if (!(low < high)) continue;
-    const double sign = edge.from.y > edge.to.y ? 1.0 : -1.0;
-    // Cut where it leaves the picture; the pieces outside are moved to its border, which keeps the areas
-    // inside.
-    std::array<double, 4> cuts = {low, high, high, high};
-    int count = 1;
-    for (double border : {0.0, width}) {
-      if ((edge.from.x < border) == (edge.to.x < border)) continue;
-      const double y =
-          edge.from.y + (edge.to.y - edge.from.y) * (border - edge.from.x) / (edge.to.x - edge.from.x);
-      if (y > low && y < high) cuts[static_cast<std::size_t>(count++)] = y;
-    }
-    std::sort(cuts.begin(), cuts.end());
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-      if (!(cuts[i] < cuts[i + 1])) continue;
-      const double from = std::clamp(x_at(edge.from, edge.to, cuts[i]), 0.0, width);
-      const double to = std::clamp(x_at(edge.from, edge.to, cuts[i + 1]), 0.0, width);
-      add_piece(differences, from, to, sign * (cuts[i + 1] - cuts[i]));
-    }
+namespace {
+
+/// Adds the part of an edge within a row; going up it opens the shape, going down it closes it.
+void add_edge_in_row(const Shape::Edge& edge, int row, double width, std::span<double> differences) {
+  const double low = std::max<double>(row, std::min(edge.from.y, edge.to.y));
+  const double high = std::min<double>(row + 1.0, std::max(edge.from.y, edge.to.y));
+  if (!(low < high)) return;
+  const double sign = edge.from.y > edge.to.y ? 1.0 : -1.0;
+  // Cut where it leaves the picture; the pieces outside are moved to its border, which keeps the areas
+  // inside.
+  std::array<double, 4> cuts = {low, high, high, high};
+  int count = 1;
+  for (double border : {0.0, width}) {
+    if ((edge.from.x < border) == (edge.to.x < border)) continue;
+    const double y =
+        edge.from.y + (edge.to.y - edge.from.y) * (border - edge.from.x) / (edge.to.x - edge.from.x);
+    if (y > low && y < high) cuts[static_cast<std::size_t>(count++)] = y;
   }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (!(cuts[i] < cuts[i + 1])) continue;
+    const double from = std::clamp(x_at(edge.from, edge.to, cuts[i]), 0.0, width);
+    const double to = std::clamp(x_at(edge.from, edge.to, cuts[i + 1]), 0.0, width);
+    add_piece(differences, from, to, sign * (cuts[i + 1] - cuts[i]));
+  }
+}
+
+/// From what every edge added to what is covered.
+void add_up(std::span<const double> differences, std::span<double> pixels) {
   double sum = 0;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     sum += differences[i];
     pixels[i] = std::abs(sum) < rounding ? 0.0 : std::clamp(sum, 0.0, 1.0);
   }
+}
+
+}  // namespace
+
+void Shape::add_edge(Edge edge) {
+  edges_.push_back(edge);
+  for (const double y : {edge.from.y, edge.to.y}) {
+    top_ = std::min(top_, y);
+    bottom_ = std::max(bottom_, y);
+  }
+}
+
+void Shape::coverage(int row, std::span<double> pixels) const {
+  std::vector<double> differences(pixels.size() + 1, 0.0);
+  for (const Edge& edge : edges_) add_edge_in_row(edge, row, double(pixels.size()), differences);
+  add_up(differences, pixels);
+}
+
+ShapeInPicture::ShapeInPicture(const Shape& shape, int columns, int rows)
+    : columns_(static_cast<std::size_t>(columns)), first_(static_cast<std::size_t>(rows) + 1) {
+  const auto rows_of = [&](const Shape::Edge& edge) {
+    const auto row = [&](double y) { return static_cast<std::size_t>(std::clamp(y, 0.0, double(rows))); };
+    return std::array<std::size_t, 2>{row(std::floor(std::min(edge.from.y, edge.to.y))),
+                                      row(std::ceil(std::max(edge.from.y, edge.to.y)))};
+  };
+  for (const Shape::Edge& edge : shape.edges()) {
+    const auto [from, end] = rows_of(edge);
+    for (std::size_t row = from; row < end; ++row) ++first_[row + 1];
+  }
+  for (std::size_t row = 0; row + 1 < first_.size(); ++row) first_[row + 1] += first_[row];
+  edges_.resize(first_.back());
+  std::vector<std::size_t> next = first_;
+  for (const Shape::Edge& edge : shape.edges()) {
+    const auto [from, end] = rows_of(edge);
+    for (std::size_t row = from; row < end; ++row) edges_[next[row]++] = edge;
+  }
+}
+
+std::span<const Shape::Edge> ShapeInPicture::edges_of(int row) const {
+  const auto at = static_cast<std::size_t>(row);
+  return std::span(edges_).subspan(first_[at], first_[at + 1] - first_[at]);
+}
+
+ShapeInPicture::Reach ShapeInPicture::coverage(int row, std::span<double> pixels) const {
+  const std::span<const Shape::Edge> edges = edges_of(row);
+  if (edges.empty()) return {};
+  double left = double(columns_), right = 0;
+  for (const Shape::Edge& edge : edges) {
+    left = std::min({left, edge.from.x, edge.to.x});
+    right = std::max({right, edge.from.x, edge.to.x});
+  }
+  const auto pixel = [&](double x) { return static_cast<std::size_t>(std::clamp(x, 0.0, double(columns_))); };
+  const Reach reach{pixel(std::floor(left)), pixel(std::ceil(right))};
+  if (reach.from >= reach.end) return {};
+  thread_local std::vector<double> differences;
+  differences.resize(std::max(differences.size(), columns_ + 1));
+  std::fill(differences.begin() + std::ptrdiff_t(reach.from),
+            differences.begin() + std::ptrdiff_t(reach.end) + 1, 0.0);
+  const std::span<double> of_row(differences.data(), columns_ + 1);
+  for (const Shape::Edge& edge : edges) add_edge_in_row(edge, row, double(columns_), of_row);
+  add_up(of_row.subspan(reach.from), pixels.subspan(reach.from, reach.end - reach.from));
+  return reach;
 }
 
 }  // namespace petzval

@@ -2,6 +2,7 @@
 // Plane figures, and how much of each pixel they cover: exactly.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,14 @@ class Shape {
   /// A square of this side, turned by an angle (clockwise in the picture).
   void add_square(Point centre, double side, double angle_rad);
 
+  /// From one corner to the next, the inside on the same side of all.
+  struct Edge {
+    Point from, to;
+  };
+  std::span<const Edge> edges() const { return edges_; }
+  /// Edges of a shape that is closed once all are there.
+  void add_edge(Edge edge);
+
   bool empty() const { return edges_.empty(); }
   double top() const { return top_; }
   double bottom() const { return bottom_; }
@@ -39,11 +48,29 @@ class Shape {
   void coverage(int row, std::span<double> pixels) const;
 
  private:
-  struct Edge {
-    Point from, to;
-  };
   std::vector<Edge> edges_;
   double top_ = 1e300, bottom_ = -1e300;
+};
+
+/// A shape over a picture, its edges sorted by rows: coverage of shapes of many edges, where it is not 0.
+class ShapeInPicture {
+ public:
+  ShapeInPicture(const Shape& shape, int columns, int rows);
+
+  /// Pixels [from, end) of a row.
+  struct Reach {
+    std::size_t from = 0, end = 0;
+  };
+  /// As Shape::coverage(). \param pixels  of the whole row; only those within what is returned are set, all
+  /// others lie outside the shape.
+  Reach coverage(int row, std::span<double> pixels) const;
+
+ private:
+  std::span<const Shape::Edge> edges_of(int row) const;
+
+  std::size_t columns_;
+  std::vector<std::size_t> first_;  ///< of each row in `edges_`, and the end
+  std::vector<Shape::Edge> edges_;  ///< of row after row
 };
 
 }  // namespace petzval

@@ -141,13 +141,19 @@ void Studio::draw_slanted_square(Point centre, double side, double angle_deg, co
 }
 
 /// From white down to 2 % of it, by equal factors. Each step is painted over the rest of the strip, so that
-/// no background shows between two.
+/// no background shows between two. Their common edges, above and below, would mix all of them where they
+/// cover a sample in part; a frame painted last covers these.
 void Studio::draw_grey_steps(double left, double top, double right, double bottom, int steps) {
-  constexpr double darkest = 0.02;
-  draw_rectangle(left - 0.04, top - 0.04, right + 0.04, bottom + 0.04, grey(black));
+  constexpr double darkest = 0.02, frame = 0.04, beyond = 0.02;
+  draw_rectangle(left - frame, top - frame, right + frame, bottom + frame, grey(black));
   for (int step = 0; step < steps; ++step)
-    draw_rectangle(left + (right - left) * step / steps, top, right, bottom,
+    draw_rectangle(left + (right - left) * step / steps, top - beyond, right + beyond, bottom + beyond,
                    grey(white * std::pow(darkest, static_cast<double>(step) / (steps - 1))));
+  Shape edges;
+  add_rectangle(edges, left - beyond, top - 1.5 * beyond, right + 1.5 * beyond, top);
+  add_rectangle(edges, left - beyond, bottom, right + 1.5 * beyond, bottom + 1.5 * beyond);
+  add_rectangle(edges, right, top, right + 1.5 * beyond, bottom);
+  canvas_.draw(edges, grey(black));
 }
 
 /// Groups of five dark bars, upright and level, each group finer than the one before.

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/drawn_cells.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace petzval {
+
+namespace {
+
+/// How far an edge may pass beside the true one [cells].
+constexpr double bend_cells = 2e-3;
+/// Pieces are no longer than this, so that a bend one way and back is seen [cells].
+constexpr double longest_cells = 64;
+constexpr int deepest = 20;
+
+/// Places of the scene on the grid, corner after corner.
+class Layout {
+ public:
+  Layout(const SceneLook& look, const SensorGeometry& grid) : look_(look), grid_(grid) {}
+
+  std::optional<Point> cell_of(Point sample) {
+    const std::optional<ImagePlace> place = look_.image_of(sample.x, sample.y, last_);
+    if (!place) return std::nullopt;
+    last_ = *place;
+    const double pitch_mm = grid_.pitch_um * mm_per_um;
+    return Point{grid_.columns / 2.0 - place->x_mm / pitch_mm, grid_.rows / 2.0 + place->y_mm / pitch_mm};
+  }
+
+  /// Adds the image of an edge to a shape. False where there is none.
+  bool add(const Shape::Edge& edge, Shape& shape) {
+    const std::optional<Point> from = cell_of(edge.from), to = cell_of(edge.to);
+    return from && to && add_between(edge, *from, *to, 0, shape);
+  }
+
+ private:
+  bool add_between(const Shape::Edge& edge, Point from, Point to, int depth, Shape& shape) {
+    const Point middle{(edge.from.x + edge.to.x) / 2, (edge.from.y + edge.to.y) / 2};
+    const std::optional<Point> bent = cell_of(middle);
+    if (!bent) return false;
+    const double length = std::hypot(to.x - from.x, to.y - from.y);
+    const double aside = std::hypot(bent->x - (from.x + to.x) / 2, bent->y - (from.y + to.y) / 2);
+    if (depth == deepest || (aside <= bend_cells && (length <= longest_cells || is_away(from, to)))) {
+      shape.add_edge({from, to});
+      return true;
+    }
+    return add_between({edge.from, middle}, from, *bent, depth + 1, shape) &&
+           add_between({middle, edge.to}, *bent, to, depth + 1, shape);
+  }
+
+  /// Whether no cell is near.
+  bool is_away(Point from, Point to) const {
+    const auto beyond = [](double a, double b, double size) {
+      return (a < -longest_cells && b < -longest_cells) ||
+             (a > size + longest_cells && b > size + longest_cells);
+    };
+    return beyond(from.x, to.x, grid_.columns) || beyond(from.y, to.y, grid_.rows);
+  }
+
+  const SceneLook& look_;
+  const SensorGeometry& grid_;
+  ImagePlace last_{};
+};
+
+}  // namespace
+
+std::unique_ptr<DrawnCells> DrawnCells::make(const SceneDrawing& drawing, int band, const SceneLook& look,
+                                             const SensorGeometry& grid) {
+  std::vector<std::optional<ShapeInPicture>> laid(drawing.figures.size());
+  parallel_for(laid.size(), [&](std::size_t index) {
+    Layout layout(look, grid);
+    Shape shape;
+    for (const Shape::Edge& edge : drawing.figures[index].shape->edges())
+      if (!layout.add(edge, shape)) return;
+    laid[index].emplace(shape, grid.columns, grid.rows);
+  });
+  auto cells = std::make_unique<DrawnCells>();
+  for (std::size_t index = 0; index < laid.size(); ++index) {
+    if (!laid[index]) return nullptr;
+    cells->figures_.push_back(
+        {*std::move(laid[index]), drawing.figures[index].radiance[static_cast<std::size_t>(band)]});
+  }
+  return cells;
+}
+
+void DrawnCells::draw(std::size_t row, std::span<const float> g_source_sr,
+                      std::span<float> irradiance) const {
+  thread_local std::vector<double> coverage;
+  coverage.resize(irradiance.size());
+  for (const Figure& figure : figures_) {
+    const auto [from, end] = figure.shape.coverage(static_cast<int>(row), coverage);
+    for (std::size_t cell = from; cell < end; ++cell) {
+      const double light = double(figure.radiance) * double(g_source_sr[cell]);
+      irradiance[cell] =
+          static_cast<float>(double(irradiance[cell]) + coverage[cell] * (light - double(irradiance[cell])));
+    }
+  }
+}
+
+}  // namespace petzval
