@@ -12,6 +12,11 @@ LENSES = {
     "cmount-35mm": (35, 2.8, 11.6), "cmount-50mm": (50, 4, 15.8), "m12-4mm": (4, 2.7, 6.2), "m12-8mm": (8, 2.8, 5.7),
     "m12-12mm": (12, 4, 8.7), "m12-2mm-fisheye": (1.9, 4, 5.0),
 }
+# Patents, scaled: as sharp as they are.
+PATENTS = {
+    "cmount-16mm-f1.8": (16, 1.8, 13.5), "cmount-17mm-f1": (17, 1, 13.4), "cmount-20mm-f1.2": (20, 1.2, 16.7),
+    "cmount-25mm-f1.4": (25, 1.4, 20.8), "cmount-35mm-f1.4": (35, 1.4, 29.6), "m12-4.5mm": (4.5, 3, 5.6), "m12-7mm": (7.2, 4, 8.0),
+}
 TELECENTRIC = {"telecentric-0.5x": (0.5, 8, 11.0), "telecentric-0.25x": (0.25, 8, 8.0)}
 
 
@@ -21,7 +26,7 @@ class MachineVision(ProgramTest):
 
     def test_focal_length_stop_and_image_circle(self):
         """The circle: chief rays of the last field land half of it from the axis, in light. Figures are rounded to two digits."""
-        for name, (efl, stop, circle) in LENSES.items():
+        for name, (efl, stop, circle) in (LENSES | PATENTS).items():
             with self.subTest(lens=name):
                 info = self.json_of("lens", "info", name)
                 self.assertAlmostEqual(info["efl_mm"] / efl, 1, delta=1e-4)
@@ -66,7 +71,7 @@ class MachineVision(ProgramTest):
 
     def test_list_by_words(self):
         names = {row["name"] for row in self.json_of("lens", "list", "machine vision")["rows"]}
-        self.assertEqual(names, set(LENSES) | set(TELECENTRIC))
+        self.assertEqual(names, set(LENSES) | set(PATENTS) | set(TELECENTRIC))
         self.assertEqual({row["name"] for row in self.json_of("lens", "list", "TELECENTRIC")["rows"]}, set(TELECENTRIC))
         self.assertIn("afocal", self.petzval("lens", "list", "telecentric").stdout)
         afocal = self.json_of("lens", "for-sensor", "telecentric-0.5x", "--sensor", "icx625-mono", "--distance", "298.44mm")["rows"][0]
