@@ -336,11 +336,12 @@ LensDataTable build_image_table(const Lens& lens, const TableOptions& options, c
     parts.add_psfs(places, wavelengths, progress);
     return std::move(parts).finished();
   }
-  if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview ||
-      static_cast<std::size_t>(options.field_count) < least_fields)
+  if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview)
     return build_lens_data_table(lens, options, progress);
   TableOptions coarse = options;
   coarse.coarse = {wanted.cell_um, wanted.tolerance};
+  if (static_cast<std::size_t>(options.field_count) < least_fields)
+    return build_lens_data_table(lens, coarse, progress);
   HeightTable parts(lens, coarse);
   FieldChoice choice(parts, coarse, wanted);
   const std::vector<std::size_t>& fields = choice.fields({});
