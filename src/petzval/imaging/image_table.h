@@ -17,9 +17,9 @@ struct SpreadWanted {
 /// is compared with what they say of it (HeightKernels), at the middle wavelength. Where its kernel differs
 /// by more than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to
 /// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at if it
-/// was more than four times what it may be. Light is then sampled as coarsely as the cells allow
-/// (CoarseLight), and by rays where waves carry too little of it beyond them. Finer pictures have the table
-/// of build_lens_data_table().
+/// was more than four times what it may be. From 10⁻² on light is sampled as coarsely as the cells allow
+/// (CoarseLight), and by rays where waves carry too little of it beyond them. Finer pictures
+/// have the table of build_lens_data_table().
 ///
 /// Places over the frame have PSFs on every fourth row and column of their lattice, more towards its rim
 /// where they are needed, on every second or on all, at any tolerance: the fewest that tell the kernels in
