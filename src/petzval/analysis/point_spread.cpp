@@ -126,7 +126,7 @@ int radial_for(double phase) {
 double coarse_sample_lambda_n(const CoarseLight& coarse, double lambda_n_um, double window_um) {
   if (!coarse.any()) return 0;
   const double cell_lambda_n = coarse.cell_um / lambda_n_um;
-  const double clear = 1 / (1 + 1 / cell_lambda_n);
+  const double clear = coarse.loose() ? 1 / (1 + 1 / cell_lambda_n) : 0;
   return window_um > blurred_window_lambda_n * lambda_n_um
              ? std::max(clear, cell_lambda_n / samples_a_coarse_cell)
              : clear;
@@ -189,7 +189,7 @@ Psf sum_smooth(const SmoothPupil& pupil, const PsfPlan& plan, const PsfOptions& 
   const double widest = options.coarse.rays_serve(lambda_n_um) ? widest_coarse_wave_window_lambda_n
                                                                : options.widest_wave_window_lambda_n;
   if (plan.size * plan.spacing_um <= widest * lambda_n_um) return sum_chords(pupil, plan.grid());
-  return sum_rays(pupil, plan.grid(), options.coarse.any() ? 1 : 2);
+  return sum_rays(pupil, plan.grid(), options.coarse.loose() ? 1 : 2);
 }
 
 /// The sum over traced nodes in the plan's cells, an odd number of samples a side in each, so that the middle
@@ -233,12 +233,12 @@ std::optional<Psf> sum_in_window(const Extent& extent, const PsfOptions& options
 }  // namespace
 
 double CoarseLight::spacing_um() const {
-  return cell_um * 2 * std::sqrt(tolerance);
+  return loose() ? cell_um * 2 * std::sqrt(tolerance) : 0;
 }
 
 bool CoarseLight::rays_serve(double lambda_n_um) const {
   constexpr double beyond = 2 / (pi * pi);
-  return beyond * lambda_n_um < tolerance * 2 * cell_um;
+  return loose() && beyond * lambda_n_um < tolerance * 2 * cell_um;
 }
 
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {

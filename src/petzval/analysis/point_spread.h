@@ -28,6 +28,8 @@ struct CoarseLight {
   double tolerance = 0;  ///< relative L2 error of the image
 
   bool any() const { return cell_um > 0; }
+  /// From a tolerance of 10⁻² on. Below it only samples in blurred windows are farther apart.
+  bool loose() const { return any() && tolerance >= 1e-2; }
   /// Cells of a chosen window need be no narrower: light that is gathered so adds a twelfth of their square
   /// to a variance, √tolerance/6 of a cell's.
   double spacing_um() const;

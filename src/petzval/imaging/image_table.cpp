@@ -339,8 +339,7 @@ LensDataTable build_image_table(const Lens& lens, const TableOptions& options, c
   if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview)
     return build_lens_data_table(lens, options, progress);
   TableOptions coarse = options;
-  constexpr double light_may_be_coarse = 1e-2;
-  if (wanted.tolerance >= light_may_be_coarse) coarse.coarse = {wanted.cell_um, wanted.tolerance};
+  coarse.coarse = {wanted.cell_um, wanted.tolerance};
   if (static_cast<std::size_t>(options.field_count) < least_fields)
     return build_lens_data_table(lens, coarse, progress);
   HeightTable parts(lens, coarse);

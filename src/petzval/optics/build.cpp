@@ -56,7 +56,7 @@ constexpr int limit_azimuths = 32;
 /// About a pupil, whose area errs by a ten-thousandth with the fewer where apertures meet in corners.
 int azimuths_of(const TableOptions& options) {
   constexpr int few = 64;
-  return options.coarse.any() ? few : FieldTracer::default_azimuths;
+  return options.coarse.loose() ? few : FieldTracer::default_azimuths;
 }
 
 /// FieldTracer::object_flux().
@@ -285,7 +285,7 @@ void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {
   const Ray& ray = rays_[wavelength][field];
   const std::optional<ChiefRay>& chief = ray.chief;
   const PsfOptions psf_options = psf_options_of(options_);
-  const PupilFitLimits limits = options_.coarse.any() ? PupilFitLimits::coarse() : PupilFitLimits{};
+  const PupilFitLimits limits = options_.coarse.loose() ? PupilFitLimits::coarse() : PupilFitLimits{};
   const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief, limits) : std::nullopt;
   std::optional<Psf> psf;
   if (pupil) psf = point_spread(*pupil, psf_options);
