@@ -390,6 +390,9 @@ void altered_lens_dgauss_50mm(benchmark::State& state) {
 void altered_lens_edmund_54852(benchmark::State& state) {
   altered_lens(state, "edmund-54852", 1, 7.5);
 }
+void altered_lens_wide_22mm(benchmark::State& state) {
+  altered_lens(state, "wide-22mm", 4, 54);
+}
 BENCHMARK(altered_lens_dgauss_50mm)
     ->ArgsProduct({{2, 3}, {3}})
     ->Args({2, 31})
@@ -400,5 +403,6 @@ BENCHMARK(altered_lens_edmund_54852)
     ->Args({2, 31})
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
+BENCHMARK(altered_lens_wide_22mm)->ArgsProduct({{2, 3}, {3}})->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

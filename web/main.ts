@@ -118,6 +118,7 @@ class Page {
         this.message);
     this.buildTabs();
     document.addEventListener("keydown", event => this.key(event));
+    addEventListener("pagehide", () => { if (this.keeping !== undefined) this.keep(); });
     document.addEventListener("dragover", event => { event.preventDefault(); document.body.classList.add("dropping"); });
     document.addEventListener("dragleave", event => { if (!event.relatedTarget) document.body.classList.remove("dropping"); });
     document.addEventListener("drop", event => {
@@ -219,10 +220,10 @@ class Page {
   /** Does a change, remembers it, and tells the server. */
   private change(alter: () => void, gesture = "", done = true): void {
     alter();
+    this.ask();  // the server works while the page does
     this.history.record(JSON.stringify(this.session), gesture);
     if (done && gesture !== "plot") this.history.endGesture();
     this.refresh();
-    this.ask();
   }
 
   private alterLens(alter: (lens: Lens) => void, gesture: string, done = true): void {
@@ -300,8 +301,21 @@ class Page {
     this.drawPlot();
     this.command.textContent = commandLine(session, this.lastPicture);
     this.command.title = this.command.textContent;
-    sessionStorage.setItem("petzval-session", JSON.stringify({start: this.startKey(), session}));
+    this.keepSoon();
   }
+
+  /** Keeps the session for a reload, once the hand rests or the page goes. */
+  private keepSoon(): void {
+    const rest_ms = 200;
+    clearTimeout(this.keeping);
+    this.keeping = setTimeout(() => this.keep(), rest_ms);
+  }
+  private keep(): void {
+    clearTimeout(this.keeping);
+    this.keeping = undefined;
+    sessionStorage.setItem("petzval-session", JSON.stringify({start: this.startKey(), session: this.session}));
+  }
+  private keeping: ReturnType<typeof setTimeout> | undefined;
 
   private startKey(): string { return JSON.stringify([this.welcome?.lens_name, this.welcome?.lens?.surfaces]); }
 
@@ -557,9 +571,14 @@ class Page {
 
   private drawPlot(problem = ""): void {
     const plots = this.plots.get(this.session?.plot);
+    const drawn = [plots, this.plotBox.clientWidth, this.plotBox.clientHeight];
+    if (plots && drawn.every((each, i) => each === this.drawnPlot[i])) return;
+    this.drawnPlot = drawn;
     if (plots) return drawPlots(this.plotBox, plots.plots as PlotData[], plots.across);
     this.plotBox.replaceChildren(h("p", {class: "nothing"}, problem || "…"));
   }
+
+  private drawnPlot: unknown[] = [];  ///< what drawPlot() drew last, and in how many pixels
 
   private startExercise(exercise: (typeof exercises)[number]): void {
     const id = ++this.id;

@@ -18,6 +18,13 @@ constexpr double spacing_per_lambda_n = 0.45;
 /// λN have them) over coarser ones: the error is a few thousandths of the cells' rms, less for wide spots.
 constexpr double sample_per_lambda_n = 0.4, coarse_sample_per_lambda_n = 0.6;
 constexpr double coarse_cell_lambda_n = 2;
+/// Coarse light in windows beyond this has lost the contrast that samples farther apart would mistake.
+constexpr double blurred_window_lambda_n = 115;
+/// Its samples lie at a sixth of a cell then.
+constexpr double samples_a_coarse_cell = 6;
+/// Coarse light is that of rays in windows beyond this, and fills so many cells at least.
+constexpr double widest_coarse_wave_window_lambda_n = 64;
+constexpr int fewest_coarse_cells = 40;
 /// Around the ray spot, and at least in all: the square that holds 99 % of an Airy pattern.
 constexpr double margin_lambda_n = 12;
 constexpr double least_half_width_lambda_n = 18.5;
@@ -114,7 +121,18 @@ int radial_for(double phase) {
   return static_cast<int>(std::ceil(0.25 * phase + 3 * std::cbrt(0.5 * phase) + 12));
 }
 
-/// \param coarsest_lambda_n  PsfOptions::coarsest_sample_um.
+/// How far apart samples of coarse light may lie [λN]. A spectrum that ends at 1/λN, repeated at the samples'
+/// frequency, stays clear of what cells can hold.
+double coarse_sample_lambda_n(const CoarseLight& coarse, double lambda_n_um, double window_um) {
+  if (!coarse.any()) return 0;
+  const double cell_lambda_n = coarse.cell_um / lambda_n_um;
+  const double clear = coarse.loose() ? 1 / (1 + 1 / cell_lambda_n) : 0;
+  return window_um > blurred_window_lambda_n * lambda_n_um
+             ? std::max(clear, cell_lambda_n / samples_a_coarse_cell)
+             : clear;
+}
+
+/// \param coarsest_lambda_n  coarse_sample_lambda_n().
 int samples_per_cell(double cell_lambda_n, double coarsest_lambda_n) {
   constexpr double rounding = 1e-9;
   if (cell_lambda_n <= 0.5 + rounding) return 1;
@@ -131,8 +149,10 @@ PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double grow
   const double width_um = 2 * (extent.reach_mm() + margin_mm) * um_per_mm;
   const int most = options.size > 0 ? options.size : std::max(options.largest_size, smallest_size);
   PsfPlan plan;
-  plan.spacing_um = options.spacing_um > 0 ? options.spacing_um
-                                           : std::max(spacing_per_lambda_n * lambda_n_um, width_um / most);
+  const double coarse_um = std::min(options.coarse.spacing_um(), width_um / fewest_coarse_cells);
+  plan.spacing_um = options.spacing_um > 0
+                        ? options.spacing_um
+                        : std::max({spacing_per_lambda_n * lambda_n_um, width_um / most, coarse_um});
   if (options.size > 0) {
     plan.size = options.size;
   } else {
@@ -143,7 +163,8 @@ PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double grow
     if (exact) plan.spacing_um = width_um / plan.size;
   }
   plan.samples_per_cell =
-      samples_per_cell(plan.spacing_um / lambda_n_um, options.coarsest_sample_um / lambda_n_um);
+      samples_per_cell(plan.spacing_um / lambda_n_um,
+                       coarse_sample_lambda_n(options.coarse, lambda_n_um, plan.size * plan.spacing_um));
   plan.last_row = plan.size - 1;
   plan.reach = plan.size / 2;
   if (options.size == 0 || options.spacing_um == 0) {  // a chosen window: no farther than the rays need
@@ -164,9 +185,11 @@ PsfPlan plan_window(const Extent& extent, const PsfOptions& options, double grow
 
 /// The sum over the chords of a smooth pupil, or its rays where the window is wide.
 Psf sum_smooth(const SmoothPupil& pupil, const PsfPlan& plan, const PsfOptions& options) {
-  const double window_lambda_n = plan.size * plan.spacing_um * mm_per_um / pupil.lambda_n_mm();
-  return window_lambda_n > options.widest_wave_window_lambda_n ? sum_rays(pupil, plan.grid())
-                                                               : sum_chords(pupil, plan.grid());
+  const double lambda_n_um = pupil.lambda_n_mm() * um_per_mm;
+  const double widest = options.coarse.rays_serve(lambda_n_um) ? widest_coarse_wave_window_lambda_n
+                                                               : options.widest_wave_window_lambda_n;
+  if (plan.size * plan.spacing_um <= widest * lambda_n_um) return sum_chords(pupil, plan.grid());
+  return sum_rays(pupil, plan.grid(), options.coarse.loose() ? 1 : 2);
 }
 
 /// The sum over traced nodes in the plan's cells, an odd number of samples a side in each, so that the middle
@@ -208,6 +231,15 @@ std::optional<Psf> sum_in_window(const Extent& extent, const PsfOptions& options
 }
 
 }  // namespace
+
+double CoarseLight::spacing_um() const {
+  return loose() ? cell_um * 2 * std::sqrt(tolerance) : 0;
+}
+
+bool CoarseLight::rays_serve(double lambda_n_um) const {
+  constexpr double beyond = 2 / (pi * pi);
+  return loose() && beyond * lambda_n_um < tolerance * 2 * cell_um;
+}
 
 std::optional<PsfPlan> plan_psf(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& options) {
   if (const std::optional<Extent> extent = scout(tracer, chief)) return plan_window(*extent, options, 1);

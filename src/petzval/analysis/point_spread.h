@@ -22,6 +22,22 @@ struct PsfPlan {
   PsfGrid grid() const { return {size, spacing_um, samples_per_cell, first_row, last_row, reach}; }
 };
 
+/// How closely light must be known that is then added up over the cells of an image.
+struct CoarseLight {
+  double cell_um = 0;    ///< 0: as closely as can be
+  double tolerance = 0;  ///< relative L2 error of the image
+
+  bool any() const { return cell_um > 0; }
+  /// From a tolerance of 10⁻² on. Below it only samples in blurred windows are farther apart.
+  bool loose() const { return any() && tolerance >= 1e-2; }
+  /// Cells of a chosen window need be no narrower: light that is gathered so adds a twelfth of their square
+  /// to a variance, √tolerance/6 of a cell's.
+  double spacing_um() const;
+  /// Whether rays say enough where a PSF is wide: what waves carry a cell or more beyond their edges is
+  /// 1 − E ≈ 2λN/(π² r) of the light, less than the tolerance.
+  bool rays_serve(double lambda_n_um) const;
+};
+
 /// What the caller fixes; zeros are chosen. The window holds the ray spot and twelve λN around it, or more
 /// until `wanted_share` of the light is inside. The spacing is 0.45 λN, or wider when `largest_size` (or
 /// `size`) cells of that do not span the window: then each value is the light of its cell.
@@ -35,9 +51,9 @@ struct PsfOptions {
   /// from place to place; else it is a multiple of eight cells.
   bool exact_window = false;
   double widest_wave_window_lambda_n = 500;
-  /// Cells may hold samples of a smooth pupil's light as far apart as this, beyond 0.6 λN: for light that is
-  /// then added up over many of them.
-  double coarsest_sample_um = 0;
+  /// Light of a smooth pupil in wider cells, sampled so that nothing is mistaken for detail that cells of the
+  /// image can hold; or of rays.
+  CoarseLight coarse = {};
   /// Nodes in any order are summed in windows up to this, whose square their number goes with: a million
   /// rays. Beyond it the rays of a pupil that is not smooth are counted.
   double widest_node_window_lambda_n = 256;

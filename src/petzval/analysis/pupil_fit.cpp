@@ -11,12 +11,8 @@ namespace petzval {
 
 namespace {
 
-constexpr int fit_outline_azimuths = 128;
-/// Corners where two apertures meet are found to this in azimuth [rad] and radius (relative).
-constexpr double corner_tolerance = 1e-8;
 /// The area inside a polar boundary cuts corners, by up to this; more is a pupil misunderstood.
 constexpr double flux_tolerance = 0.01;
-constexpr int fit_radial_nodes = 10;
 constexpr std::size_t azimuths_per_radial = 2;
 
 /// A point of the rim, and whether one aperture takes over from another there.
@@ -32,8 +28,11 @@ PupilNode node_at(const PupilBoundary& pupil, double azimuth, double radius) {
 /// Walks along the rim of a boundary and finds the corners between its azimuths.
 class RimWalk {
  public:
-  RimWalk(const FieldTracer& tracer, const ChiefRay& chief, const PupilBoundary& pupil)
-      : tracer_(tracer), pencil_(Pencil::from_object(tracer.lens(), chief.object_field)), pupil_(pupil) {}
+  RimWalk(const FieldTracer& tracer, const ChiefRay& chief, const PupilBoundary& pupil, double tolerance)
+      : tracer_(tracer),
+        pencil_(Pencil::from_object(tracer.lens(), chief.object_field)),
+        pupil_(pupil),
+        tolerance_(tolerance) {}
 
   /// The rim of the half pupil u ≥ 0, from +v on.
   std::vector<RimPoint> points() const {
@@ -57,7 +56,7 @@ class RimWalk {
 
   /// Regula falsi (Illinois) from a bracket about both neighbours; they differ by little.
   double radius_at(double azimuth, double one, double other) const {
-    const double spread = 2 * std::abs(one - other) + corner_tolerance * one;
+    const double spread = 2 * std::abs(one - other) + tolerance_ * one;
     double inside = std::min(one, other) - spread, outside = std::max(one, other) + spread;
     double worst_inside = clearance(azimuth, inside).worst, worst_outside = clearance(azimuth, outside).worst;
     if (!(worst_inside < 0) || !(worst_outside > 0)) {
@@ -66,7 +65,7 @@ class RimWalk {
     }
     if (!(worst_inside < 0) || !(worst_outside > 0)) return 0.5 * (one + other);
     int side = 0;
-    for (int i = 0; i < 60 && outside - inside > corner_tolerance * outside; ++i) {
+    for (int i = 0; i < 60 && outside - inside > tolerance_ * outside; ++i) {
       double middle = 0.5 * (inside + outside);
       if (std::isfinite(worst_outside) && i % 8 != 7)
         middle = (inside * worst_outside - outside * worst_inside) / (worst_outside - worst_inside);
@@ -81,7 +80,7 @@ class RimWalk {
   }
 
   RimPoint corner(RimPoint low, int surface, RimPoint high) const {
-    while (high.azimuth - low.azimuth > corner_tolerance) {
+    while (high.azimuth - low.azimuth > tolerance_) {
       const double azimuth = 0.5 * (low.azimuth + high.azimuth);
       const RimPoint middle{azimuth, radius_at(azimuth, low.radius, high.radius)};
       (clearance(azimuth, middle.radius).surface == surface ? low : high) = middle;
@@ -92,11 +91,13 @@ class RimWalk {
   const FieldTracer& tracer_;
   Pencil pencil_;
   const PupilBoundary& pupil_;
+  double tolerance_;  ///< PupilFitLimits::corner_tolerance
 };
 
 /// The rim, then nodes inside.
-std::vector<PupilNode> fit_nodes(const PupilBoundary& pupil, const std::vector<RimPoint>& rim) {
-  const QuadratureRule radial = gauss_legendre(fit_radial_nodes);
+std::vector<PupilNode> fit_nodes(const PupilBoundary& pupil, const std::vector<RimPoint>& rim,
+                                 int radial_nodes) {
+  const QuadratureRule radial = gauss_legendre(radial_nodes);
   std::vector<PupilNode> nodes;
   for (const RimPoint& point : rim) nodes.push_back(node_at(pupil, point.azimuth, point.radius));
   for (std::size_t i = 0; i < pupil.radius.size() / 2; i += azimuths_per_radial)
@@ -161,10 +162,11 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits) {
   if (tracer.tracer().stop_blades().count > 0 || !tracer.tracer().is_centred()) return {};  // no mirror image
-  const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, fit_outline_azimuths);
+  const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, limits.outline_azimuths);
   if (!boundary) return {};
-  const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary).points();
-  const std::vector<WaveRay> rays = trace_wave_rays(tracer, chief, *boundary, fit_nodes(*boundary, rim));
+  const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary, limits.corner_tolerance).points();
+  const std::vector<WaveRay> rays =
+      trace_wave_rays(tracer, chief, *boundary, fit_nodes(*boundary, rim, limits.radial_nodes));
   SmoothPupil pupil;
   pupil.wavelength_nm = tracer.tracer().wavelength_nm();
   pupil.image_index = tracer.tracer().image_index();

@@ -15,6 +15,12 @@ struct PupilFitLimits {
   double phase_rms_waves = 1e-5, amplitude_rms = 1e-4;  ///< the latter relative to the largest
   /// What the best of them may leave at most: 1e-3 of the PSF's peak.
   double largest_phase_rms_waves = 2e-4, largest_amplitude_rms = 3e-3;
+  int outline_azimuths = 128, radial_nodes = 10;  ///< of the rays: a few hundred
+  /// Corners where two apertures meet are found to this in azimuth [rad] and radius (relative).
+  double corner_tolerance = 1e-8;
+
+  /// For light that is added up over cells far wider than λN: 0.01 rad of phase, at a third of the cost.
+  static PupilFitLimits coarse() { return {8, 20, 2e-3, 2e-3, 5e-3, 1e-2, 64, 8, 1e-5}; }
 };
 
 /// A few hundred real rays inside the boundary and on it, and polynomials through their phase and amplitude.

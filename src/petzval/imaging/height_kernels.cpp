@@ -88,7 +88,9 @@ std::vector<PsfExtent> extents_of(const LensDataTable& table, std::size_t wavele
 Psf turned_about_axis(const Psf& psf) {
   const int middle = psf.size / 2, reach = static_cast<int>(std::ceil(std::hypot(middle, middle)));
   const auto ring_of = [&](int row, int column) {  // −1: within the circle that the window holds
-    return std::max(-1, static_cast<int>(std::ceil(std::hypot(row, column))) - 1 - middle);
+    const int squares = row * row + column * column;
+    if (squares <= middle * middle) return -1;
+    return std::max(-1, static_cast<int>(std::ceil(std::sqrt(squares))) - 1 - middle);
   };
   std::vector<double> light(static_cast<std::size_t>(reach - middle) + 1), cells(light.size());
   for (int i = 0; i < psf.size; ++i)

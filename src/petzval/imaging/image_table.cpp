@@ -222,7 +222,7 @@ class PlaceChoice {
       const auto said_at = said.moments().mean, own_at = own.moments().mean;
       const double mm =
           std::hypot(said_at[0] - own_at[0], said_at[1] - own_at[1]) * wanted_.cell_um * mm_per_um;
-      moved[i] = 4 * mm / meshes[i].side_mm;  // as in FieldChoice::says_enough()
+      moved[i] = 4 * mm / meshes[i].side_mm;  // as in FieldChoice::misfit()
     });
     const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
     return std::sqrt(sum) <= of_tolerance * wanted_.tolerance &&
@@ -265,16 +265,19 @@ class FieldChoice {
     std::vector<std::size_t> middles;
     for (const Interval& interval : open) middles.push_back(interval.middle());
     parts_.add_psfs(middles, std::array{wavelength_}, progress);
-    std::vector<char> enough(open.size());
-    parallel_for(open.size(), [&](std::size_t i) { enough[i] = says_enough(open[i]) ? 1 : 0; });
+    std::vector<double> misfits(open.size());
+    parallel_for(open.size(), [&](std::size_t i) { misfits[i] = misfit(open[i]); });
     std::vector<Interval> halves;
     for (std::size_t i = 0; i < open.size(); ++i) {
       const Interval& interval = open[i];
-      if (enough[i] != 0) {
+      if (misfits[i] <= 1) {
         parts_.remove_psf(interval.middle(), wavelength_);
         continue;
       }
       taken_.push_back(interval.middle());
+      // Halves of an interval miss a quarter of it or less.
+      constexpr double of_halves = 4;
+      if (misfits[i] <= of_halves) continue;
       halves.push_back({interval.from, interval.middle()});
       halves.push_back({interval.middle(), interval.to});
     }
@@ -288,7 +291,8 @@ class FieldChoice {
     return {from == taken_.begin() ? from : from - 1, std::min(from + 3, taken_.end())};
   }
 
-  bool says_enough(const Interval& interval) const {
+  /// What the PSFs about an interval miss in its middle, over what they may.
+  double misfit(const Interval& interval) const {
     constexpr double of_tolerance = 0.3, of_centre = 0.1, most_at_rim = 4;
     const LensDataTable& table = parts_.table();
     const auto height_mm = [&](std::size_t field) {
@@ -305,8 +309,8 @@ class FieldChoice {
     // A bump of the centre's height in an interval moves light together by four times its slope.
     const double moved_mm =
         std::abs(said.moments().mean[1] - own.moments().mean[1]) * wanted_.cell_um * mm_per_um;
-    return 4 * moved_mm <= of_centre * wanted_.tolerance * (to_mm - from_mm) &&
-           difference(said, own) <= allowed;
+    return std::max(4 * moved_mm / (of_centre * wanted_.tolerance * (to_mm - from_mm)),
+                    difference(said, own) / allowed);
   }
 
   HeightTable& parts_;
@@ -324,7 +328,6 @@ LensDataTable build_image_table(const Lens& lens, const TableOptions& options, c
       options.places == TableOptions::Places::over_frame ||
       (options.places == TableOptions::Places::automatic && needs_places_over_frame(lens));
   constexpr std::size_t least_fields = 2 * first_intervals + 1;
-  constexpr double samples_a_cell = 6;
   if (needs_places_over_frame(lens) && over_frame) {
     FrameTable parts(lens, options);
     const std::vector<std::size_t> places = PlaceChoice(parts, wanted).places({});
@@ -333,11 +336,12 @@ LensDataTable build_image_table(const Lens& lens, const TableOptions& options, c
     parts.add_psfs(places, wavelengths, progress);
     return std::move(parts).finished();
   }
-  if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview ||
-      static_cast<std::size_t>(options.field_count) < least_fields)
+  if (over_frame || wanted.tolerance < ImagingOptions::of_a_preview)
     return build_lens_data_table(lens, options, progress);
   TableOptions coarse = options;
-  coarse.coarsest_sample_um = wanted.cell_um / samples_a_cell;
+  coarse.coarse = {wanted.cell_um, wanted.tolerance};
+  if (static_cast<std::size_t>(options.field_count) < least_fields)
+    return build_lens_data_table(lens, coarse, progress);
   HeightTable parts(lens, coarse);
   FieldChoice choice(parts, coarse, wanted);
   const std::vector<std::size_t>& fields = choice.fields({});

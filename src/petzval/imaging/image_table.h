@@ -16,9 +16,10 @@ struct SpreadWanted {
 /// for as few fields as serve; chief rays and illumination are those of all. A PSF in the middle between two
 /// is compared with what they say of it (HeightKernels), at the middle wavelength. Where its kernel differs
 /// by more than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to
-/// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at. Light is
-/// then sampled no finer than a sixth of a cell asks for. Finer pictures have the table of
-/// build_lens_data_table().
+/// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at if it
+/// was more than four times what it may be. From 10⁻² on light is sampled as coarsely as the cells allow
+/// (CoarseLight), and by rays where waves carry too little of it beyond them. Finer pictures
+/// have the table of build_lens_data_table().
 ///
 /// Places over the frame have PSFs on every fourth row and column of their lattice, more towards its rim
 /// where they are needed, on every second or on all, at any tolerance: the fewest that tell the kernels in

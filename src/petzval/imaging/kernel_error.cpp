@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 namespace petzval {
@@ -110,12 +111,19 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
   std::size_t all = 0;
   for (int row = down / 2; row < rows; row += down)
     for (int column = across / 2; column < columns; column += across) {
-      const double r = std::hypot(errors.across().position(column), errors.down().position(row));
+      const double x = errors.across().position(column), y = errors.down().position(row);
+      const double r = std::sqrt(x * x + y * y);
       if (r < radius) places.inside.push_back({r, column, row});
       ++all;
     }
-  std::sort(places.inside.begin(), places.inside.end(),
-            [](const Place& a, const Place& b) { return a.radius > b.radius; });
+  // Shells reach no farther in than an eighth of them.
+  const auto eighth = places.inside.begin() + static_cast<std::ptrdiff_t>((places.inside.size() + 7) / 8);
+  const auto outer = [](const Place& a, const Place& b) {
+    return std::tuple(-a.radius, a.row, a.column) < std::tuple(-b.radius, b.row, b.column);
+  };
+  if (eighth != places.inside.end())
+    std::nth_element(places.inside.begin(), eighth, places.inside.end(), outer);
+  std::sort(places.inside.begin(), eighth, outer);
   places.share = double(places.inside.size()) / double(all);
   return places;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 
@@ -102,15 +103,18 @@ namespace {
 /// Gaussian of a variance, moved by a shift [steps of the lattice].
 std::vector<double> window_weights(double variance, double shift, int reach) {
   constexpr int frequencies = 64;  // up to that of half the lattice's
-  std::vector<double> weights;
-  for (int n = -reach; n <= reach; ++n) {
-    double sum = 0;
-    for (int k = 0; k < frequencies; ++k) {
-      const double frequency = (k + 0.5) / (2 * frequencies), turn = 2 * pi * frequency;
-      const double of_spline = (2 + std::cos(turn)) / 3;
-      sum += std::exp(-turn * turn * variance / 2) * std::cos(turn * (n - shift)) / of_spline;
+  std::vector<double> weights(2 * static_cast<std::size_t>(reach) + 1);
+  for (int k = 0; k < frequencies; ++k) {
+    const double frequency = (k + 0.5) / (2 * frequencies), turn = 2 * pi * frequency;
+    const double of_spline = (2 + std::cos(turn)) / 3;
+    const double passed = std::exp(-turn * turn * variance / 2) / of_spline / frequencies;
+    // cos(turn (n − shift)) from one n to the next, by a turn of a complex number.
+    std::complex<double> wave = std::polar(passed, turn * (-reach - shift));
+    const std::complex<double> step = std::polar(1.0, turn);
+    for (double& weight : weights) {
+      weight += wave.real();
+      wave *= step;
     }
-    weights.push_back(sum / frequencies);
   }
   return weights;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/imaging/image_table.h>
 #include <petzval/live/bench_picture.h>
 #include <petzval/live/bench_sensor.h>
-#include <petzval/optics/build.h>
 
 #include <algorithm>
 #include <utility>
@@ -76,7 +76,8 @@ int columns_for(double spread_um, double frame_width_mm, int least, int most) {
   return std::clamp(static_cast<int>(pixels * frame_width_mm * um_per_mm / spread_um), least, most);
 }
 
-/// A table of fewer fields than a single picture takes: real rays all the same, with more between them.
+/// A table of fewer fields than a single picture takes, and PSFs where a picture of this tolerance needs
+/// them: real rays all the same, with more between them.
 TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCost& cost,
                          const Context& context) {
   TableOptions options;
@@ -85,9 +86,10 @@ TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCo
   options.max_image_height_mm = rim * sensor.geometry.half_diagonal_mm();
   options.field_count = cost.fields;
   options.largest_psf_size = cost.largest_psf_size;
+  const SpreadWanted wanted{sensor.geometry.pitch_um / 2, cost.tolerance};
   return TableCamera{result_within(context,
                                    [&](const ProgressCallback& progress) {
-                                     return build_lens_data_table(used, options, progress);
+                                     return build_image_table(used, options, wanted, progress);
                                    }),
                      sensor};
 }

@@ -15,6 +15,7 @@
 #include <petzval/optics/frame_build.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -32,7 +33,7 @@ PsfOptions psf_options_of(const TableOptions& options) {
   PsfOptions psf;
   psf.size = options.psf_size;
   psf.largest_size = options.largest_psf_size;
-  psf.coarsest_sample_um = options.coarsest_sample_um;
+  psf.coarse = options.coarse;
   // A table has hundreds of PSFs, and kernels add up many of their samples.
   psf.spot_radial_nodes = 128;
   psf.widest_node_window_lambda_n = 64;
@@ -51,6 +52,26 @@ std::optional<double> psf_reach_mm(FieldTracer& tracer, double object_field, con
 }
 
 constexpr int limit_azimuths = 32;
+
+/// About a pupil, whose area errs by a ten-thousandth with the fewer where apertures meet in corners.
+int azimuths_of(const TableOptions& options) {
+  constexpr int few = 64;
+  return options.coarse.loose() ? few : FieldTracer::default_azimuths;
+}
+
+/// FieldTracer::object_flux().
+double object_flux(const FieldTracer& tracer, const ChiefRay& chief, int azimuths) {
+  const auto pupil = tracer.object_pupil(chief, azimuths);
+  return pupil ? tracer.lit_area(Pencil::from_object(tracer.lens(), chief.object_field), *pupil) : 0;
+}
+
+/// FieldTracer::g_sensor_sr().
+double g_sensor_sr(const FieldTracer& tracer, const ChiefRay& chief, int azimuths) {
+  const auto pupil = tracer.image_pupil(chief, azimuths);
+  if (!pupil) return 0;
+  const double n = tracer.tracer().image_index();
+  return n * n * tracer.lit_area(Pencil::from_image(tracer.tracer(), chief.image_height_mm), *pupil);
+}
 
 /// Objects at a finite distance are looked for no farther out than this (87°).
 constexpr double widest_tangent = 20;
@@ -92,7 +113,35 @@ class FieldLimit {
   }
 
  private:
+  /// Where the chief ray alone reaches the height, between two fields on either side of it (false position,
+  /// Illinois).
+  std::optional<double> crossing(double low, double low_height, double high, double high_height,
+                                 double wanted_mm) {
+    constexpr double tolerance = 1e-13;
+    constexpr int most_rounds = 60;
+    double below = low_height - wanted_mm, above = high_height - wanted_mm;
+    int last_side = 0;
+    for (int round = 0; round < most_rounds && high - low > tolerance * high; ++round) {
+      double middle = (low * above - high * below) / (above - below);
+      if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+      if (middle == low || middle == high) break;
+      const std::optional<ChiefRay> chief = tracer_.chief_ray(sign_ * middle);
+      if (!chief) return {};
+      const double beyond = chief->image_height_mm - wanted_mm;
+      const int side = beyond < 0 ? -1 : 1;
+      (side < 0 ? low : high) = middle;
+      (side < 0 ? below : above) = beyond;
+      if (side == last_side) (side < 0 ? above : below) *= 0.5;
+      last_side = side;
+    }
+    return high;
+  }
+
   double refine(double low, double low_height, double high, double wanted_mm) {
+    if (const std::optional<double> reached = height(high); reached && *reached >= wanted_mm) {
+      const std::optional<double> field = crossing(low, low_height, high, *reached, wanted_mm);
+      if (field && height(*field)) return *field;
+    }
     for (int i = 0; i < 40; ++i) {
       const double middle = 0.5 * (low + high);
       const std::optional<double> reached = height(middle);
@@ -134,13 +183,19 @@ std::vector<double> choose_fields(const Lens& lens, const TableOptions& options)
   const double stride = lens.object_distance_mm ? *lens.object_distance_mm / 50 : 1.0;
   // The fields belong to all wavelengths: far enough for each (the ends of the spectrum decide), but no
   // farther than each can pass.
-  double last = std::max(outermost_field(lens, options, options.wavelengths_nm.front(), stride),
-                         outermost_field(lens, options, options.wavelengths_nm.back(), stride));
-  for (const double wavelength : options.wavelengths_nm) {
-    FieldLimit limit(lens, wavelength, options.clip);
-    if (limit.height(last)) continue;
-    last = std::min(last, limit.last_field(std::numeric_limits<double>::infinity(), stride));
-  }
+  const std::vector<double>& nm = options.wavelengths_nm;
+  std::array<double, 2> ends{};
+  parallel_for(ends.size(), [&](std::size_t end) {
+    ends[end] = outermost_field(lens, options, end == 0 ? nm.front() : nm.back(), stride);
+  });
+  const double wanted = std::max(ends[0], ends[1]);
+  std::vector<double> last_of(nm.size(), wanted);
+  parallel_for(nm.size(), [&](std::size_t w) {
+    FieldLimit limit(lens, nm[w], options.clip);
+    if (!limit.height(wanted))
+      last_of[w] = std::min(wanted, limit.last_field(std::numeric_limits<double>::infinity(), stride));
+  });
+  const double last = *std::ranges::min_element(last_of);
   if (!(last > 0)) throw InputError(fmt::format("{}: no ray passes beside the axis", lens.name));
   std::vector<double> fields;
   for (int i = 0; i < options.field_count; ++i) fields.push_back(last * i / (options.field_count - 1));
@@ -230,7 +285,8 @@ void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {
   const Ray& ray = rays_[wavelength][field];
   const std::optional<ChiefRay>& chief = ray.chief;
   const PsfOptions psf_options = psf_options_of(options_);
-  const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief) : std::nullopt;
+  const PupilFitLimits limits = options_.coarse.loose() ? PupilFitLimits::coarse() : PupilFitLimits{};
+  const std::optional<SmoothPupil> pupil = chief ? fit_pupil(tracer, *chief, limits) : std::nullopt;
   std::optional<Psf> psf;
   if (pupil) psf = point_spread(*pupil, psf_options);
   if (chief && !psf) psf = point_spread(tracer, *chief, psf_options);
@@ -241,7 +297,7 @@ void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {
   table_.real_image_height_mm[entry] = std::abs(chief->image_height_mm);
   // The fitted pupil knows its corners and so its flux better than a boundary of azimuths does.
   table_.g_source_sr[entry] = ray.object_area * (pupil ? pupil->flux : tracer.object_flux(*chief));
-  table_.g_sensor_sr[entry] = tracer.g_sensor_sr(*chief);
+  table_.g_sensor_sr[entry] = g_sensor_sr(tracer, *chief, azimuths_of(options_));
   table_.psf[entry] = *std::move(psf);
 }
 
@@ -267,20 +323,22 @@ LensDataTable HeightTable::finished() && {
     if (made == fields) return;
     FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
     tracer.set_losses(options_.losses);
-    // By the boundary of the pupil, times what a fitted pupil's flux is to that about there.
-    std::vector<double> of_boundary(fields), with_psf, ratio;
+    // By the boundary of the pupil, times what a fitted pupil's flux is to that about there; g_sensor in the
+    // same way.
+    std::vector<double> of_boundary(fields), with_psf, ratio, sensor_ratio;
     for (std::size_t f = 0; f < fields; ++f) {
       const std::size_t entry = table_.index(f, w);
       const Ray& ray = rays_[w][f];
       if (!ray.chief) continue;
-      of_boundary[f] = ray.object_area * tracer.object_flux(*ray.chief);
+      of_boundary[f] = ray.object_area * object_flux(tracer, *ray.chief, azimuths_of(options_));
       if (!table_.has_psf(entry)) {
         table_.real_image_height_mm[entry] = std::abs(ray.chief->image_height_mm);
-        table_.g_sensor_sr[entry] = tracer.g_sensor_sr(*ray.chief);
         continue;
       }
       with_psf.push_back(table_.fields[f]);
-      ratio.push_back(of_boundary[f] > 0 ? table_.g_source_sr[entry] / of_boundary[f] : 1);
+      const bool lit = of_boundary[f] > 0;
+      ratio.push_back(lit ? table_.g_source_sr[entry] / of_boundary[f] : 1);
+      sensor_ratio.push_back(lit ? table_.g_sensor_sr[entry] / of_boundary[f] : 1);
     }
     for (std::size_t f = 0; f < fields; ++f) {
       const std::size_t entry = table_.index(f, w);
@@ -288,6 +346,7 @@ LensDataTable HeightTable::finished() && {
       const std::size_t i = bracket(with_psf, table_.fields[f]);
       const double t = (table_.fields[f] - with_psf[i]) / (with_psf[i + 1] - with_psf[i]);
       table_.g_source_sr[entry] = of_boundary[f] * ((1 - t) * ratio[i] + t * ratio[i + 1]);
+      table_.g_sensor_sr[entry] = of_boundary[f] * ((1 - t) * sensor_ratio[i] + t * sensor_ratio[i + 1]);
     }
   });
   table_.validate();

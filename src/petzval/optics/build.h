@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/point_spread.h>
 #include <petzval/base/progress.h>
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/trace/losses.h>
@@ -25,7 +26,7 @@ struct TableOptions {
   int field_count = 31;  ///< evenly spaced object fields, 0 included
   int psf_size = 0;      ///< cells a side of every PSF, as wide as each one needs; 0: as many as needed, too
   int largest_psf_size = 256;
-  double coarsest_sample_um = 0;  ///< PsfOptions::coarsest_sample_um, of places by height
+  CoarseLight coarse = {};  ///< PsfOptions::coarse, and illumination to fit, of places by height
   /// Where the places of the table lie.
   enum class Places {
     automatic,  ///< over the frame for a lens with poses or blades, by height for any other
@@ -65,7 +66,7 @@ class HeightTable {
                 const ProgressCallback& progress = {});
   void remove_psf(std::size_t field, std::size_t wavelength);
   const LensDataTable& table() const { return table_; }
-  /// With g_source of fields without PSFs, between those of fields with one.
+  /// With g_source and g_sensor of fields without PSFs, between those of fields with one.
   LensDataTable finished() &&;
 
  private:

@@ -10,8 +10,6 @@ namespace petzval {
 
 namespace {
 
-/// Patches of the pupil for a cell's width of the grid, along β; half as many along half a chord.
-constexpr int patches_per_cell = 2;
 /// Step of the differences that give ∇φ, as a share of the pupil: (1e-4)² of a wave's change.
 constexpr double gradient_step = 1e-4;
 /// ∮ cos over the sides of a square window of 2λN/(π² r): the Airy pattern's wings outside half-width h are
@@ -64,10 +62,11 @@ class Cells {
   /// Spreads light over the box of these half-widths.
   void add(double s, double t, double half_s, double half_t, double light) {
     const Run columns = run(s, half_s), rows = run(t, half_t);
-    for (int i = rows.first; i <= rows.last; ++i)
-      for (int j = columns.first; j <= columns.last; ++j)
-        light_[static_cast<std::size_t>(i) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(j)] +=
-            light * rows.share(i) * columns.share(j);
+    for (int i = rows.first; i <= rows.last; ++i) {
+      const double of_row = light * rows.share(i);
+      double* cells = light_.data() + static_cast<std::ptrdiff_t>(i) * size_;
+      for (int j = columns.first; j <= columns.last; ++j) cells[j] += of_row * columns.share(j);
+    }
   }
   const std::vector<double>& light() const { return light_; }
 
@@ -75,8 +74,9 @@ class Cells {
   struct Run {
     double low, high;  ///< in cells
     int first, last;
+    double per_width = 1 / (high - low);
     double share(int cell) const {
-      return (std::min(high, cell + 1.0) - std::max(low, static_cast<double>(cell))) / (high - low);
+      return (std::min(high, cell + 1.0) - std::max(low, static_cast<double>(cell))) * per_width;
     }
   };
   Run run(double middle_mm, double half_mm) const {
@@ -95,7 +95,7 @@ class Cells {
 
 }  // namespace
 
-Psf sum_rays(const SmoothPupil& pupil, const PsfGrid& grid) {
+Psf sum_rays(const SmoothPupil& pupil, const PsfGrid& grid, int patches_per_cell) {
   if (grid.size < 1 || !(grid.spacing_um > 0))
     throw InputError("a PSF needs at least one sample and a positive spacing");
   const auto rows = static_cast<std::size_t>(patches_per_cell * grid.size), columns = rows / 2 + 1;
