@@ -16,9 +16,6 @@ namespace petzval::python {
 
 namespace {
 
-template <typename Number>
-using Maybe = std::optional<Number>;
-
 Losses losses_of(const nb::object& lens_or_camera) {
   return nb::isinstance<CameraInPython>(lens_or_camera)
              ? nb::cast<const CameraInPython&>(lens_or_camera).losses
@@ -99,12 +96,14 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                         Maybe<double> through_focus_mm, const Numbers& radii_um, const std::string& about,
                         int rays, bool opd, int samples, const std::string& zernike_order, int terms,
                         const std::string& spot_weight, double focus_frequency_cpmm,
-                        double sensor_reflectance, double source_diameter_deg, int threads,
-                        const nb::object& progress) {
+                        double sensor_reflectance, double source_diameter_deg, double azimuth_deg,
+                        bool as_psf, int threads, const nb::object& progress) {
   const Lens lens = lens_to_look_at(self);
   AnalysisRequest request;
   request.at = request_of(lens, fields, field_type, wavelengths_nm,
                           ignore_apertures || ignores_apertures(self), losses_of(self));
+  request.at.azimuth_deg = azimuth_deg;
+  if (as_psf) request.mtf.model = {PupilModel::Amplitude::light, PupilModel::Phase::plane_waves};
   request.plots = plots;
   request.mtf.frequencies_cpmm = frequencies_cpmm, request.mtf.geometric = geometric,
   request.mtf.weights = weights;
@@ -128,11 +127,12 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
 // ---- PSFs
 
 PsfStack psfs(const nb::object& self, const Numbers& fields, const Maybe<std::string>& field_type,
-              const Numbers& wavelengths_nm, int size, double spacing_um, bool ignore_apertures, int threads,
-              const nb::object& progress) {
+              const Numbers& wavelengths_nm, int size, double spacing_um, bool ignore_apertures,
+              double azimuth_deg, int threads, const nb::object& progress) {
   const Lens lens = lens_to_look_at(self);
-  const FieldTableRequest at = request_of(lens, fields, field_type, wavelengths_nm,
-                                          ignore_apertures || ignores_apertures(self), losses_of(self));
+  FieldTableRequest at = request_of(lens, fields, field_type, wavelengths_nm,
+                                    ignore_apertures || ignores_apertures(self), losses_of(self));
+  at.azimuth_deg = azimuth_deg;
   PsfOptions options;
   options.size = size, options.spacing_um = spacing_um;
   Call call({threads, 1, progress});
@@ -272,7 +272,9 @@ constexpr const char* analyse_text =
     "arrays. `fields`, "
     "`field_type` (angle_deg, object_height_mm, paraxial_image_height_mm, real_image_height_mm) and "
     "`wavelengths_nm`: where; empty: "
-    "the lens's own. Each analysis takes the other keywords that it knows of; docs/ANALYSES.md says which. "
+    "the lens's own. `azimuth_deg`: of the fields, from +y towards +x. `as_psf`: the MTF as the exact "
+    "transform "
+    "of the PSF. Each analysis takes the other keywords that it knows of; docs/ANALYSES.md says which. "
     "`plots`: draws too.";
 constexpr const char* psf_text =
     "Diffraction PSFs by field and wavelength on one grid, as a PsfStack. `size` 0 and `spacing_um` 0: "
@@ -294,7 +296,8 @@ constexpr const char* draw_text =
       nb::arg("about") = "centroid", nb::arg("rays") = 21, nb::arg("opd") = false, nb::arg("samples") = 64, \
       nb::arg("zernike_order") = "fringe", nb::arg("terms") = 0, nb::arg("spot_weight") = "area",           \
       nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("sensor_reflectance") = 0.0,                          \
-      nb::arg("source_diameter_deg") = 0.53, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()
+      nb::arg("source_diameter_deg") = 0.53, nb::arg("azimuth_deg") = 0.0, nb::arg("as_psf") = false,       \
+      nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()
 
 /// What a lens and a camera have alike.
 void bind_methods(const nb::handle& type) {
@@ -304,8 +307,8 @@ void bind_methods(const nb::handle& type) {
   add("analyse", run_analysis, PETZVAL_ANALYSE_ARGUMENTS, analyse_text);
   add("psf", psfs, nb::arg("fields") = Numbers(), nb::kw_only(), nb::arg("field_type").none() = nb::none(),
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("size") = 0, nb::arg("spacing_um") = 0.0,
-      nb::arg("ignore_apertures") = false, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(),
-      psf_text);
+      nb::arg("ignore_apertures") = false, nb::arg("azimuth_deg") = 0.0, nb::arg("threads") = 0,
+      nb::arg("progress").none() = nb::none(), psf_text);
   add("trace", traced, nb::arg("points_mm"), nb::arg("directions"),
       nb::arg("wavelength_nm").none() = nb::none(), nb::kw_only(), nb::arg("ignore_apertures") = false,
       trace_text);

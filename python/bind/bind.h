@@ -29,6 +29,9 @@ namespace nb = nanobind;
 namespace petzval::python {
 
 using Numbers = std::vector<double>;
+/// What may be None.
+template <typename T>
+using Maybe = std::optional<T>;
 template <typename T>
 using Array = nb::ndarray<nb::numpy, T>;
 /// What functions take for bands of floats: NumPy, or anything with DLPack or the buffer protocol, in
@@ -54,6 +57,7 @@ void bind_sensor(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_light(nb::module_& module);
 void bind_camera(nb::module_& module);
+void bind_flare(nb::module_& module);
 void bind_analysis(nb::module_& module);
 void bind_design(nb::module_& module);
 void bind_dataset(nb::module_& module);

@@ -2,18 +2,14 @@
 #include "camera.h"
 
 #include <fmt/format.h>
-#include <petzval/optics/table_file.h>
-#include <petzval/simulate/imaging_session.h>
 
 #include "call.h"
-#include "scene.h"
+#include "constructor.h"
+#include "image.h"
 
 namespace petzval::python {
 
 namespace {
-
-template <typename Number>
-using Maybe = std::optional<Number>;
 
 using ApertureWords = std::initializer_list<std::pair<std::string_view, Camera::Apertures>>;
 const ApertureWords aperture_words{{"file", Camera::Apertures::as_given},
@@ -102,214 +98,12 @@ CameraInPython camera(const nb::object& lens, const nb::object& focus, Maybe<dou
   return result;
 }
 
-ImageOptions image_options(const std::string& method, Maybe<double> tolerance, int supersample,
-                           const std::string& surround, const std::string& interpolate,
-                           const std::string& fit, Maybe<int> section, int layers,
-                           Maybe<double> least_scene_angle_deg) {
-  ImageOptions options;
-  ImagingOptions& imaging = options.imaging;
-  imaging.method = choice<BlurMethod>("method", method,
-                                      {{"product", BlurMethod::product},
-                                       {"blended", BlurMethod::blended},
-                                       {"sections", BlurMethod::sections},
-                                       {"exact", BlurMethod::exact},
-                                       {"none", BlurMethod::none}});
-  if (tolerance) imaging.product.tolerance = *tolerance;
-  if (section) imaging.sections.section = *section;
-  imaging.supersample = supersample;
-  imaging.surround =
-      choice<Surround>("surround", surround,
-                       {{"error", Surround::error}, {"zero", Surround::zero}, {"extend", Surround::extend}});
-  imaging.interpolation = choice<PsfInterpolation>(
-      "interpolate", interpolate, {{"psf", PsfInterpolation::psf}, {"otf", PsfInterpolation::otf}});
-  imaging.fit = RadialFit::parse(fit);
-  options.depth.layers = layers;
-  options.least_scene_angle_deg = least_scene_angle_deg;
-  return options;
-}
-
-/// The keywords of every way to an image, after those of the scene.
-#define PETZVAL_IMAGE_ARGUMENTS                                                                              \
-  nb::kw_only(), nb::arg("method") = "product", nb::arg("tolerance").none() = nb::none(),                    \
-                 nb::arg("supersample") = 0, nb::arg("surround") = "error", nb::arg("interpolate") = "psf",  \
-                 nb::arg("fit") = "monotone", nb::arg("section").none() = nb::none(), nb::arg("layers") = 0, \
-                 nb::arg("least_scene_angle_deg").none() = nb::none(), nb::arg("threads") = 0,               \
-                 nb::arg("progress").none() = nb::none()
-
-SpectralImage image_of(Optics optics, const nb::object& scene, const ImageOptions& options,
-                       const CallOptions& how) {
-  SceneChoice chosen = scene_from(scene);
-  Call call(how);
-  return call([&](const Context& context) {
-    if (auto* request = std::get_if<SceneRequest>(&chosen))
-      return image(*request, std::move(optics), options, context);
-    return image(std::get<Scene>(std::move(chosen)), std::move(optics), options, context);
-  });
-}
-
-ImagePlan plan_of(Optics optics, const nb::object& scene, const ImageOptions& options,
-                  const CallOptions& how) {
-  SceneChoice chosen = scene_from(scene);
-  Call call(how);
-  return call([&](const Context& context) {
-    if (auto* request = std::get_if<SceneRequest>(&chosen))
-      return plan_image(*request, std::move(optics), options, context);
-    return plan_image(std::get<Scene>(std::move(chosen)), std::move(optics), options, context);
-  });
-}
-
-ImagingSession session_of(const nb::object& scene, const std::string& method, Maybe<double> tolerance,
-                          int supersample, const std::string& surround, const std::string& interpolate,
-                          const std::string& fit, Maybe<int> section, int layers,
-                          Maybe<double> least_scene_angle_deg) {
-  ImageOptions options = image_options(method, tolerance, supersample, surround, interpolate, fit, section,
-                                       layers, least_scene_angle_deg);
-  SceneChoice chosen = scene_from(scene);
-  if (auto* request = std::get_if<SceneRequest>(&chosen))
-    return ImagingSession(std::move(*request), std::move(options));
-  return ImagingSession(std::get<Scene>(std::move(chosen)), std::move(options));
-}
-
-Optics optics_of(const CameraInPython& camera) {
-  if (!camera.lens)
-    throw InputError(
-        "`lens`: a flat scene is imaged through a lens; Camera(\"edmund-54852\") would be right");
-  return camera.value();
-}
-
-Optics optics_of(const TableCamera& camera) {
-  return camera;
-}
-
-template <typename Self>
-SpectralImage session_image(ImagingSession& session, const Self& optics, int threads,
-                            const nb::object& progress) {
-  Call call({threads, 1, progress});
-  return call([&](const Context& context) { return session.image(optics_of(optics), context); });
-}
-
-template <auto make, typename Self>
-auto with_image_options(const Self& self, const nb::object& scene, const std::string& method,
-                        Maybe<double> tolerance, int supersample, const std::string& surround,
-                        const std::string& interpolate, const std::string& fit, Maybe<int> section,
-                        int layers, Maybe<double> least_scene_angle_deg, int threads,
-                        const nb::object& progress) {
-  return make(optics_of(self), scene,
-              image_options(method, tolerance, supersample, surround, interpolate, fit, section, layers,
-                            least_scene_angle_deg),
-              {threads, 1, progress});
-}
-
-constexpr const char* image_text =
-    "The light of a flat scene on the sensor. `scene`: a name, a SceneRequest, or a Scene in memory. "
-    "`method` of the blur: "
-    "product (to a relative L2 error of `tolerance`, 1e-3), blended, sections, exact or none; `supersample`: "
-    "cells along a side of a pixel, 0: as many as the tolerance needs; `surround` of a scene that is too "
-    "small: error, zero or extend; `layers` of a scene "
-    "with depth, 0: as "
-    "many as needed. `progress(fraction, what)` may return False to stop. Raises InputError; Cancelled.";
-constexpr const char* plan_text =
-    "What `image` does before it computes light: scene, table of the lens, frame. Takes the same keywords.";
-
 std::string repr(const CameraInPython& c) {
   std::string text = fmt::format("<Camera: lens {}, focus {}",
                                  c.lens ? "'" + c.lens->name + "'" : "of the scene", c.focus.text());
   if (c.f_number) text += fmt::format(", f/{:g}", *c.f_number);
   if (c.sensor) text += fmt::format(", sensor '{}'", c.sensor->name);
   return text + ">";
-}
-
-void bind_plan(nb::module_& module) {
-  nb::class_<SensorGeometry>(module, "Frame", "Where the pixels are, centred on the axis.")
-      .def_ro("columns", &SensorGeometry::columns)
-      .def_ro("rows", &SensorGeometry::rows)
-      .def_ro("pitch_um", &SensorGeometry::pitch_um)
-      .def("__repr__", [](const SensorGeometry& g) {
-        return fmt::format("Frame({} x {} at {:g} um)", g.columns, g.rows, g.pitch_um);
-      });
-  nb::class_<LensDataTable>(module, "LensDataTable",
-                            "What a lens does to light by field and wavelength (docs/TABLES.md).")
-      .def_static(
-          "load", [](const std::string& path) { return read_table(path); }, nb::arg("path"),
-          "Reads a .h5 of `petzval optics build`.")
-      .def(
-          "save", [](const LensDataTable& t, const std::string& path) { write_table(t, path); },
-          nb::arg("path"))
-      .def_ro("lens_name", &LensDataTable::lens_name)
-      .def_prop_ro("field_unit", &LensDataTable::field_unit, "\"deg\" or \"mm\".")
-      .def_prop_ro("fields", [](const LensDataTable& t) { return array_of(t.fields); })
-      .def_prop_ro("wavelengths_nm", [](const LensDataTable& t) { return array_of(t.wavelengths_nm); })
-      .def_prop_ro(
-          "real_image_height_mm",
-          [](const LensDataTable& t) {
-            return array_of(t.real_image_height_mm, {t.fields.size(), t.wavelengths_nm.size()});
-          },
-          "(field, wavelength)")
-      .def_prop_ro(
-          "g_source_sr",
-          [](const LensDataTable& t) {
-            return array_of(t.g_source_sr, {t.places(), t.wavelengths_nm.size()});
-          },
-          "(field, wavelength)")
-      .def_prop_ro(
-          "g_sensor_sr",
-          [](const LensDataTable& t) {
-            return array_of(t.g_sensor_sr, {t.places(), t.wavelengths_nm.size()});
-          },
-          "(field, wavelength)")
-      .def_prop_ro(
-          "over_frame", [](const LensDataTable& t) { return t.frame.has_value(); },
-          "Whether places lie over the frame in two dimensions; then fields and heights are empty, and "
-          "what is by field is by place, row by row.")
-      .def_prop_ro(
-          "image_x_mm",
-          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->x_mm : std::vector<double>()); },
-          "Places along x', of a table over the frame.")
-      .def_prop_ro(
-          "image_y_mm",
-          [](const LensDataTable& t) { return array_of(t.frame ? t.frame->y_mm : std::vector<double>()); },
-          "Places along y', of a table over the frame.")
-      .def("__repr__", [](const LensDataTable& t) {
-        return fmt::format("<LensDataTable of '{}': {} {}, {} wavelengths>", t.lens_name, t.places(),
-                           t.frame ? "places" : "fields", t.wavelengths_nm.size());
-      });
-  nb::class_<ImagePlan>(module, "ImagePlan", "Scene, table of the lens and frame, made to fit each other.")
-      .def_prop_ro(
-          "scene", [](ImagePlan& p) -> Scene& { return p.scene; }, nb::rv_policy::reference_internal)
-      .def_prop_ro(
-          "table", [](ImagePlan& p) -> LensDataTable& { return p.table; }, nb::rv_policy::reference_internal)
-      .def_prop_ro("frame", [](const ImagePlan& p) { return p.frame; })
-      .def(
-          "image",
-          [](const ImagePlan& plan, int threads, const nb::object& progress) {
-            Call call({threads, 1, progress});
-            return call([&](const Context& context) { return image(plan, context); });
-          },
-          nb::kw_only(), nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(),
-          "The light on the sensor.");
-  nb::class_<TableCamera>(module, "TableCamera",
-                          "A lens data table in the place of a lens, with the sensor behind it.")
-      .def(nb::new_([](const LensDataTable& table, const nb::object& sensor) {
-             TableCamera camera{table, {}};
-             if (const auto chosen = sensor_from(sensor)) camera.sensor = *chosen;
-             return camera;
-           }),
-           nb::arg("table"), nb::arg("sensor").none() = nb::none())
-      .def("image", with_image_options<image_of, TableCamera>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS,
-           image_text);
-  nb::class_<ImagingSession>(
-      module, "ImagingSession",
-      "One flat scene through one camera after the other. Keeps what an alteration leaves valid: the scene, "
-      "the table of the last lens, the last image. Gives the bytes of Camera.image().")
-      .def(nb::new_(&session_of), nb::arg("scene"), nb::kw_only(), nb::arg("method") = "product",
-           nb::arg("tolerance").none() = nb::none(), nb::arg("supersample") = 0,
-           nb::arg("surround") = "error", nb::arg("interpolate") = "psf", nb::arg("fit") = "monotone",
-           nb::arg("section").none() = nb::none(), nb::arg("layers") = 0,
-           nb::arg("least_scene_angle_deg").none() = nb::none(), "Keywords are those of Camera.image().")
-      .def("image", session_image<CameraInPython>, nb::arg("camera"), nb::kw_only(), nb::arg("threads") = 0,
-           nb::arg("progress").none() = nb::none(), "The light on the sensor.")
-      .def("image", session_image<TableCamera>, nb::arg("camera"), nb::kw_only(), nb::arg("threads") = 0,
-           nb::arg("progress").none() = nb::none());
 }
 
 }  // namespace
@@ -364,9 +158,9 @@ Lens lens_to_look_at(const nb::object& lens_or_camera) {
 }
 
 void bind_camera(nb::module_& module) {
-  bind_plan(module);
+  nb::class_<TableCamera> table_camera = bind_table_camera(module);
   using C = CameraInPython;
-  nb::class_<C> c(module, "Camera",
+  nb::class_<C> c(module, "Camera", nb::type_slots(explained_constructor),
                   "A lens, how it is used, and the sensor behind it. It refers to its lens: what alters the "
                   "lens alters the camera.");
   c.def(nb::new_(&camera), nb::arg("lens").none() = nb::none(), nb::kw_only(),
@@ -423,8 +217,6 @@ void bind_camera(nb::module_& module) {
                    "Of the surfaces between air and glass: a reflectance, a curve (wavelengths_nm, "
                    "reflectances), or thin "
                    "films by name or file (\"mgf2\"); or {surface: one of these}. None: bare glass.")
-      .def("image", with_image_options<image_of, C>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS, image_text)
-      .def("plan", with_image_options<plan_of, C>, nb::arg("scene"), PETZVAL_IMAGE_ARGUMENTS, plan_text)
       .def(
           "lens_in_use",
           [](nb::handle self) { return std::make_shared<Lens>(lens_to_look_at(nb::borrow(self))); },
@@ -451,6 +243,9 @@ void bind_camera(nb::module_& module) {
       },
       nb::arg().none(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg().none(),
       nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg().none(), nb::arg());
+  bind_table(module);
+  bind_image(c, table_camera, module);
+  bind_clip(c, table_camera, module);
   bind_render(c, module);
   bind_selection(c, module);
 }

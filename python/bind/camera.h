@@ -34,6 +34,11 @@ std::shared_ptr<Sensor> sensor_from(const nb::object& sensor);
 /// The lens of a Camera as it is used, or a Lens as it stands. \throws InputError unless it is valid.
 Lens lens_to_look_at(const nb::object& lens_or_camera);
 
+/// The class of lens data tables; it has a maker that takes a Camera.
+void bind_table(nb::module_& module);
+nb::class_<TableCamera> bind_table_camera(nb::module_& module);
+void bind_clip(nb::class_<CameraInPython>& camera, nb::class_<TableCamera>& table_camera,
+               nb::module_& module);
 void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module);
 void bind_selection(nb::class_<CameraInPython>& camera, nb::module_& module);
 

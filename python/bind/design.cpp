@@ -6,16 +6,11 @@
 #include "analysis.h"
 #include "call.h"
 #include "lens.h"
+#include "lens_parts.h"
 
 namespace petzval::python {
 
 namespace {
-
-std::vector<Tolerance> tolerances_from(const std::vector<std::string>& texts) {
-  std::vector<Tolerance> tolerances;
-  for (const std::string& text : texts) tolerances.push_back(parse_tolerance(text));
-  return tolerances;
-}
 
 ErrorDistribution distribution_from(const std::string& word) {
   return choice<ErrorDistribution>("distribution", word,
@@ -28,12 +23,12 @@ nb::object toleranced(const Lens& lens, const Numbers& fields, const std::option
                       const Numbers& wavelengths_nm, const std::vector<std::string>& tolerances,
                       const std::string& grade, std::optional<double> mtf_cpmm, std::optional<double> accept,
                       int builds, const std::string& distribution, const Numbers& azimuths_deg, bool refocus,
-                      std::optional<double> inverse_change, std::uint64_t seed, int threads,
-                      const nb::object& progress) {
+                      std::optional<double> inverse_change, bool ignore_apertures, std::uint64_t seed,
+                      int threads, const nb::object& progress) {
   ToleranceRequest request;
   request.tolerances = tolerances_from(tolerances);
   request.grade = grade;
-  request.judge.at = request_of(lens, fields, field_type, wavelengths_nm, false);
+  request.judge.at = request_of(lens, fields, field_type, wavelengths_nm, ignore_apertures);
   if (!azimuths_deg.empty()) request.judge.azimuths_deg = azimuths_deg;
   if (mtf_cpmm) request.judge.merit = {Merit::Kind::mtf, *mtf_cpmm};
   request.judge.refocus = refocus;
@@ -77,12 +72,12 @@ std::shared_ptr<Lens> built(const Lens& lens, std::size_t number, const std::vec
 nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables, const Numbers& fields,
                     const std::optional<std::string>& field_type, const Numbers& wavelengths_nm,
                     const Numbers& field_weights, const std::string& merit, std::optional<double> efl_mm,
-                    double least_rim_mm, int rounds, int starts, double start_spread, std::uint64_t seed,
-                    int threads, const nb::object& progress) {
+                    double least_rim_mm, int rounds, int starts, double start_spread, bool ignore_apertures,
+                    std::uint64_t seed, int threads, const nb::object& progress) {
   OptimiseRequest request;
   for (const std::string& text : variables)
     for (const LensVariable& each : parse_lens_variables(lens, text)) request.variables.push_back(each);
-  request.at = request_of(lens, fields, field_type, wavelengths_nm, false);
+  request.at = request_of(lens, fields, field_type, wavelengths_nm, ignore_apertures);
   request.field_weights = field_weights;
   request.merit = choice<OptimiseMerit>(
       "merit", merit, {{"spot", OptimiseMerit::rms_spot}, {"wavefront", OptimiseMerit::wavefront}});
@@ -100,6 +95,7 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
                   {"before", Numbers{found.before}},
                   {"after", Numbers{found.after}},
                   {"efl_mm", Numbers{found.efl_before_mm, found.efl_after_mm}},
+                  {"start", Numbers{static_cast<double>(found.start)}},
                   {"by_round", found.by_round}};
   result.tables = {{"rows", "by field", optimised_fields(found, request.at, request.merit)},
                    {"numbers", "what was altered", optimised_numbers(found)}};
@@ -136,16 +132,16 @@ void bind_design(nb::module_&) {
       nb::arg("tolerances") = std::vector<std::string>(), nb::arg("grade") = "precision",
       nb::arg("mtf_cpmm").none() = nb::none(), nb::arg("accept").none() = nb::none(), nb::arg("builds") = 200,
       nb::arg("distribution") = "normal", nb::arg("azimuths_deg") = Numbers(), nb::arg("refocus") = true,
-      nb::arg("inverse").none() = nb::none(), nb::arg("seed") = 1, nb::arg("threads") = 0,
-      nb::arg("progress").none() = nb::none(), tolerance_text);
+      nb::arg("inverse").none() = nb::none(), nb::arg("ignore_apertures") = false, nb::arg("seed") = 1,
+      nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), tolerance_text);
   add("built", built, nb::arg("number"), nb::kw_only(), nb::arg("tolerances") = std::vector<std::string>(),
       nb::arg("grade") = "precision", nb::arg("distribution") = "normal", nb::arg("seed") = 1, built_text);
   add("optimise", optimised, nb::arg("variables") = std::vector<std::string>(), nb::kw_only(),
       nb::arg("fields") = Numbers(), nb::arg("field_type").none() = nb::none(),
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(), nb::arg("merit") = "spot",
       nb::arg("efl_mm").none() = nb::none(), nb::arg("least_rim_mm") = 0.5, nb::arg("rounds") = 30,
-      nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("seed") = 1, nb::arg("threads") = 0,
-      nb::arg("progress").none() = nb::none(), optimise_text);
+      nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("ignore_apertures") = false,
+      nb::arg("seed") = 1, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), optimise_text);
 }
 
 }  // namespace petzval::python

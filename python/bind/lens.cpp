@@ -4,11 +4,15 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/transfer_fit.h>
 #include <petzval/lens/lens_states.h>
+#include <petzval/lens/reversed_lens.h>
+#include <petzval/lens/scaled_lens.h>
 
 #include <cmath>
 #include <variant>
 
+#include "constructor.h"
 #include "glass.h"
+#include "lens_parts.h"
 #include "surface.h"
 
 namespace petzval::python {
@@ -101,6 +105,15 @@ nb::object optional_distance(std::optional<double> value) {
   return value ? nb::cast(*value) : nb::none();
 }
 
+std::shared_ptr<Lens> scaled(const Lens& lens, Maybe<double> factor, Maybe<double> efl_mm) {
+  if (factor.has_value() == efl_mm.has_value())
+    throw InputError("a lens is scaled either by a `factor` or to an `efl_mm`; one of them would be right");
+  const double by = factor ? *factor : *efl_mm / std::abs(first_order(lens).efl_mm);
+  auto result = std::make_shared<Lens>(scaled_lens(lens, by));
+  result->name = fmt::format("{}, scaled by {:.4g}", lens.name, by);
+  return result;
+}
+
 std::string repr(const Lens& lens) {
   return fmt::format("<Lens '{}': {} surfaces, {}>", lens.name, lens.surfaces.size(),
                      nb::cast<std::string>(nb::repr(dict_of(aperture_of(lens)))));
@@ -167,7 +180,7 @@ Fields::Kind field_kind_of(std::string_view word) {
 void bind_lens(nb::module_& module) {
   bind_surface(module);
   bind_first_order(module);
-  nb::class_<Lens> lens(module, "Lens",
+  nb::class_<Lens> lens(module, "Lens", nb::type_slots(explained_constructor),
                         "A lens prescription: surfaces front to back, and what it is used for. Lengths in "
                         "mm, wavelengths in nm.");
   lens.def(nb::new_(&read), nb::arg("name"), nb::kw_only(),
@@ -207,6 +220,19 @@ void bind_lens(nb::module_& module) {
             self.object_distance_mm = d && std::isinf(*d) ? std::nullopt : d;
           },
           nb::for_setter(nb::arg("value").none()), "From the object to vertex 1; None: infinity.")
+      .def_prop_rw(
+          "groups", [](const Lens& self) { return groups_to(self.groups); },
+          [](Lens& self, const nb::iterable& groups) { self.groups = groups_from(groups); },
+          "Neighbouring surfaces that stand off their places as one: ({\"surfaces\": (2, 3), \"pose\": "
+          "{\"tilt_x_deg\": 0.1}, \"pivot_mm\": 0},); assign a whole sequence.")
+      .def_prop_rw(
+          "sensor_pose", [](const Lens& self) { return pose_to(self.sensor_pose); },
+          [](Lens& self, const nb::object& pose) { self.sensor_pose = pose_from(dict_of(pose)); },
+          "How far the image surface stands off its place, as `pose` of a Surface; assign a whole dict.")
+      .def_prop_rw(
+          "tolerances", [](const Lens& self) { return tolerances_to(self.tolerances); },
+          [](Lens& self, const std::vector<std::string>& texts) { self.tolerances = tolerances_from(texts); },
+          "That its maker keeps, as (\"element_tilt_deg@2-3=0.05\",); assign a whole sequence.")
       .def_prop_ro("total_track_mm", &Lens::total_track_mm, "From vertex 1 to the image surface.")
       .def_prop_ro("efl_mm", first_order_number<&FirstOrder::efl_mm>,
                    "Focal length at the reference wavelength.")
@@ -236,6 +262,14 @@ void bind_lens(nb::module_& module) {
           },
           nb::arg("state"),
           "A copy set to a state, by name or by number from 0 on; between two numbers, in proportion.")
+      .def(
+          "reversed", [](const Lens& self) { return std::make_shared<Lens>(reversed_lens(self)); },
+          "A copy turned round, its sensor in the paraxial image.")
+      .def("scaled", scaled, nb::arg("factor").none() = nb::none(), nb::kw_only(),
+           nb::arg("efl_mm").none() = nb::none(),
+           "A copy with every length multiplied by `factor`, or so that its focal length is `efl_mm`; "
+           "f-number "
+           "and angles stay.")
       .def("copy", [](const Lens& self) { return std::make_shared<Lens>(self); })
       .def("__copy__", [](const Lens& self) { return std::make_shared<Lens>(self); })
       .def(

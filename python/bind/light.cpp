@@ -6,6 +6,7 @@
 
 #include "bind.h"
 #include "call.h"
+#include "constructor.h"
 
 namespace petzval::python {
 
@@ -118,7 +119,7 @@ void bind_light(nb::module_& module) {
         return fmt::format("<LensFacts '{}': {:.4g} mm f/{:.3g}>", f.name, f.focal_length_mm, f.f_number);
       });
   nb::class_<SpectralImage>(
-      module, "SpectralImage",
+      module, "SpectralImage", nb::type_slots(explained_constructor),
       "Spectral irradiance on the sensor [W/(m2 nm)], (row, column, wavelength), upright, row 0 on top.")
       .def(nb::new_(&of_array), nb::arg("values"), nb::arg("wavelengths_nm"), nb::arg("pitch_um"),
            nb::arg("pixel_aperture") = "box",

@@ -19,8 +19,6 @@ namespace petzval::python {
 
 namespace {
 
-template <typename Number>
-using Maybe = std::optional<Number>;
 using DoublesIn = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 
 // ---- edges

@@ -11,6 +11,7 @@ NB_MODULE(_petzval, module) {
   bind_sensor(module);
   bind_scene(module);
   bind_light(module);
+  bind_flare(module);
   bind_camera(module);
   bind_analysis(module);
   bind_design(module);

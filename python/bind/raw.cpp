@@ -7,17 +7,13 @@
 
 #include "call.h"
 #include "camera.h"
+#include "constructor.h"
+#include "keywords.h"
 #include "picture.h"
 
 namespace petzval::python {
 
 namespace {
-
-template <typename Number>
-using Maybe = std::optional<Number>;
-
-using SpaceWords = std::initializer_list<std::pair<std::string_view, DisplaySpace>>;
-const SpaceWords space_words{{"srgb", DisplaySpace::srgb}, {"display-p3", DisplaySpace::display_p3}};
 
 /// Seconds, or what Exposure::parse takes.
 Exposure exposure_from(const nb::object& exposure) {
@@ -25,12 +21,13 @@ Exposure exposure_from(const nb::object& exposure) {
   return Exposure::seconds(nb::cast<double>(exposure));
 }
 
-RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const nb::object& exposure,
-                   const std::string& metering, double compensation_ev, const std::string& gain_mode,
-                   double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
-                   const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-                   const std::string& illuminant_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm,
-                   int threads, std::uint64_t seed, const nb::object& progress) {
+}  // namespace
+
+ExposeOptions expose_options(const nb::object& exposure, const std::string& metering, double compensation_ev,
+                             const std::string& gain_mode, double analog_gain, Maybe<double> temperature_c,
+                             Maybe<std::uint64_t> serial, const std::vector<std::string>& without,
+                             const Numbers& bracket_ev, const std::string& illuminant_name,
+                             Maybe<double> f_number, Maybe<double> exit_pupil_mm) {
   ExposeOptions options;
   options.exposure = exposure_from(exposure);
   options.metering = choice<Metering::Rule>(
@@ -39,21 +36,44 @@ RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const nb::o
   options.compensation_ev = compensation_ev, options.gain_mode = gain_mode, options.analog_gain = analog_gain;
   options.temperature_c = temperature_c, options.serial = serial;
   for (const std::string& name : without) options.without.insert(noise_source(name));
-  options.frames = frames, options.bracket_ev = bracket_ev;
+  options.bracket_ev = bracket_ev;
   options.f_number = f_number, options.exit_pupil_mm = exit_pupil_mm;
   if (!illuminant_name.empty()) options.illuminant = illuminant(illuminant_name);
-  Call call({threads, seed, progress});
+  return options;
+}
+
+namespace {
+
+using SpaceWords = std::initializer_list<std::pair<std::string_view, DisplaySpace>>;
+const SpaceWords space_words{{"srgb", DisplaySpace::srgb}, {"display-p3", DisplaySpace::display_p3}};
+
+RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const ExposeOptions& options,
+                   const CallOptions& how) {
+  Call call(how);
   return call([&](const Context& context) { return expose(light, sensor, options, context); });
 }
 
-#define PETZVAL_EXPOSE_ARGUMENTS                                                                             \
-  nb::arg("light"), nb::kw_only(),                                                                           \
-      nb::arg("exposure") = "auto", nb::arg("metering") = "highlights", nb::arg("compensation_ev") = 0.0,    \
-      nb::arg("gain_mode") = "", nb::arg("analog_gain") = 1.0, nb::arg("temperature_c").none() = nb::none(), \
-      nb::arg("serial").none() = nb::none(), nb::arg("without") = std::vector<std::string>(),                \
-      nb::arg("frames") = 1, nb::arg("bracket_ev") = Numbers(), nb::arg("illuminant") = "",                  \
-      nb::arg("f_number").none() = nb::none(), nb::arg("exit_pupil_mm").none() = nb::none(),                 \
-      nb::arg("threads") = 0, nb::arg("seed") = 1, nb::arg("progress").none() = nb::none()
+const Sensor& sensor_of(const Sensor& sensor) {
+  return sensor;
+}
+
+const Sensor& sensor_of(const CameraInPython& camera) {
+  if (!camera.sensor)
+    throw InputError(
+        "`sensor`: a camera without one exposes nothing; Camera(lens, sensor=\"imx363\") would be right");
+  return *camera.sensor;
+}
+
+/// Exposing as a function with the keywords of exposures.
+template <typename Self, typename... OfExposure>
+auto expose_function(ExposeOptions (*)(OfExposure...)) {
+  return [](const Self& self, const SpectralImage& light, OfExposure... of_exposure, int frames, int threads,
+            std::uint64_t seed, const nb::object& progress) {
+    ExposeOptions options = expose_options(of_exposure...);
+    options.frames = frames;
+    return expose_to(light, sensor_of(self), options, {threads, seed, progress});
+  };
+}
 
 constexpr const char* expose_text =
     "Exposes the sensor to light, as a Raw. `exposure`: auto, seconds, or an exposure value (\"ev:12\"). "
@@ -64,13 +84,6 @@ constexpr const char* expose_text =
     "exposure values) and `exit_pupil_mm` (from the sensor, negative in front of it; for microlenses): the "
     "lens's, where they are known. Raises InputError; "
     "Cancelled.";
-
-RawImage expose_of_camera(const SpectralImage& light, const CameraInPython& camera, const auto&... options) {
-  if (!camera.sensor)
-    throw InputError(
-        "`sensor`: a camera without one exposes nothing; Camera(lens, sensor=\"imx363\") would be right");
-  return expose_to(light, *camera.sensor, options...);
-}
 
 WhiteBalance white_balance_from(const nb::object& white_balance, const nb::object& sensor) {
   WhiteBalance result;
@@ -239,7 +252,7 @@ PictureInPython picture_of_array(
 
 void bind_picture(nb::module_& module) {
   nb::class_<PictureInPython>(
-      module, "Picture",
+      module, "Picture", nb::type_slots(explained_constructor),
       "A developed picture: linear light of a display, (row, column, channel), 1 is white.")
       .def(nb::new_(&picture_of_array), nb::arg("values"), nb::arg("space") = "srgb",
            "Of an array (row, column, channel) of linear float32, which is copied.")
@@ -317,32 +330,11 @@ void bind_raw(nb::module_& module) {
   const auto add = [&](nb::handle type, const char* name, auto function, auto... extra) {
     nb::cpp_function_def(function, nb::scope(type), nb::name(name), nb::is_method(), extra...);
   };
-  add(
-      nb::type<Sensor>(), "expose",
-      [](const Sensor& self, const SpectralImage& light, const nb::object& exposure,
-         const std::string& metering, double compensation_ev, const std::string& gain_mode,
-         double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
-         const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-         const std::string& light_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm, int threads,
-         std::uint64_t seed, const nb::object& progress) {
-        return expose_to(light, self, exposure, metering, compensation_ev, gain_mode, analog_gain,
-                         temperature_c, serial, without, frames, bracket_ev, light_name, f_number,
-                         exit_pupil_mm, threads, seed, progress);
-      },
-      PETZVAL_EXPOSE_ARGUMENTS, expose_text);
-  add(
-      nb::type<CameraInPython>(), "expose",
-      [](const CameraInPython& self, const SpectralImage& light, const nb::object& exposure,
-         const std::string& metering, double compensation_ev, const std::string& gain_mode,
-         double analog_gain, Maybe<double> temperature_c, Maybe<std::uint64_t> serial,
-         const std::vector<std::string>& without, int frames, const Numbers& bracket_ev,
-         const std::string& light_name, Maybe<double> f_number, Maybe<double> exit_pupil_mm, int threads,
-         std::uint64_t seed, const nb::object& progress) {
-        return expose_of_camera(light, self, exposure, metering, compensation_ev, gain_mode, analog_gain,
-                                temperature_c, serial, without, frames, bracket_ev, light_name, f_number,
-                                exit_pupil_mm, threads, seed, progress);
-      },
-      PETZVAL_EXPOSE_ARGUMENTS, expose_text);
+  add(nb::type<Sensor>(), "expose", expose_function<Sensor>(expose_options), nb::arg("light"), nb::kw_only(),
+      PETZVAL_EXPOSE_KEYWORDS, nb::arg("frames") = 1, PETZVAL_SEEDED_CALL_KEYWORDS, expose_text);
+  add(nb::type<CameraInPython>(), "expose", expose_function<CameraInPython>(expose_options), nb::arg("light"),
+      nb::kw_only(), PETZVAL_EXPOSE_KEYWORDS, nb::arg("frames") = 1, PETZVAL_SEEDED_CALL_KEYWORDS,
+      expose_text);
   module.def("develop", develop_raw, nb::arg("raw"), nb::kw_only(), nb::arg("white_balance") = "as-shot",
              nb::arg("sensor").none() = nb::none(), nb::arg("demosaic").none() = nb::none(),
              nb::arg("colours") = true, nb::arg("flat").none() = nb::none(), nb::arg("defects") = true,

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Three-dimensional scenes through a camera, and autofocus on them.
 #include <fmt/format.h>
+#include <petzval/simulate/render_estimate.h>
+#include <petzval/simulate/scene_segments.h>
+#include <petzval/simulate/scene_truth.h>
 
-#include "call.h"
 #include "camera.h"
+#include "keywords.h"
 
 namespace petzval::python {
 
 namespace {
 
-template <typename Number>
-using Maybe = std::optional<Number>;
 using Zones = std::vector<std::array<double, 4>>;
 
 std::vector<FocusZone> zones_from(const Zones& zones) {
@@ -19,60 +20,126 @@ std::vector<FocusZone> zones_from(const Zones& zones) {
   return result;
 }
 
-RenderRequest request(const CameraInPython& camera, const std::string& scene, Maybe<std::pair<int, int>> size,
-                      const Numbers& wavelengths_nm, Maybe<int> samples_per_pixel, double noise,
-                      bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
-                      Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
-                      double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra,
-                      bool skip_unsupported, const std::string& checkpoint, const std::string& sampling,
-                      Maybe<std::array<double, 2>> focus_pixel, Maybe<std::array<double, 3>> camera_at,
-                      Maybe<std::array<double, 3>> look_at, Maybe<double> field_of_view_deg,
-                      double light_scale) {
+/// A rendering, and what was asked for beside it.
+struct RenderingInPython : Rendering {
+  explicit RenderingInPython(Rendering light) : Rendering(std::move(light)) {}
+  Maybe<FlareLayers> flare = {};
+  std::vector<std::int32_t> segments = {};  ///< [row][column][shape, instance, material]
+  std::vector<float> flow = {};             ///< [row][column][right, down]
+};
+
+RenderRequest request_of(
+    const CameraInPython& camera, const std::string& scene, Maybe<std::pair<int, int>> size,
+    const Numbers& wavelengths_nm, Maybe<int> samples_per_pixel, double noise, bool first_surfaces,
+    const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm, Maybe<double> aperture_diameter_mm,
+    bool diffraction, Maybe<int> max_depth, double scene_unit_mm, Maybe<double> sky_cd_m2,
+    bool absolute_spectra, bool skip_unsupported, const std::string& checkpoint, double checkpoint_seconds,
+    const std::string& sampling, Maybe<std::array<double, 2>> focus_pixel, bool focus_as_in_scene,
+    Maybe<std::array<double, 3>> camera_at, Maybe<std::array<double, 3>> look_at,
+    Maybe<double> field_of_view_deg, double light_scale, Maybe<std::array<double, 3>> camera_move,
+    Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
+    Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
+    Maybe<std::array<int, 2>> sample_range) {
   RenderRequest r;
-  r.focus_pixel = focus_pixel, r.camera_at = camera_at, r.look_at = look_at;
-  r.field_of_view_deg = field_of_view_deg, r.light_scale = light_scale;
   r.scene = scene, r.camera = camera.value();
   if (size) r.columns = size->first, r.rows = size->second;
   r.wavelengths_nm = wavelengths_nm;
   r.samples_per_pixel = samples_per_pixel, r.noise = noise, r.first_surfaces = first_surfaces;
   r.autofocus.zones = zones_from(zones);
   r.pinhole = pinhole, r.film_diagonal_mm = film_diagonal_mm, r.aperture_diameter_mm = aperture_diameter_mm;
-  r.diffraction = diffraction, r.max_depth = max_depth, r.scene_unit_mm = scene_unit_mm,
-  r.sky_cd_m2 = sky_cd_m2;
-  r.absolute_spectra = absolute_spectra, r.skip_unsupported = skip_unsupported, r.checkpoint = checkpoint;
+  r.diffraction = diffraction, r.max_depth = max_depth, r.scene_unit_mm = scene_unit_mm;
+  r.sky_cd_m2 = sky_cd_m2, r.light_scale = light_scale;
+  r.absolute_spectra = absolute_spectra, r.skip_unsupported = skip_unsupported;
+  r.checkpoint = checkpoint, r.checkpoint_seconds = checkpoint_seconds;
   r.sampling = choice<RenderRequest::Sampling>("sampling", sampling,
                                                {{"exit-pupil", RenderRequest::Sampling::exit_pupil},
                                                 {"rear-disk", RenderRequest::Sampling::rear_disk}});
+  r.focus_pixel = focus_pixel, r.focus_as_in_scene = focus_as_in_scene;
+  r.camera_at = camera_at, r.look_at = look_at, r.field_of_view_deg = field_of_view_deg;
+  r.camera_move = camera_move, r.look_move = look_move, r.rolling_shutter = rolling_shutter;
+  r.camera_origin = choice<RenderRequest::Origin>(
+      "camera_origin", camera_origin,
+      {{"film", RenderRequest::Origin::film}, {"front", RenderRequest::Origin::front}});
+  r.near_distance = near_distance, r.far_distance = far_distance;
+  r.region = region, r.sample_range = sample_range;
   return r;
 }
+#define PETZVAL_RENDER_ARGUMENTS                                                                            \
+  nb::arg("scene"), nb::kw_only(),                                                                          \
+      nb::arg("size").none() = nb::none(), nb::arg("wavelengths_nm") = Numbers(),                           \
+      nb::arg("samples_per_pixel").none() = nb::none(), nb::arg("noise") = 0.0,                             \
+      nb::arg("first_surfaces") = false, nb::arg("zones") = Zones(), nb::arg("pinhole") = false,            \
+      nb::arg("film_diagonal_mm").none() = nb::none(), nb::arg("aperture_diameter_mm").none() = nb::none(), \
+      nb::arg("diffraction") = false, nb::arg("max_depth").none() = nb::none(),                             \
+      nb::arg("scene_unit_mm") = 1000.0, nb::arg("sky_cd_m2").none() = nb::none(),                          \
+      nb::arg("absolute_spectra") = false, nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "", \
+      nb::arg("checkpoint_seconds") = 60.0, nb::arg("sampling") = "exit-pupil",                             \
+      nb::arg("focus_pixel").none() = nb::none(), nb::arg("focus_as_in_scene") = false,                     \
+      nb::arg("camera_at").none() = nb::none(), nb::arg("look_at").none() = nb::none(),                     \
+      nb::arg("field_of_view_deg").none() = nb::none(), nb::arg("light_scale") = 1.0,                       \
+      nb::arg("camera_move").none() = nb::none(), nb::arg("look_move").none() = nb::none(),                 \
+      nb::arg("rolling_shutter") = 0.0, nb::arg("camera_origin") = "film",                                  \
+      nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
+      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none()
 
-Rendering render(const CameraInPython& camera, const std::string& scene, Maybe<std::pair<int, int>> size,
-                 const Numbers& wavelengths_nm, Maybe<int> samples_per_pixel, double noise,
-                 bool first_surfaces, const Zones& zones, bool pinhole, Maybe<double> film_diagonal_mm,
-                 Maybe<double> aperture_diameter_mm, bool diffraction, Maybe<int> max_depth,
-                 double scene_unit_mm, Maybe<double> sky_cd_m2, bool absolute_spectra, bool skip_unsupported,
-                 const std::string& checkpoint, const std::string& sampling,
-                 Maybe<std::array<double, 2>> focus_pixel, Maybe<std::array<double, 3>> camera_at,
-                 Maybe<std::array<double, 3>> look_at, Maybe<double> field_of_view_deg, double light_scale,
-                 Maybe<std::array<double, 3>> camera_move, Maybe<std::array<double, 3>> look_move,
-                 double rolling_shutter, Maybe<std::array<int, 4>> region,
-                 Maybe<std::array<int, 2>> sample_range, int threads, std::uint64_t seed,
-                 const nb::object& progress) {
-  RenderRequest asked =
-      request(camera, scene, size, wavelengths_nm, samples_per_pixel, noise, first_surfaces, zones, pinhole,
-              film_diagonal_mm, aperture_diameter_mm, diffraction, max_depth, scene_unit_mm, sky_cd_m2,
-              absolute_spectra, skip_unsupported, checkpoint, sampling, focus_pixel, camera_at, look_at,
-              field_of_view_deg, light_scale);
-  asked.camera_move = camera_move, asked.look_move = look_move, asked.rolling_shutter = rolling_shutter;
-  asked.region = region, asked.sample_range = sample_range;
-  Call call({threads, seed, progress});
-  return call([&](const Context& context) { return render_scene(asked, context); });
+std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
+  std::vector<std::int32_t> values;
+  values.reserve(3 * seen.shape.size());
+  for (std::size_t i = 0; i < seen.shape.size(); ++i)
+    values.insert(values.end(), {seen.shape[i], seen.instance[i], seen.material[i]});
+  return values;
+}
+
+/// `render` as a function with the keywords of renderings and of light that goes astray.
+template <typename... OfRender, typename... OfFlare>
+auto render_function(RenderRequest (*)(const CameraInPython&, OfRender...), FlareOptions (*)(OfFlare...)) {
+  return [](const CameraInPython& camera, OfRender... of_render, OfFlare... of_flare, bool segments,
+            bool flow, int threads, std::uint64_t seed, const nb::object& progress) {
+    const RenderRequest asked = request_of(camera, of_render...);
+    const FlareOptions flare = flare_options(of_flare...);
+    if (asked.is_piece() && (flare.any() || segments || flow))
+      throw InputError(
+          "a piece of a picture is its light alone; `suns`, `ghosts`, `segments` and `flow` of the whole "
+          "picture would be right");
+    Call call({threads, seed, progress});
+    return call([&](const Context& context) {
+      PreparedScene scene = prepare_scene(asked, context);
+      if (scene.wants_autofocus()) autofocus(scene, context);
+      Maybe<FlareLayers> layers;
+      if (flare.any()) layers = scene_flare(scene, flare, context);
+      RenderingInPython made(render_scene(scene, context));
+      if (layers) add_layers(*layers, made.irradiance);
+      made.flare = std::move(layers);
+      if (segments) made.segments = interleaved(segments_seen(scene, context));
+      if (flow) made.flow = flow_seen(scene, context);
+      return made;
+    });
+  };
+}
+
+/// What a rendering would take.
+template <typename... OfRender>
+auto estimate_function(RenderRequest (*)(const CameraInPython&, OfRender...)) {
+  return [](const CameraInPython& camera, OfRender... of_render, int threads, std::uint64_t seed,
+            const nb::object& progress) {
+    const RenderRequest asked = request_of(camera, of_render...);
+    Call call({threads, seed, progress});
+    const RenderEstimate cost =
+        call([&](const Context& context) { return estimate_render(prepare_scene(asked, context), context); });
+    nb::dict told;
+    told["samples_per_pixel"] = cost.samples_per_pixel;
+    told["seconds"] = cost.seconds;
+    told["memory_bytes"] = cost.memory_bytes;
+    told["probe_seconds"] = cost.probe_seconds;
+    return told;
+  };
 }
 
 FocusRun focus_on(const CameraInPython& camera, const std::string& scene, Maybe<std::pair<int, int>> size,
-                  const Zones& zones, const std::string& measure, const std::string& search,
-                  int samples_per_pixel, Maybe<int> most_evaluations, Maybe<double> from_mm,
-                  Maybe<double> to_mm, Maybe<double> film_diagonal_mm, int threads, std::uint64_t seed,
+                  const Zones& zones, const std::string& measure, const std::string& search, int focus_step,
+                  double focus_threshold, int samples_per_pixel, Maybe<int> most_evaluations,
+                  Maybe<double> from_mm, Maybe<double> to_mm, Maybe<double> depth_mm,
+                  Maybe<double> film_diagonal_mm, int threads, std::uint64_t seed,
                   const nb::object& progress) {
   RenderRequest r;
   r.scene = scene, r.camera = camera.value();
@@ -81,6 +148,8 @@ FocusRun focus_on(const CameraInPython& camera, const std::string& scene, Maybe<
   AutofocusOptions& options = r.autofocus;
   options.zones = zones_from(zones);
   options.measure.measure = focus_measure_of(measure);
+  options.measure.step = focus_step, options.measure.threshold = focus_threshold;
+  options.depth_mm = depth_mm;
   options.search = autofocus_search_of(search);
   options.samples_per_pixel = samples_per_pixel, options.most_evaluations = most_evaluations;
   options.from_mm = from_mm, options.to_mm = to_mm;
@@ -88,10 +157,20 @@ FocusRun focus_on(const CameraInPython& camera, const std::string& scene, Maybe<
   return call([&](const Context& context) { return autofocus(r, context); });
 }
 
+/// A view (row, column, number) of what a rendering holds of its pixels, or None where it was not asked for.
+template <typename T>
+nb::object plane_of(nb::handle self, std::vector<T>& values, std::size_t numbers) {
+  if (values.empty()) return nb::none();
+  const SpectralImage& light = nb::cast<RenderingInPython&>(self).irradiance;
+  const std::size_t shape[] = {static_cast<std::size_t>(light.rows()),
+                               static_cast<std::size_t>(light.columns()), numbers};
+  return nb::cast(Array<T>(values.data(), 3, shape, self));
+}
+
 /// A view of one of a rendering's planes, or None where it was not asked for.
 template <std::vector<float> render::FirstSurfaces::*member>
 nb::object first_surface(nb::handle self, std::size_t last) {
-  auto& r = nb::cast<Rendering&>(self);
+  auto& r = nb::cast<RenderingInPython&>(self);
   if (!r.first_surfaces) return nb::none();
   std::vector<float>& values = (*r.first_surfaces).*member;
   const auto rows = static_cast<std::size_t>(r.irradiance.rows()),
@@ -101,12 +180,29 @@ nb::object first_surface(nb::handle self, std::size_t last) {
   return nb::cast(Array<float>(values.data(), shape.size(), shape.data(), self));
 }
 
+constexpr const char* render_text =
+    "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the sensor, "
+    "path-traced through every surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS "
+    "error over mean light is reached. `zones`: (left, right, top, bottom) in fractions of the picture, for "
+    "focus \"auto\". `focus_pixel`: (column, row) of what is to be sharp. `camera_at`, `look_at`: (x, y, z) "
+    "[scene units]; `field_of_view_deg`: across the picture, without a lens. `camera_move`, `look_move`: how "
+    "the camera and what is in the middle of its picture move while the shutter is open [scene units]; "
+    "`rolling_shutter`: share of that time by which the last row begins after the first. `camera_origin`: "
+    "film "
+    "or front, what stands where the scene puts its camera. `near_distance`, `far_distance` [scene units]: "
+    "nothing outside is seen. `region` (column, row, columns, rows) and `sample_range` (first, end): a piece "
+    "for `checkpoint`, which merge_renderings() puts together with others. `suns`, `ghosts` and `starburst` "
+    "as "
+    "of `image`; the rendering's `flare` has their layers. `first_surfaces`, `segments` and `flow` add what "
+    "is "
+    "known of each pixel. Raises InputError; Cancelled.";
+
 }  // namespace
 
 void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
-  nb::class_<Rendering>(module, "Rendering", "What comes of rendering.")
+  nb::class_<RenderingInPython>(module, "Rendering", "What comes of rendering.")
       .def_prop_ro(
-          "light", [](Rendering& r) -> SpectralImage& { return r.irradiance; },
+          "light", [](RenderingInPython& r) -> SpectralImage& { return r.irradiance; },
           nb::rv_policy::reference_internal, "The irradiance on the sensor.")
       .def_prop_ro(
           "depth", [](nb::handle self) { return first_surface<&render::FirstSurfaces::depth>(self, 0); },
@@ -118,7 +214,7 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       .def_prop_ro(
           "albedo",
           [](nb::handle self) -> nb::object {
-            auto& r = nb::cast<Rendering&>(self);
+            auto& r = nb::cast<RenderingInPython&>(self);
             if (!r.first_surfaces) return nb::none();
             const SpectralImage& light = r.irradiance;
             return nb::cast(bands_view(r.first_surfaces->albedo.data(), light.rows(), light.columns(),
@@ -128,11 +224,28 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       .def_prop_ro(
           "share", [](nb::handle self) { return first_surface<&render::FirstSurfaces::share>(self, 0); },
           "Of the rays that met a surface, (row, column).")
-      .def_ro("rays", &Rendering::rays)
-      .def_ro("passed", &Rendering::passed, "Rays that got through the lens.")
-      .def_ro("samples_per_pixel", &Rendering::samples_per_pixel)
-      .def_ro("noise", &Rendering::noise, "Estimate, if it was asked for.")
-      .def("__repr__", [](const Rendering& r) {
+      .def_prop_ro(
+          "flare", [](RenderingInPython& r) { return r.flare ? &*r.flare : nullptr; },
+          nb::rv_policy::reference_internal,
+          "The Flare that `light` has, layer by layer; None unless `suns`, `ghosts` or `starburst`.")
+      .def_prop_ro(
+          "segments",
+          [](nb::handle self) { return plane_of(self, nb::cast<RenderingInPython&>(self).segments, 3); },
+          "What the middle of each pixel sees: (row, column, 3) of int32, the numbers of shape, placed "
+          "object "
+          "and material in the scene, -1 for none; None unless asked for.")
+      .def_prop_ro(
+          "flow", [](nb::handle self) { return plane_of(self, nb::cast<RenderingInPython&>(self).flow, 2); },
+          "How far what a pixel's middle sees moves while its row is exposed [pixels]: (row, column, 2) to "
+          "the "
+          "right and down, NaN where nothing is seen; None unless asked for.")
+      .def_prop_ro("rays", [](const RenderingInPython& r) { return r.rays; })
+      .def_prop_ro(
+          "passed", [](const RenderingInPython& r) { return r.passed; }, "Rays that got through the lens.")
+      .def_prop_ro("samples_per_pixel", [](const RenderingInPython& r) { return r.samples_per_pixel; })
+      .def_prop_ro(
+          "noise", [](const RenderingInPython& r) { return r.noise; }, "Estimate, if it was asked for.")
+      .def("__repr__", [](const RenderingInPython& r) {
         return fmt::format("<Rendering {} x {}, {} bands, {} samples a pixel>", r.irradiance.columns(),
                            r.irradiance.rows(), r.irradiance.bands(), r.samples_per_pixel);
       });
@@ -160,32 +273,14 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
         return fmt::format("<FocusRun: film at {:.6g} mm after {} pictures>", f.result.film_distance_mm,
                            f.result.evaluations.size());
       });
-  camera.def(
-      "render", render, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
-      nb::arg("wavelengths_nm") = Numbers(), nb::arg("samples_per_pixel").none() = nb::none(),
-      nb::arg("noise") = 0.0, nb::arg("first_surfaces") = false, nb::arg("zones") = Zones(),
-      nb::arg("pinhole") = false, nb::arg("film_diagonal_mm").none() = nb::none(),
-      nb::arg("aperture_diameter_mm").none() = nb::none(), nb::arg("diffraction") = false,
-      nb::arg("max_depth").none() = nb::none(), nb::arg("scene_unit_mm") = 1000.0,
-      nb::arg("sky_cd_m2").none() = nb::none(), nb::arg("absolute_spectra") = false,
-      nb::arg("skip_unsupported") = false, nb::arg("checkpoint") = "", nb::arg("sampling") = "exit-pupil",
-      nb::arg("focus_pixel").none() = nb::none(), nb::arg("camera_at").none() = nb::none(),
-      nb::arg("look_at").none() = nb::none(), nb::arg("field_of_view_deg").none() = nb::none(),
-      nb::arg("light_scale") = 1.0, nb::arg("camera_move").none() = nb::none(),
-      nb::arg("look_move").none() = nb::none(), nb::arg("rolling_shutter") = 0.0,
-      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),
-      nb::arg("threads") = 0, nb::arg("seed") = 1, nb::arg("progress").none() = nb::none(),
-      "The light of a three-dimensional scene (pbrt-v4 text, .gltf, .glb or a bundled name) on the "
-      "sensor, path-traced through every "
-      "surface of the lens. `size`: (columns, rows). `noise` > 0: ends when that RMS error over mean "
-      "light is reached. `zones`: "
-      "(left, right, top, bottom) in fractions of the picture, for focus \"auto\". `focus_pixel`: (column, "
-      "row) of what is to be sharp. `camera_at`, `look_at`: (x, y, z) [scene units]; "
-      "`field_of_view_deg`: across the picture, without a lens. `camera_move`, `look_move`: how the camera "
-      "and what is in the middle of its picture move while the shutter is open [scene units]; "
-      "`rolling_shutter`: share of that time by which the last row begins after the first. `region` (column, "
-      "row, columns, rows) and `sample_range` (first, end): a piece for `checkpoint`, which "
-      "merge_renderings() puts together with others. Raises InputError; Cancelled.");
+  camera.def("render", render_function(request_of, flare_options), PETZVAL_RENDER_ARGUMENTS,
+             PETZVAL_FLARE_KEYWORDS, nb::arg("segments") = false, nb::arg("flow") = false,
+             PETZVAL_SEEDED_CALL_KEYWORDS, render_text);
+  camera.def("estimate_render", estimate_function(request_of), PETZVAL_RENDER_ARGUMENTS,
+             PETZVAL_SEEDED_CALL_KEYWORDS,
+             "What `render` with these keywords would take, from a small picture: a dict with "
+             "`samples_per_pixel`, `seconds`, `memory_bytes` and `probe_seconds`. Raises InputError; "
+             "Cancelled.");
   module.def(
       "merge_renderings",
       [](const std::vector<std::string>& pieces, const std::string& checkpoint, const nb::object& progress) {
@@ -210,11 +305,17 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
   camera.def(
       "autofocus", focus_on, nb::arg("scene"), nb::kw_only(), nb::arg("size").none() = nb::none(),
       nb::arg("zones") = Zones(), nb::arg("focus_measure") = "gradient", nb::arg("focus_search") = "brent",
-      nb::arg("samples_per_pixel") = 16, nb::arg("most_evaluations") = nb::none(),
-      nb::arg("from_mm").none() = nb::none(), nb::arg("to_mm").none() = nb::none(),
+      nb::arg("focus_step") = FocusMeasureOptions().step,
+      nb::arg("focus_threshold") = FocusMeasureOptions().threshold, nb::arg("samples_per_pixel") = 16,
+      nb::arg("most_evaluations") = nb::none(), nb::arg("from_mm").none() = nb::none(),
+      nb::arg("to_mm").none() = nb::none(), nb::arg("depth_mm").none() = nb::none(),
       nb::arg("film_diagonal_mm").none() = nb::none(), nb::arg("threads") = 0, nb::arg("seed") = 1,
       nb::arg("progress").none() = nb::none(),
-      "The film distance at which the zones of a three-dimensional scene are sharpest, as a FocusRun.");
+      "The film distance at which the zones of a three-dimensional scene are sharpest, as a FocusRun. "
+      "`focus_measure`: sml, gradient or laplacian, of differences `focus_step` pixels apart; "
+      "`focus_threshold`: modified Laplacians below it do not count. `focus_search`: brent, golden-2006 or "
+      "scan, `from_mm` `to_mm` [film distances] in at most `most_evaluations` places; `depth_mm` of focus: "
+      "its scale. Raises InputError; Cancelled.");
 }
 
 }  // namespace petzval::python

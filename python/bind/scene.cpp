@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "call.h"
+#include "constructor.h"
 
 namespace petzval::python {
 
@@ -26,9 +27,6 @@ PhotographEncoding encoding_of(const std::string& word) {
                                      {"srgb", PhotographEncoding::srgb},
                                      {"linear", PhotographEncoding::linear}});
 }
-
-template <typename Number>
-using Maybe = std::optional<Number>;
 
 SceneRequest request(const std::string& name, Maybe<int> columns, Maybe<int> rows,
                      const Numbers& wavelengths_nm, Maybe<double> horizontal_angle_deg,
@@ -151,7 +149,7 @@ nb::object depth_view(nb::handle self) {
 
 void bind_request(nb::module_& module) {
   nb::class_<SceneRequest>(
-      module, "SceneRequest",
+      module, "SceneRequest", nb::type_slots(explained_constructor),
       "A scene to be read: a file, a photograph, or a chart by name. What is left open follows from the "
       "camera: a chart or photograph without an angle fills the frame.")
       .def(nb::new_(&request), nb::arg("name"), nb::kw_only(), nb::arg("columns").none() = nb::none(),
@@ -197,7 +195,7 @@ SceneChoice scene_from(const nb::object& scene) {
 
 void bind_scene(nb::module_& module) {
   bind_request(module);
-  nb::class_<Scene>(module, "Scene",
+  nb::class_<Scene>(module, "Scene", nb::type_slots(explained_constructor),
                     "Spectral radiance [W/(m2 sr nm)] on a plane square to the axis, upright, row 0 on top.")
       .def(nb::new_(&of_radiance), nb::arg("radiance"), nb::arg("wavelengths_nm"), nb::kw_only(),
            nb::arg("horizontal_angle_deg") = 40.0, nb::arg("distance_m").none() = nb::none(),

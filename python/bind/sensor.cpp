@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "bind.h"
+#include "constructor.h"
 
 namespace petzval::python {
 
@@ -121,7 +122,7 @@ void bind_sensor(nb::module_& module) {
         return fmt::format("<GainMode '{}': full_well_e={:g}, read_noise_e={:g}>", m.name, m.full_well_e,
                            m.read_noise_e);
       });
-  nb::class_<Sensor>(module, "Sensor",
+  nb::class_<Sensor>(module, "Sensor", nb::type_slots(explained_constructor),
                      "Description of a sensor. It does not change; alter a copy with `settings`.")
       .def(nb::new_([](const std::string& name, const std::map<std::string, nb::object>& settings) {
              return read(name, settings);

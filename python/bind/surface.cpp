@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "constructor.h"
 #include "glass.h"
+#include "lens_parts.h"
 
 namespace petzval::python {
 
@@ -32,11 +34,6 @@ double curvature_of(const std::optional<double>& radius_mm) {
     throw InputError(fmt::format(
         "`radius_mm` {}; a length other than 0, or None for a flat surface, would be right", *radius_mm));
   return 1 / *radius_mm;
-}
-
-/// A dict that cannot be altered: altering the lens takes an assignment of a whole one.
-nb::object read_only(const nb::object& dict) {
-  return nb::steal(PyDictProxy_New(dict.ptr()));
 }
 
 nb::object shape_of(const Surface& surface) {
@@ -75,39 +72,75 @@ std::string repr(SurfaceView& view) {
   if (s.stop) text += ", stop=True";
   if (s.conic != 0) text += ", conic=" + number_repr(s.conic);
   if (!s.asphere.empty()) text += ", asphere=" + nb::cast<std::string>(nb::repr(nb::cast(s.asphere)));
+  if (!s.apertures.empty()) text += fmt::format(", apertures=<{} figures>", s.apertures.size());
+  if (!s.pose.is_none()) text += ", pose=" + nb::cast<std::string>(nb::repr(dict_of(pose_to(s.pose))));
   if (s.shape) text += ", shape=" + nb::cast<std::string>(nb::repr(dict_of(shape_of(s))));
   return text + ")";
+}
+
+SurfaceView surface(Maybe<double> radius_mm, double thickness_mm, const nb::object& glass,
+                    Maybe<double> semi_diameter_mm, bool stop, double conic,
+                    const std::map<int, double>& asphere, const nb::object& shape,
+                    std::pair<int, double> blades, bool mirror, const nb::iterable& apertures,
+                    const nb::dict& pose) {
+  Surface s;
+  s.curvature_per_mm = curvature_of(radius_mm);
+  s.thickness_mm = thickness_mm;
+  s.material = material_from(glass);
+  s.semi_diameter_mm = semi_diameter_mm;
+  s.stop = stop;
+  s.conic = conic;
+  s.asphere = asphere;
+  s.blades = {blades.first, blades.second};
+  s.mirror = mirror;
+  s.apertures = apertures_from(apertures);
+  s.pose = pose_from(pose);
+  set_shape(s, shape);
+  return SurfaceView(std::move(s));
+}
+
+nb::tuple state_of(SurfaceView& view) {
+  const Surface& s = view.get();
+  if (s.transfer)
+    throw InputError(
+        "a surface of a ray-transfer lens is not pickled by itself; the whole lens would be right");
+  const nb::object shape = shape_of(s);
+  nb::list apertures;
+  for (const nb::handle each : apertures_to(s.apertures)) apertures.append(dict_of(nb::borrow(each)));
+  return nb::make_tuple(s.curvature_per_mm, s.thickness_mm, s.material, s.stop,
+                        std::pair(s.blades.count, s.blades.rotation_deg), s.semi_diameter_mm, s.conic,
+                        s.asphere, shape.is_none() ? shape : nb::object(dict_of(shape)), s.mirror, apertures,
+                        dict_of(pose_to(s.pose)));
+}
+
+SurfaceView of_state(double curvature_per_mm, double thickness_mm, const Material& glass, bool stop,
+                     std::pair<int, double> blades, Maybe<double> semi_diameter_mm, double conic,
+                     const std::map<int, double>& asphere, const nb::object& shape, bool mirror,
+                     const nb::iterable& apertures, const nb::dict& pose) {
+  Surface s;
+  s.curvature_per_mm = curvature_per_mm, s.thickness_mm = thickness_mm;
+  s.material = glass;
+  s.stop = stop, s.mirror = mirror;
+  s.blades = {blades.first, blades.second};
+  s.semi_diameter_mm = semi_diameter_mm;
+  s.conic = conic, s.asphere = asphere;
+  set_shape(s, shape);
+  s.apertures = apertures_from(apertures), s.pose = pose_from(pose);
+  return SurfaceView(std::move(s));
 }
 
 void bind_surface_itself(nb::module_& module) {
   using View = SurfaceView;
   nb::class_<View>(
-      module, "Surface",
+      module, "Surface", nb::type_slots(explained_constructor),
       "A surface and the gap behind it. One that was taken from `lens.surfaces` alters that lens.")
-      .def(
-          "__init__",
-          [](View* self, std::optional<double> radius_mm, double thickness_mm, const nb::object& glass,
-             std::optional<double> semi_diameter_mm, bool stop, double conic,
-             const std::map<int, double>& asphere, const nb::object& shape, std::pair<int, double> blades,
-             bool mirror) {
-            Surface s;
-            s.curvature_per_mm = curvature_of(radius_mm);
-            s.thickness_mm = thickness_mm;
-            s.material = material_from(glass);
-            s.semi_diameter_mm = semi_diameter_mm;
-            s.stop = stop;
-            s.conic = conic;
-            s.asphere = asphere;
-            s.blades = {blades.first, blades.second};
-            s.mirror = mirror;
-            set_shape(s, shape);
-            new (self) View(std::move(s));
-          },
-          nb::arg("radius_mm").none() = nb::none(), nb::arg("thickness_mm") = 0.0,
-          nb::arg("glass").none() = nb::none(), nb::kw_only(),
-          nb::arg("semi_diameter_mm").none() = nb::none(), nb::arg("stop") = false, nb::arg("conic") = 0.0,
-          nb::arg("asphere") = std::map<int, double>(), nb::arg("shape").none() = nb::none(),
-          nb::arg("blades") = std::pair(0, 0.0), nb::arg("mirror") = false)
+      .def(nb::new_(&surface), nb::arg("radius_mm").none() = nb::none(), nb::arg("thickness_mm") = 0.0,
+           nb::arg("glass").none() = nb::none(), nb::kw_only(),
+           nb::arg("semi_diameter_mm").none() = nb::none(), nb::arg("stop") = false, nb::arg("conic") = 0.0,
+           nb::arg("asphere") = std::map<int, double>(), nb::arg("shape").none() = nb::none(),
+           nb::arg("blades") = std::pair(0, 0.0), nb::arg("mirror") = false,
+           nb::arg("apertures") = nb::tuple(), nb::arg("pose") = nb::dict(),
+           "Lengths in mm; the properties of the same names say what each is.")
       .def_prop_rw(
           "radius_mm", [](View& v) { return radius_of(v.get().curvature_per_mm); },
           [](View& v, std::optional<double> r) { v.get().curvature_per_mm = curvature_of(r); },
@@ -152,31 +185,23 @@ void bind_surface_itself(nb::module_& module) {
             v.get().blades = {b.first, b.second};
           },
           "(count, rotation [degrees]) of the blades of the stop; (0, 0): round.")
+      .def_prop_rw(
+          "apertures", [](View& v) { return apertures_to(v.get().apertures); },
+          [](View& v, const nb::iterable& apertures) { v.get().apertures = apertures_from(apertures); },
+          "Figures that light must pass besides, as the native file has them: ({\"rectangle\": (8, 5)}, "
+          "{\"ellipse\": (3, 3), \"obscures\": True}), half the widths along x and y [mm], with "
+          "\"decentre_mm\" (x, y) and \"rotation_deg\"; assign a whole sequence.")
+      .def_prop_rw(
+          "pose", [](View& v) { return pose_to(v.get().pose); },
+          [](View& v, const nb::object& pose) { v.get().pose = pose_from(dict_of(pose)); },
+          "How far it stands off its place: any of decentre_x_mm, decentre_y_mm, shift_z_mm, tilt_x_deg, "
+          "tilt_y_deg, tilt_z_deg; assign a whole dict.")
       .def("__repr__", repr)
-      .def("__getstate__",
-           [](View& v) {
-             const Surface& s = v.get();
-             return nb::make_tuple(
-                 s.curvature_per_mm, s.thickness_mm, s.material, s.stop, s.blades.count,
-                 s.blades.rotation_deg, s.semi_diameter_mm, s.conic, s.asphere,
-                 dict_of(shape_of(s).is_none() ? nb::object(nb::dict()) : dict_of(shape_of(s))), s.mirror);
-           })
-      .def("__setstate__", [](View& self, const nb::tuple& t) {
-        Surface s;
-        s.curvature_per_mm = nb::cast<double>(t[0]);
-        s.thickness_mm = nb::cast<double>(t[1]);
-        s.material = nb::cast<Material>(t[2]);
-        s.stop = nb::cast<bool>(t[3]);
-        s.blades = {nb::cast<int>(t[4]), nb::cast<double>(t[5])};
-        s.semi_diameter_mm = nb::cast<std::optional<double>>(t[6]);
-        s.conic = nb::cast<double>(t[7]);
-        s.asphere = nb::cast<std::map<int, double>>(t[8]);
-        const auto shape = nb::cast<nb::dict>(t[9]);
-        set_shape(s, shape.size() == 0 ? nb::object(nb::none()) : nb::object(shape));
-        constexpr std::size_t at_mirror = 10;
-        s.mirror = t.size() > at_mirror && nb::cast<bool>(t[at_mirror]);
-        new (&self) View(std::move(s));
+      .def("__reduce__", [](View& view) {
+        return nb::make_tuple(nb::module_::import_("petzval._states").attr("surface"), state_of(view));
       });
+  module.def("_surface_from_state", of_state, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
+             nb::arg().none(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg());
 }
 
 }  // namespace

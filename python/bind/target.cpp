@@ -12,8 +12,6 @@ namespace petzval::python {
 
 namespace {
 
-template <typename Number>
-using Maybe = std::optional<Number>;
 /// A closed line of (x, y), and the level of what it encloses.
 using PolygonIn = std::pair<std::vector<std::pair<double, double>>, double>;
 

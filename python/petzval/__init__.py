@@ -11,16 +11,21 @@ Lengths in mm, wavelengths in nm, pixel pitches in um, angles in degrees: each n
 
 from pathlib import Path as _Path
 
-from ._errors import Cancelled, Error, Failure, InputError, Note
-from ._petzval import (Camera, Edge, Edges, FirstOrder, FocusRun, Frame, GainMode, Glass, GlassCatalogue, ImagePlan,
-                       ImagingSession, Lens, LensDataTable, LensFacts,
-                       LensOnSensor, Picture, PictureDifference, PsfStack, PupilData, Raw, Rendering,
-                       Scene, SceneRequest, Sensor, SensorTest, SpectralImage, Surface, SurfaceList, TableCamera,
-                       analyses, bundled_names, chart_names, compare, compare_lenses, data_directory, develop,
-                       list_unsupported, match_lenses, measure_colour, merge_renderings, set_data_directory, sfr, target, target_chart_names, test_sensor)
+from ._errors import CallError, Cancelled, Error, Failure, InputError, Note
+from ._petzval import (Camera, Clip, Edge, Edges, FirstOrder, Flare, FocusRun, Frame, GainMode, Glass, GlassCatalogue,
+                       ImagePlan, ImagingSession, Lens, LensDataTable, LensFacts, LensOnSensor, Picture,
+                       PictureDifference, PsfStack, PupilData, Raw, Rendering, Scene, SceneRequest, Sensor, SensorTest,
+                       SpectralImage, Sun, Surface, SurfaceList, TableCamera)
+from ._tables import Analysis, Events, Table, TracedRays
+from . import _keywords, _petzval
+
+_keywords.explain(_petzval)  # before its functions are taken
+
+from ._petzval import (analyses, bundled_names, chart_names, compare, compare_lenses, data_directory, develop,
+                       list_unsupported, match_lenses, measure_colour, merge_renderings, set_data_directory, sfr, target,
+                       target_chart_names, test_sensor)
 from ._petzval import _set_default_data_directory, _version
 from ._sweep import sweep
-from ._tables import Analysis, Table, TracedRays
 
 __version__ = _version()
 _set_default_data_directory(str(_Path(__file__).parent / "share" / "petzval"))

@@ -25,6 +25,16 @@ class InputError(Error, ValueError):
         return InputError, (self.problem, self.remedy, self.file, self.line, self.column, self.parameter)
 
 
+class CallError(InputError, TypeError):
+    """A call fits no signature: a keyword is mistyped, an argument is missing or of another type.
+
+    Attributes: those of InputError; `parameter` is the argument at fault.
+    """
+
+    def __reduce__(self):
+        return CallError, super().__reduce__()[1]
+
+
 class Failure(Error, OSError):
     """The input was right, but the work could not be done: a full disk, no memory."""
 
@@ -39,7 +49,8 @@ class Note(UserWarning):
 
 # Parameters of the library that Python calls otherwise.
 _KEYWORDS = {"focus_spp": "samples_per_pixel", "losses": "fresnel, coating or absorption", "matrix": "colours",
-             "set": "settings", "substitute": "substitutions", "wavelength": "wavelengths_nm"}
+             "set": "settings", "substitute": "substitutions", "sun": "suns", "sun_diameter_deg": "diameter_deg",
+             "sun_light": "light", "wavelength": "wavelengths_nm"}
 
 
 def keyword(parameter):
@@ -58,5 +69,5 @@ def _input_error(file, line, column, problem, remedy, parameter):
                       keyword(parameter) if parameter else None)
 
 
-for _each in (Error, InputError, Failure, Cancelled, Note):
+for _each in (Error, InputError, CallError, Failure, Cancelled, Note):
     _each.__module__ = "petzval"  # where users find them

@@ -8,6 +8,10 @@ def lens(*state):
     return _petzval._lens_from_state(*state)
 
 
+def surface(*state):
+    return _petzval._surface_from_state(*state)
+
+
 def camera(*state):
     return _petzval._camera_from_state(*state)
 

@@ -104,3 +104,30 @@ class TracedRays:
     points_mm: object  # array (ray, 3)
     directions: object  # array (ray, 3)
     opl_mm: object  # array (ray), optical path
+
+
+@dataclass
+class Events:
+    """What an event camera tells, in the order of time."""
+
+    t_s: object  # array (event) of float64
+    column: object  # array (event) of int32
+    row: object  # array (event) of int32
+    brighter: object  # array (event) of uint8: 1, or 0 for darker
+
+    def __len__(self):
+        return len(self.t_s)
+
+    def save(self, path):
+        """Writes lines of time [s], column, row and 1 (brighter) or 0, as `petzval shoot --events` does."""
+        with open(path, "w", encoding="ascii") as file:
+            for event in zip(self.t_s.tolist(), self.column.tolist(), self.row.tolist(), self.brighter.tolist()):
+                file.write("%.9f %d %d %d\n" % event)
+
+    def to_xarray(self):
+        """As xarray.Dataset along `event`, units as attributes."""
+        from . import _xarray
+        return _xarray.events(self)
+
+    def __repr__(self):
+        return f"<Events: {len(self)}>"

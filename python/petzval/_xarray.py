@@ -56,3 +56,10 @@ def psfs(stack):
 def table(table):
     return xarray.Dataset({name: ("row", numpy.asarray(column), {"units": table.units.get(name, "")})
                            for name, column in table.items()}, attrs={"heading": table.heading})
+
+
+def events(events):
+    return xarray.Dataset({"t": ("event", events.t_s, {"units": "s"}),
+                           "column": ("event", events.column, {"units": "pixel"}),
+                           "row": ("event", events.row, {"units": "pixel"}),
+                           "brighter": ("event", events.brighter, {"units": "1"})})

@@ -33,8 +33,6 @@ def test_keywords(camera):
     with pytest.raises(pz.InputError) as caught:
         camera.image(pz.SceneRequest("studio", horizontal_angle_deg=5))
     assert "scene." not in str(caught.value) and "--" not in str(caught.value)
-    with pytest.raises(TypeError, match="incompatible function arguments"):
-        camera.image("studio", sorround="zero")
 
 
 def test_nearest_names():
@@ -80,10 +78,8 @@ def test_other_types_are_refused_with_what_would_be_right(tmp_path):
     assert stack.shape == stack.values.shape
 
 
-# Of parts of the library that the package does not have: tables of other programs and their making, and plans of image
-# formation by hand.
-NOT_IN_PYTHON = {"clip_negative", "curves", "flicker", "fps", "g_axis_sr", "ghost_neglect", "ghost_threshold", "nodes", "port",
-                 "psf_away", "relative_illumination", "resample", "sun", "sun_diameter_deg", "sun_light", "tile",
+# Of parts of the library that the package does not have: tables of other programs, and the bench in a browser.
+NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "port", "psf_away", "relative_illumination", "resample",
                  "vertex_to_sensor_mm"}
 
 

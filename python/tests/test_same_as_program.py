@@ -32,6 +32,15 @@ def test_image_by_other_methods(program, camera, method):
     assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
 
 
+def test_image_by_plans_of_ones_own(program, camera):
+    scene = pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650])
+    program.run("image", *SHOT, "--nodes", 3, "--tile", 12, "-o", "light.npy")
+    assert np.array_equal(np.load(program.folder / "light.npy"), camera.image(scene, nodes=3, tile=12).values)
+    program.run("image", *SHOT, "--method", "sections", "--section", 24, "--transform", 64, "-o", "light.npy")
+    light = camera.image(scene, method="sections", section=24, transform=64)
+    assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
+
+
 def test_image_with_losses(program, camera):
     program.run("image", *SHOT, "--fresnel", "--absorption", "-o", "light.npy")
     camera.fresnel = camera.absorption = True
@@ -129,6 +138,36 @@ def test_rendering(program, tmp_path):
     assert np.array_equal(np.load(tmp_path / "depth.npy"), rendering.depth)
     assert np.array_equal(np.load(tmp_path / "albedo.npy"), rendering.albedo)
     assert 0 <= rendering.albedo.min() < rendering.albedo.max() <= 1
+
+
+def test_rendering_of_a_camera_that_moves(program, tmp_path):
+    program.run("render", "spheres", "--lens", "dgauss-50mm", "--focus", "1.2m", "--size", "30x20", "--wavelengths", 550, "--spp", 2,
+                "--camera-move", "0.02,0,0", "--rolling-shutter", 0.5, "--near", 0.5, "--far", 20, "--camera-origin", "front",
+                "--segments", "segments.npy", "--flow", "flow.npy", "-o", "light.npy")
+    rendering = pz.Camera("dgauss-50mm", focus="1.2m").render(
+        "spheres", size=(30, 20), wavelengths_nm=[550], samples_per_pixel=2, camera_move=(0.02, 0, 0), rolling_shutter=0.5,
+        near_distance=0.5, far_distance=20, camera_origin="front", segments=True, flow=True)
+    assert np.array_equal(np.load(tmp_path / "light.npy"), rendering.light.values)
+    assert np.array_equal(np.load(tmp_path / "segments.npy"), rendering.segments) and rendering.segments.max() > 0
+    assert np.array_equal(np.load(tmp_path / "flow.npy"), rendering.flow, equal_nan=True)
+    assert rendering.flare is None
+
+
+def test_rendering_focused_as_the_scene_says(program, tmp_path):
+    program.run("render", "spheres", "--lens", "dgauss-50mm", "--size", "24x16", "--wavelengths", 550, "--spp", 1, "-o", "light.npy")
+    rendering = pz.Camera("dgauss-50mm").render("spheres", size=(24, 16), wavelengths_nm=[550], samples_per_pixel=1,
+                                                focus_as_in_scene=True)
+    assert np.array_equal(np.load(tmp_path / "light.npy"), rendering.light.values)
+    cost = pz.Camera("dgauss-50mm").estimate_render("spheres", size=(24, 16), samples_per_pixel=1, focus_as_in_scene=True)
+    assert cost["samples_per_pixel"] == 1 and cost["seconds"] > 0
+
+
+def test_autofocus_by_other_measures(program):
+    told = program.json("focus", "spheres", "--lens", "dgauss-50mm", "--size", "160x120", "--focus-measure", "sml", "--focus-step", 2,
+                        "--focus-depth", 0.3, "--focus-search", "scan", "--focus-evaluations", 5)
+    ours = pz.Camera("dgauss-50mm").autofocus("spheres", size=(160, 120), focus_measure="sml", focus_step=2, depth_mm=0.3,
+                                              focus_search="scan", most_evaluations=5)
+    assert ours.film_distance_mm == told["film_distance_mm"]
 
 
 def test_autofocus(program):
