@@ -45,6 +45,29 @@ TEST(ExactSum, IsRightToADouble) {
   EXPECT_EQ(sum.value(), static_cast<double>(exact));
 }
 
+/// One value alone is what truncation to a multiple of 2^-72 makes of it.
+TEST(ExactSum, CutsWhatIsFinerThanItsUnits) {
+  std::mt19937_64 random(9);
+  std::vector<double> values{0,
+                             1,
+                             -1,
+                             0x1p-72,
+                             0x1p-73,
+                             -0x1.8p-72,
+                             0x1.fffffffffffffp-20,
+                             0x1p-1074,
+                             0x1.fffffffffffffp29,
+                             -0x1.fffffffffffffp29};
+  for (int i = 0; i < 2000; ++i)
+    values.push_back(std::ldexp(std::uniform_real_distribution(-1.0, 1.0)(random),
+                                static_cast<int>(random() % 160) - 130));
+  for (const double value : values) {
+    ExactSum sum;
+    sum += value;
+    EXPECT_EQ(sum.value(), std::ldexp(std::trunc(std::ldexp(value, 72)), -72)) << value;
+  }
+}
+
 TEST(ExactSum, HoldsTheMostOfTheMostSamplesAndNothingOfWhatIsNoNumber) {
   ExactSum sum;
   for (int i = 0; i < 1 << 24; ++i) sum += std::numeric_limits<double>::infinity();

@@ -118,8 +118,8 @@ TEST(Fresnel, KnownValues) {
   EXPECT_NEAR(dielectric_reflectance(std::cos(std::atan(1.5)), 1.5),
               0.5 * std::pow((1 - 2.25) / (1 + 2.25), 2), 1e-15);
   EXPECT_EQ(dielectric_reflectance(0.5, 1 / 1.5), 1);  // beyond the critical angle
-  EXPECT_NEAR(conductor_reflectance(1, 0.5, 3), (0.25 + 9) / (2.25 + 9), 1e-15);
-  EXPECT_NEAR(conductor_reflectance(0.3, 1.5, 0), dielectric_reflectance(0.3, 1.5), 1e-15);
+  EXPECT_NEAR(conductor_reflectance(1.0, 0.5, 3.0), (0.25 + 9) / (2.25 + 9), 1e-15);
+  EXPECT_NEAR(conductor_reflectance(0.3, 1.5, 0.0), dielectric_reflectance(0.3, 1.5), 1e-15);
   // Fresnel's equations as they stand, with a complex index.
   for (const double cos : {1e-3, 0.1, 0.5, 0.9, 1.0})
     for (const std::complex<double> n :

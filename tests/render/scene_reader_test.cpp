@@ -155,7 +155,7 @@ TEST(SceneReader, ListsEverythingThatIsNotSupported) {
       "WorldBegin\nMaterial \"hair\"\nShape \"nurbs\"\nShape \"sphere\" \"float "
       "alpha\" "
       "0.5\n"
-      "LightSource \"goniometric\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
+      "LightSource \"portal\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
       "s.pbrt", unsupported);
   build_world(scene, WavelengthGroups({550}), {}, unsupported);
   std::vector<std::string> list;
@@ -163,7 +163,7 @@ TEST(SceneReader, ListsEverythingThatIsNotSupported) {
   EXPECT_EQ(list, (std::vector<std::string>{"s.pbrt:6:1 a participating medium",
                                             "s.pbrt:2:1 Material \"hair\"", "s.pbrt:3:1 Shape \"nurbs\"",
                                             "s.pbrt:4:16 the parameter \"float alpha\" of Shape \"sphere\"",
-                                            "s.pbrt:5:1 LightSource \"goniometric\""}));
+                                            "s.pbrt:5:1 LightSource \"portal\""}));
 }
 
 TEST(SceneReader, NamesWhatDirectivesOfOlderVersionsAreNow) {

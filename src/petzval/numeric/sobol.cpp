@@ -99,13 +99,6 @@ std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed) {
   return reversed_bits(scrambled_in_reverse(reversed_bits(digits), seed));
 }
 
-std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
-  std::uint64_t x = (static_cast<std::uint64_t>(a) << 32) ^ b;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
-}
-
 template <std::size_t Count>
 std::array<double, Count> SobolSample::next() {
   const std::uint32_t set_seed = hashed(seed_, set_++);
@@ -123,6 +116,9 @@ double SobolSample::next1() {
 }
 std::array<double, 2> SobolSample::next2() {
   return next<2>();
+}
+std::array<double, 3> SobolSample::next3() {
+  return next<3>();
 }
 std::array<double, 4> SobolSample::next4() {
   return next<4>();

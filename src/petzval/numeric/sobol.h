@@ -16,7 +16,12 @@ std::uint32_t sobol(std::uint32_t index, int dimension);
 std::uint32_t owen_scrambled(std::uint32_t digits, std::uint32_t seed);
 
 /// A well mixed 32-bit hash of two numbers, for making seeds.
-std::uint32_t hashed(std::uint32_t a, std::uint32_t b);
+inline std::uint32_t hashed(std::uint32_t a, std::uint32_t b) {
+  std::uint64_t x = (static_cast<std::uint64_t>(a) << 32) ^ b;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<std::uint32_t>((x ^ (x >> 31)) >> 32);
+}
 
 /// Numbers in [0, 1) for one sample of a pixel: every call takes the next dimensions. Sets of up to four
 /// dimensions are Sobol points stratified together; different sets are independent permutations of the same
@@ -30,7 +35,10 @@ class SobolSample {
 
   double next1();
   std::array<double, 2> next2();
+  std::array<double, 3> next3();
   std::array<double, 4> next4();
+  /// As one of these, for numbers that nobody wants.
+  void skip() { ++set_; }
 
  private:
   template <std::size_t Count>

@@ -70,9 +70,8 @@ void PathTracer::add_sky(Path& path, int group) const {
 
 void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
                                    const Bsdf& bsdf, Vector3 wo, int group, SobolSample& sample) const {
-  const auto [choice, u, v, unused] = sample.next4();
-  (void)unused;
-  if (bsdf.is_mirror()) return;
+  if (bsdf.is_mirror()) return sample.skip();
+  const auto [choice, u, v] = sample.next3();
   path.plan = world_.lights.plan({point.position, wo.z < 0 ? -frame.z : frame.z, bsdf.transmits()});
   const std::optional<LightSample> light =
       world_.lights.sample(world_.geometries, path.plan, choice, u, v, group);

@@ -31,16 +31,22 @@ class TileRenderer {
   }
 
  private:
-  /// Of the i-th sample of a batch.
+  /// Of the i-th sample of a batch: those of a pixel follow each other, while its sums are at hand.
   Pixel pixel_of(std::size_t i) const {
-    const int within = static_cast<int>(i % tile_.size());
+    const int within = static_cast<int>(i / static_cast<std::size_t>(each_));
     return {tile_.left + within % tile_.columns(), tile_.top + within / tile_.columns()};
   }
 
   void take_samples(int group, SampleRange range) {
+    lanes_ = task_.world.groups.lanes(group);
+    stream_ = hashed(static_cast<std::uint32_t>(task_.options.seed),
+                     static_cast<std::uint32_t>(task_.options.seed >> 32) ^
+                         static_cast<std::uint32_t>(group) * 0x9e3779b9u);
     samples_.clear(), places_.clear(), times_.clear();
-    for (int index = range.first; index < range.last; ++index)
-      for (std::size_t i = 0; i < tile_.size(); ++i) start_sample(group, index, pixel_of(i));
+    each_ = range.last - range.first;
+    const std::size_t count = tile_.size() * static_cast<std::size_t>(each_);
+    for (std::size_t i = 0; i < count; ++i)
+      start_sample(range.first + static_cast<int>(i % static_cast<std::size_t>(each_)), pixel_of(i));
     rays_.assign(places_.size(), {});
     task_.camera.trace(group, task_.sampling, places_, rays_);
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -49,13 +55,10 @@ class TileRenderer {
     }
   }
 
-  void start_sample(int group, int index, Pixel pixel) {
+  void start_sample(int index, Pixel pixel) {
     const auto number = static_cast<std::uint32_t>(pixel.row * task_.sensor.columns + pixel.column);
-    const std::uint32_t stream = hashed(static_cast<std::uint32_t>(task_.options.seed),
-                                        static_cast<std::uint32_t>(task_.options.seed >> 32) ^
-                                            static_cast<std::uint32_t>(group) * 0x9e3779b9u);
     // The halves of a picture whose noise is wanted are independent of each other.
-    const std::uint32_t seed = hashed(number, half_ ? ~stream : stream);
+    const std::uint32_t seed = hashed(number, half_ ? ~stream_ : stream_);
     samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
@@ -65,7 +68,7 @@ class TileRenderer {
                        motion->exposure() * samples_.back().next2()[0]);
     // In turn from a random start: every wavelength leads equally often.
     places_.back().hero = static_cast<int>((hashed(seed, 0x68e31da4u) + static_cast<std::uint32_t>(index)) %
-                                           static_cast<std::uint32_t>(task_.world.groups.lanes(group)));
+                                           static_cast<std::uint32_t>(lanes_));
   }
 
   void follow(std::size_t i, int group) {
@@ -84,9 +87,9 @@ class TileRenderer {
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
                       (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
     add_light(i, group, light);
-    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
-      result_.arriving[static_cast<std::size_t>(task_.world.groups.band(group, lane))] +=
-          static_cast<double>(light.arriving[lane]);
+    if (!light.arriving.is_black())
+      for (int lane = 0; lane < lanes_; ++lane)
+        result_.arriving[band(group, lane)] += static_cast<double>(light.arriving[lane]);
     if (first.met) add_first(i, group, first, place);
   }
 
@@ -94,9 +97,8 @@ class TileRenderer {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
     const Pixel own = pixel_of(i);
-    if (!light.straight.is_black()) add_lamp(own, light.straight, ray, task_.world.groups.lanes(group));
-    const int lanes = task_.world.groups.lanes(group);
-    for (int lane = 0; lane < lanes; ++lane) {
+    if (!light.straight.is_black()) add_lamp(own, light.straight, ray);
+    for (int lane = 0; lane < lanes_; ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
@@ -110,15 +112,19 @@ class TileRenderer {
   }
 
   /// In the pixel where the hero lands: metering asks for no more.
-  void add_lamp(Pixel pixel, const Lanes& light, const CameraRay& ray, int lanes) {
+  void add_lamp(Pixel pixel, const Lanes& light, const CameraRay& ray) {
     double sum = 0;
-    for (int lane = 0; lane < lanes; ++lane) sum += static_cast<double>(light[lane] * ray.weight[lane]);
+    for (int lane = 0; lane < lanes_; ++lane) sum += static_cast<double>(light[lane] * ray.weight[lane]);
     film_.lamps[tile_.index(pixel.column, pixel.row)] += sum;
   }
 
+  /// As WavelengthGroups::band(), for lanes that have one.
+  std::size_t band(int group, int lane) const {
+    return static_cast<std::size_t>(group + lane * task_.world.groups.count());
+  }
+
   void add(Pixel pixel, int group, int lane, double value) {
-    // As WavelengthGroups::band(), for lanes that have one.
-    const auto band = static_cast<std::size_t>(group + lane * task_.world.groups.count());
+    const std::size_t band = this->band(group, lane);
     const PixelWindow& all = whole_.window;
     if (!all.contains(pixel.column, pixel.row)) {
       const PixelWindow& picture = whole_.whole;
@@ -141,15 +147,17 @@ class TileRenderer {
     film_.normal[at] += first.normal.x;
     film_.normal[plane + at] += first.normal.y;
     film_.normal[2 * plane + at] += first.normal.z;
-    for (int lane = 0; lane < task_.world.groups.lanes(group); ++lane)
-      film_.albedo[static_cast<std::size_t>(task_.world.groups.band(group, lane)) * plane + at] +=
-          static_cast<double>(first.albedo[lane]);
+    for (int lane = 0; lane < lanes_; ++lane)
+      film_.albedo[band(group, lane) * plane + at] += static_cast<double>(first.albedo[lane]);
   }
 
   const TileTask& task_;
   PathTracer tracer_;
   PixelWindow tile_;
   bool half_;
+  int each_ = 0;              ///< samples of a pixel in a batch
+  int lanes_ = 0;             ///< of the group whose samples are taken
+  std::uint32_t stream_ = 0;  ///< of its random numbers
   Film& whole_;
   Film film_;  ///< of the tile
   TileResult result_;

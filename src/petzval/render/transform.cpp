@@ -44,19 +44,6 @@ bool can_be_inverted(const Matrix& m) {
   return std::abs(scaled.determinant()) > singular && m.fullPivLu().isInvertible();
 }
 
-Vector3 mapped_point(const Matrix4& m, Vector3 p) {
-  const double w = m[3][0] * p.x + m[3][1] * p.y + m[3][2] * p.z + m[3][3];
-  const Vector3 q{m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
-                  m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
-                  m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
-  return w == 1 ? q : (1 / w) * q;
-}
-
-Vector3 mapped_direction(const Matrix4& m, Vector3 v) {
-  return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
-          m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
-}
-
 }  // namespace
 
 Transform::Transform(const Matrix4& matrix) : matrix_(matrix) {
@@ -99,28 +86,6 @@ Transform Transform::look_at(Vector3 eye, Vector3 target, Vector3 up) {
                                    {right.z, above.z, forward.z, eye.z},
                                    {0, 0, 0, 1}}};
   return Transform(world_from_camera).inverse();
-}
-
-Vector3 Transform::point(Vector3 p) const {
-  return mapped_point(matrix_, p);
-}
-
-Vector3 Transform::direction(Vector3 v) const {
-  return mapped_direction(matrix_, v);
-}
-
-Vector3 Transform::inverse_point(Vector3 p) const {
-  return mapped_point(inverse_, p);
-}
-
-Vector3 Transform::inverse_direction(Vector3 v) const {
-  return mapped_direction(inverse_, v);
-}
-
-Vector3 Transform::normal(Vector3 n) const {
-  const auto& m = inverse_;
-  return {m[0][0] * n.x + m[1][0] * n.y + m[2][0] * n.z, m[0][1] * n.x + m[1][1] * n.y + m[2][1] * n.z,
-          m[0][2] * n.x + m[1][2] * n.y + m[2][2] * n.z};
 }
 
 Transform Transform::inverse() const {

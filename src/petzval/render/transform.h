@@ -24,14 +24,18 @@ class Transform {
   /// pbrt's LookAt: camera from world, the camera looking along +z with +y up and +x to the right.
   static Transform look_at(Vector3 eye, Vector3 target, Vector3 up);
 
-  Vector3 point(Vector3 p) const;
-  Vector3 direction(Vector3 v) const;
+  Vector3 point(Vector3 p) const { return mapped_point(matrix_, p); }
+  Vector3 direction(Vector3 v) const { return mapped_direction(matrix_, v); }
   /// By the transposed inverse; not of unit length.
-  Vector3 normal(Vector3 n) const;
+  Vector3 normal(Vector3 n) const {
+    const auto& m = inverse_;
+    return {m[0][0] * n.x + m[1][0] * n.y + m[2][0] * n.z, m[0][1] * n.x + m[1][1] * n.y + m[2][1] * n.z,
+            m[0][2] * n.x + m[1][2] * n.y + m[2][2] * n.z};
+  }
 
   /// As inverse().point(p) and inverse().direction(v), without a copy.
-  Vector3 inverse_point(Vector3 p) const;
-  Vector3 inverse_direction(Vector3 v) const;
+  Vector3 inverse_point(Vector3 p) const { return mapped_point(inverse_, p); }
+  Vector3 inverse_direction(Vector3 v) const { return mapped_direction(inverse_, v); }
 
   Transform inverse() const;
   /// First `b`, then `a`.
@@ -42,6 +46,17 @@ class Transform {
   const Matrix4& inverse_matrix() const { return inverse_; }
 
  private:
+  static Vector3 mapped_point(const Matrix4& m, Vector3 p) {
+    const double w = m[3][0] * p.x + m[3][1] * p.y + m[3][2] * p.z + m[3][3];
+    const Vector3 q{m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
+                    m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
+                    m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]};
+    return w == 1 ? q : (1 / w) * q;
+  }
+  static Vector3 mapped_direction(const Matrix4& m, Vector3 v) {
+    return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+            m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+  }
   Transform(const Matrix4& matrix, const Matrix4& inverse) : matrix_(matrix), inverse_(inverse) {}
   static constexpr Matrix4 identity{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 

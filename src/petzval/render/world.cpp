@@ -50,6 +50,7 @@ class WorldBuilder {
     geometry.material = description.material;
     geometry.is_interface =
         world_.materials[static_cast<std::size_t>(description.material)].kind == Material::Kind::none;
+    geometry.needs_coordinates = varies(world_.materials, description.material);
     geometry.reversed = description.reverse_orientation;
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
     if (description.area_light >= 0) light_up(description, geometry);

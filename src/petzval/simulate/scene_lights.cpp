@@ -86,7 +86,11 @@ class LightAdder {
           std::clamp((cosine - light.cos_end) / std::max(light.cos_begin - light.cos_end, 1e-12), 0.0, 1.0);
       share *= x * x * (3 - 2 * x);
     }
-    add(light.strength, share, light.position, false, 0, sum);
+    if (!light.pattern) return add(light.strength, share, light.position, false, 0, sum);
+    render::BandSpectrum sent = light.strength;
+    for (std::size_t group = 0; group < sent.size(); ++group)
+      sent[group] *= light.pattern->share(away, static_cast<int>(group));
+    add(sent, share, light.position, false, 0, sum);
   }
 
   std::optional<BrightSource> source_of(const LightSum& sum) const {

@@ -39,6 +39,30 @@ double sector_width(std::size_t sectors) {
   return 2 * pi / static_cast<double>(sectors);
 }
 
+struct SineCosine {
+  double sin, cos;
+};
+
+/// Of the azimuth at a share of a sector: that of the sector's middle, turned. Series to the last digit for
+/// angles up to half a sector.
+template <std::size_t Sectors>
+SineCosine direction_in_sector(std::size_t sector, double share) {
+  static_assert(Sectors >= 64);
+  static const auto middles = [] {
+    std::array<SineCosine, Sectors> all;
+    for (std::size_t i = 0; i < Sectors; ++i) {
+      const double azimuth = (static_cast<double>(i) + 0.5) * sector_width(Sectors);
+      all[i] = {std::sin(azimuth), std::cos(azimuth)};
+    }
+    return all;
+  }();
+  const double turn = (share - 0.5) * sector_width(Sectors), t2 = turn * turn;
+  const double sin = turn * (1 - t2 / 6 * (1 - t2 / 20 * (1 - t2 / 42 * (1 - t2 / 72))));
+  const double cos = 1 - t2 / 2 * (1 - t2 / 12 * (1 - t2 / 30 * (1 - t2 / 56)));
+  const SineCosine middle = middles[sector];
+  return {middle.sin * cos + middle.cos * sin, middle.cos * cos - middle.sin * sin};
+}
+
 /// Film azimuths at which a lens with poses is looked at.
 constexpr int film_azimuths = 8;
 
@@ -172,6 +196,10 @@ ExitPupilRegions::Zone ExitPupilRegions::zone_between(const Probe& inner, const 
   }
   zone.share[sectors] = sum;
   for (double& share : zone.share) share /= sum;
+  for (std::size_t i = 0, sector = 0; i < sectors; ++i) {
+    while (sector + 1 < sectors && zone.share[sector + 1] <= static_cast<double>(i) / sectors) ++sector;
+    zone.first[i] = static_cast<std::uint8_t>(sector);
+  }
   zone.area_sr = sum * zone.scale_u * zone.scale_v;
   return zone;
 }
@@ -196,13 +224,13 @@ std::optional<ExitPupilRegions::Sample> ExitPupilRegions::sample(double x_mm, do
   const Place at = place(x_mm, y_mm);
   const Zone& zone = *at.zone;
   if (!(zone.area_sr > 0)) return {};
-  const auto after = std::upper_bound(zone.share.begin() + 1, zone.share.end() - 1, random_1);
-  const auto sector = static_cast<std::size_t>(after - zone.share.begin()) - 1;
+  std::size_t sector = zone.first[std::min(static_cast<std::size_t>(random_1 * sectors), sectors - 1)];
+  while (sector + 1 < sectors && zone.share[sector + 1] <= random_1) ++sector;
   const double within = (random_1 - zone.share[sector]) / (zone.share[sector + 1] - zone.share[sector]);
-  const double azimuth = (static_cast<double>(sector) + std::clamp(within, 0.0, 1.0)) * sector_width(sectors);
+  const auto [sin, cos] = direction_in_sector<sectors>(sector, std::clamp(within, 0.0, 1.0));
   const double radius = zone.radius[sector] * std::sqrt(random_2);
-  const double u = zone.scale_u * radius * std::sin(azimuth);
-  const double v = at.centre_v + zone.scale_v * radius * std::cos(azimuth);
+  const double u = zone.scale_u * radius * sin;
+  const double v = at.centre_v + zone.scale_v * radius * cos;
   return Sample{u * at.along_y + v * at.along_x, v * at.along_y - u * at.along_x, zone.area_sr};
 }
 

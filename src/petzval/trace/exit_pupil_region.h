@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -66,7 +67,8 @@ class ExitPupilRegions {
     double centre_v = 0, centre_v_per_mm = 0;  ///< at the zone's middle, and how it moves
     double scale_u = 0, scale_v = 0;           ///< sectors are those of (u/scale_u, v/scale_v)
     std::array<double, sectors> radius{};
-    std::array<double, sectors + 1> share{};  ///< of the area, up to each sector
+    std::array<double, sectors + 1> share{};    ///< of the area, up to each sector
+    std::array<std::uint8_t, sectors> first{};  ///< sector in which each 1/sectors of the area begins
     double area_sr = 0;
   };
   struct Place;

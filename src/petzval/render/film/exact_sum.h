@@ -2,7 +2,9 @@
 // Sums that do not depend on the order of what is added.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace petzval::render {
 
@@ -17,7 +19,7 @@ class ExactSum {
   ExactSum& operator+=(double value) {
     // What is not a number counts as nothing, so that one path in a billion does not blacken a picture.
     if (!(std::abs(value) < most)) value = std::isnan(value) ? 0 : std::copysign(most, value);
-    units_ += static_cast<Units>(value * units_in_one);
+    units_ += units_of(value);
     return *this;
   }
   ExactSum& operator+=(const ExactSum& other) {
@@ -30,6 +32,18 @@ class ExactSum {
  private:
   __extension__ typedef __int128 Units;
   static constexpr double most = 0x1p30, units_in_one = 0x1p72;
+
+  /// static_cast<Units>(value * units_in_one), which compilers make a call of their library of: here the 53
+  /// bits of a double (IEEE 754) are shifted to their place.
+  static Units units_of(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const auto exponent = static_cast<int>(bits >> 52 & 0x7ff);
+    const auto digits = static_cast<Units>((bits & 0xfffffffffffff) | 0x10000000000000);
+    const int shift = exponent - (1023 + 52) + 72;  // at most 50: the value is at most 2³⁰
+    if (shift <= -53) return 0;
+    const Units units = shift >= 0 ? digits << shift : digits >> -shift;
+    return bits >> 63 ? -units : units;
+  }
 
   Units units_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <petzval/render/lights/light_reader.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace petzval::render {
 
@@ -70,6 +71,66 @@ SmallLight read_point(const LightDescription& description, const WavelengthGroup
   return light;
 }
 
+/// The picture that a light shines by. \throws InputError with the place of its name.
+PictureFile read_light_picture(const Parameters& parameters, const std::string& name) {
+  PictureFile picture;
+  try {
+    picture = read_picture_file(resolved_path(parameters.location(), name));
+  } catch (const InputError& error) {
+    throw scene_error(parameters.location_of("filename"), error.what());
+  }
+  if (!std::ranges::all_of(picture.values, [](float value) { return std::isfinite(value); }))
+    throw scene_error(parameters.location_of("filename"),
+                      fmt::format("{} has pixels that are infinite or not a number", name));
+  return picture;
+}
+
+void require_square(const PictureFile& picture, const Parameters& parameters, const std::string& name) {
+  if (picture.width == picture.height) return;
+  throw scene_error(
+      parameters.location_of("filename"),
+      fmt::format(
+          "{} has {} x {} pixels; a square picture in the equal-area octahedral layout would be right", name,
+          picture.width, picture.height));
+}
+
+SmallLight read_projection(const LightDescription& description, const WavelengthGroups& groups,
+                           const LightOptions& options, Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a projection light needs \"string filename\", its slide");
+  const double field_of_view = parameters.number("fov", 90);
+  if (!(field_of_view > 0 && field_of_view < 180))
+    throw scene_error(
+        parameters.location_of("fov"),
+        fmt::format("a slide {:g} degrees wide; above 0 and below 180 would be right", field_of_view));
+  SmallLight light;
+  light.position = description.world_from_light.point({});
+  light.pattern = projected_pattern(read_light_picture(parameters, name), field_of_view, groups,
+                                    description.world_from_light);
+  const Strength strength = read_strength(parameters, "", options, unsupported);
+  light.strength = strength.at(groups, power_factor(parameters, light.pattern->emitted_sr()));
+  return light;
+}
+
+SmallLight read_goniometric(const LightDescription& description, const WavelengthGroups& groups,
+                            const LightOptions& options, Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const std::string name = parameters.string("filename", "");
+  SmallLight light;
+  light.position = description.world_from_light.point({});
+  if (!name.empty()) {
+    const PictureFile picture = read_light_picture(parameters, name);
+    require_square(picture, parameters, name);
+    light.pattern = goniometric_pattern(picture, description.world_from_light);
+  }
+  const Strength strength = read_strength(parameters, "I", options, unsupported);
+  const double emitted = light.pattern ? light.pattern->emitted_sr() : 4 * pi;
+  light.strength = strength.at(groups, power_factor(parameters, emitted));
+  return light;
+}
+
 SmallLight read_spot(const LightDescription& description, const WavelengthGroups& groups,
                      const LightOptions& options, Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
@@ -117,19 +178,8 @@ Environment read_infinite(const LightDescription& description, const WavelengthG
   if (name.empty()) return {strength.at(groups, factor), description.world_from_light};
   if (parameters.find("L"))
     throw scene_error(parameters.location_of("L"), "an infinite light has either \"L\" or a file");
-  std::shared_ptr<const PictureFile> picture;
-  try {
-    picture =
-        std::make_shared<const PictureFile>(read_picture_file(resolved_path(parameters.location(), name)));
-  } catch (const InputError& error) {
-    throw scene_error(parameters.location_of("filename"), error.what());
-  }
-  if (picture->width != picture->height)
-    throw scene_error(
-        parameters.location_of("filename"),
-        fmt::format(
-            "{} has {} x {} pixels; a square picture in the equal-area octahedral layout would be right",
-            name, picture->width, picture->height));
+  const auto picture = std::make_shared<const PictureFile>(read_light_picture(parameters, name));
+  require_square(*picture, parameters, name);
   return {picture, strength.at(groups, factor), groups, description.world_from_light};
 }
 
@@ -142,6 +192,10 @@ void add_light(const LightDescription& description, const WavelengthGroups& grou
     lights.smalls.push_back(read_point(description, groups, options, unsupported));
   else if (type == "spot")
     lights.smalls.push_back(read_spot(description, groups, options, unsupported));
+  else if (type == "projection")
+    lights.smalls.push_back(read_projection(description, groups, options, unsupported));
+  else if (type == "goniometric")
+    lights.smalls.push_back(read_goniometric(description, groups, options, unsupported));
   else if (type == "distant")
     lights.smalls.push_back(read_distant(description, groups, options, unsupported));
   else if (type == "infinite")

@@ -36,6 +36,12 @@ std::array<Vector3, 2> box_about(Vector3 centre, double radius) {
 }
 
 LightBounds bounds_of(const SmallLight& light) {
+  if (light.pattern) {
+    LightBounds bounds = light.pattern->bounds();
+    bounds.box = {light.position, light.position};
+    bounds.strength *= mean_of(light.strength);
+    return bounds;
+  }
   LightBounds bounds;
   bounds.box = {light.position, light.position};
   bounds.strength = mean_of(light.strength);
@@ -184,7 +190,10 @@ std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3
   double share = 1 / (distance * distance);
   if (light.kind == SmallLight::Kind::spot) share *= spot_share(light, -dot(direction, light.direction));
   if (!(share > 0)) return {};
-  return LightSample{direction, light.position, share * strength, 1, true};
+  if (!light.pattern) return LightSample{direction, light.position, share * strength, 1, true};
+  const Lanes sent = strength * light.pattern->share(-direction, group);
+  if (sent.is_black()) return {};
+  return LightSample{direction, light.position, share * sent, 1, true};
 }
 
 std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geometries, std::size_t index,

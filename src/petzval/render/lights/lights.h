@@ -3,11 +3,13 @@
 #pragma once
 
 #include <petzval/render/lights/environment.h>
+#include <petzval/render/lights/light_pattern.h>
 #include <petzval/render/lights/light_tree.h>
 #include <petzval/render/shapes/geometry.h>
 #include <petzval/render/spectra/named_spectra.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,8 +28,9 @@ struct SmallLight {
   enum class Kind { point, spot, distant };
   Kind kind = Kind::point;
   BandSpectrum strength;  ///< intensity [W·sr⁻¹·nm⁻¹ per unit²]; distant: irradiance across the direction
-  Vector3 position, direction;        ///< direction in which spot and distant lights shine; unit
-  double cos_begin = 1, cos_end = 1;  ///< of a spot: where its edge begins and ends
+  Vector3 position, direction;                  ///< direction in which spot and distant lights shine; unit
+  double cos_begin = 1, cos_end = 1;            ///< of a spot: where its edge begins and ends
+  std::shared_ptr<const LightPattern> pattern;  ///< of a point light that shines by a picture
 };
 
 /// How light arrives at a point.

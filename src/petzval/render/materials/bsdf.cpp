@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/units.h>
+#include <petzval/render/disk_point.h>
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
 #include <petzval/render/materials/fresnel.h>
@@ -9,17 +10,8 @@
 namespace petzval::render {
 
 Vector3 sample_cosine(double u, double v) {
-  const double a = 2 * u - 1, b = 2 * v - 1;
-  if (a == 0 && b == 0) return {0, 0, 1};
-  double r, phi;
-  if (std::abs(a) > std::abs(b)) {
-    r = a;
-    phi = pi / 4 * (b / a);
-  } else {
-    r = b;
-    phi = pi / 2 - pi / 4 * (a / b);
-  }
-  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0, 1 - r * r))};
+  const DiskPoint on = disk_point(u, v);
+  return {on.x, on.y, std::sqrt(std::max(0.0, 1 - on.x * on.x - on.y * on.y))};
 }
 
 Bsdf Bsdf::diffuse(const Lanes& reflectance, const Lanes& transmittance) {
@@ -202,9 +194,10 @@ std::optional<BsdfSample> Bsdf::sample_coated(Vector3 wo, double choice, double 
 
 Lanes Bsdf::conductor_at(double cos) const {
   Lanes result;
+  // In single precision, so that the compiler puts lanes side by side.
+  const auto cos_incident = static_cast<float>(cos);
   for (int i = 0; i < lane_count; ++i)
-    result[i] = static_cast<float>(
-        conductor_reflectance(cos, static_cast<double>(first_[i]), static_cast<double>(second_[i])));
+    result[i] = std::max(0.0f, conductor_reflectance(cos_incident, first_[i], second_[i]));
   return result;
 }
 

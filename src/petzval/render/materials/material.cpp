@@ -222,6 +222,18 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
   return materials;
 }
 
+bool varies(const std::vector<Material>& materials, int index) {
+  const Material& material = materials[static_cast<std::size_t>(index)];
+  for (const SpectrumTexture* each :
+       {&material.reflectance, &material.transmittance, &material.eta, &material.k})
+    if (*each && !(*each)->is_constant()) return true;
+  for (const FloatTexture* each : {&material.roughness_u, &material.roughness_v, &material.mix_amount})
+    if (*each && !(*each)->is_constant()) return true;
+  if (material.normal_map) return true;
+  return material.kind == Material::Kind::mix &&
+         (varies(materials, material.mixed[0]) || varies(materials, material.mixed[1]));
+}
+
 const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point,
                             int group, double choice) {
   const Material* material = &materials[static_cast<std::size_t>(index)];

@@ -47,6 +47,9 @@ struct Material {
 std::vector<Material> make_materials(const SceneDescription& scene, const TextureLibrary& textures,
                                      Unsupported& unsupported);
 
+/// Whether a material varies over its surface, so that texture coordinates are asked for.
+bool varies(const std::vector<Material>& materials, int index);
+
 /// The material that is there at a point: follows mixtures. \param choice  in [0, 1).
 const Material& material_at(const std::vector<Material>& materials, int index, const TexturePoint& point,
                             int group, double choice);

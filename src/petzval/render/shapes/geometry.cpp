@@ -68,8 +68,7 @@ SurfacePoint triangle_point(const Geometry& geometry, const TriangleMesh& mesh, 
   return point;
 }
 
-SurfacePoint quadric_point(const Geometry& geometry, const Quadric& quadric, Vector3 position) {
-  const Quadric::Point on = quadric.at(position);
+SurfacePoint quadric_point(const Geometry& geometry, const Quadric::Point& on) {
   SurfacePoint point;
   point.position = on.position;
   point.normal = geometry.reversed ? -on.normal : on.normal;
@@ -154,7 +153,8 @@ SurfacePoint surface_point(const Geometry& geometry, const Hit& hit, Vector3 ori
     const auto* curve = std::get_if<CurveSegments>(&geometry.shape);
     point = curve ? curve_point(geometry, *curve, hit, near,
                                 normalised(place ? place->inverse_direction(direction) : direction))
-                  : quadric_point(geometry, std::get<Quadric>(geometry.shape), near);
+                  : quadric_point(geometry,
+                                  std::get<Quadric>(geometry.shape).at(near, geometry.needs_coordinates));
   }
   if (!place) return point;
   point.position = place->point(point.position);
@@ -177,7 +177,7 @@ SurfaceSample sample_primitive(const Geometry& geometry, std::size_t primitive, 
   }
   const Quadric& quadric = std::get<Quadric>(geometry.shape);
   const Quadric::Sample sample = quadric.sample(u, v);
-  return {quadric_point(geometry, quadric, sample.point.position), sample.per_area};
+  return {quadric_point(geometry, sample.point), sample.per_area};
 }
 
 double primitive_density(const Geometry& geometry, std::size_t primitive, const SurfacePoint& point) {

@@ -25,6 +25,7 @@ struct Geometry {
   std::variant<TriangleMesh, Quadric, CurveSegments> shape;
   std::optional<Opacity> opacity;  ///< of a mesh; times that of its vertices
   bool is_interface = false;       ///< its material is none: light passes it as it is
+  bool needs_coordinates = true;   ///< its material varies over it: SurfacePoint::u and v are asked for
   int material = 0;
   bool reversed = false;          ///< ReverseOrientation
   bool swaps_handedness = false;  ///< its transformation is a mirror image
@@ -48,7 +49,7 @@ struct SurfacePoint {
   Vector3 normal;          ///< of the surface; unit
   Vector3 shading_normal;  ///< of its interpolated normals, on the same side
   Vector3 along_u;
-  double u = 0, v = 0;
+  double u = 0, v = 0;                  ///< if Geometry::needs_coordinates
   bool mirrored_uv = false;             ///< ∂p/∂u × ∂p/∂v looks away from the shading normal
   std::array<double, 3> tint{1, 1, 1};  ///< colour of the vertices
   double clearance = 0;                 ///< how far rays must get away before they may meet the surface again

@@ -3,7 +3,6 @@
 #include <petzval/base/units.h>
 #include <petzval/render/shapes/quadric.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,12 +27,11 @@ bool roots(double a, double half_b, double c, double& first, double& second) {
   return true;
 }
 
-double determinant(const Transform& transform) {
+/// By how much a transformation makes volumes larger.
+double volume_scale(const Transform& transform) {
   const Matrix4& m = transform.matrix();
-  Eigen::Matrix3d upper;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) upper(i, j) = m[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  return std::abs(upper.determinant());
+  const Vector3 x{m[0][0], m[1][0], m[2][0]}, y{m[0][1], m[1][1], m[2][1]}, z{m[0][2], m[1][2], m[2][2]};
+  return std::abs(dot(x, cross(y, z)));
 }
 
 double positive(const Parameters& parameters, const char* name, double otherwise) {
@@ -57,9 +55,18 @@ bool Quadric::covers(Vector3 p) const {
 }
 
 std::optional<double> Quadric::hit(Vector3 origin, Vector3 direction, double t_min, double t_max) const {
+  double first, second;
+  if (ball) {
+    const Vector3 from = origin - ball->centre;
+    if (!roots(dot(direction, direction), dot(from, direction), dot(from, from) - ball->radius * ball->radius,
+               first, second))
+      return {};
+    for (const double t : {first, second})
+      if (t > t_min && t < t_max) return t;
+    return {};
+  }
   const Vector3 o = world_from_object.inverse_point(origin),
                 d = world_from_object.inverse_direction(direction);
-  double first, second;
   if (kind == Kind::disk) {
     if (d.z == 0) return {};
     first = second = (z_min - o.z) / d.z;
@@ -81,7 +88,24 @@ Vector3 Quadric::object_normal(Vector3 p) const {
   return normalised(p);
 }
 
-Quadric::Point Quadric::at(Vector3 world_position) const {
+void Quadric::find_ball() {
+  Ball found{{}, 0, {}};
+  if (!is_round_sphere(found.centre, found.radius)) return;
+  found.axis = normalised(world_from_object.direction({0, 0, 1}));
+  if (world_from_object.swaps_handedness()) found.axis = -found.axis;
+  ball = found;
+}
+
+Quadric::Point Quadric::at_ball(Vector3 world_position) const {
+  Point result;
+  result.normal = normalised(world_position - ball->centre);
+  result.position = ball->centre + ball->radius * result.normal;
+  result.along_u = phi_max * cross(ball->axis, ball->radius * result.normal);
+  return result;
+}
+
+Quadric::Point Quadric::at(Vector3 world_position, bool coordinates) const {
+  if (ball && !coordinates) return at_ball(world_position);
   Vector3 p = world_from_object.inverse_point(world_position);
   // Onto the surface exactly.
   if (kind == Kind::sphere && dot(p, p) > 0)
@@ -95,16 +119,21 @@ Quadric::Point Quadric::at(Vector3 world_position) const {
   result.position = world_from_object.point(p);
   result.normal = normalised(world_from_object.normal(object_normal(p)));
   result.along_u = world_from_object.direction({-phi_max * p.y, phi_max * p.x, 0});
-  result.u = azimuth(p) / phi_max;
+  if (coordinates) set_coordinates(p, result);
+  return result;
+}
+
+/// \param p  in the quadric's own space.
+void Quadric::set_coordinates(Vector3 p, Point& point) const {
+  point.u = azimuth(p) / phi_max;
   if (kind == Kind::sphere) {
     const auto polar = [&](double z) { return std::acos(std::clamp(z / radius, -1.0, 1.0)); };
-    result.v = (polar(p.z) - polar(z_min)) / (polar(z_max) - polar(z_min));
+    point.v = (polar(p.z) - polar(z_min)) / (polar(z_max) - polar(z_min));
   } else if (kind == Kind::cylinder) {
-    result.v = (p.z - z_min) / (z_max - z_min);
+    point.v = (p.z - z_min) / (z_max - z_min);
   } else {
-    result.v = (radius - std::hypot(p.x, p.y)) / (radius - inner_radius);
+    point.v = (radius - std::hypot(p.x, p.y)) / (radius - inner_radius);
   }
-  return result;
 }
 
 std::array<Vector3, 2> Quadric::bounds() const {
@@ -122,10 +151,6 @@ std::array<Vector3, 2> Quadric::bounds() const {
 double Quadric::object_area() const {
   if (kind == Kind::disk) return phi_max / 2 * (radius * radius - inner_radius * inner_radius);
   return phi_max * radius * (z_max - z_min);
-}
-
-double Quadric::stretch(Vector3 normal) const {
-  return determinant(world_from_object) * length(world_from_object.normal(normal));
 }
 
 double Quadric::area() const {
@@ -149,15 +174,19 @@ Quadric::Sample Quadric::sample(double u, double v) const {
     const double r = kind == Kind::cylinder ? radius : std::sqrt(std::max(0.0, radius * radius - z * z));
     p = {r * std::cos(phi), r * std::sin(phi), z};
   }
+  const Vector3 normal = world_from_object.normal(object_normal(p));
   Sample result;
-  result.point = at(world_from_object.point(p));
-  result.per_area = 1 / (object_area() * stretch(object_normal(p)));
+  result.point.position = world_from_object.point(p);
+  result.point.normal = normalised(normal);
+  result.point.along_u = world_from_object.direction({-phi_max * p.y, phi_max * p.x, 0});
+  result.per_area = 1 / (object_area() * volume_scale(world_from_object) * length(normal));
   return result;
 }
 
 double Quadric::density(const Point& point) const {
   const Vector3 p = world_from_object.inverse_point(point.position);
-  return 1 / (object_area() * stretch(object_normal(p)));
+  const double stretch = volume_scale(world_from_object) * length(world_from_object.normal(object_normal(p)));
+  return 1 / (object_area() * stretch);
 }
 
 bool Quadric::is_round_sphere(Vector3& centre, double& world_radius) const {
@@ -202,6 +231,7 @@ Quadric read_quadric(const ShapeDescription& shape, Unsupported& unsupported) {
     throw scene_error(parameters.location_of("zmin"),
                       "\"zmin\" must lie below \"zmax\" and inside the shape");
   quadric.z_min = z0, quadric.z_max = z1;
+  quadric.find_ball();
   return quadric;
 }
 

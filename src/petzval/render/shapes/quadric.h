@@ -16,24 +16,32 @@ struct Quadric {
   Kind kind = Kind::sphere;
   double radius = 1, inner_radius = 0, z_min = -1, z_max = 1, phi_max = 0;
   Transform world_from_object;  ///< or from the object that is placed
+  /// Of a whole sphere that is only moved, turned and scaled evenly: in world space, where it is met sooner.
+  struct Ball {
+    Vector3 centre;
+    double radius;
+    Vector3 axis;  ///< unit; along it ∂p/∂u turns anticlockwise
+  };
+  std::optional<Ball> ball;  ///< set by find_ball()
 
   struct Point {
     Vector3 position;  ///< in world space
     Vector3
         normal;  ///< unit: outwards of sphere and cylinder, +z of the disk, as the transformation takes them
-    Vector3 along_u;  ///< ∂p/∂u, u the azimuth
-    double u = 0, v = 0;
+    Vector3 along_u;      ///< ∂p/∂u, u the azimuth
+    double u = 0, v = 0;  ///< if they are asked for
   };
 
   /// The first t in (t_min, t_max) at which origin + t·direction (world space) meets the surface.
   std::optional<double> hit(Vector3 origin, Vector3 direction, double t_min, double t_max) const;
-  /// Everything about a point of the surface, given nearly.
-  Point at(Vector3 world_position) const;
+  /// Everything about a point of the surface, given nearly. \param coordinates  whether u and v are asked
+  /// for.
+  Point at(Vector3 world_position, bool coordinates = true) const;
 
   /// Corners of the box around it in world space: {least, greatest}.
   std::array<Vector3, 2> bounds() const;
-  /// A point with density `per_area` (in world space) over the surface; even over it unless the
-  /// transformation stretches it.
+  /// A point, without u and v, with density `per_area` (in world space) over the surface; even over it unless
+  /// the transformation stretches it.
   struct Sample {
     Point point;
     double per_area = 0;
@@ -48,11 +56,13 @@ struct Quadric {
   /// Whether it is a whole sphere moved, turned and scaled evenly; then `centre` and `radius` are those in
   /// world space.
   bool is_round_sphere(Vector3& centre, double& world_radius) const;
+  void find_ball();
 
  private:
+  Point at_ball(Vector3 world_position) const;
   bool covers(Vector3 p) const;
-  double stretch(Vector3 object_normal) const;
   Vector3 object_normal(Vector3 p) const;
+  void set_coordinates(Vector3 p, Point& point) const;
 };
 
 /// \throws InputError with file, line and column.

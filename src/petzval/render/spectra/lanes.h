@@ -10,6 +10,8 @@ namespace petzval::render {
 /// How many wavelengths one path carries.
 inline constexpr int lane_count = 8;
 
+static_assert(lane_count == 8, "Lanes::largest() halves them three times");
+
 /// One value a wavelength; arithmetic is lane by lane.
 struct alignas(32) Lanes {
   float v[lane_count];
@@ -38,7 +40,11 @@ struct alignas(32) Lanes {
   friend Lanes operator*(Lanes a, const Lanes& b) { return a *= b; }
   friend Lanes operator*(double factor, Lanes a) { return a *= factor; }
 
-  float largest() const { return *std::max_element(v, v + lane_count); }
+  float largest() const {
+    float half[lane_count / 2];
+    for (int i = 0; i < lane_count / 2; ++i) half[i] = std::max(v[i], v[i + lane_count / 2]);
+    return std::max(std::max(half[0], half[2]), std::max(half[1], half[3]));
+  }
   bool is_black() const { return !(largest() > 0); }
 };
 

@@ -13,16 +13,9 @@ WavelengthGroups::WavelengthGroups(std::vector<double> wavelengths_nm)
     last = nm;
   }
   if (wavelengths_nm_.empty()) throw InputError("a picture needs at least one wavelength");
-  count_ = (static_cast<int>(wavelengths_nm_.size()) + lane_count - 1) / lane_count;
-}
-
-int WavelengthGroups::lanes(int group) const {
   const int bands = static_cast<int>(wavelengths_nm_.size());
-  return (bands - group + count_ - 1) / count_;
-}
-
-int WavelengthGroups::band(int group, int lane) const {
-  return lane < lanes(group) ? group + lane * count_ : -1;
+  count_ = (bands + lane_count - 1) / lane_count;
+  for (int group = 0; group < count_; ++group) lanes_.push_back((bands - group + count_ - 1) / count_);
 }
 
 double WavelengthGroups::wavelength_nm(int group, int lane) const {

@@ -26,9 +26,9 @@ class WavelengthGroups {
   const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
   int count() const { return count_; }
   /// Lanes of a group that have a band: the first so many.
-  int lanes(int group) const;
+  int lanes(int group) const { return lanes_[static_cast<std::size_t>(group)]; }
   /// −1 for a lane without one.
-  int band(int group, int lane) const;
+  int band(int group, int lane) const { return lane < lanes(group) ? group + lane * count_ : -1; }
   double wavelength_nm(int group, int lane) const;
 
   /// `value` at every wavelength.
@@ -37,6 +37,7 @@ class WavelengthGroups {
  private:
   std::vector<double> wavelengths_nm_;
   int count_;
+  std::vector<int> lanes_;  ///< [group]
 };
 
 }  // namespace petzval::render

@@ -13,6 +13,7 @@ class ConstantFloat final : public Texture<double> {
  public:
   explicit ConstantFloat(double value) : value_(value) {}
   double at(const TexturePoint&, int) const override { return value_; }
+  bool is_constant() const override { return true; }
 
  private:
   double value_;
@@ -22,6 +23,7 @@ class ConstantSpectrum final : public Texture<Lanes> {
  public:
   explicit ConstantSpectrum(BandSpectrum value) : value_(std::move(value)) {}
   Lanes at(const TexturePoint&, int group) const override { return value_[static_cast<std::size_t>(group)]; }
+  bool is_constant() const override { return true; }
 
  private:
   BandSpectrum value_;

@@ -23,6 +23,8 @@ class Texture {
  public:
   virtual ~Texture() = default;
   virtual Value at(const TexturePoint& point, int group) const = 0;
+  /// Whether it is the same everywhere.
+  virtual bool is_constant() const { return false; }
 };
 
 using FloatTexture = std::shared_ptr<const Texture<double>>;
