@@ -133,8 +133,9 @@ ImageOptions image_options(const std::string& method, Maybe<double> tolerance, i
   nb::kw_only(), nb::arg("method") = "product", nb::arg("tolerance").none() = nb::none(),                    \
                  nb::arg("supersample") = 0, nb::arg("surround") = "error", nb::arg("interpolate") = "psf",  \
                  nb::arg("fit") = "monotone", nb::arg("section").none() = nb::none(), nb::arg("layers") = 0, \
-                 nb::arg("least_scene_angle_deg").none() = nb::none(), nb::arg("threads") = 0,               \
-                 nb::arg("progress").none() = nb::none()
+                 nb::arg("least_scene_angle_deg").none() = nb::none(),                                       \
+                 nb::arg("scatter").none() = nb::none(), nb::arg("scatter_surround") = "dark",               \
+                 nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()
 
 SpectralImage image_of(Optics optics, const nb::object& scene, const ImageOptions& options,
                        const CallOptions& how) {
@@ -192,12 +193,16 @@ template <auto make, typename Self>
 auto with_image_options(const Self& self, const nb::object& scene, const std::string& method,
                         Maybe<double> tolerance, int supersample, const std::string& surround,
                         const std::string& interpolate, const std::string& fit, Maybe<int> section,
-                        int layers, Maybe<double> least_scene_angle_deg, int threads,
-                        const nb::object& progress) {
-  return make(optics_of(self), scene,
-              image_options(method, tolerance, supersample, surround, interpolate, fit, section, layers,
-                            least_scene_angle_deg),
-              {threads, 1, progress});
+                        int layers, Maybe<double> least_scene_angle_deg, const Maybe<std::string>& scatter,
+                        const std::string& scatter_surround, int threads, const nb::object& progress) {
+  using Surround = ScatterLightOptions::Surround;
+  ImageOptions options = image_options(method, tolerance, supersample, surround, interpolate, fit, section,
+                                       layers, least_scene_angle_deg);
+  options.flare.scatter_surround = choice<Surround>("scatter_surround", scatter_surround,
+                                                    {{"dark", Surround::dark}, {"mean", Surround::mean}});
+  options.flare.scatter = scatter.has_value();
+  if (scatter && *scatter != "lens") options.flare.surfaces_scatter = parse_scatter(*scatter);
+  return make(optics_of(self), scene, options, {threads, 1, progress});
 }
 
 constexpr const char* image_text =
@@ -207,7 +212,9 @@ constexpr const char* image_text =
     "cells along a side of a pixel, 0: as many as the tolerance needs; `surround` of a scene that is too "
     "small: error, zero or extend; `layers` of a scene "
     "with depth, 0: as "
-    "many as needed. `progress(fraction, what)` may return False to stop. Raises InputError; Cancelled.";
+    "many as needed; `scatter` of the lens's surfaces, as roughness=1.5,dust=0.02, or lens for what its file "
+    "says (docs/FLARE.md); `scatter_surround` beyond the frame: dark or mean. `progress(fraction, what)` may "
+    "return False to stop. Raises InputError; Cancelled.";
 constexpr const char* plan_text =
     "What `image` does before it computes light: scene, table of the lens, frame. Takes the same keywords.";
 
