@@ -44,6 +44,7 @@ const std::vector<Format>& formats() {
        try_native,
        {"\"stop\": true", "\"glass\": \"F2\"", "\"conic\": -1", "\"asphere\": {\"4\": 1e-5}", "null",
         "\"nd\"", "\"index_table\"", "\"object_na\"", "\"radius_mm\"", "{}", "[]", "\\u0000",
+        "\"scatter\": {\"b0_per_sr\": 0.1, \"l\": 0.01}", "\"dust_percent\": 1", "\"table\": [[1, 2]]",
         "\"mirror\": true", "\"apertures\": [{\"ellipse\": [2, 1], \"obscures\": true}]",
         "\"shape\": {\"kind\": \"biconic\", \"curvature_x_per_mm\": 0.01}",
         "\"shape\": {\"kind\": \"zernike_sag\", \"normalisation_radius_mm\": 5, \"coefficients_mm\": [0, "

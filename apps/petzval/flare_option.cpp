@@ -15,6 +15,10 @@
 
 namespace petzval::app {
 
+std::optional<Scatter> read_scatter_option(const std::string& text) {
+  return text == "lens" ? std::nullopt : std::optional(parse_scatter(text));
+}
+
 void FlareChoice::add_to(CLI::App& command, bool scene) {
   const std::string before = command.option_defaults()->get_group();
   command.option_defaults()->group("Light that goes astray");
@@ -28,6 +32,19 @@ void FlareChoice::add_to(CLI::App& command, bool scene) {
   command.add_flag("--starburst", starburst,
                    "Add the light of bright sources that the edges of the stop diffract; blades give it "
                    "its rays");
+  command.add_option("--scatter", scatter, scatter_help);
+  command
+      .add_option(
+          "--scatter-layer", scatter_layer,
+          "Also write what --scatter adds and takes (.exr, .npy); without it the picture is the output "
+          "minus this")
+      ->check(output_file());
+  command
+      .add_option(
+          "--scatter-surround", scatter_surround,
+          "What scatters in from beyond the frame besides bright sources: dark (nothing; the default) "
+          "or mean (as bright as the frame on the whole, half a frame far)")
+      ->check(CLI::IsMember({"dark", "mean"}));
   if (scene)
     command
         .add_option("--ghost-threshold", flare.search.threshold,
@@ -53,6 +70,12 @@ FlareOptions FlareChoice::options() const {
   FlareOptions options = flare;
   options.ghosts = ghosts || !ghost_layer.empty();
   options.starburst = starburst;
+  options.scatter = !scatter.empty();
+  if (options.scatter) options.surfaces_scatter = read_scatter_option(scatter);
+  if (!options.scatter && (!scatter_layer.empty() || !scatter_surround.empty()))
+    throw InputError("--scatter-layer and --scatter-surround have no effect without --scatter");
+  if (scatter_surround == "mean") options.scatter_surround = ScatterLightOptions::Surround::mean;
+  if (!scatter_layer.empty()) require_extension(scatter_layer, {".exr", ".npy"}, "a layer of scatter");
   for (const std::string& text : suns) {
     Sun sun = parse_sun(text);
     sun.diameter_deg = sun_diameter_deg;
@@ -70,9 +93,13 @@ FlareOptions FlareChoice::options() const {
 }
 
 void FlareChoice::write(const FlareLayers& layers, StagedFiles& files) const {
-  if (ghost_layer.empty()) return;
-  SpectralImage light = *layers.ghosts;
-  write_outputs(std::move(light), {ghost_layer}, {}, {}, files, {});
+  const auto write_layer = [&](const std::string& path, const std::optional<SpectralImage>& layer) {
+    if (path.empty()) return;
+    SpectralImage light = *layer;
+    write_outputs(std::move(light), {path}, {}, {}, files, {});
+  };
+  write_layer(ghost_layer, layers.ghosts);
+  write_layer(scatter_layer, layers.scatter);
 }
 
 nlohmann::ordered_json flare_json(const FlareLayers& layers) {
@@ -88,6 +115,10 @@ nlohmann::ordered_json flare_json(const FlareLayers& layers) {
   json["neglected_share"] = layers.report.neglected_share;
   json["flux_w_per_nm"] = layers.report.ghost_flux_w;
   json["frame_flux_w_per_nm"] = layers.report.frame_flux_w;
+  if (layers.scatter)
+    json["scatter"] = {{"scattered_share", layers.scatter_report.scattered_share},
+                       {"returned_share", layers.scatter_report.returned_share},
+                       {"outside_sources", layers.scatter_report.outside_sources}};
   json["pairs"] = nlohmann::ordered_json::array();
   for (const GhostPairReport& pair : layers.report.pairs)
     json["pairs"].push_back({{"first", pair.pair.first},
@@ -101,6 +132,11 @@ nlohmann::ordered_json flare_json(const FlareLayers& layers) {
 void print_flare(const FlareLayers& layers) {
   if (layers.sun_count > 0) fmt::print("  suns        {}, as their rays give them\n", layers.sun_count);
   if (layers.stars) fmt::print("  stars       of {} sources\n", layers.sources.size());
+  if (layers.scatter)
+    fmt::print(
+        "  scatter     {:.3g} % of the light taken, {:.3g} % come back; {} sources outside the frame\n",
+        100 * layers.scatter_report.scattered_share, 100 * layers.scatter_report.returned_share,
+        layers.scatter_report.outside_sources);
   if (!layers.ghosts) return;
   const GhostLightReport& report = layers.report;
   fmt::print(

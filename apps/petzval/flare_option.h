@@ -6,6 +6,7 @@
 #include <petzval/simulate/flare.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct FlareChoice {
   double sun_diameter_deg = Sun().diameter_deg;
   std::string sun_light = Sun().light;
   bool ghosts = false, starburst = false;
-  std::string ghost_layer;
+  std::string ghost_layer, scatter, scatter_layer, scatter_surround;
   FlareOptions flare = {};
 
   /// Adds --ghosts, --sun and what belongs to them. \param scene  whether sources are sought among the
@@ -26,11 +27,21 @@ struct FlareChoice {
   void add_to(CLI::App& command, bool scene);
   /// \throws InputError for options that need another, and suns that are none.
   FlareOptions options() const;
-  /// Writes the ghosts alone, if that is asked.
+  /// Writes the ghosts alone, and the scatter, if that is asked.
   void write(const FlareLayers& layers, StagedFiles& files) const;
 };
 
 nlohmann::ordered_json flare_json(const FlareLayers& layers);
+inline constexpr const char* scatter_help =
+    "Light that the surfaces of the lens scatter: roughness=NM (RMS) or b0=BSDF, l and s (Harvey), "
+    "wavelength=NM, or table=FILE.csv; dust=PERCENT of the surface or level=L (IEST-STD-CC1246); separated "
+    "by "
+    "commas: roughness=1.5,dust=0.02; surfaces whose lens file says it keep their own; lens: as the file "
+    "says "
+    "alone";
+/// What --scatter says: nothing for "lens", which leaves it to the lens. \throws InputError as
+/// parse_scatter().
+std::optional<Scatter> read_scatter_option(const std::string& text);
 /// Lines of a summary.
 void print_flare(const FlareLayers& layers);
 

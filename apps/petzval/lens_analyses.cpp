@@ -9,6 +9,7 @@
 
 #include "camera_option.h"
 #include "field_option.h"
+#include "flare_option.h"
 #include "ghost_drawing.h"
 #include "lens_commands.h"
 #include "loss_option.h"
@@ -29,6 +30,7 @@ struct AnalysisCommand {
   AnalysisRequest request;
   std::string name, plot, csv, map, zernike_order = "fringe";
   GhostDrawing ghost;
+  std::string scatter;
   bool by_light = false, about_chief = false, as_psf = false;
 };
 
@@ -102,6 +104,7 @@ void run(const AnalysisCommand& command, const Shared& shared) {
   request.at.azimuth_deg = command.camera.field_azimuth_deg;
   if (!command.camera.sensor.empty()) fit_to_sensor(command, lens, request, context);
   request.at.losses = command.losses.losses(lens, shared);
+  if (!command.scatter.empty()) request.glare.surfaces_scatter = read_scatter_option(command.scatter);
   request.plots = !command.plot.empty();
   request.spot_weight = command.by_light ? RayWeight::light : RayWeight::stop_area;
   request.zernike_order = command.zernike_order == "noll" ? ZernikeOrder::noll : ZernikeOrder::fringe;
@@ -208,6 +211,25 @@ const OwnOptions own_options[] = {
                       "Draw the way of one ghost: the surfaces that reflect first and second, as in 4,1");
        app.add_option("-o,--output", command.ghost.output, "The drawing of --draw: .svg, .png or .pdf")
            ->check(output_file());
+     }},
+    {"glare", "petzval lens glare cooke-triplet --scatter roughness=1.5,dust=0.02 --plot glare.svg",
+     [](CLI::App& app, AnalysisCommand& command) {
+       command.losses.add_to(app);
+       app.add_option("--scatter", command.scatter, scatter_help);
+       app.add_option(
+              "--hole", command.request.glare.hole_percent,
+              "Diameter of the black hole's image [% of the frame's diagonal, or of the widest field's]")
+           ->check(positive_number())
+           ->capture_default_str();
+       app.add_option("--surround-angle", command.request.glare.surround_deg,
+                      "How far from the axis the bright surround reaches [degrees]")
+           ->check(positive_number())
+           ->capture_default_str();
+       app.add_flag("--ghosts", command.request.glare.ghosts,
+                    "Count the light that two surfaces reflect, too");
+       app.add_option("--sensor-reflectance", command.request.sensor_reflectance,
+                      "Share of the light that the sensor's surface reflects, for --ghosts")
+           ->check(CLI::Range(0.0, 1.0));
      }},
     {"mtf", "petzval lens mtf cooke-triplet --frequencies 10,20,40 --polychromatic --plot mtf.svg", add_mtf},
     {"focus", "petzval lens focus cooke-triplet --frequency 40 --plot focus.svg",

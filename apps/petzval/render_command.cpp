@@ -187,7 +187,7 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
   if (flare.any() && !request.is_piece()) layers = scene_flare(scene, flare, context);
   if (request.is_piece()) return render_piece(scene, context, shared);
   Rendering picture = render_or_save(command, scene, outputs, context);
-  if (layers) add_layers(*layers, picture.irradiance);
+  if (layers) add_scene_flare(scene, flare, *layers, picture.irradiance, context);
   seconds.light = seconds_since(begin);
   const Outputs made =
       command.outputs.write(picture, scene, sensor, outputs, context, layers ? &*layers : nullptr);

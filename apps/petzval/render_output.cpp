@@ -158,7 +158,7 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
   for (const auto& [option, path] :
        {NamedFile{"--depth", depth}, NamedFile{"--normals", normals}, NamedFile{"--albedo", albedo},
         NamedFile{"--segments", segments}, NamedFile{"--flow", flow},
-        NamedFile{"--ghost-layer", flare.ghost_layer}})
+        NamedFile{"--ghost-layer", flare.ghost_layer}, NamedFile{"--scatter-layer", flare.scatter_layer}})
     if (!path.empty()) outputs.push_back({option, path});
   for (const auto& [option, path] : others)
     if (!path.empty()) outputs.push_back({option, path});

@@ -97,7 +97,8 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                         int rays, bool opd, int samples, const std::string& zernike_order, int terms,
                         const std::string& spot_weight, double focus_frequency_cpmm,
                         double sensor_reflectance, double source_diameter_deg, double azimuth_deg,
-                        bool as_psf, int threads, const nb::object& progress) {
+                        bool as_psf, const Maybe<std::string>& scatter, double hole_percent,
+                        double surround_deg, bool ghosts, int threads, const nb::object& progress) {
   const Lens lens = lens_to_look_at(self);
   AnalysisRequest request;
   request.at = request_of(lens, fields, field_type, wavelengths_nm,
@@ -120,6 +121,9 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                                           {{"area", RayWeight::stop_area}, {"light", RayWeight::light}});
   request.focus_frequency_cpmm = focus_frequency_cpmm;
   request.sensor_reflectance = sensor_reflectance, request.source_diameter_deg = source_diameter_deg;
+  if (scatter && *scatter != "lens") request.glare.surfaces_scatter = parse_scatter(*scatter);
+  request.glare.hole_percent = hole_percent, request.glare.surround_deg = surround_deg,
+  request.glare.ghosts = ghosts;
   Call call({threads, 1, progress});
   return python_of(name, call([&](const Context& context) { return analyse(name, lens, request, context); }));
 }
@@ -297,7 +301,9 @@ constexpr const char* draw_text =
       nb::arg("zernike_order") = "fringe", nb::arg("terms") = 0, nb::arg("spot_weight") = "area",           \
       nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("sensor_reflectance") = 0.0,                          \
       nb::arg("source_diameter_deg") = 0.53, nb::arg("azimuth_deg") = 0.0, nb::arg("as_psf") = false,       \
-      nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()
+      nb::arg("scatter").none() = nb::none(), nb::arg("hole_percent") = 10.0,                               \
+      nb::arg("surround_deg") = 60.0, nb::arg("ghosts") = false, nb::arg("threads") = 0,                    \
+      nb::arg("progress").none() = nb::none()
 
 /// What a lens and a camera have alike.
 void bind_methods(const nb::handle& type) {

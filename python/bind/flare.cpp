@@ -11,13 +11,19 @@
 namespace petzval::python {
 
 FlareOptions flare_options(const std::vector<SunChoice>& suns, bool ghosts, bool starburst,
-                           double ghost_threshold, double ghost_neglect) {
+                           double ghost_threshold, double ghost_neglect, const Maybe<std::string>& scatter,
+                           const std::string& scatter_surround) {
   FlareOptions options;
   for (const SunChoice& each : suns)
     options.suns.push_back(std::holds_alternative<Sun>(each) ? std::get<Sun>(each)
                                                              : parse_sun(std::get<std::string>(each)));
   options.ghosts = ghosts, options.starburst = starburst;
   options.search.threshold = ghost_threshold, options.neglected_share = ghost_neglect;
+  using Surround = ScatterLightOptions::Surround;
+  options.scatter = scatter.has_value();
+  if (scatter && *scatter != "lens") options.surfaces_scatter = parse_scatter(*scatter);
+  options.scatter_surround = choice<Surround>("scatter_surround", scatter_surround,
+                                              {{"dark", Surround::dark}, {"mean", Surround::mean}});
   return options;
 }
 
@@ -61,6 +67,7 @@ std::string repr(const FlareLayers& layers) {
   if (layers.suns) parts.emplace_back("suns");
   if (layers.ghosts) parts.push_back(fmt::format("ghosts by {} ways", layers.report.followed));
   if (layers.stars) parts.emplace_back("stars");
+  if (layers.scatter) parts.emplace_back("scatter");
   return fmt::format("<Flare: {}>", fmt::join(parts, ", "));
 }
 
@@ -101,6 +108,10 @@ void bind_flare(nb::module_& module) {
       .def_prop_ro("stars", layer_of<&FlareLayers::stars>, inside,
                    "What the edges of the stop diffract, beyond the PSFs; it adds up to nothing. None unless "
                    "asked for.")
+      .def_prop_ro(
+          "scatter", layer_of<&FlareLayers::scatter>, inside,
+          "What the surfaces of the lens turn aside, less what that takes from the picture; None unless "
+          "asked for.")
       .def_prop_ro("sources", sources_of,
                    "Where the light comes from, suns first: dicts with `name`, `right_deg`, `up_deg` and "
                    "`radius_deg`.")

@@ -108,7 +108,7 @@ auto render_function(RenderRequest (*)(const CameraInPython&, OfRender...), Flar
       Maybe<FlareLayers> layers;
       if (flare.any()) layers = scene_flare(scene, flare, context);
       RenderingInPython made(render_scene(scene, context));
-      if (layers) add_layers(*layers, made.irradiance);
+      if (layers) add_scene_flare(scene, flare, *layers, made.irradiance, context);
       made.flare = std::move(layers);
       if (segments) made.segments = interleaved(segments_seen(scene, context));
       if (flow) made.flow = flow_seen(scene, context);

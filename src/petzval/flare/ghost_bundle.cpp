@@ -50,7 +50,12 @@ double front_radius_mm(const Tracer& tracer) {
   return beyond * widest;
 }
 
-/// Where light that passes the first surface crosses the plane of its vertex.
+constexpr int search_cells = 16, search_levels = 4;
+/// Rays that pass along each side that make a box tight enough.
+constexpr int enough_nodes = 6;
+
+}  // namespace
+
 PupilBox front_box(const Tracer& tracer, const SourceBeam& beam) {
   const double radius = front_radius_mm(tracer);
   const double sag = surface_point(tracer.surfaces()[0].shape, 0, radius).sag;
@@ -61,12 +66,6 @@ PupilBox front_box(const Tracer& tracer, const SourceBeam& beam) {
   box.left = -wide, box.right = wide, box.low = -tall, box.high = tall;
   return box;
 }
-
-constexpr int search_cells = 16, search_levels = 4;
-/// Rays that pass along each side that make a box tight enough.
-constexpr int enough_nodes = 6;
-
-}  // namespace
 
 void BundleOptions::validate() const {
   if (cells < 4 || cells > 512)

@@ -37,6 +37,10 @@ struct PupilBox {
   double extent_pixels() const;
 };
 
+/// Where light that passes the first surface crosses the plane of its vertex; for a surface without a clear
+/// radius twice as wide as the widest that has one.
+PupilBox front_box(const Tracer& tracer, const SourceBeam& beam);
+
 /// Looks for it with few rays: on a grid over the first surface, and, where none of them passes, again about
 /// the one that fails least, which the height of paraxial rays at each surface being linear in the place
 /// leads to what passes.

@@ -5,6 +5,7 @@
 #include <petzval/glass/material.h>
 #include <petzval/lens/aperture_figure.h>
 #include <petzval/lens/pose.h>
+#include <petzval/lens/scatter.h>
 #include <petzval/lens/stop_blades.h>
 #include <petzval/lens/tolerance.h>
 
@@ -43,6 +44,7 @@ struct Surface {
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
   Pose pose = {};                               ///< where it stands, if not on its place
+  std::optional<Scatter> scatter = {};          ///< of its own, before that of the lens
   /// Carries rays from this plane to the next surface, in place of refraction (lens/ray_transfer.h).
   std::shared_ptr<const RayTransfer> transfer = {};
 
@@ -109,6 +111,7 @@ struct Lens {
   std::vector<SurfaceGroup> groups = {};   ///< later ones move what earlier ones have moved
   Pose sensor_pose = {};                   ///< of the image surface; image coordinates are the sensor's own
   std::vector<Tolerance> tolerances = {};  ///< that its maker keeps
+  std::optional<Scatter> scatter = {};     ///< of every surface between two media that states none
   LensStates states = {};                  ///< the lens itself stands in one of them, or as it was altered
 
   /// Index of the stop surface. A valid lens has exactly one.

@@ -21,6 +21,15 @@ bool positive(double value) {
   return std::isfinite(value) && value > 0;
 }
 
+Fault scatter_fault(const Scatter& scatter, const std::string& path) {
+  try {
+    scatter.validate();
+  } catch (const InputError& error) {
+    return LensFault{path, fmt::format("cannot be: {}", error.what())};
+  }
+  return {};
+}
+
 Fault shape_fault(const Surface& surface, const std::string& path) {
   const AddedShape& shape = *surface.shape;
   const SurfaceKind* kind = find_surface_kind(shape.kind);
@@ -152,6 +161,8 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
   if (blades.count != 0 && surface.shape)
     if (const SurfaceKind* kind = find_surface_kind(surface.shape->kind); kind && !kind->is_round)
       return LensFault{at("blades"), "must stand at a surface that is round itself"};
+  if (surface.scatter)
+    if (Fault fault = scatter_fault(*surface.scatter, at("scatter"))) return fault;
   if (!std::isfinite(blades.rotation_deg))
     return LensFault{at("blades.rotation_deg"), "must be a finite number of degrees"};
   for (const auto& [power, coefficient] : surface.asphere) {
@@ -263,6 +274,8 @@ Fault wavelengths_fault(const Lens& lens) {
 
 std::optional<LensFault> find_fault(const Lens& lens) {
   if (Fault fault = surfaces_fault(lens)) return fault;
+  if (lens.scatter)
+    if (Fault fault = scatter_fault(*lens.scatter, "scatter")) return fault;
   if (Fault fault = poses_fault(lens)) return fault;
   if (Fault fault = tolerances_fault(lens)) return fault;
   if (Fault fault = states_fault(lens.states)) return fault;

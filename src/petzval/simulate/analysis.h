@@ -9,6 +9,7 @@
 #include <petzval/analysis/tv_distortion.h>
 #include <petzval/analysis/wavefront_zernike.h>
 #include <petzval/base/context.h>
+#include <petzval/lens/scatter.h>
 #include <petzval/report/svg_plot.h>
 #include <petzval/report/table.h>
 
@@ -21,6 +22,14 @@
 #include <vector>
 
 namespace petzval {
+
+/// What veiling glare is asked.
+struct GlareRequest {
+  std::optional<Scatter> surfaces_scatter = {};  ///< of surfaces that say nothing themselves
+  double hole_percent = 10;  ///< diameter of the black hole's image, of the frame's diagonal
+  double surround_deg = 60;  ///< how far the surround reaches from the axis
+  bool ghosts = false;       ///< count what surfaces reflect twice, too
+};
 
 /// What an analysis is asked. Each takes what it knows of; the rest may stay as it is.
 struct AnalysisRequest {
@@ -42,6 +51,7 @@ struct AnalysisRequest {
   double sensor_reflectance = 0;      ///< for ghosts: 0: of the sensor there are none
   double source_diameter_deg = 0.53;  ///< of what makes ghosts, as the lens sees it; the Sun's
   double focus_frequency_cpmm = 40;   ///< of the MTF by which best focus is sought
+  GlareRequest glare = {};
 };
 
 struct AnalysisTable {

@@ -8,6 +8,7 @@
 #include <petzval/colour/illuminants.h>
 #include <petzval/colour/observer.h>
 #include <petzval/flare/starburst.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/simulate/flare.h>
 
 #include <algorithm>
@@ -22,6 +23,18 @@ namespace {
 
 std::string suns_text(std::size_t count) {
   return count == 1 ? "a sun" : fmt::format("{} suns", count);
+}
+
+void add_layer(const SpectralImage& layer, SpectralImage& light) {
+  if (layer.columns() != light.columns() || layer.rows() != light.rows() ||
+      layer.wavelengths_nm() != light.wavelengths_nm() || layer.pitch_um() != light.pitch_um())
+    throw InputError("a layer of light has another frame or other bands than the picture it is added to");
+  for (int band = 0; band < light.bands(); ++band) {
+    const std::span<float> to = light.band(band);
+    const std::span<const float> from = layer.band(band);
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    light.release_memory();
+  }
 }
 
 /// Nobody meters by the suns themselves.
@@ -122,11 +135,11 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
   }
   if (!options.seeks()) return layers;
   layers.sources.insert(layers.sources.end(), found.sources.begin(), found.sources.end());
-  if (found.left_out > 0)
+  if (found.left_out > 0 && (options.ghosts || options.starburst))
     send_note(context, fmt::format("the {} brightest sources are followed; {} more, with {:.2g} of "
                                    "their light, are left out",
                                    found.sources.size(), found.left_out, found.left_out_share));
-  if (layers.sources.empty())
+  if (layers.sources.empty() && (options.ghosts || options.starburst))
     send_note(context,
               "nothing in the scene is bright enough for light that goes astray to be followed; a lower "
               "`ghost_threshold` or "
@@ -146,19 +159,36 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
   return layers;
 }
 
+Lens scattering_lens(const Lens& lens, const std::optional<Scatter>& surfaces_scatter) {
+  require_glass(lens, "scatter needs");
+  require_centred(lens, "scatter is that of centred lenses");
+  require_no_mirrors(lens, "the scatter of mirrors is not followed");
+  if (surfaces_scatter) return with_scatter(lens, *surfaces_scatter);
+  if (!states_scatter(lens))
+    throw InputError(fmt::format(
+        "{} does not say how its surfaces scatter; roughness=1.5 would be right (`scatter`)", lens.name));
+  return lens;
+}
+
+void add_scatter(const LitLens& lens, const FlareOptions& options, FlareLayers& layers, SpectralImage& light,
+                 const Context& context) {
+  ScatterLightOptions how;
+  how.losses = lens.losses;
+  how.clip = lens.clip;
+  how.surround = options.scatter_surround;
+  const Lens scattering = scattering_lens(lens.lens, options.surfaces_scatter);
+  layers.scatter = result_within(context, [&](const ProgressCallback& progress) {
+    return scatter_light(scattering, light, layers.sources, how, progress, &layers.scatter_report);
+  });
+  layers.scatter->provenance = fmt::format("petzval {} scatter: {:.3g} of the light through {}", version(),
+                                           layers.scatter_report.scattered_share, lens.lens.name);
+  add_layer(*layers.scatter, light);
+  light.provenance += fmt::format("; {:.3g} of the light scattered", layers.scatter_report.scattered_share);
+}
+
 void add_layers(const FlareLayers& layers, SpectralImage& light) {
-  for (const std::optional<SpectralImage>* layer : {&layers.suns, &layers.ghosts, &layers.stars}) {
-    if (!*layer) continue;
-    if ((*layer)->columns() != light.columns() || (*layer)->rows() != light.rows() ||
-        (*layer)->wavelengths_nm() != light.wavelengths_nm() || (*layer)->pitch_um() != light.pitch_um())
-      throw InputError("a layer of light has another frame or other bands than the picture it is added to");
-    for (int band = 0; band < light.bands(); ++band) {
-      const std::span<float> to = light.band(band);
-      const std::span<const float> from = std::as_const(**layer).band(band);
-      for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
-      light.release_memory();
-    }
-  }
+  for (const std::optional<SpectralImage>* layer : {&layers.suns, &layers.ghosts, &layers.stars})
+    if (*layer) add_layer(**layer, light);
   if (layers.suns) mark_lamps(*layers.suns, light);
   if (layers.suns) light.provenance += fmt::format("; {}", suns_text(layers.sun_count));
   if (layers.stars) light.provenance += fmt::format("; stars of {} sources", layers.sources.size());

@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/flare/ghost_light.h>
+#include <petzval/flare/scatter_light.h>
 #include <petzval/flare/scene_sources.h>
 
 #include <optional>
@@ -32,10 +33,14 @@ struct FlareOptions {
   std::vector<Sun> suns = {};  ///< added to the scene: their images as their rays give them
   bool ghosts = false;         ///< of suns, and of the bright sources that the scene itself holds
   bool starburst = false;      ///< of the same: what the edges of the stop diffract
+  bool scatter = false;        ///< of all light: what the surfaces of the lens turn aside
+  /// How surfaces scatter that say nothing themselves; absent: as the lens says.
+  std::optional<Scatter> surfaces_scatter = {};
+  ScatterLightOptions::Surround scatter_surround = ScatterLightOptions::Surround::dark;
   SourceSearch search = {};
   double neglected_share = 1e-4;  ///< of the light of all ghosts, that may be left out
 
-  bool seeks() const { return ghosts || starburst; }
+  bool seeks() const { return ghosts || starburst || scatter; }
   bool any() const { return seeks() || !suns.empty(); }
 };
 
@@ -50,10 +55,11 @@ struct LitLens {
 
 /// Light that is added to a picture, each layer by itself.
 struct FlareLayers {
-  std::optional<SpectralImage> suns, ghosts, stars;
+  std::optional<SpectralImage> suns, ghosts, stars, scatter;
   std::vector<BrightSource> sources;  ///< suns first, then what the scene itself holds
   std::size_t sun_count = 0;
   GhostLightReport report = {};
+  ScatterLightReport scatter_report = {};
 };
 
 /// \param found  sources that the scene itself holds. Notes tell what was left out.
@@ -61,6 +67,15 @@ struct FlareLayers {
 FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
                          const std::vector<double>& wavelengths_nm, const SourcesFound& found,
                          const FlareOptions& options, const Context& context = {});
+
+/// The lens as scatter is asked for. \throws InputError for a lens that says nothing of it where nothing else
+/// does, and for one that is not centred, has mirrors or no glass.
+Lens scattering_lens(const Lens& lens, const std::optional<Scatter>& surfaces_scatter);
+
+/// What scatter does to a picture that has its other layers: the layer, which is added to it as well. Sources
+/// of `layers` that the frame does not hold take part. \throws InputError as scatter_light(); Cancelled.
+void add_scatter(const LitLens& lens, const FlareOptions& options, FlareLayers& layers, SpectralImage& light,
+                 const Context& context = {});
 
 /// Adds the layers to a picture of the same frame and bands, which its provenance then says.
 void add_layers(const FlareLayers& layers, SpectralImage& light);

@@ -49,16 +49,19 @@ ImageReport& finish(const ImagePlan& plan, const Context& context, ImageReport& 
   return report;
 }
 
-FlareLayers flare_of(const ImagePlan& plan, const Context& context) {
+FlareLayers flare_of(const ImagePlan& plan, const Context& context, SpectralImage& light) {
   const FlareOptions& options = plan.options.flare;
   LitLens lens = *plan.lens;
   for (const Psf& psf : plan.table.psf)
     lens.psf_mm = std::max(lens.psf_mm, psf.size / 2 * psf.spacing_um * mm_per_um);
   if (plan.options.imaging.method == BlurMethod::none) lens.psf_mm = 0;
-  return flare_layers(
+  FlareLayers layers = flare_layers(
       lens, plan.frame, plan.scene.wavelengths_nm(),
       options.seeks() ? find_sources(plan.scene, lens.lens.total_track_mm(), options.search) : SourcesFound{},
       options, context);
+  add_layers(layers, light);
+  if (options.scatter) add_scatter(lens, options, layers, light, context);
+  return layers;
 }
 
 }  // namespace
@@ -84,8 +87,7 @@ SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* 
       scene.distance_m() ? fmt::format("{:g} m from the sensor", *scene.distance_m()) : "at infinity",
       plan.table.lens_name, plan.table.first_order.working_f_number, says.method);
   if (plan.options.flare.any()) {
-    says.flare = flare_of(plan, context);
-    add_layers(*says.flare, light);
+    says.flare = flare_of(plan, context, light);
     const auto [darkest, brightest] = std::ranges::minmax(light.values());
     says.imaging.darkest = double(darkest);
     says.imaging.brightest = double(brightest);

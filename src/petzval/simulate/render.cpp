@@ -110,10 +110,18 @@ FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options,
     send_note(context, fmt::format("{} of {} suns stand behind something",
                                    options.suns.size() - visible.suns.size(), options.suns.size()));
   const double reflectance = request.camera.sensor ? request.camera.sensor->reflectance.value_or(0.0) : 0.0;
+  if (options.scatter) scattering_lens(*scene.lens, options.surfaces_scatter);
   return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflectance}, scene.film,
                       world.groups.wavelengths_nm(),
                       options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{},
                       visible, context);
+}
+
+void add_scene_flare(const PreparedScene& scene, const FlareOptions& options, FlareLayers& layers,
+                     SpectralImage& light, const Context& context) {
+  add_layers(layers, light);
+  if (options.scatter)
+    add_scatter({*scene.lens, scene.request.camera.losses}, options, layers, light, context);
 }
 
 void merge_renderings(const std::vector<std::string>& pieces, const std::string& checkpoint,

@@ -165,6 +165,10 @@ Rendering render_scene(const PreparedScene& scene, const Context& context = {},
 /// (add_layers). A sun is hidden if something stands between it and the lens. \throws InputError for a camera
 /// without a lens, and as flare_layers(); Cancelled.
 FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options, const Context& context = {});
+/// Adds them to its picture, and what the lens scatters, if that is asked. \throws InputError as
+/// add_scatter(); Cancelled.
+void add_scene_flare(const PreparedScene& scene, const FlareOptions& options, FlareLayers& layers,
+                     SpectralImage& light, const Context& context = {});
 /// Puts the pieces of one picture together, given by their checkpoints in any order: the file becomes the
 /// checkpoint that one process would have left, bit for bit, and the same request without a piece goes on
 /// from there. \throws InputError for pieces of different pictures or versions, and for pixels and samples

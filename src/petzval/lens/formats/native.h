@@ -25,4 +25,8 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options);
 std::shared_ptr<const RayTransfer> read_transfer(const JsonEntry& entry);
 std::string transfer_text(const RayTransfer& transfer);
 
+/// How a surface, or the lens, scatters.
+Scatter read_scatter(const JsonEntry& entry);
+std::string scatter_text(const Scatter& scatter);
+
 }  // namespace petzval

@@ -213,7 +213,7 @@ LensStates read_states(const JsonEntry& entry) {
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "mirror", "semi_diameter_mm", "apertures", "conic",
-                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer"});
+                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer", "scatter"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
@@ -237,6 +237,8 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   if (const auto pose = entry.find("pose"); pose && !pose->is_null()) surface.pose = read_pose(*pose);
   if (const auto transfer = entry.find("transfer"); transfer && !transfer->is_null())
     surface.transfer = read_transfer(*transfer);
+  if (const auto scatter = entry.find("scatter"); scatter && !scatter->is_null())
+    surface.scatter = read_scatter(*scatter);
   return surface;
 }
 
@@ -308,7 +310,8 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const JsonEntry format = top.at("format");
   if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
   top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
-                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances", "states"});
+                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances", "states",
+                  "scatter"});
   Lens lens;
   if (const auto name = top.find("name")) lens.name = name->text("a text");
   if (const auto source = top.find("source")) lens.source = source->text("a text");
@@ -329,6 +332,8 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
       lens.tolerances.push_back(read_tolerance(tolerance));
   if (const auto pose = top.find("sensor_pose"); pose && !pose->is_null())
     lens.sensor_pose = read_pose(*pose);
+  if (const auto scatter = top.find("scatter"); scatter && !scatter->is_null())
+    lens.scatter = read_scatter(*scatter);
   if (const auto states = top.find("states"); states && !states->is_null())
     lens.states = read_states(*states);
   if (!surfaces.empty() && !surfaces.back().find("thickness_mm")) focus_paraxially(lens, document);

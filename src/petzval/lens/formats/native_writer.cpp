@@ -104,6 +104,7 @@ std::string surface_text(const Surface& surface) {
   }
   if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
   if (!surface.pose.is_none()) text += ", \"pose\": " + pose_text(surface.pose);
+  if (surface.scatter) text += ", \"scatter\": " + scatter_text(*surface.scatter);
   if (surface.transfer) text += ", \"transfer\": " + transfer_text(*surface.transfer);
   return text + "}";
 }
@@ -155,6 +156,7 @@ std::string lens_to_json(const Lens& lens) {
                                   number_text(each.limit)));
     text += fmt::format(",\n  \"tolerances\": [\n{}\n  ]", fmt::join(lines, ",\n"));
   }
+  if (lens.scatter) text += ",\n  \"scatter\": " + scatter_text(*lens.scatter);
   if (!lens.states.empty()) text += ",\n  \"states\": " + states_text(lens.states);
   return text + "\n}\n";
 }

@@ -23,7 +23,7 @@ const std::set<std::string> read_operands{"THIC", "CRVT", "CURV", "CONN", "GLSS"
 const std::set<std::string> dependent_solves{"PZUP", "PKUP", "PPAR", "MARA", "CHRA"};
 
 /// A thickness from which on OpticStudio takes the object for infinitely far away.
-constexpr double zmx_infinite_distance = 1e10;
+constexpr double configuration_infinite_distance = 1e10;
 
 std::string unquoted(std::string word) {
   std::erase(word, '"');
@@ -100,7 +100,7 @@ void apply_operand(ZmxFile& file, const ZmxRecord& operand) {
   ZmxBlock& block = file.surfaces[number];
   if (word == "THIC") {
     const bool infinite =
-        number == 0 && std::abs(file.number(file.header, operand, 2)) >= zmx_infinite_distance;
+        number == 0 && std::abs(file.number(file.header, operand, 2)) >= configuration_infinite_distance;
     put_value(block, "DISZ", 0, infinite ? "INFINITY" : value, operand.line);
   } else if (word == "CRVT" || word == "CURV") {
     put_value(block, "CURV", 0, value, operand.line);
