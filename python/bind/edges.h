@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bind.h"
 #include "call.h"
 
 namespace petzval::python {
