@@ -41,6 +41,14 @@ def board():
     return (0.1 + 0.9 * total / 16)[:, :, None], angle
 
 
+def without_scene_blur(edges):
+    """The samples of the scene blur, too: their own squares and the lines drawn between them."""
+    for edge in edges["edges"]:
+        normal, f = math.radians(edge["line"]["normal_deg"]), np.array(edge["frequencies_cpp"]) / PER_PX
+        edge["sfr"] = (np.array(edge["sfr"]) / (np.sinc(f * math.cos(normal)) * np.sinc(f * math.sin(normal))) ** 2).tolist()
+    return edges
+
+
 class Bench:
     def __init__(self, program, folder):
         self.program, self.folder = program, pathlib.Path(folder)
@@ -65,7 +73,7 @@ class Bench:
                  "--supersample", 3, "--surround", "extend", "--quiet", "-o", "light.exr")
         self.run("sense", "light.exr", *sensor, "--seed", seed, "--quiet", "-o", "raw.dng")
         name = f"map{seed}.json"
-        (self.folder / name).write_text(self.run("sfr", "raw.dng", "--json", "--quiet"))
+        (self.folder / name).write_text(json.dumps(without_scene_blur(json.loads(self.run("sfr", "raw.dng", "--json", "--quiet")))))
         return name
 
     def fit(self, maps, shifts):

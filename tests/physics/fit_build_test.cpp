@@ -21,7 +21,7 @@ constexpr double light_nm = 550, turned_deg = 7, side_px = 74;
 constexpr int samples_per_px = 4;
 
 bool bright_at(double x, double y) {
-  const double c = std::cos(radians(turned_deg)), s = std::sin(radians(turned_deg));
+  static const double c = std::cos(radians(turned_deg)), s = std::sin(radians(turned_deg));
   const double u = (x * c + y * s) / side_px + 0.31, v = (y * c - x * s) / side_px + 0.17;
   return (static_cast<long>(std::floor(u)) + static_cast<long>(std::floor(v))) % 2 == 0;
 }
@@ -62,7 +62,15 @@ SfrMap photograph(const Lens& lens, const Sensor& sensor, double focal_length_mm
   PicturePlanes planes;
   planes.columns = raw.columns, planes.rows = raw.rows;
   planes.planes = {plane};
-  return sfr_map(measure_sfr(planes), raw.columns, raw.rows);
+  SfrMap map = sfr_map(measure_sfr(planes), raw.columns, raw.rows);
+  // The samples of the scene blur, too: their own squares and the lines drawn between them.
+  for (MapEdge& edge : map.edges)
+    for (std::size_t k = 0; k < edge.contrast.size(); ++k) {
+      const double f = edge.frequencies_cpp[k] / samples_per_px;
+      const double one = sinc(f * std::cos(edge.normal_rad)) * sinc(f * std::sin(edge.normal_rad));
+      edge.contrast[k] /= one * one;
+    }
+  return map;
 }
 
 // Wanted (before anything was measured): every number within three of its stated deviations, and deviations
