@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a lens was built: numbers come back from maps with noise, what one photograph cannot tell is said, and
-// what is wrong with a map or a wish is said, too. (physics/fit_build_test.cpp does it from pictures.)
+// what is wrong with a map or a wish is said, too. (bench/fit_builds.py does it from pictures.)
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/numeric/random.h>
@@ -118,33 +117,6 @@ TEST(FitBuild, OnePhotographDoesNotTellTheSignOfATilt) {
   EXPECT_TRUE(two.others.empty());
   EXPECT_NEAR(two.numbers[1].value, 5, 3.5 * two.numbers[1].deviation);
   EXPECT_NEAR(two.numbers[2].value, -3, 3.5 * two.numbers[2].deviation);
-}
-
-TEST(FitBuild, PhotographsAtUnknownFocusHaveADefocusEach) {
-  const Lens lens = read_lens("cooke-triplet").lens;
-  const SensorGeometry frame{900, 700, 16};
-  const Lens built = off(lens, {{"sensor_tilt_deg", {0.2, 0.1}}});
-  const auto at = [&](double defocus_mm, std::uint64_t seed) {
-    return map_of(off(built, {{"defocus_mm", {defocus_mm}}}), frame, 0.005, seed);
-  };
-  const FitBuildResult found = fit_build(lens, {at(0.05, 1), at(-0.08, 2)}, request_at(frame.pitch_um, {}));
-  ASSERT_EQ(found.numbers.size(), 4u);
-  const double truth[] = {0.05, -0.08, 0.2, 0.1};
-  for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_NEAR(found.numbers[i].value, truth[i], 3.5 * found.numbers[i].deviation)
-        << found.numbers[i].number.name();
-}
-
-TEST(FitBuild, SaysTheSameOnAnyNumberOfThreads) {
-  const Lens lens = read_lens("cooke-triplet").lens;
-  const SensorGeometry frame{900, 700, 16};
-  const SfrMap map = map_of(off(lens, {{"defocus_mm", {0.05}}}), frame, 0.01, 4);
-  const auto value = [&](int threads) {
-    Context context;
-    context.threads = threads;
-    return fit_build(lens, {map}, request_at(frame.pitch_um, {"defocus_mm"}), context).numbers[0].value;
-  };
-  EXPECT_EQ(value(1), value(2));
 }
 
 TEST(FitBuild, NumbersAreParsedAndNamed) {
