@@ -21,6 +21,7 @@ void add_lens_commands(CLI::App& app, Shared& shared) {
   add_lens_reverse(*lens, shared);
   add_lens_transfer(*lens, shared);
   add_lens_optimise(*lens, shared);
+  add_lens_fit_build(*lens, shared);
   add_lens_tolerance(*lens, shared);
   add_lens_convert(*lens, shared);
   add_lens_scale(*lens, shared);

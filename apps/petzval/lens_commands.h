@@ -24,6 +24,7 @@ void add_lens_new(CLI::App& lens, Shared& shared);
 void add_lens_reverse(CLI::App& lens, Shared& shared);
 void add_lens_transfer(CLI::App& lens, Shared& shared);
 void add_lens_optimise(CLI::App& lens, Shared& shared);
+void add_lens_fit_build(CLI::App& lens, Shared& shared);
 void add_lens_tolerance(CLI::App& lens, Shared& shared);
 
 }  // namespace petzval::app

@@ -59,6 +59,12 @@ nlohmann::ordered_json edge_json(const MeasuredEdge& edge, const SfrReport& repo
   }
   if (!edge.exact.notes.empty()) json["notes"] = edge.exact.notes;
   json["roi"] = {edge.roi.x, edge.roi.y, edge.roi.width, edge.roi.height};
+  const EdgeLine& line = edge.exact.line;
+  json["line"] = {{"x_px", line.centre_x},
+                  {"y_px", line.centre_y},
+                  {"normal_deg", degrees(line.normal_rad)},
+                  {"half_length_px", line.half_length}};
+  if (!edge.iso) json["level_correlations"] = edge.exact.level_correlations;
   json["frequencies_cpp"] = edge.frequencies();
   json["sfr"] = edge.sfr();
   if (!edge.iso) json["sfr_deviation"] = edge.exact.sfr_deviation;

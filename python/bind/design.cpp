@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lenses as they are built, and better ones.
+#include <petzval/report/fit_build_tables.h>
 #include <petzval/report/optimise_tables.h>
 #include <petzval/report/tolerance_tables.h>
 
 #include "analysis.h"
 #include "call.h"
+#include "camera.h"
+#include "edges.h"
 #include "lens.h"
 #include "lens_parts.h"
 
@@ -103,6 +106,59 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
   return nb::make_tuple(std::make_shared<Lens>(found.lens), python_of("optimise", result));
 }
 
+/// Edges of pz.sfr, or the name of a file that the program's `sfr --json` wrote; or a list of those.
+std::vector<SfrMap> maps_from(const nb::object& edges) {
+  std::vector<SfrMap> maps;
+  if (nb::isinstance<nb::str>(edges)) return read_sfr_maps(nb::cast<std::string>(edges));
+  if (nb::isinstance<Edges>(edges)) {
+    const Edges& of = nb::cast<const Edges&>(edges);
+    return {sfr_map(of.all, of.columns, of.rows)};
+  }
+  for (const nb::handle each : edges)
+    for (SfrMap& map : maps_from(nb::borrow<nb::object>(each))) maps.push_back(std::move(map));
+  return maps;
+}
+
+nb::tuple build_fitted(const Lens& lens, const nb::object& edges, std::optional<double> pixel_pitch_um,
+                       const nb::object& sensor, const std::vector<std::string>& free,
+                       const Numbers& wavelengths_nm, const Numbers& weights, const std::string& channel,
+                       const Numbers& focus_shifts_mm, int threads, const nb::object& progress) {
+  FitBuildRequest request;
+  request.free = free;
+  if (!sensor.is_none()) {
+    const std::shared_ptr<Sensor> taken = sensor_from(sensor);
+    request.pixel_pitch_um = taken->geometry.pitch_um, request.photosite = taken->photosite;
+  }
+  if (pixel_pitch_um) request.pixel_pitch_um = *pixel_pitch_um;
+  request.wavelengths_nm = wavelengths_nm;
+  request.weights = weights;
+  request.channel = channel;
+  request.focus_shifts_mm = focus_shifts_mm;
+  const std::vector<SfrMap> maps = maps_from(edges);
+  Call call({threads, 1, progress});
+  const FitBuildResult found = call(
+      [&lens, &maps, &request](const Context& context) { return fit_build(lens, maps, request, context); });
+  AnalysisResult result;
+  result.lens = found.lens.name;
+  result.reference_wavelength_nm = lens.reference_wavelength_nm;
+  result.facts = {{"chi_squared", Numbers{found.chi_squared}},
+                  {"chi_squared_before", Numbers{found.chi_squared_before}},
+                  {"freedom", Numbers{static_cast<double>(found.freedom)}},
+                  {"scaled_by", Numbers{found.scaled_by}},
+                  {"correlation", found.correlation}};
+  result.tables = {{"rows", "how the lens was built", fitted_numbers(found)},
+                   {"edges", "edge by edge", fitted_edges(found)}};
+  result.remarks = found.remarks;
+  return nb::make_tuple(std::make_shared<Lens>(found.lens), python_of("fit-build", result));
+}
+
+constexpr const char* fit_build_text =
+    "How this lens was built, from the sharpness of edges: the lens as built and an Analysis with `rows` "
+    "(number, value, deviation, unit), a table \"edges\" and remarks on what cannot be told. `edges`: of "
+    "pz.sfr, or a file of `petzval sfr --json`, or a list of them from photographs at different focus. "
+    "`free`: "
+    "[\"defocus_mm\", \"sensor_tilt_deg\", \"element_decentre_mm@2-3=0.05\", \"sag4_um@0\"]. "
+    "`focus_shifts_mm`: where the sensor stood in each photograph, away from the lens. docs/TOLERANCES.md.";
 constexpr const char* tolerance_text =
     "What a maker's tolerances do: an Analysis with `rows` (sensitivities), tables \"distribution\" and "
     "\"builds\", facts `yield` (share, low and high end of its 95 % interval) and a plot. `tolerances`: "
@@ -136,6 +192,11 @@ void bind_design(nb::module_&) {
       nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), tolerance_text);
   add("built", built, nb::arg("number"), nb::kw_only(), nb::arg("tolerances") = std::vector<std::string>(),
       nb::arg("grade") = "precision", nb::arg("distribution") = "normal", nb::arg("seed") = 1, built_text);
+  add("fit_build", build_fitted, nb::arg("edges"), nb::kw_only(),
+      nb::arg("pixel_pitch_um").none() = nb::none(), nb::arg("sensor").none() = nb::none(),
+      nb::arg("free") = std::vector<std::string>(), nb::arg("wavelengths_nm") = Numbers(),
+      nb::arg("weights") = Numbers(), nb::arg("channel") = "", nb::arg("focus_shifts_mm") = Numbers(),
+      nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), fit_build_text);
   add("optimise", optimised, nb::arg("variables") = std::vector<std::string>(), nb::kw_only(),
       nb::arg("fields") = Numbers(), nb::arg("field_type").none() = nb::none(),
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(), nb::arg("merit") = "spot",

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "call.h"
+#include "edges.h"
 #include "picture.h"
 
 namespace petzval::python {
@@ -79,22 +80,6 @@ PicturePlanes planes_from(const nb::object& picture, const std::string& transfer
                                demosaic);
   return planes_of(nb::cast<DoublesIn>(picture));
 }
-
-struct Edges {
-  std::vector<MeasuredEdge> all;
-  int columns = 0, rows = 0;  ///< of the picture
-
-  /// As places in the frame, of one direction or of all.
-  std::vector<EdgeInFrame> in_frame(const std::string& direction) const {
-    const auto wanted = choice<std::optional<EdgeDirection>>("direction", direction,
-                                                             {{"all", std::nullopt},
-                                                              {"meridional", EdgeDirection::meridional},
-                                                              {"sagittal", EdgeDirection::sagittal}});
-    std::vector<EdgeInFrame> edges = edges_in_frame(all, columns, rows);
-    if (wanted) std::erase_if(edges, [&](const EdgeInFrame& e) { return e.direction != *wanted; });
-    return edges;
-  }
-};
 
 Edges measured(const nb::object& picture, const nb::object& roi, const std::string& channel,
                const std::string& bayer, int edge_order, const std::string& method,

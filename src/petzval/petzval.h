@@ -24,6 +24,7 @@
 #include <petzval/simulate/target.h>
 
 // The lens as it is built, and a better one.
+#include <petzval/optimise/fit_build.h>
 #include <petzval/optimise/optimise.h>
 #include <petzval/tolerance/tolerancing.h>
 

@@ -41,6 +41,10 @@ class HelpExamples(ProgramTest):
             self.assert_succeeds("optics", "export", "of_mat.h5", "--to", "iset", "--resample", "-o", word)
         elif word == "edges.png":
             self.assert_succeeds("target", "--rectangle", "100x100@5", "-o", word)
+        elif word == "map.json":
+            self.assert_succeeds("target", "--chart", "slanted-edges", "--size", "300x300", "--f-number", "4", "--wavelength", "550",
+                                 "--pixel-pitch", "4.73", "-o", "chart.npy")
+            self.write(word, self.assert_succeeds("sfr", "chart.npy", "--json"))
         elif word == "light.exr":
             self.assert_succeeds("image", "studio", "--lens", "edmund-54852", "--sensor", "320x240@3.75", "--method", "none",
                                  "--wavelengths", "400:20:700", "-o", word)

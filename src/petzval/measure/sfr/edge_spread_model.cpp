@@ -437,14 +437,36 @@ std::vector<double> EdgeSpreadModel::Deviation::of_moduli(std::span<const double
     model_.factor_.solve_in_place(x);
     std::array<double, lanes> variance = spread_.quadratic(x);
     for (std::size_t k = 0; k < count; ++k) {
-      if (rounding_.size() > 0) {
-        const Eigen::VectorXd one = x.col(static_cast<Eigen::Index>(k));
-        variance[k] += one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
-      }
+      variance[k] += quadratic_of_rounding(x, static_cast<int>(k));
       deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
     }
   }
   return deviations;
+}
+
+double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Block& x, int lane) const {
+  if (rounding_.size() == 0) return 0;
+  const Eigen::VectorXd one = x.col(lane);
+  return one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
+}
+
+std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
+  BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
+  for (int k = 0; k < 3; ++k)
+    gradient_of_modulus(f[static_cast<std::size_t>(k)], x.data() + k, BorderedBand::lanes);
+  model_.factor_.solve_in_place(x);
+  // (a + b)² = a² + b² + 2ab
+  constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  for (int k = 0; k < 3; ++k) x.col(3 + k) = x.col(pairs[k][0]) + x.col(pairs[k][1]);
+  std::array<double, BorderedBand::lanes> squares = spread_.quadratic(x);
+  for (int k = 0; k < 6; ++k) squares[static_cast<std::size_t>(k)] += quadratic_of_rounding(x, k);
+  std::array<double, 3> result{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = squares[static_cast<std::size_t>(pairs[k][0])],
+                 b = squares[static_cast<std::size_t>(pairs[k][1])];
+    if (a > 0 && b > 0) result[k] = std::clamp(0.5 * (squares[3 + k] - a - b) / std::sqrt(a * b), -1.0, 1.0);
+  }
+  return result;
 }
 
 }  // namespace petzval

@@ -117,8 +117,12 @@ class EdgeSpreadModel {
     Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
               const QuantisationNoise& rounding);
     std::vector<double> of_moduli(std::span<const double> frequencies_cpp) const;
+    /// How what noise does to |transform| at three frequencies hangs together: correlations of the first and
+    /// second, first and third, second and third.
+    std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
 
    private:
+    double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
     /// d|transform|/d(right side), into every `stride`-th place.
     void gradient_of_modulus(double frequency_cpp, double* gradient, int stride) const;
 

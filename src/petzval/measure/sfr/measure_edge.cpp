@@ -249,6 +249,10 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
                     "by half a degree is enough to tell what lies between",
                     fit.comb_px()));
   fill_levels(result, model, uncertainty);
+  const std::array<double, 3> levels{result.mtf[1].frequency_cpp, result.mtf[4].frequency_cpp,
+                                     result.mtf[7].frequency_cpp};
+  if (std::ranges::all_of(levels, [](double f) { return std::isfinite(f); }))
+    result.level_correlations = deviation.correlations(levels);
   fill_curves(result, model, profile);
   return result;
 }

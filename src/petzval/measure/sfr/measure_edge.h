@@ -48,8 +48,11 @@ struct EdgeMeasurement {
   double overshoot = 0, undershoot = 0;  ///< beyond bright and dark, over the step
   std::vector<double> frequencies_cpp, sfr;
   std::vector<double> phase_rad;
-  std::vector<double> sfr_deviation;          ///< the same of sfr
-  std::vector<MtfLevel> mtf;                  ///< at 0.9, 0.8, … 0.1
+  std::vector<double> sfr_deviation;  ///< the same of sfr
+  std::vector<MtfLevel> mtf;          ///< at 0.9, 0.8, … 0.1
+  /// How the deviations of sfr at MTF80, MTF50 and MTF20 hang together: correlations of the first and second,
+  /// first and third, second and third; 0 where a level is not reached.
+  std::array<double, 3> level_correlations{};
   std::vector<double> distance_px, esf, lsf;  ///< profile and its slope [1/pixel], both over the step
   /// What the light of either side changes by over the samples, over the step; 0 if it is even.
   double light_variation = 0;
