@@ -15,13 +15,13 @@
 namespace petzval {
 namespace {
 
-constexpr double nm = 550;
+constexpr double light_nm = 550;
 
 /// What `sfr` would have measured on a frame of a lens, at MTF80, MTF50 and MTF20 of each edge, with noise.
 SfrMap map_of(const Lens& lens, const SensorGeometry& frame, double deviation, std::uint64_t seed) {
   SfrMap map{"made", frame.columns, frame.rows, {}};
   RandomStream random(seed, 0x3a9, 0);
-  FieldTracer tracer(lens, nm);
+  FieldTracer tracer(lens, light_nm);
   constexpr int across = 7, down = 5;
   for (int i = 0; i < across * down * 2; ++i) {
     MapEdge edge;
@@ -34,7 +34,7 @@ SfrMap map_of(const Lens& lens, const SensorGeometry& frame, double deviation, s
     const auto objects = objects_of(tracer, at, detail);
     std::vector<double> cpp, cpmm;
     for (int k = 1; k <= 100; ++k) cpp.push_back(0.01 * k), cpmm.push_back(10 * k / frame.pitch_um);
-    const auto transfer = edge_transfer(lens, {}, at, *objects, {{nm}, {1}}, cpmm, detail);
+    const auto transfer = edge_transfer(lens, {}, at, *objects, {{light_nm}, {1}}, cpmm, detail);
     const auto contrast = [&](int k) {
       return transfer->modulus[k] * std::abs(sinc(cpp[static_cast<std::size_t>(k)] * c) *
                                              sinc(cpp[static_cast<std::size_t>(k)] * s));
@@ -55,7 +55,7 @@ SfrMap map_of(const Lens& lens, const SensorGeometry& frame, double deviation, s
 FitBuildRequest request_at(double pitch_um, std::vector<std::string> free) {
   FitBuildRequest request;
   request.pixel_pitch_um = pitch_um;
-  request.wavelengths_nm = {nm};
+  request.wavelengths_nm = {light_nm};
   request.free = std::move(free);
   return request;
 }
