@@ -106,6 +106,27 @@ TEST(ChartFigures, DotsCoverASixteenthOfPi) {
   EXPECT_NEAR(dark / dots.size(), pi / 16, 1e-4);
 }
 
+/// Squares of the size that was asked for, turned by 5°, half of the frame dark.
+TEST(ChartFigures, SlantedBoardHasEdgesAllOver) {
+  const FigureChart chart = slanted_board_figures({800, 600}, number(10));
+  EXPECT_DOUBLE_EQ(chart.ground, 4 * chart.figures.at(0).level);
+  Shape dark;
+  for (const std::vector<Point>& outline : chart.figures[0].outlines) {
+    const double right = outline[1].x - outline[0].x, down = outline[1].y - outline[0].y;
+    EXPECT_NEAR(std::hypot(right, down), 80, 1e-9);
+    EXPECT_NEAR(down / right, std::tan(radians(5.0)), 1e-12);
+    dark.add_polygon(outline);
+  }
+  double covered = 0;
+  std::vector<double> row(800);
+  for (int y = 0; y < 600; ++y) {
+    dark.coverage(y, row);
+    for (const double area : row) covered += area;
+  }
+  EXPECT_NEAR(covered / (800 * 600), 0.5, 0.01);  // a light square in the middle: one more than dark ones
+  EXPECT_THROW(slanted_board_figures({800, 600}, number(0)), InputError);
+}
+
 TEST(ChartFigures, ChessboardsLookDifferentUpsideDown) {
   for (const int across : {2, 3, 7, 10, 13}) {
     const FigureChart chart = chessboard_figures({800, 600}, number(across));

@@ -235,6 +235,24 @@ FigureChart dots_figures(ChartFrame frame, const ChartParameter& parameter) {
   return chart;
 }
 
+FigureChart slanted_board_figures(ChartFrame frame, const ChartParameter& parameter) {
+  constexpr double light = 0.8, turn_deg = 5;
+  const int across = whole_of(parameter, "slanted-board", 12, 1, 200);
+  const double side = frame.width / across, c = side * std::cos(radians(turn_deg)),
+               s = side * std::sin(radians(turn_deg));
+  const int reach = static_cast<int>(std::hypot(frame.width, frame.height) / 2 / side) + 1;
+  FigureChart chart{light, {{{}, light / 4}}};
+  for (int row = -reach; row <= reach; ++row)
+    for (int column = -reach; column <= reach; ++column) {
+      const Point middle{frame.centre().x + column * c - row * s, frame.centre().y + column * s + row * c};
+      const bool is_near = std::abs(middle.x - frame.centre().x) < frame.width / 2 + side &&
+                           std::abs(middle.y - frame.centre().y) < frame.height / 2 + side;
+      if ((row + column) % 2 != 0 && is_near)
+        chart.figures.front().outlines.push_back(turned_square(middle, side, turn_deg));
+    }
+  return chart;
+}
+
 FigureChart chessboard_figures(ChartFrame frame, const ChartParameter& parameter) {
   const int across = whole_of(parameter, "chessboard", 10, 2, 500);
   int down = std::max(2, static_cast<int>((across + 2) * frame.height / frame.width + 1e-9) - 2);

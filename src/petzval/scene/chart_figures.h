@@ -56,6 +56,10 @@ FigureChart dots_figures(ChartFrame frame, const ChartParameter& across);
 /// numbers of squares is odd, so that no turn of 180° looks the same.
 FigureChart chessboard_figures(ChartFrame frame, const ChartParameter& across);
 
+/// Edges all over the frame: squares of a contrast of 4:1, N (12) across, side by side as on a checkerboard
+/// and turned by 5° (clockwise in the picture). A light one has its middle in that of the frame.
+FigureChart slanted_board_figures(ChartFrame frame, const ChartParameter& across);
+
 /// A QR code (error correction M) or a Data Matrix that says a text, with its quiet zone as large as fits.
 FigureChart qr_figures(ChartFrame frame, const ChartParameter& text);
 FigureChart datamatrix_figures(ChartFrame frame, const ChartParameter& text);

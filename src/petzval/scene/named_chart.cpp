@@ -69,6 +69,9 @@ constexpr std::array all_charts = {
                }},
     of_figures("qr", "TEXT", "a QR code that says a text", &qr_figures, true),
     of_figures("siemens", "N", "a star of N (36) dark sectors", &siemens_figures),
+    of_figures("slanted-board", "N",
+               "for MTFs all over the frame: squares, N (12) across, turned by 5 degrees",
+               &slanted_board_figures),
     NamedChart{"slanted-edge", "DEGREES", "a dark and a light half, the edge 5 degrees from the vertical",
                [](const ChartOptions& options, const ChartParameter& angle) {
                  return slanted_edge_chart(options, angle.number.value_or(5));
