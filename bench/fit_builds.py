@@ -30,17 +30,17 @@ class Bench:
         self.run("lens", "scale", "cooke-triplet", "--factor", SCALE, "-o", "lens.json")
 
     def run(self, *words):
-        return subprocess.run([self.program, *map(str, words)], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+        return subprocess.run([self.program, *map(str, words)], cwd=self.folder, check=True, stdout=subprocess.PIPE, text=True).stdout
 
     def photograph(self, truth, shift_mm, seed):
         lens = json.loads((self.folder / "lens.json").read_text())
         lens["surfaces"][-1]["thickness_mm"] += truth["defocus_mm"] + shift_mm
         lens["sensor_pose"] = {"tilt_x_deg": truth["sensor_tilt_deg x"], "tilt_y_deg": truth["sensor_tilt_deg y"]}
-        lens["groups"] = [{"first": ELEMENT[0], "last": ELEMENT[1], "pose": {
+        lens["groups"] = [{"surfaces": list(ELEMENT), "pose": {
             "decentre_x_mm": truth["element_decentre_mm@2-3 x"], "decentre_y_mm": truth["element_decentre_mm@2-3 y"]}}]
         (self.folder / "built.json").write_text(json.dumps(lens))
         sensor = ["--sensor", SENSOR, "--sensor-set", f"columns={COLUMNS}", "--sensor-set", f"rows={ROWS}"]
-        self.run("image", BOARD, "--lens", "built.json", "--focus", "design", "--wavelengths", NM, *sensor, "--quiet", "-o", "light.exr")
+        self.run("image", BOARD, "--lens", "built.json", "--focus", "design", "--wavelengths", NM, *sensor, "--surround", "extend", "--quiet", "-o", "light.exr")
         self.run("sense", "light.exr", *sensor, "--seed", seed, "--quiet", "-o", "raw.dng")
         name = f"map{seed}.json"
         (self.folder / name).write_text(self.run("sfr", "raw.dng", "--json", "--quiet"))
