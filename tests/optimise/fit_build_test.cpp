@@ -18,11 +18,11 @@ namespace {
 constexpr double light_nm = 550;
 
 /// What `sfr` would have measured on a frame of a lens, at MTF80, MTF50 and MTF20 of each edge, with noise.
-SfrMap map_of(const Lens& lens, const SensorGeometry& frame, double deviation, std::uint64_t seed) {
+SfrMap map_of(const Lens& lens, const SensorGeometry& frame, double deviation, std::uint64_t seed,
+              int across = 5, int down = 3) {
   SfrMap map{"made", frame.columns, frame.rows, {}};
   RandomStream random(seed, 0x3a9, 0);
   FieldTracer tracer(lens, light_nm);
-  constexpr int across = 7, down = 5;
   for (int i = 0; i < across * down * 2; ++i) {
     MapEdge edge;
     edge.x_px = frame.columns * (i / 2 % across + 0.5) / across;
@@ -96,10 +96,6 @@ TEST(FitBuild, OnePhotographDoesNotTellTheSignOfATilt) {
   lens.aperture = {Aperture::Kind::f_number, 16};
   const SensorGeometry frame{300, 240, 10};
   const std::vector<std::string> free{"defocus_mm", "sensor_tilt_deg"};
-  // Its own best focus near the axis is found first: what is off counts from there.
-  const FitBuildResult middle =
-      fit_build(lens, {map_of(lens, frame, 0.002, 1)}, request_at(frame.pitch_um, {"defocus_mm"}));
-  ASSERT_FALSE(middle.numbers.empty());
   const Lens built = off(lens, {{"sensor_tilt_deg", {5, -3}}});
   const FitBuildResult one =
       fit_build(lens, {map_of(built, frame, 0.01, 2)}, request_at(frame.pitch_um, free));
@@ -138,7 +134,7 @@ TEST(FitBuild, NumbersAreParsedAndNamed) {
 TEST(FitBuild, RefusesWhatCannotBe) {
   const Lens lens = read_lens("cooke-triplet").lens;
   const SensorGeometry frame{900, 700, 16};
-  const SfrMap map = map_of(lens, frame, 0.01, 4);
+  const SfrMap map = map_of(lens, frame, 0.01, 4, 3, 2);
   const auto refuses = [&](const std::vector<SfrMap>& maps, const FitBuildRequest& request,
                            const char* says) {
     try {
