@@ -65,7 +65,8 @@ void warn(const std::string& text) {
   const nb::gil_scoped_acquire locked;
   const nb::module_ errors = nb::module_::import_("petzval._errors");
   const nb::object in_python = errors.attr("with_keywords")(text.c_str());
-  if (PyErr_WarnEx(errors.attr("Note").ptr(), nb::cast<const char*>(in_python), 1) != 0)
+  const auto level = nb::cast<Py_ssize_t>(errors.attr("frames_to_caller")());
+  if (PyErr_WarnEx(errors.attr("Note").ptr(), nb::cast<const char*>(in_python), level) != 0)
     throw nb::python_error();
 }
 

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What goes wrong, and what there is to say."""
 
+import os
 import re
+import sys
 
 
 class Error(Exception):
@@ -71,3 +73,11 @@ def _input_error(file, line, column, problem, remedy, parameter):
 
 for _each in (Error, InputError, CallError, Failure, Cancelled, Note):
     _each.__module__ = "petzval"  # where users find them
+
+
+def frames_to_caller():
+    """How many frames up the code stands that called this package: the line that a Note names."""
+    frame, level = sys._getframe().f_back, 1
+    while frame is not None and os.path.dirname(frame.f_code.co_filename) == os.path.dirname(__file__):
+        frame, level = frame.f_back, level + 1
+    return level

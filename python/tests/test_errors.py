@@ -54,8 +54,9 @@ def test_a_full_disk(light):
 
 
 def test_notes_are_warnings(camera):
-    with pytest.warns(pz.Note, match="`focus_wavelength_nm` sets another"):
+    with pytest.warns(pz.Note, match="`focus_wavelength_nm` sets another") as notes:
         camera.image(pz.SceneRequest("studio", wavelengths_nm=[550]), method="none")
+    assert notes[0].filename == __file__
     with warnings.catch_warnings():
         warnings.simplefilter("error", pz.Note)
         with pytest.raises(pz.Note):
