@@ -50,3 +50,17 @@ def test_a_tilted_plane_has_depth():
     assert flat.horizontal_angle_deg == pytest.approx(2 * np.degrees(np.arctan(0.2)))
     tilted = pz.SceneRequest("grid", width_m=0.2, distance_m=0.5, tilt_deg=30, wavelengths_nm=[550]).read()
     assert tilted.depth_m is not None and np.ptp(tilted.depth_m) > 0.05
+
+
+def test_a_build_is_found_from_its_photograph():
+    """The sensor 40 um too near, on a picture with noise: within four of the stated deviations."""
+    lens = pz.Lens("cooke-triplet").scaled(0.2)
+    near = lens.copy()
+    near.surfaces[-1].thickness_mm -= 0.04
+    sensor = pz.Sensor("icx625-mono", {"columns": 240, "rows": 200})
+    camera = pz.Camera(near, focus="design", sensor=sensor)
+    raw = camera.expose(camera.image(pz.SceneRequest("slanted-board:5", wavelengths_nm=[550])), seed=1)
+    built, report = lens.fit_build(pz.sfr(raw), sensor=sensor, wavelengths_nm=[550], free=["defocus_mm"])
+    value, deviation = report["value"][0], report["deviation"][0]
+    assert abs(value + 0.04) < 4 * deviation < 0.01
+    assert built.surfaces[-1].thickness_mm == pytest.approx(lens.surfaces[-1].thickness_mm + value, abs=1e-9)
