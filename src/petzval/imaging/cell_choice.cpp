@@ -169,13 +169,14 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
   // Where in its octave the detail of a square's side lies [cycles a side], evenly.
   constexpr std::array<double, 4> places{0.28, 0.34, 0.40, 0.46};
   double error = 0, finer = 0, light = detail.mean * detail.mean;
+  const double finest_cpp = std::max(finest_shown_cpp, samples_per_pixel / 2);
   double side = detail.finest_side;  // of the smallest square [samples]
   for (const double variance : detail.variances) {
     for (const double place : places) {
       const double cycles = place / side, f = cycles * samples_per_pixel;
       const auto add = [&](double contrast, double at) {
         const double share = variance / double(places.size()) * contrast * contrast;
-        (detail.drawn && at > finest_shown_cpp ? finer : error) +=
+        (detail.drawn && at > finest_cpp ? finer : error) +=
             share * std::pow(taps_error(taps, site, path, at, mtf), 2);
         light += share * std::pow(site.transform(at, 0).real() * mtf(at), 2);
       };

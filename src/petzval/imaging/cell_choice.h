@@ -29,7 +29,8 @@ struct SamplingError {
 
 /// The relative L2 error of a picture whose pixels are so many cells wide, whatever the blur method: detail
 /// that cells cannot hold, and kernels' samples that mistake one frequency for another. The edges of a
-/// drawing have no end of detail; what is promised of it ends at half a cycle a pixel.
+/// drawing have no end of detail; what is promised of it ends at half a cycle a pixel, or a
+/// sample if that is finer.
 ///
 /// \param samples_per_pixel  of the scene, along a side. \param mtf  of the lens over cycles/pixel.
 SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pixel, const Photosite& site,

@@ -71,8 +71,7 @@ class EdgeReader {
  public:
   EdgeReader(const json& edge, const std::string& file, std::size_t index)
       : edge_(edge), file_(file), name_(fmt::format("edge {}", index + 1)) {
-    if (!edge.is_object())
-      refuse_map(file_, name_ + " is no object; what `petzval sfr --json` prints is right");
+    if (!edge.is_object()) refuse_map(file_, name_ + " is no object; the JSON of petzval sfr would be right");
   }
 
   double number(const json& in, const char* key, std::optional<double> otherwise = {}) const {
@@ -143,7 +142,7 @@ class EdgeReader {
   }
 
  private:
-  static constexpr const char* wanted = "what `petzval sfr --json` prints is right";
+  static constexpr const char* wanted = "the JSON of petzval sfr would be right";
   static bool strictly_rising(const std::vector<double>& values) {
     return std::ranges::adjacent_find(values, std::ranges::greater_equal{}) == values.end();
   }
@@ -156,7 +155,7 @@ class EdgeReader {
 SfrMap map_of(const json& picture, const std::string& file) {
   const auto edges = picture.find("edges");
   if (!picture.is_object() || edges == picture.end() || !edges->is_array())
-    refuse_map(file, "has no list of edges; what `petzval sfr --json` prints is right");
+    refuse_map(file, "has no list of edges; the JSON of petzval sfr would be right");
   if (edges->size() > most_edges) refuse_map(file, fmt::format("has more than {} edges", most_edges));
   SfrMap map;
   if (const auto name = picture.find("image"); name != picture.end() && name->is_string())
@@ -201,7 +200,7 @@ SfrMap sfr_map(std::span<const MeasuredEdge> edges, int columns, int rows, const
 
 std::vector<SfrMap> parse_sfr_maps(const std::string& text, const std::string& name) {
   const json root = json::parse(text, nullptr, false);
-  if (!root.is_object()) refuse_map(name, "is no JSON object; what `petzval sfr --json` prints is right");
+  if (!root.is_object()) refuse_map(name, "is no JSON object; the JSON of petzval sfr would be right");
   const auto pictures = root.find("pictures");
   if (pictures == root.end()) return {map_of(root, name)};
   if (!pictures->is_array() || pictures->empty()) refuse_map(name, "has an empty list of pictures");
