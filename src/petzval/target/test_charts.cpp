@@ -7,6 +7,7 @@
 #include <petzval/scene/named_chart.h>
 #include <petzval/target/stroke_font.h>
 #include <petzval/target/test_charts.h>
+#include <petzval/target/visible_regions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -172,15 +173,16 @@ TargetScene zone_plate(const Frame& frame) {
 
 namespace {
 
-/// The polygons of a chart that scenes have too.
-TargetScene of_figures(const FigureChart& chart) {
+/// The polygons of a chart that scenes have too, as far as they are within the frame.
+TargetScene of_figures(const FigureChart& chart, const Frame& frame) {
   TargetScene scene;
   scene.ground = chart.ground;
   for (const ChartFigure& figure : chart.figures)
     for (const std::vector<Point>& outline : figure.outlines) {
       Contour contour;
       for (const Point& corner : outline) contour.push_back({corner.x, corner.y});
-      scene.polygons.push_back({{std::move(contour)}, figure.level, 0});
+      contour = clip_to_box(contour, {0, 0}, {frame.width, frame.height});
+      if (!contour.empty()) scene.polygons.push_back({{std::move(contour)}, figure.level, 0});
     }
   return scene;
 }
@@ -210,7 +212,7 @@ TargetScene test_chart(const std::string& name, int columns, int rows) {
   if (name == "text") return text_lines_chart(frame);
   if (name == "zone-plate") return zone_plate(frame);
   if (const NamedChart* chart = find_chart(name); chart && chart->figures)
-    return of_figures(chart->figures({frame.width, frame.height}, chart_parameter(name, *chart)));
+    return of_figures(chart->figures({frame.width, frame.height}, chart_parameter(name, *chart)), frame);
   throw InputError(fmt::format("no chart '{}'; the nearest are {}", name,
                                fmt::join(nearest_names(name, test_chart_names()), ", ")));
 }
