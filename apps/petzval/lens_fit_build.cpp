@@ -105,7 +105,7 @@ void add_lens_fit_build(CLI::App& lens, Shared& shared) {
   CLI::App* command = add_command(lens, shared, "fit-build",
                                   "How a lens was built, from the sharpness of edges over a photograph",
                                   "petzval lens fit-build edmund-54852 --sfr map.json --pixel-pitch 4.73 "
-                                  "--free defocus_mm -o as-built.json",
+                                  "--wavelengths 550 --free defocus_mm -o as-built.json",
                                   true, [options, &shared] { run(*options, shared); });
   options->lens.add_to(*command);
   command

@@ -166,8 +166,7 @@ void add_shoot_command(CLI::App& app, Shared& shared) {
   CLI::App* command = add_command(
       app, shared, "shoot", "Shoot a clip: motion, rolling shutter, flicker, frame by frame",
       "petzval shoot studio --lens edmund-54852 --sensor third-inch-1280x960 --sensor-set columns=320 "
-      "--sensor-set "
-      "rows=240 --pan 20 --frames 4 -o clip",
+      "--sensor-set rows=240 --wavelengths 450:100:650 --pan 20 --frames 4 -o clip",
       true, [options, &shared, &app] { run_shoot(*options, *app.get_subcommand("shoot"), shared); });
   options->light.add_light_to(*command);
   options->clip.add_to(*command);

@@ -9,7 +9,7 @@ from petzval_cli import ProgramTest, leaf_commands
 
 RAYS = "x_mm,y_mm,z_mm,L,M,N,wavelength_nm\n0,0,-10,0,0,1,587.56\n0,1,-10,0,0,1,587.56\n"
 # Commands that take long for what they do: tests of their own run them.
-SLOW = [["demo"]]
+SLOW = [["demo"], ["lens", "match"]]
 # Pieces of a picture of 16 x 12 pixels, for petzval merge.
 PIECES = {"left.sums": "0,0,8,12", "right.sums": "8,0,8,12"}
 

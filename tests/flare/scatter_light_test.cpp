@@ -185,7 +185,7 @@ TEST(GhostVeil, IsThatOfSourcesAllAround) {
   const std::vector<double> veil = ghost_veil(lens, green_nm, heights, options);
   const SensorGeometry frame{9, 9, 3000};
   std::vector<BrightSource> sources;
-  constexpr int steps = 24;
+  constexpr int steps = 14;
   const double widest = std::tan(radians(20)), step = 2 * widest / steps;
   for (int j = 0; j < steps; ++j)
     for (int i = 0; i < steps; ++i) {

@@ -98,7 +98,7 @@ TEST(FitBuild, OnePhotographDoesNotTellTheSignOfATilt) {
   const std::vector<std::string> free{"defocus_mm", "sensor_tilt_deg"};
   const Lens built = off(lens, {{"sensor_tilt_deg", {5, -3}}});
   const FitBuildResult one =
-      fit_build(lens, {map_of(built, frame, 0.01, 2)}, request_at(frame.pitch_um, free));
+      fit_build(lens, {map_of(built, frame, 0.01, 2, 3, 2)}, request_at(frame.pitch_um, free));
   ASSERT_FALSE(one.others.empty());
   bool named = false;
   for (const std::string& remark : one.remarks)
@@ -109,7 +109,7 @@ TEST(FitBuild, OnePhotographDoesNotTellTheSignOfATilt) {
   request.focus_shifts_mm = {0, 0.4};
   const Lens farther = off(built, {{"defocus_mm", {0.4}}});
   const FitBuildResult two =
-      fit_build(lens, {map_of(built, frame, 0.01, 2), map_of(farther, frame, 0.01, 3)}, request);
+      fit_build(lens, {map_of(built, frame, 0.01, 2, 3, 2), map_of(farther, frame, 0.01, 3, 3, 2)}, request);
   EXPECT_TRUE(two.others.empty());
   EXPECT_NEAR(two.numbers[1].value, 5, 3.5 * two.numbers[1].deviation);
   EXPECT_NEAR(two.numbers[2].value, -3, 3.5 * two.numbers[2].deviation);
