@@ -56,6 +56,11 @@ void FlareChoice::add_to(CLI::App& command, bool scene) {
                   "Share of the light of all ghosts that may be left out, the faintest first; 0: none")
       ->capture_default_str();
   command
+      .add_option("--ghost-reflections", flare.ghost_reflections,
+                  "2, or 4: ghosts of light that is reflected four times, too")
+      ->check(CLI::IsMember({2, 4}))
+      ->capture_default_str();
+  command
       .add_option("--sun", suns,
                   "Add a sun: degrees to the right and up from the middle of the picture, and its "
                   "illuminance at the lens [lx] if it is not 100000: 20,15 or 20,15:80000; repeatable")
@@ -84,8 +89,10 @@ FlareOptions FlareChoice::options() const {
   }
   const FlareOptions usual;
   if (!options.ghosts &&
-      (flare.search.threshold != usual.search.threshold || flare.neglected_share != usual.neglected_share))
-    throw InputError("--ghost-threshold and --ghost-neglect have no effect without --ghosts");
+      (flare.search.threshold != usual.search.threshold || flare.neglected_share != usual.neglected_share ||
+       flare.ghost_reflections != usual.ghost_reflections))
+    throw InputError(
+        "--ghost-threshold, --ghost-neglect and --ghost-reflections have no effect without --ghosts");
   if (suns.empty() && (sun_diameter_deg != Sun().diameter_deg || sun_light != Sun().light))
     throw InputError("--sun-diameter and --sun-light have no effect without --sun");
   if (!ghost_layer.empty()) require_extension(ghost_layer, {".exr", ".npy"}, "a layer of ghosts");
@@ -120,12 +127,15 @@ nlohmann::ordered_json flare_json(const FlareLayers& layers) {
                        {"returned_share", layers.scatter_report.returned_share},
                        {"outside_sources", layers.scatter_report.outside_sources}};
   json["pairs"] = nlohmann::ordered_json::array();
-  for (const GhostPairReport& pair : layers.report.pairs)
-    json["pairs"].push_back({{"first", pair.pair.first},
-                             {"second", pair.pair.second},
-                             {"flux_w_per_nm", pair.flux_w},
-                             {"rays", pair.rays},
-                             {"seconds", pair.seconds}});
+  for (const GhostPairReport& pair : layers.report.pairs) {
+    nlohmann::ordered_json& one = json["pairs"].emplace_back();
+    one = {{"first", pair.pair.first}, {"second", pair.pair.second}};
+    if (pair.pair.reflections() == 4) one["third"] = pair.pair.third, one["fourth"] = pair.pair.fourth;
+    if (pair.pair.order != GratingOrder()) one["order"] = {pair.pair.order.right, pair.pair.order.up};
+    one["flux_w_per_nm"] = pair.flux_w;
+    one["rays"] = pair.rays;
+    one["seconds"] = pair.seconds;
+  }
   return json;
 }
 

@@ -11,14 +11,15 @@
 namespace petzval::python {
 
 FlareOptions flare_options(const std::vector<SunChoice>& suns, bool ghosts, bool starburst,
-                           double ghost_threshold, double ghost_neglect, const Maybe<std::string>& scatter,
-                           const std::string& scatter_surround) {
+                           double ghost_threshold, double ghost_neglect, int ghost_reflections,
+                           const Maybe<std::string>& scatter, const std::string& scatter_surround) {
   FlareOptions options;
   for (const SunChoice& each : suns)
     options.suns.push_back(std::holds_alternative<Sun>(each) ? std::get<Sun>(each)
                                                              : parse_sun(std::get<std::string>(each)));
   options.ghosts = ghosts, options.starburst = starburst;
   options.search.threshold = ghost_threshold, options.neglected_share = ghost_neglect;
+  options.ghost_reflections = ghost_reflections;
   using Surround = ScatterLightOptions::Surround;
   options.scatter = scatter.has_value();
   if (scatter && *scatter != "lens") options.surfaces_scatter = parse_scatter(*scatter);
@@ -48,6 +49,12 @@ nb::list pairs_of(const FlareLayers& layers) {
     nb::dict one;
     one["first"] = pair.pair.first;
     one["second"] = pair.pair.second;
+    if (pair.pair.reflections() == 4) one["third"] = pair.pair.third, one["fourth"] = pair.pair.fourth;
+    if (pair.pair.order != GratingOrder()) {
+      nb::list order;
+      order.append(pair.pair.order.right), order.append(pair.pair.order.up);
+      one["order"] = order;
+    }
     one["flux_w_per_nm"] = pair.flux_w;
     one["rays"] = pair.rays;
     one["seconds"] = pair.seconds;

@@ -142,7 +142,8 @@ constexpr const char* image_text =
     "with depth, 0: as many as needed. `suns` (Sun, or text as \"20,15:80000\") are added to the scene; "
     "`ghosts` and `starburst` add what two surfaces reflect and the stop's edges diffract of suns and of the "
     "scene's samples brighter than `ghost_threshold` times its mean, but for the faintest `ghost_neglect` of "
-    "the ghosts' light; `scatter` of the lens's surfaces, as roughness=1.5,dust=0.02, or lens for what its "
+    "the ghosts' light, of `ghost_reflections` 2 or 4; `scatter` of the lens's surfaces, as "
+    "roughness=1.5,dust=0.02, or lens for what its "
     "file "
     "says (docs/FLARE.md); `scatter_surround` beyond the frame: dark or mean. `progress(fraction, what)` may "
     "return False to stop. Raises InputError; Cancelled.";

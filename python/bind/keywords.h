@@ -34,13 +34,13 @@ ImageOptions image_options(const std::string& method, Maybe<double> tolerance, i
 
 /// Light that goes astray.
 FlareOptions flare_options(const std::vector<SunChoice>& suns, bool ghosts, bool starburst,
-                           double ghost_threshold, double ghost_neglect, const Maybe<std::string>& scatter,
-                           const std::string& scatter_surround);
+                           double ghost_threshold, double ghost_neglect, int ghost_reflections,
+                           const Maybe<std::string>& scatter, const std::string& scatter_surround);
 #define PETZVAL_FLARE_KEYWORDS                                                                         \
   nb::arg("suns") = std::vector<SunChoice>(), nb::arg("ghosts") = false, nb::arg("starburst") = false, \
   nb::arg("ghost_threshold") = SourceSearch().threshold,                                               \
-  nb::arg("ghost_neglect") = FlareOptions().neglected_share, nb::arg("scatter").none() = nb::none(),   \
-  nb::arg("scatter_surround") = "dark"
+  nb::arg("ghost_neglect") = FlareOptions().neglected_share, nb::arg("ghost_reflections") = 2,         \
+  nb::arg("scatter").none() = nb::none(), nb::arg("scatter_surround") = "dark"
 
 /// How a sensor is exposed once.
 ExposeOptions expose_options(const nb::object& exposure, const std::string& metering, double compensation_ev,

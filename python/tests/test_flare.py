@@ -18,9 +18,10 @@ def camera():
 
 def test_suns_and_ghosts(program, camera):
     told = program.json("image", *SHOT, "--sun", "12,6", "--sun", "-30,4:20000", "--ghosts", "--ghost-neglect", 1e-3,
-                        "--sun-diameter", 1, "--sun-light", "D65", "--ghost-layer", "ghosts.npy", "-o", "light.npy")["flare"]
+                        "--ghost-reflections", 4, "--sun-diameter", 1, "--sun-light", "D65", "--ghost-layer", "ghosts.npy", "-o",
+                        "light.npy")["flare"]
     suns = [pz.Sun(12, 6, diameter_deg=1, light="D65"), pz.Sun(-30, 4, illuminance_lx=20000, diameter_deg=1, light="D65")]
-    keywords = dict(surround="extend", method="none", suns=suns, ghosts=True, ghost_neglect=1e-3)
+    keywords = dict(surround="extend", method="none", suns=suns, ghosts=True, ghost_neglect=1e-3, ghost_reflections=4)
     light, flare = camera.image_and_flare(SCENE, **keywords)
     assert np.array_equal(np.load(program.folder / "light.npy"), light.values)
     assert np.array_equal(np.load(program.folder / "ghosts.npy"), flare.ghosts.values)

@@ -69,15 +69,16 @@ class ReflectingLens {
   }
 
   struct End {
-    std::size_t first, second;
+    std::array<std::size_t, 4> turned;
     double x_mm, y_mm;
   };
-  /// Follows one photon that is reflected twice; nothing for all others.
+  /// Follows one photon that is reflected so often, at most four times; nothing for all others.
   template <class Random>
-  std::optional<End> follow(Photon photon, Random& random) const {
+  std::optional<End> follow(Photon photon, Random& random, int wanted = 2) const {
     std::uniform_real_distribution<double> even(0, 1);
     int reflections = 0;
-    std::size_t turned[2] = {0, 0}, next = 0;
+    std::array<std::size_t, 4> turned{};
+    std::size_t next = 0;
     bool forward = true;
     while (true) {
       if (forward && next == count()) break;
@@ -87,8 +88,8 @@ class ReflectingLens {
       const double n1 = forward ? index_[next] : index_[next + 1],
                    n2 = forward ? index_[next + 1] : index_[next];
       if (meet(n1, n2, normal, photon, even(random))) {
-        if (reflections == 2) return {};
-        turned[reflections++] = next;
+        if (reflections == wanted) return {};
+        turned[static_cast<std::size_t>(reflections++)] = next;
         forward = !forward;
       }
       if (forward)
@@ -96,9 +97,9 @@ class ReflectingLens {
       else if (next-- == 0)
         return {};
     }
-    if (reflections != 2) return {};
+    if (reflections != wanted) return {};
     const double t = (image_z_ - photon.at[2]) / photon.along[2];
-    return End{turned[0], turned[1], photon.at[0] + t * photon.along[0], photon.at[1] + t * photon.along[1]};
+    return End{turned, photon.at[0] + t * photon.along[0], photon.at[1] + t * photon.along[1]};
   }
 
   /// Without chance: reflected at the two surfaces of a pair. \return the place on the sensor.

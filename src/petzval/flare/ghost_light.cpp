@@ -36,10 +36,28 @@ std::vector<std::unique_ptr<GhostTracer>> tracers_of(const Lens& lens,
                                                      const Losses& losses, const GhostLightOptions& options) {
   std::vector<std::unique_ptr<GhostTracer>> tracers(wavelengths_nm.size());
   parallel_tasks(wavelengths_nm.size(), [&](std::size_t band) {
-    tracers[band] = std::make_unique<GhostTracer>(lens, wavelengths_nm[band], losses,
-                                                  options.sensor_reflectance, options.clip);
+    tracers[band] =
+        std::make_unique<GhostTracer>(lens, wavelengths_nm[band], losses, options.sensor, options.clip);
   });
   return tracers;
+}
+
+/// Those of four reflections by their light close to the axis, where most of them never get to the sensor.
+std::vector<GhostPair> ways_of(const GhostTracer& tracer, const GhostLightOptions& options) {
+  std::vector<GhostPair> ways = tracer.pairs();
+  if (options.reflections == 2) return ways;
+  const auto on_axis = [&](const GhostPair& way) {
+    constexpr double tiny_mm = 1e-6;
+    Ray ray;
+    ray.point_mm = {0, tiny_mm, 0};
+    ray.direction = {0, 0, 1};
+    return tracer.follow(ray, way).share;
+  };
+  double brightest = 0;
+  for (const GhostPair& way : ways) brightest = std::max(brightest, on_axis(way));
+  for (const GhostPair& way : tracer.double_pairs())
+    if (on_axis(way) > options.neglected_share * brightest) ways.push_back(way);
+  return ways;
 }
 
 /// Adds the light of bundles to a band, stripe by stripe.
@@ -129,6 +147,8 @@ std::vector<GhostPairReport> by_pair(std::span<const GhostTask> tasks,
 
 void GhostLightOptions::validate() const {
   bundle.validate();
+  if (reflections != 2 && reflections != 4)
+    throw InputError(fmt::format("`ghost_reflections` is {}; 2 or 4 would be right", reflections));
   if (!(neglected_share >= 0 && neglected_share < 1))
     throw InputError(
         fmt::format("`ghost_neglect` is {:g}; 0 to less than 1 would be right", neglected_share));
@@ -140,10 +160,12 @@ SpectralImage ghost_light(const Lens& lens, const SensorGeometry& frame,
                           GhostLightReport* report) {
   check_light(frame, wavelengths_nm, sources, options);
   const auto tracers = tracers_of(lens, wavelengths_nm, options.losses, options);
+  std::vector<std::vector<GhostPair>> ways(wavelengths_nm.size());
+  parallel_tasks(ways.size(), [&](std::size_t band) { ways[band] = ways_of(*tracers[band], options); });
   std::vector<GhostTask> tasks;
   for (std::size_t source = 0; source < sources.size(); ++source)
     for (std::size_t band = 0; band < wavelengths_nm.size(); ++band)
-      for (const GhostPair& pair : tracers[band]->pairs()) tasks.push_back({source, band, pair});
+      for (const GhostPair& pair : ways[band]) tasks.push_back({source, band, pair});
   parallel_for(tasks.size(), [&](std::size_t i) {
     GhostTask& task = tasks[i];
     const double irradiance = sources[task.source].irradiance[task.band];
@@ -184,6 +206,8 @@ SpectralImage straight_light(const Lens& lens, const SensorGeometry& frame,
   check_light(frame, wavelengths_nm, sources, options);
   const Losses losses = losses_of_picture(lens, wavelengths_nm.front(), options.losses);
   const auto tracers = tracers_of(lens, wavelengths_nm, losses, options);
+  std::vector<std::vector<GhostPair>> ways(wavelengths_nm.size());
+  parallel_tasks(ways.size(), [&](std::size_t band) { ways[band] = ways_of(*tracers[band], options); });
   std::vector<GhostTask> tasks;
   for (std::size_t source = 0; source < sources.size(); ++source)
     for (std::size_t band = 0; band < wavelengths_nm.size(); ++band)

@@ -14,7 +14,10 @@ namespace petzval {
 
 struct GhostLightOptions {
   Losses losses = {};  ///< coatings and absorption; surfaces without a coating reflect as bare glass
-  double sensor_reflectance = 0;
+  SensorReflection sensor = {};
+  /// 2, or 4: light that is reflected four times is followed, too, if by the reflectances along the axis it
+  /// may be more than `neglected_share` of that of the brightest pair.
+  int reflections = 2;
   Tracer::Clip clip = Tracer::Clip::apertures;
   BundleOptions bundle = {};
   /// Pairs that together hold at most this share of the light of all ghosts, by the bounds of a search with
@@ -42,7 +45,7 @@ struct GhostLightReport {
 
 /// Irradiance of all double reflections of sources [W·m⁻²·nm⁻¹], pixels being boxes: real rays through real
 /// apertures and blades (after M. Hullin et al., ACM Trans. Graph. 30 (2011) 108), their light by coatings,
-/// angle and polarisation. Light that is reflected four times is not followed. The bytes do not depend on
+/// angle and polarisation, of four reflections if it is asked for. The bytes do not depend on
 /// the number of threads. \param lens  centred, of glass, focused as it is used. \throws InputError as
 /// GhostTracer and BrightSource::validate(); Cancelled.
 ///

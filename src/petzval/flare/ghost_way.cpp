@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace petzval {
 
@@ -36,16 +37,23 @@ void mirror_at(const double normal[3], SurfaceRay& ray) {
   ray.n -= 2 * along * normal[2];
 }
 
+/// Turns a ray by so much of its direction cosines, on the side where it is; false where there is none.
+bool diffract(double l, double m, SurfaceRay& ray) {
+  ray.l += l, ray.m += m;
+  const double square = 1 - ray.l * ray.l - ray.m * ray.m;
+  ray.n = std::copysign(std::sqrt(std::max(square, 0.0)), ray.n);
+  return square > 0;
+}
+
 }  // namespace
 
 GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses,
-                         double sensor_reflectance, Tracer::Clip clip)
+                         const SensorReflection& sensor, Tracer::Clip clip)
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "ghosts need");
   require_centred(lens, "ghosts are those of centred lenses");
   losses.validate(lens);
-  if (!(sensor_reflectance >= 0 && sensor_reflectance <= 1))
-    throw InputError(fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", sensor_reflectance));
+  sensor.validate();
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
     surfaces_.emplace_back(surface.index_before, surface.index_after,
@@ -54,14 +62,41 @@ GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& l
         losses.absorption ? lens.surfaces[i].material.extinction(wavelength_nm) : std::nullopt;
     absorption_per_mm_.push_back(k ? 4 * pi * *k / (wavelength_nm * mm_per_nm) : 0.0);
   }
-  surfaces_.push_back(SurfaceReflection::mirror(sensor_reflectance, tracer_.image_index()));
+  surfaces_.push_back(SurfaceReflection::mirror(sensor.reflectance, tracer_.image_index()));
+  orders_ = pixel_grating_orders(sensor, wavelength_nm);
+  for (const GratingOrder& order : orders_)
+    if (order.right == 0 && order.up == 0) straight_share_ = order.share;
+  if (sensor.microlens_sag_um > 0)
+    cosines_per_order_ = wavelength_nm * mm_per_nm / (sensor.pitch_um * mm_per_um * tracer_.image_index());
 }
 
 std::vector<GhostPair> GhostTracer::pairs() const {
   std::vector<GhostPair> result;
+  const std::size_t sensor = tracer_.surface_count();
   for (std::size_t first = 1; first < surfaces_.size(); ++first)
-    for (std::size_t second = 0; second < first; ++second)
-      if (surfaces_[first].reflects() && surfaces_[second].reflects()) result.push_back({first, second});
+    for (std::size_t second = 0; second < first; ++second) {
+      if (!surfaces_[first].reflects() || !surfaces_[second].reflects()) continue;
+      GhostPair pair{first, second};
+      if (first != sensor) result.push_back(pair);
+      if (first == sensor)
+        for (const GratingOrder& order : orders_) pair.order = order, result.push_back(pair);
+    }
+  return result;
+}
+
+std::vector<GhostPair> GhostTracer::double_pairs() const {
+  std::vector<GhostPair> result;
+  const auto each = [&](std::size_t from, std::size_t to, const auto& use) {
+    for (std::size_t i = from; i < to; ++i)
+      if (surfaces_[i].reflects()) use(i);
+  };
+  each(1, surfaces_.size(), [&](std::size_t first) {
+    each(0, first, [&](std::size_t second) {
+      each(second + 1, surfaces_.size(), [&](std::size_t third) {
+        each(0, third, [&](std::size_t fourth) { result.push_back({first, second, third, fourth}); });
+      });
+    });
+  });
   return result;
 }
 
@@ -80,6 +115,7 @@ GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
   ray.light = LightFields::unpolarised(start.direction);
   GhostLanding landing;
   double worst = -1, clear = 1;
+  const GratingOrder order = pair.third == GhostPair::none ? pair.order : GratingOrder{0, 0, straight_share_};
 
   const auto absorb = [&](std::size_t gap, const std::array<double, 3>& from) {
     if (absorption_per_mm_[gap] == 0) return;
@@ -116,6 +152,10 @@ GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
     const Direction before = ray.direction(), across{normal[0], normal[1], normal[2]};
     if (reflect) {
       mirror_at(normal, ray.at);
+      if (i == sensor) {
+        if (!diffract(order.right * cosines_per_order_, order.up * cosines_per_order_, ray.at)) return false;
+        clear *= order.share;
+      }
       ray.light = surfaces_[i].reflected(ray.light, before, ray.direction(), across, backward);
     } else {
       const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
@@ -127,17 +167,19 @@ GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
     return true;
   };
 
-  const std::size_t turn = pair.is_straight() ? sensor : pair.first;
-  for (std::size_t i = 0; i < turn; ++i)
-    if (!meet(i, false, false)) return landing;
-  if (!pair.is_straight()) {
-    if (!meet(pair.first, false, true)) return landing;
-    for (std::size_t i = pair.first; i-- > pair.second + 1;)
+  std::size_t next = 0;
+  for (const auto& [far, near] : {std::pair{pair.first, pair.second}, std::pair{pair.third, pair.fourth}}) {
+    if (far == GhostPair::none) break;
+    for (; next < far; ++next)
+      if (!meet(next, false, false)) return landing;
+    if (!meet(far, false, true)) return landing;
+    for (std::size_t i = far; i-- > near + 1;)
       if (!meet(i, true, false)) return landing;
-    if (!meet(pair.second, true, true)) return landing;
-    for (std::size_t i = pair.second + 1; i < sensor; ++i)
-      if (!meet(i, false, false)) return landing;
+    if (!meet(near, true, true)) return landing;
+    next = near + 1;
   }
+  for (; next < sensor; ++next)
+    if (!meet(next, false, false)) return landing;
   if (!meet(sensor, false, false)) return landing;
   landing.arrives = true;
   landing.x_mm = ray.at.x;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real rays on the ways of light that two surfaces of a lens reflect.
+// Real rays on the ways of light that two or four surfaces of a lens reflect.
 #pragma once
 
+#include <petzval/flare/pixel_grating.h>
 #include <petzval/flare/surface_reflection.h>
 #include <petzval/trace/losses.h>
 #include <petzval/trace/tracer.h>
@@ -13,14 +14,17 @@
 
 namespace petzval {
 
-/// A way through a lens: to surface `first`, back to `second` in front of it, and on to the sensor. The
-/// sensor's index is the number of surfaces. `straight()` is the way of the picture.
+/// A way through a lens: to surface `first`, back to `second` in front of it, and on to the sensor; or on to
+/// `third`, back to `fourth` in front of that, and on. The sensor's index is the number of surfaces.
+/// `straight()` is the way of the picture.
 struct GhostPair {
-  std::size_t first = none, second = none;
+  std::size_t first = none, second = none, third = none, fourth = none;
+  GratingOrder order = {};  ///< in which the sensor reflects, where it is `first` and there is no `third`
 
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   static GhostPair straight() { return {}; }
   bool is_straight() const { return first == none; }
+  int reflections() const { return is_straight() ? 0 : third == none ? 2 : 4; }
   bool operator==(const GhostPair&) const = default;
 };
 
@@ -39,12 +43,14 @@ class GhostTracer {
  public:
   /// Surfaces without a coating reflect as bare glass, whether or not `losses` counts that; absorption
   /// counts if it says so. \throws InputError for lenses that are not centred or have no glass, as
-  /// Losses::validate(), and for a reflectance outside 0…1.
-  GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses, double sensor_reflectance,
+  /// Losses::validate() and SensorReflection::validate().
+  GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses, const SensorReflection& sensor,
               Tracer::Clip clip = Tracer::Clip::apertures);
 
-  /// All pairs of surfaces that reflect.
+  /// All pairs of surfaces that reflect, those with the sensor once for each order of its grating.
   std::vector<GhostPair> pairs() const;
+  /// All ways with four reflections. Of the sensor's grating they have the order 0 alone.
+  std::vector<GhostPair> double_pairs() const;
   const Tracer& tracer() const { return tracer_; }
   /// \param ray  in object space. \param places  receives every place where it meets a surface and the
   /// sensor, in order, as far as it comes.
@@ -55,7 +61,10 @@ class GhostTracer {
   Tracer tracer_;
   Tracer::Clip clip_;
   std::vector<SurfaceReflection> surfaces_;  ///< the sensor last
-  std::vector<double> absorption_per_mm_;    ///< of the gap behind each surface
+  std::vector<GratingOrder> orders_;         ///< of the sensor
+  double straight_share_ = 1;                ///< of what it reflects, in the order 0
+  double cosines_per_order_ = 0;
+  std::vector<double> absorption_per_mm_;  ///< of the gap behind each surface
 };
 
 }  // namespace petzval

@@ -92,9 +92,12 @@ struct Sensor {
   /// Where within a pixel light is gathered, and the optical low-pass filter before it, in pitches. Whoever
   /// makes the irradiance applies them, once. The default is a box of one pitch and no filter.
   Photosite photosite = {};
-  /// Share of the light that its surface or cover glass reflects back into the lens, as a mirror does;
-  /// absent: not known.
+  /// Share of the light that its surface or cover glass reflects back into the lens; absent: not
+  /// known.
   std::optional<double> reflectance = {};
+  /// From the middle of a microlens to the corner of its pixel [µm]: what the sensor reflects goes into the
+  /// orders of this grating; 0: as from a mirror.
+  double microlens_sag_um = 0;
   std::optional<SensorElectronics> electronics = {};  ///< absent: a frame for images, no more
 
   /// \throws InputError unless the sensor says how it turns light into numbers.

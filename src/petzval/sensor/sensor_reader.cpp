@@ -341,7 +341,7 @@ Sensor parse_sensor(const JsonDocument& document) {
   root.allow_only({"format",      "name",        "source",   "columns", "rows",         "pitch_um",
                    "photosite",   "low_pass_um", "channels", "mosaic",  "microlens",    "crosstalk",
                    "gain_modes",  "adc",         "dark",     "dsnu_e",  "prnu_percent", "column_pattern_e",
-                   "row_noise_e", "defects",     "shutter",  "serial",  "reflectance"});
+                   "row_noise_e", "defects",     "shutter",  "serial",  "reflectance",  "microlens_sag_um"});
   if (const std::string format = root.at("format").text("\"petzval-sensor/1\""); format != "petzval-sensor/1")
     root.at("format").fail("is another format; \"petzval-sensor/1\" would be right");
   Sensor sensor;
@@ -353,6 +353,10 @@ Sensor parse_sensor(const JsonDocument& document) {
     root.at("pitch_um").fail("gives " + wrong);
   sensor.photosite = read_photosite(root, sensor.geometry.pitch_um);
   if (const auto entry = root.find("reflectance")) sensor.reflectance = number_in(*entry, 0, 1);
+  if (const auto entry = root.find("microlens_sag_um")) {
+    sensor.microlens_sag_um = number_in(*entry, 0, 100);
+    if (!sensor.reflectance) entry->fail("needs \"reflectance\" beside it: how much light it turns back");
+  }
   if (root.find("channels")) {
     sensor.electronics = read_electronics(root);
   } else {

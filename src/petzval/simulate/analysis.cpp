@@ -427,7 +427,7 @@ AnalysisResult veiling(const Lens& plain, const AnalysisRequest& request, const 
     std::vector<double> ghosts(rows.size(), 0);
     GhostLightOptions how;
     how.losses = at.losses;
-    how.sensor_reflectance = request.sensor_reflectance;
+    how.sensor = request.sensor_reflectance;
     how.clip = at.clip;
     if (request.glare.ghosts) ghosts = ghost_veil(lens, wavelength_nm, heights, options, how);
     for (std::size_t i = 0; i < rows.size(); ++i) {

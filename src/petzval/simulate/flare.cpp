@@ -121,7 +121,7 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
   GhostLightOptions how;
   how.losses = lens.losses;
   how.clip = lens.clip;
-  how.sensor_reflectance = lens.sensor_reflectance;
+  how.sensor = lens.sensor, how.reflections = options.ghost_reflections;
   how.neglected_share = options.neglected_share;
   FlareLayers layers;
   for (const Sun& sun : options.suns) layers.sources.push_back(sun.at(wavelengths_nm));

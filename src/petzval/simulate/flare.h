@@ -32,6 +32,7 @@ Sun parse_sun(const std::string& text);
 struct FlareOptions {
   std::vector<Sun> suns = {};  ///< added to the scene: their images as their rays give them
   bool ghosts = false;         ///< of suns, and of the bright sources that the scene itself holds
+  int ghost_reflections = 2;   ///< or 4: ghosts of light that is reflected four times, too
   bool starburst = false;      ///< of the same: what the edges of the stop diffract
   bool scatter = false;        ///< of all light: what the surfaces of the lens turn aside
   /// How surfaces scatter that say nothing themselves; absent: as the lens says.
@@ -49,7 +50,7 @@ struct LitLens {
   Lens lens = {};
   Losses losses = {};
   Tracer::Clip clip = Tracer::Clip::apertures;
-  double sensor_reflectance = 0;
+  SensorReflection sensor = {};
   double psf_mm = 0;  ///< the picture of what the scene holds has diffraction this near to its image points
 };
 

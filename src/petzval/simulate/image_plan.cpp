@@ -206,7 +206,8 @@ std::string lens_key(const Lens& lens, const TableOptions& options, double pitch
 }
 
 LitLens in_use(const Lens& focused, const TableOptions& table, const Camera& camera) {
-  return {focused, table.losses, table.clip, camera.sensor ? camera.sensor->reflectance.value_or(0.0) : 0.0};
+  return {focused, table.losses, table.clip,
+          camera.sensor ? reflection_of(*camera.sensor) : SensorReflection()};
 }
 
 /// What ghosts need, before the long work. \throws InputError saying what is missing.

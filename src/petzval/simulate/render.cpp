@@ -109,9 +109,10 @@ FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options,
   if (visible.suns.size() < options.suns.size())
     send_note(context, fmt::format("{} of {} suns stand behind something",
                                    options.suns.size() - visible.suns.size(), options.suns.size()));
-  const double reflectance = request.camera.sensor ? request.camera.sensor->reflectance.value_or(0.0) : 0.0;
+  const SensorReflection reflection =
+      request.camera.sensor ? reflection_of(*request.camera.sensor) : SensorReflection();
   if (options.scatter) scattering_lens(*scene.lens, options.surfaces_scatter);
-  return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflectance}, scene.film,
+  return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflection}, scene.film,
                       world.groups.wavelengths_nm(),
                       options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{},
                       visible, context);
