@@ -42,13 +42,13 @@ nb::tuple state_of(const SensorElectronics& e) {
   if (e.microlens)
     microlens = nb::make_tuple(e.microlens->angles_deg, e.microlens->response, e.microlens->design_heights_mm,
                                e.microlens->design_angles_deg);
-  return nb::make_tuple(channels, std::tuple(e.mosaic.rows, e.mosaic.columns, e.mosaic.cells), e.crosstalk,
-                        microlens, modes, e.bits, e.black_level_dn, e.white_level_dn, e.linearity_fractions,
-                        e.linearity_deviations,
-                        std::array{e.dark_current_e_per_s, e.dark_temperature_c, e.dark_doubling_c, e.dsnu_e,
-                                   e.prnu, e.column_pattern_e, e.row_noise_e, e.hot_pixels_per_million,
-                                   e.hot_current_e_per_s, e.dead_pixels_per_million},
-                        e.serial);
+  return nb::make_tuple(
+      channels, std::tuple(e.mosaic.rows, e.mosaic.columns, e.mosaic.cells), e.crosstalk, microlens, modes,
+      e.bits, e.black_level_dn, e.white_level_dn, e.linearity_fractions, e.linearity_deviations,
+      std::array{e.dark_current_e_per_s, e.dark_temperature_c, e.dark_doubling_c, e.dsnu_e, e.prnu,
+                 e.column_pattern_e, e.row_noise_e, e.hot_pixels_per_million, e.hot_current_e_per_s,
+                 e.dead_pixels_per_million, e.blooming_onset, e.shutter.row_time_s},
+      e.serial, e.shutter.kind == Shutter::Kind::rolling);
 }
 
 SensorElectronics electronics_of(const nb::tuple& t) {
@@ -68,20 +68,21 @@ SensorElectronics electronics_of(const nb::tuple& t) {
   e.bits = nb::cast<int>(t[5]);
   e.black_level_dn = nb::cast<double>(t[6]), e.white_level_dn = nb::cast<double>(t[7]);
   e.linearity_fractions = nb::cast<Numbers>(t[8]), e.linearity_deviations = nb::cast<Numbers>(t[9]);
-  const auto n = nb::cast<std::array<double, 10>>(t[10]);
+  const auto n = nb::cast<std::array<double, 12>>(t[10]);
   e.dark_current_e_per_s = n[0], e.dark_temperature_c = n[1], e.dark_doubling_c = n[2], e.dsnu_e = n[3],
   e.prnu = n[4];
   e.column_pattern_e = n[5], e.row_noise_e = n[6], e.hot_pixels_per_million = n[7],
   e.hot_current_e_per_s = n[8];
-  e.dead_pixels_per_million = n[9];
+  e.dead_pixels_per_million = n[9], e.blooming_onset = n[10], e.shutter.row_time_s = n[11];
   e.serial = nb::cast<std::uint64_t>(t[11]);
+  e.shutter.kind = nb::cast<bool>(t[12]) ? Shutter::Kind::rolling : Shutter::Kind::global;
   return e;
 }
 
 nb::tuple state_of(const Sensor& s) {
-  return nb::make_tuple(s.name, s.source, s.geometry.columns, s.geometry.rows, s.geometry.pitch_um,
-                        state_of(s.photosite),
-                        s.electronics ? nb::object(state_of(*s.electronics)) : nb::none());
+  return nb::make_tuple(
+      s.name, s.source, s.geometry.columns, s.geometry.rows, s.geometry.pitch_um, state_of(s.photosite),
+      s.electronics ? nb::object(state_of(*s.electronics)) : nb::none(), s.reflectance, s.microlens_sag_um);
 }
 
 Sensor sensor_of(const nb::tuple& t) {
@@ -90,6 +91,7 @@ Sensor sensor_of(const nb::tuple& t) {
            {nb::cast<int>(t[2]), nb::cast<int>(t[3]), nb::cast<double>(t[4])},
            photosite_of(nb::cast<nb::tuple>(t[5])),
            {}};
+  s.reflectance = nb::cast<std::optional<double>>(t[7]), s.microlens_sag_um = nb::cast<double>(t[8]);
   if (!t[6].is_none()) s.electronics = electronics_of(nb::cast<nb::tuple>(t[6]));
   return s;
 }

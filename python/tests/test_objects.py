@@ -106,6 +106,19 @@ def test_sensors_survive(name):
         assert np.array_equal(raw.values, same.values)
 
 
+def test_what_a_sensor_does_in_bright_light_survives():
+    sensor = pz.Sensor("third-inch-1280x960", {"columns": 32, "rows": 32, "pitch_um": 40, "blooming": '{"onset": 1}', "reflectance": 0.04,
+                                               "microlens_sag_um": 0.5})
+    again = pickle.loads(pickle.dumps(sensor))
+    values = np.zeros((32, 32, 31), np.float32)
+    values[16, 16] = 10
+    lamp = pz.SpectralImage(values, range(400, 701, 10), 40, sensor.photosite)
+    raw, same, drained = (each.expose(lamp, exposure=1e-3, seed=3, exit_pupil_mm=-20, without=without)
+                          for each, without in ((sensor, []), (again, []), (sensor, ["blooming"])))
+    assert np.array_equal(raw.values, same.values)
+    assert np.sum(raw.values > 0.5 * raw.values.max()) > np.sum(drained.values > 0.5 * drained.values.max())
+
+
 @pytest.mark.parametrize("name", pz.bundled_names("lenses"))
 def test_lenses_survive(name):
     lens = pz.Lens(name)

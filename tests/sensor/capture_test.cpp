@@ -140,6 +140,8 @@ TEST(Capture, SourcesSwitchOffOneByOne) {
   SensorElectronics& e = *sensor.electronics;
   e.white_level_dn = 8191;
   e.gain_modes[0].read_noise_e = 6;
+  e.gain_modes[0].full_well_e = 15000;  // which hot pixels exceed
+  e.blooming_onset = 1;
   e.prnu = 0.01;
   e.dsnu_e = 20;
   e.column_pattern_e = 30;

@@ -5,6 +5,7 @@
 #include <petzval/numeric/interpolation.h>
 #include <petzval/numeric/random.h>
 #include <petzval/numeric/random_lanes.h>
+#include <petzval/sensor/blooming.h>
 #include <petzval/sensor/capture.h>
 
 #include <algorithm>
@@ -147,8 +148,27 @@ class Exposure {
                     (electronics_.white_level_dn - electronics_.black_level_dn) / dn_per_e_);
   }
 
-  /// Adds the numbers of one row of one frame to `sums`.
-  void expose_row(int row, int frame, std::span<std::uint32_t> sums) const {
+  bool blooms() const { return options_.has(NoiseSource::blooming) && electronics_.blooming_onset > 0; }
+
+  /// The electrons of a frame, [column][row], when they have flowed along their columns.
+  std::vector<double> bloomed(int frame) const {
+    const auto columns = static_cast<std::size_t>(current_.columns),
+               rows = static_cast<std::size_t>(current_.rows);
+    std::vector<double> electrons(columns * rows);
+    parallel_for(rows, [&](std::size_t row) {
+      std::vector<double> of_row(columns), offsets(columns), random(columns);
+      collect_row(static_cast<int>(row), frame, of_row, offsets, random);
+      for (std::size_t c = 0; c < columns; ++c) electrons[c * rows + row] = of_row[c];
+    });
+    parallel_for(columns, [&](std::size_t column) {
+      bloom_column({electrons.data() + column * rows, rows}, electronics_.blooming_onset * mode_.full_well_e);
+    });
+    return electrons;
+  }
+
+  /// Adds the numbers of one row of one frame to `sums`. \param bloomed  what bloomed() says of this frame,
+  /// or nothing.
+  void expose_row(int row, int frame, std::span<const double> bloomed, std::span<std::uint32_t> sums) const {
     const std::uint64_t first = place_of(row);
     const bool rows_move = options_.has(NoiseSource::row) && electronics_.row_noise_e > 0;
     const double row_e = rows_move ? electronics_.row_noise_e *
@@ -156,17 +176,13 @@ class Exposure {
                                                       static_cast<std::uint64_t>(row + current_.first_row))
                                              .normal()
                                    : 0;
-    const float* rates =
-        current_.e_per_s.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(current_.columns);
     const std::size_t columns = sums.size();
     std::vector<double> electrons(columns), offsets(column_offsets_e_), random(columns);
     for (double& offset : offsets) offset += row_e;
-    for (std::size_t c = 0; c < columns; ++c) electrons[c] = static_cast<double>(rates[c]) * exposure_s_;
-    if (prnu_ > 0 || dsnu_e_ > 0) add_pixel_patterns(first, electrons, offsets, random);
-    for (double& e : electrons) e += dark_e_;
-    add_defects(first, electrons);
-    if (options_.has(NoiseSource::shot))
-      poisson_numbers(options_.seed, of_frame(shot_noise, frame), first, electrons, electrons);
+    collect_row(row, frame, electrons, offsets, random);
+    if (!bloomed.empty())
+      for (std::size_t c = 0; c < columns; ++c)
+        electrons[c] = bloomed[c * static_cast<std::size_t>(current_.rows) + static_cast<std::size_t>(row)];
     if (read_e_ > 0) {
       uniform_numbers(options_.seed, of_frame(read_noise, frame), first, random, {});
       to_normal(random);
@@ -181,6 +197,21 @@ class Exposure {
   }
 
  private:
+  /// The electrons of a row, and what its pixels add to `offsets`.
+  void collect_row(int row, int frame, std::span<double> electrons, std::span<double> offsets,
+                   std::span<double> random) const {
+    const std::uint64_t first = place_of(row);
+    const float* rates =
+        current_.e_per_s.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(current_.columns);
+    for (std::size_t c = 0; c < electrons.size(); ++c)
+      electrons[c] = static_cast<double>(rates[c]) * exposure_s_;
+    if (prnu_ > 0 || dsnu_e_ > 0) add_pixel_patterns(first, electrons, offsets, random);
+    for (double& e : electrons) e += dark_e_;
+    add_defects(first, electrons);
+    if (options_.has(NoiseSource::shot))
+      poisson_numbers(options_.seed, of_frame(shot_noise, frame), first, electrons, electrons);
+  }
+
   std::uint64_t place_of(int row) const {
     return static_cast<std::uint64_t>(row + current_.first_row) *
                static_cast<std::uint64_t>(sensor_.geometry.columns) +
@@ -264,9 +295,9 @@ void add_linearization(RawImage& raw, const Linearity& linearity, double greates
 }  // namespace
 
 const std::vector<std::string>& noise_source_names() {
-  static const std::vector<std::string> names = {"shot",      "dark",      "read",     "dsnu",
-                                                 "prnu",      "column",    "row",      "defects",
-                                                 "crosstalk", "microlens", "linearity"};
+  static const std::vector<std::string> names = {"shot",      "dark",      "read",      "dsnu",
+                                                 "prnu",      "column",    "row",       "defects",
+                                                 "crosstalk", "microlens", "linearity", "blooming"};
   return names;
 }
 
@@ -303,14 +334,29 @@ RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double expos
   raw.sensor_name = sensor.name;
 
   const auto columns = static_cast<std::size_t>(current.columns);
-  parallel_for(static_cast<std::size_t>(current.rows), [&](std::size_t row) {
-    std::vector<std::uint32_t> sums(columns);
-    for (int frame = 0; frame < options.frames; ++frame)
-      exposure.expose_row(static_cast<int>(row), options.first_frame + frame, sums);
-    const double factor = static_cast<double>(steps) / options.frames;
+  const double factor = static_cast<double>(steps) / options.frames;
+  const auto store = [&](std::size_t row, std::span<const std::uint32_t> sums) {
     for (std::size_t c = 0; c < columns; ++c)
       raw.samples[row * columns + c] = static_cast<std::uint16_t>(std::floor(sums[c] * factor + 0.5));
-  });
+  };
+  if (exposure.blooms()) {
+    std::vector<std::uint32_t> sums(raw.samples.size());
+    for (int frame = options.first_frame; frame < options.first_frame + options.frames; ++frame) {
+      const std::vector<double> bloomed = exposure.bloomed(frame);
+      parallel_for(static_cast<std::size_t>(current.rows), [&](std::size_t row) {
+        exposure.expose_row(static_cast<int>(row), frame, bloomed, {sums.data() + row * columns, columns});
+      });
+    }
+    for (std::size_t row = 0; row < static_cast<std::size_t>(current.rows); ++row)
+      store(row, {sums.data() + row * columns, columns});
+  } else {
+    parallel_for(static_cast<std::size_t>(current.rows), [&](std::size_t row) {
+      std::vector<std::uint32_t> sums(columns);
+      for (int frame = options.first_frame; frame < options.first_frame + options.frames; ++frame)
+        exposure.expose_row(static_cast<int>(row), frame, {}, sums);
+      store(row, sums);
+    });
+  }
   if (!exposure.linearity().is_exact())
     add_linearization(raw, exposure.linearity(), electronics.white_level_dn * steps);
   return raw;

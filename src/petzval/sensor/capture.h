@@ -27,7 +27,8 @@ enum class NoiseSource {
   defects,    ///< hot and dead pixels
   crosstalk,  ///< electrons that end up in the next pixel
   microlens,  ///< loss at chief ray angles that the microlenses are not made for
-  linearity   ///< the departure from proportionality
+  linearity,  ///< the departure from proportionality
+  blooming    ///< charge that flows along columns from pixels that are full
 };
 
 /// The names above, in order; \throws InputError for another name.
@@ -51,7 +52,8 @@ struct CaptureOptions {
 ///
 /// 1. photoelectrons: current × exposure × (1 + PRNU); dark electrons: dark current × exposure, more in hot
 /// pixels;
-/// 2. their number is Poisson-distributed; above the full well it is cut off;
+/// 2. their number is Poisson-distributed; on sensors that bloom, what is beyond the onset flows along the
+/// column (bloom_column()); above the full well it is cut off;
 /// 3. offsets: DSNU, columns, rows; then the departure from linearity; then read noise;
 /// 4. the converter: black level + gain × signal, rounded to nearest, cut to 0 … white level. (Model and
 /// terms: EMVA

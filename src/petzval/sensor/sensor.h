@@ -74,6 +74,9 @@ struct SensorElectronics {
   double column_pattern_e = 0;  ///< rms over columns of an offset that stays
   double row_noise_e = 0;       ///< rms over rows of an offset drawn anew in each exposure
   double hot_pixels_per_million = 0, hot_current_e_per_s = 0, dead_pixels_per_million = 0;
+  /// Full wells at which charge begins to flow into the next pixels of a column, at least 1: what data sheets
+  /// of charge-coupled devices give as blooming suppression; 0: all that does not fit is drained.
+  double blooming_onset = 0;
   std::uint64_t serial = 1;  ///< what its fixed patterns grow from
   Shutter shutter = {};      ///< global unless the sensor says otherwise
 

@@ -311,6 +311,11 @@ SensorElectronics read_electronics(const JsonEntry& root) {
   if (const auto dark = root.find("dark")) read_dark(*dark, electronics);
   if (const auto defects = root.find("defects")) read_defects(*defects, electronics);
   if (const auto shutter = root.find("shutter")) electronics.shutter = read_shutter(*shutter);
+  if (const auto blooming = root.find("blooming")) {
+    constexpr double most = 1e9;
+    blooming->allow_only({"onset"});
+    electronics.blooming_onset = number_in(blooming->at("onset"), 1, most, "full wells");
+  }
   electronics.dsnu_e = number_in(root, "dsnu_e", 0, 1e6, "electrons", 0);
   electronics.prnu = number_in(root, "prnu_percent", 0, 50, "percent", 0) / 100;
   electronics.column_pattern_e = number_in(root, "column_pattern_e", 0, 1e6, "electrons", 0);
@@ -341,7 +346,8 @@ Sensor parse_sensor(const JsonDocument& document) {
   root.allow_only({"format",      "name",        "source",   "columns", "rows",         "pitch_um",
                    "photosite",   "low_pass_um", "channels", "mosaic",  "microlens",    "crosstalk",
                    "gain_modes",  "adc",         "dark",     "dsnu_e",  "prnu_percent", "column_pattern_e",
-                   "row_noise_e", "defects",     "shutter",  "serial",  "reflectance",  "microlens_sag_um"});
+                   "row_noise_e", "defects",     "shutter",  "serial",  "reflectance",  "microlens_sag_um",
+                   "blooming"});
   if (const std::string format = root.at("format").text("\"petzval-sensor/1\""); format != "petzval-sensor/1")
     root.at("format").fail("is another format; \"petzval-sensor/1\" would be right");
   Sensor sensor;
@@ -362,7 +368,7 @@ Sensor parse_sensor(const JsonDocument& document) {
   } else {
     for (const char* key :
          {"mosaic", "microlens", "crosstalk", "gain_modes", "adc", "dark", "dsnu_e", "prnu_percent",
-          "column_pattern_e", "row_noise_e", "defects", "shutter", "serial"})
+          "column_pattern_e", "row_noise_e", "defects", "shutter", "serial", "blooming"})
       if (root.find(key)) root.at(key).fail("needs \"channels\" beside it: what the sensor sees");
   }
   return sensor;
