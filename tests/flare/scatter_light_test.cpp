@@ -76,6 +76,29 @@ TEST(ScatterLayer, DoesNotDependOnCells) {
     EXPECT_NEAR(coarse.at(0, row, column) / fine.at(0, row, column), 1, 0.03) << column << " " << row;
 }
 
+// A surround as bright as the frame and half a frame wide is an even picture of twice the size: the same
+// light but for the scatter of places beyond the frame, which is taken to be that of its edge (a twentieth,
+// as of single points).
+TEST(ScatterLayer, OfAMeanSurroundIsThatOfALargerPicture) {
+  const Lens lens = scattering_triplet();
+  const auto even = [&](int scale, ScatterLightOptions::Surround surround) {
+    SpectralImage light(24 * scale, 16 * scale, {green_nm}, 500);
+    for (float& value : light.band(0)) value = 1;
+    return scatter_light(lens, light, {},
+                         {.surround = surround, .cells = 24 * scale, .nodes = 3, .across = 16});
+  };
+  using Surround = ScatterLightOptions::Surround;
+  const SpectralImage mean = even(1, Surround::mean), dark = even(1, Surround::dark),
+                      larger = even(2, Surround::dark);
+  for (const auto& [column, row] : {std::pair{12, 8}, std::pair{1, 1}, std::pair{22, 8}, std::pair{6, 14}}) {
+    // What is taken is the same in all of them, and larger than what comes back: compare what comes.
+    const double more = mean.at(0, row, column) - dark.at(0, row, column),
+                 expected = larger.at(0, row + 8, column + 12) - dark.at(0, row, column);
+    EXPECT_GT(expected, 0);
+    EXPECT_NEAR(more / expected, 1, 0.05) << column << " " << row;
+  }
+}
+
 TEST(ScatterLayer, KeepsLightAndBytes) {
   const Lens lens = scattering_triplet();
   const SensorGeometry frame{60, 40, 600};
