@@ -120,12 +120,7 @@ std::vector<std::string> choices(const CLI::Option& option) {
   const std::size_t open = type.find('{'), close = type.rfind('}');
   if (open != std::string::npos && close != std::string::npos)
     return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
-  if (name == "lens" || name == "--lens") {
-    std::vector<std::string> names;
-    for (const std::string& folder : bundled_folders("lenses"))
-      for (std::string& lens : bundled_names(folder, ".json")) names.push_back(std::move(lens));
-    return names;
-  }
+  if (name == "lens" || name == "--lens") return all_bundled_names("lenses", ".json");
   if (name == "--sensor") return bundled_names("sensors", ".json");
   if (name == "--focus") return {"auto", "design", "infinity", "best-spot", "best-mtf@"};
   return {};

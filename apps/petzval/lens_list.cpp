@@ -42,9 +42,9 @@ void list(const std::string& word, const Shared& shared) {
   std::string text = fmt::format("{:<23} {:>10} {:>6} {:>9} {:>12}  {}\n", "name", "EFL [mm]", "f/",
                                  "FOV [deg]", "light [nm]", "lens");
   std::size_t found = 0;
-  std::vector<std::string> names = bundled_names("lenses", ".json");
-  const std::vector<std::string> patents = bundled_names("lenses/patents", ".json");
-  if (!word.empty()) names.insert(names.end(), patents.begin(), patents.end());
+  const std::vector<std::string> all = all_bundled_names("lenses", ".json"),
+                                 usual = bundled_names("lenses", ".json"),
+                                 &names = word.empty() ? usual : all;
   for (const std::string& name : names) {
     const Lens lens = read_lens(name).lens;
     if (!mentions(name, lens, word)) continue;
@@ -77,7 +77,7 @@ void list(const std::string& word, const Shared& shared) {
                     quotable(word)));
   if (shared.json) return print_json({{"rows", rows}});
   fmt::print("{}", text);
-  if (word.empty()) fmt::print("\n{} more are from patents: petzval lens list patent\n", patents.size());
+  if (word.empty()) fmt::print("\n{} more are from patents: petzval lens list patent\n", all.size() - usual.size());
 }
 
 }  // namespace

@@ -138,21 +138,26 @@ std::vector<std::string> bundled_folders(const std::string& kind) {
   return folders;
 }
 
+std::vector<std::string> all_bundled_names(const std::string& kind, const std::string& extension) {
+  std::vector<std::string> names;
+  for (const std::string& folder : bundled_folders(kind))
+    for (std::string& name : bundled_names(folder, extension)) names.push_back(std::move(name));
+  return names;
+}
+
 std::string find_data_file(const std::string& kind, const std::string& extension,
                            const std::string& path_or_name, const std::string& what) {
   std::error_code error;
   if (fs::is_regular_file(path_or_name, error)) return path_or_name;
   if (path_or_name.empty()) throw InputError(fmt::format("an empty name for a {}", what));
-  std::vector<std::string> names;
   for (const std::string& folder : bundled_folders(kind)) {
     const fs::path bundled = fs::path(data_directory()) / folder / (path_or_name + extension);
     if (path_or_name.find('/') == std::string::npos && fs::is_regular_file(bundled, error))
       return bundled.string();
-    for (std::string& name : bundled_names(folder, extension)) names.push_back(std::move(name));
   }
   if (fs::is_directory(path_or_name, error))
     throw InputError(path_or_name, fmt::format("is a folder; the {} wanted is a file", what));
-  const std::vector<std::string> near = nearest_names(path_or_name, names);
+  const std::vector<std::string> near = nearest_names(path_or_name, all_bundled_names(kind, extension));
   throw InputError(path_or_name,
                    fmt::format("no such file, and no bundled {} of that name; the nearest are {}", what,
                                fmt::join(near, ", ")));

@@ -34,6 +34,9 @@ std::vector<std::string> bundled_folders(const std::string& kind);
 /// them.
 std::vector<std::string> bundled_names(const std::string& kind, const std::string& extension);
 
+/// Those too: first the kind's own, then folder by folder.
+std::vector<std::string> all_bundled_names(const std::string& kind, const std::string& extension);
+
 /// Up to `count` of `candidates` nearest to `name`, nearest first: by edit distance without regard to case,
 /// or because `name` is a part of them or their beginning.
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& candidates,

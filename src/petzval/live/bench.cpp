@@ -58,9 +58,8 @@ Lens used_for_scene(Camera camera, const std::optional<double>& distance_m, cons
 json list_of_lenses() {
   static const json all = [] {
     json list = json::array();
-    for (const std::string& folder : bundled_folders("lenses"))
-      for (const std::string& name : bundled_names(folder, ".json"))
-        list.push_back({{"name", name}, {"title", read_lens(name).lens.name}});
+    for (const std::string& name : all_bundled_names("lenses", ".json"))
+      list.push_back({{"name", name}, {"title", read_lens(name).lens.name}});
     return list;
   }();
   return all;

@@ -102,8 +102,7 @@ std::string lower_case(std::string text) {
 
 LiveNames bundled_live_names() {
   LiveNames names;
-  for (const std::string& folder : bundled_folders("lenses"))
-    for (std::string& name : bundled_names(folder, ".json")) names.lenses.push_back(std::move(name));
+  names.lenses = all_bundled_names("lenses", ".json");
   for (const BuiltinScene& scene : builtin_scenes()) {
     const std::string name = scene.name.substr(0, scene.name.find('['));
     if (!is_deep_chart(name)) names.scenes.push_back(name);
