@@ -126,8 +126,10 @@ std::optional<LitPlace> ScatterTracer::lit_place(const SourceBeam& beam, double 
   return place;
 }
 
-bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
-                           Landing& end, std::vector<Intersection>* path) const {
+template <typename Meet>
+bool ScatterTracer::follow_onward(std::size_t surface, const LitPlace& place,
+                                  const std::array<double, 2>& direction, Landing& end,
+                                  const Meet& meet) const {
   const double flat = direction[0] * direction[0] + direction[1] * direction[1];
   if (!(flat < 1)) return false;
   double vertex_z = 0;
@@ -138,7 +140,6 @@ bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std
                  direction[1],
                  std::sqrt(1 - flat),
                  0};
-  if (path && !path->empty()) path->back().direction_after = {ray.l, ray.m, ray.n};
   end = {};
   for (std::size_t i = surface + 1; i < bsdfs_.size(); ++i) {
     const Tracer::PreparedSurface& next = tracer_.surfaces()[i];
@@ -147,20 +148,45 @@ bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std
     double normal[3] = {0, 0, 1};
     if (!intersect(next, 1, 1, ray, normal)) return false;
     if (tracer_.clip_share_sq(i, ray.x, ray.y, clip_) > 1 + Tracer::rim_tolerance) end.passes = false;
-    const Vector before{ray.l, ray.m, ray.n}, across{normal[0], normal[1], normal[2]};
+    const Vector before{ray.l, ray.m, ray.n};
     if (!refract(next.index_before / next.index_after, 1, ray, normal)) return false;
-    const Vector after{ray.l, ray.m, ray.n};
-    if (path) path->push_back({{ray.x, ray.y, ray.z + vertex_z}, after, across});
-    if (bsdfs_[i].scatters())
-      end.kept *=
-          bsdfs_[i].shares(std::abs(dot_of(before, across)), std::abs(dot_of(after, across))).specular();
+    meet(i, before,
+         Intersection{
+             {ray.x, ray.y, ray.z + vertex_z}, {ray.l, ray.m, ray.n}, {normal[0], normal[1], normal[2]}});
   }
   if (!(ray.n > 0)) return false;
   const double distance = (tracer_.image_z_mm() - vertex_z - ray.z) / ray.n;
   end.x_mm = ray.x + distance * ray.l;
   end.y_mm = ray.y + distance * ray.m;
-  if (path) path->push_back({{end.x_mm, end.y_mm, tracer_.image_z_mm()}, {ray.l, ray.m, ray.n}, {0, 0, 1}});
   return true;
+}
+
+bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
+                           Landing& end) const {
+  return follow_onward(surface, place, direction, end,
+                       [](std::size_t, const Vector&, const Intersection&) {});
+}
+
+bool ScatterTracer::onward_with_light(std::size_t surface, const LitPlace& place,
+                                      const std::array<double, 2>& direction, Landing& end,
+                                      std::vector<Intersection>* path) const {
+  Vector last{direction[0], direction[1],
+              std::sqrt(std::max(0.0, 1 - direction[0] * direction[0] - direction[1] * direction[1]))};
+  if (path && !path->empty()) path->back().direction_after = last;
+  double kept = 1;
+  const bool arrives = follow_onward(
+      surface, place, direction, end, [&](std::size_t i, const Vector& before, const Intersection& met) {
+        if (bsdfs_[i].scatters())
+          kept *= bsdfs_[i]
+                      .shares(std::abs(dot_of(before, met.normal)),
+                              std::abs(dot_of(met.direction_after, met.normal)))
+                      .specular();
+        last = met.direction_after;
+        if (path) path->push_back(met);
+      });
+  end.kept = kept;
+  if (arrives && path) path->push_back({{end.x_mm, end.y_mm, tracer_.image_z_mm()}, last, {0, 0, 1}});
+  return arrives;
 }
 
 SourceImage ScatterTracer::image_of(const std::vector<LitPlace>& behind) const {
@@ -168,7 +194,7 @@ SourceImage ScatterTracer::image_of(const std::vector<LitPlace>& behind) const {
   double x = 0, y = 0, sum = 0;
   for (const LitPlace& place : behind) {
     Landing end;
-    if (!onward(bsdfs_.size() - 1, place, {place.after[0], place.after[1]}, end, nullptr)) continue;
+    if (!onward(bsdfs_.size() - 1, place, {place.after[0], place.after[1]}, end)) continue;
     const double through = transmittance_ ? transmittance_->along(place.start, place.path) : 1;
     const double flux = place.flux_mm2 * through;
     image.flux_mm2 += flux * place.shares.specular();
@@ -226,27 +252,35 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
                                                double y_mm,
                                                const std::optional<std::array<double, 2>>& guess) const {
   constexpr int most_steps = 25;
-  constexpr double differential = 1e-6, longest_step = 0.3, settled = 1e-6;
+  constexpr double differential = 1e-6, longest_step = 0.3, settled = 1e-6, slow = 0.1;
   std::array<double, 2> at = guess.value_or(std::array<double, 2>{place.after[0], place.after[1]});
   Landing end, beside;
   double xx = 0, xy = 0, yx = 0, yy = 0;  // d(x, y)/d(L, M)
-  bool found = false;
+  const auto differentiate = [&] {
+    if (!onward(surface, place, {at[0] + differential, at[1]}, beside)) return false;
+    xx = (beside.x_mm - end.x_mm) / differential, yx = (beside.y_mm - end.y_mm) / differential;
+    if (!onward(surface, place, {at[0], at[1] + differential}, beside)) return false;
+    xy = (beside.x_mm - end.x_mm) / differential, yy = (beside.y_mm - end.y_mm) / differential;
+    return std::abs(xx * yy - xy * yx) > 0;
+  };
+  // The derivatives of the first step serve the next ones as long as these get shorter fast.
+  bool found = false, differentiated = false;
+  double before = INFINITY;
   for (int step = 0; step < most_steps && !found; ++step) {
-    if (!onward(surface, place, at, end, nullptr)) {
+    if (!onward(surface, place, at, end)) {
       // Back towards the unscattered ray, which passes.
       at = {(at[0] + place.after[0]) / 2, (at[1] + place.after[1]) / 2};
+      differentiated = false;
       continue;
     }
-    if (!onward(surface, place, {at[0] + differential, at[1]}, beside, nullptr)) return {};
-    xx = (beside.x_mm - end.x_mm) / differential, yx = (beside.y_mm - end.y_mm) / differential;
-    if (!onward(surface, place, {at[0], at[1] + differential}, beside, nullptr)) return {};
-    xy = (beside.x_mm - end.x_mm) / differential, yy = (beside.y_mm - end.y_mm) / differential;
+    if (!differentiated && !differentiate()) return {};
     const double determinant = xx * yy - xy * yx;
-    if (!(std::abs(determinant) > 0)) return {};
     const double dx = x_mm - end.x_mm, dy = y_mm - end.y_mm;
     std::array<double, 2> move{(yy * dx - xy * dy) / determinant, (xx * dy - yx * dx) / determinant};
     const double length = std::hypot(move[0], move[1]);
     if (!std::isfinite(length)) return {};
+    differentiated = length < slow * before || length < settled;
+    before = length;
     const double scale = std::min(1.0, longest_step / std::max(length, differential));
     at[0] += scale * move[0], at[1] += scale * move[1];
     found = length < settled;
@@ -254,7 +288,8 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
   if (!found) return {};
   std::vector<Intersection> path;
   if (transmittance_) path = place.path;
-  if (!onward(surface, place, at, end, transmittance_ ? &path : nullptr) || !end.passes) return {};
+  if (!onward_with_light(surface, place, at, end, transmittance_ ? &path : nullptr) || !end.passes) return {};
+  if (!differentiate()) return {};
   ScatterLink link;
   link.direction = at;
   const double index = tracer_.surfaces()[surface].index_after;

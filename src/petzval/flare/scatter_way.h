@@ -74,7 +74,13 @@ class ScatterTracer {
   struct Landing;
   bool inward(const Ray& start, std::size_t last, Inward& at) const;
   bool onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
-              Landing& end, std::vector<Intersection>* path) const;
+              Landing& end) const;
+  /// Besides, what the surfaces on the way do not scatter, and the path if losses count.
+  bool onward_with_light(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
+                         Landing& end, std::vector<Intersection>* path) const;
+  template <typename Meet>
+  bool follow_onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
+                     Landing& end, const Meet& meet) const;
   std::optional<LitPlace> lit_place(const SourceBeam& beam, double x_mm, double y_mm,
                                     std::size_t surface) const;
   SourceImage image_of(const std::vector<LitPlace>& behind) const;
