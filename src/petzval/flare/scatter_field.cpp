@@ -78,18 +78,25 @@ ScatterField::Node ScatterField::interpolated(const SurfaceField& field, double 
   return mean;
 }
 
-ScatterShares ScatterField::shares(const LensBsdfs& bsdfs, std::size_t surface) const {
+ScatterShares ScatterField::shares_of(const LensBsdfs& bsdfs, std::size_t surface) const {
   return bsdfs[surface].shares(fields_[surface].cosine_before, fields_[surface].cosine_after);
 }
 
-double ScatterField::at(const LensBsdfs& bsdfs, double x_mm, double y_mm, bool about_image) const {
+std::vector<ScatterShares> ScatterField::shares(const LensBsdfs& bsdfs) const {
+  std::vector<ScatterShares> all;
+  for (std::size_t i = 0; i < fields_.size(); ++i) all.push_back(shares_of(bsdfs, i));
+  return all;
+}
+
+double ScatterField::at(const LensBsdfs& bsdfs, const std::vector<ScatterShares>& shares, double x_mm,
+                        double y_mm, bool about_image) const {
   double sum = 0;
   for (std::size_t i = 0; i < fields_.size(); ++i) {
     if (!fields_[i].lit || !bsdfs[i].scatters()) continue;
     Node node = interpolated(fields_[i], x_mm, y_mm);
     if (about_image)
       for (std::size_t k = 0; k < 2; ++k) node.offset[k] -= fields_[i].offset_at_image[k];
-    sum += node.per_mm2 * bsdfs[i].at(shares(bsdfs, i), std::hypot(node.offset[0], node.offset[1]));
+    sum += node.per_mm2 * bsdfs[i].at(shares[i], std::hypot(node.offset[0], node.offset[1]));
   }
   return sum;
 }
@@ -110,7 +117,7 @@ double ScatterField::core(const LensBsdfs& bsdfs, double radius_mm) const {
     }
     if (!(tau > 0)) continue;
     const double per_mm2 = interpolated(fields_[i], image_.x_mm, image_.y_mm).per_mm2;
-    sum += per_mm2 * bsdfs[i].within(shares(bsdfs, i), tau) / (pi * tau * tau);
+    sum += per_mm2 * bsdfs[i].within(shares_of(bsdfs, i), tau) / (pi * tau * tau);
   }
   return sum;
 }
@@ -118,7 +125,7 @@ double ScatterField::core(const LensBsdfs& bsdfs, double radius_mm) const {
 double ScatterField::share(const LensBsdfs& bsdfs) const {
   double kept = 1;
   for (std::size_t i = 0; i < fields_.size(); ++i)
-    if (bsdfs[i].scatters()) kept *= shares(bsdfs, i).specular();
+    if (bsdfs[i].scatters()) kept *= shares_of(bsdfs, i).specular();
   return imaged_over_lit_ * (1 - kept);
 }
 

@@ -23,9 +23,13 @@ class ScatterField {
                double reach, int across);
 
   const SourceImage& image() const { return image_; }
+  /// Of what each surface meets.
+  std::vector<ScatterShares> shares(const LensBsdfs& bsdfs) const;
   /// Irradiance at a point over that of the source at the first vertex; what lies beyond the grid is as at
-  /// its edge. \param about_image  the source is imaged there, so that β − β₀ is nothing there.
-  double at(const LensBsdfs& bsdfs, double x_mm, double y_mm, bool about_image) const;
+  /// its edge. \param shares  as shares() says. \param about_image  the source is imaged there, so that β −
+  /// β₀ is nothing there.
+  double at(const LensBsdfs& bsdfs, const std::vector<ScatterShares>& shares, double x_mm, double y_mm,
+            bool about_image) const;
   /// The mean over a disc about the image.
   double core(const LensBsdfs& bsdfs, double radius_mm) const;
   /// The share of the image's light that is scattered or kept by dust.
@@ -43,7 +47,7 @@ class ScatterField {
     bool lit = false;
   };
   Node interpolated(const SurfaceField& field, double x_mm, double y_mm) const;
-  ScatterShares shares(const LensBsdfs& bsdfs, std::size_t surface) const;
+  ScatterShares shares_of(const LensBsdfs& bsdfs, std::size_t surface) const;
 
   static constexpr int side = 9;
   double half_width_mm_ = 1, half_height_mm_ = 1;

@@ -19,7 +19,7 @@ struct ScatterLightOptions {
   Surround surround = Surround::dark;
   int cells = 160;  ///< along the longer side of the frame, at most a pixel each, 8 to 2048
   int nodes = 9;    ///< of the frame along each side, whose scatter is computed, 2 to 33
-  int across = 16;  ///< rays along a side of what a source lights of each surface, 4 to 512
+  int across = 10;  ///< rays along a side of what a source lights of each surface, 4 to 512
 
   /// \throws InputError saying what would be right.
   void validate() const;
