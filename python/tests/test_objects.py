@@ -107,7 +107,7 @@ def test_sensors_survive(name):
 
 
 def test_what_a_sensor_does_in_bright_light_survives():
-    sensor = pz.Sensor("third-inch-1280x960", {"columns": 32, "rows": 32, "pitch_um": 40, "blooming": '{"onset": 1}', "reflectance": 0.04,
+    sensor = pz.Sensor("third-inch-1280x960", {"columns": 32, "rows": 32, "pitch_um": 40, "blooming": {"onset": 1}, "reflectance": 0.04,
                                                "microlens_sag_um": 0.5})
     again = pickle.loads(pickle.dumps(sensor))
     values = np.zeros((32, 32, 31), np.float32)
