@@ -77,7 +77,8 @@ void list(const std::string& word, const Shared& shared) {
                     quotable(word)));
   if (shared.json) return print_json({{"rows", rows}});
   fmt::print("{}", text);
-  if (word.empty()) fmt::print("\n{} more are from patents: petzval lens list patent\n", all.size() - usual.size());
+  if (word.empty())
+    fmt::print("\n{} more are from patents: petzval lens list patent\n", all.size() - usual.size());
 }
 
 }  // namespace

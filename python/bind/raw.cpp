@@ -78,7 +78,8 @@ auto expose_function(ExposeOptions (*)(OfExposure...)) {
 constexpr const char* expose_text =
     "Exposes the sensor to light, as a Raw. `exposure`: auto, seconds, or an exposure value (\"ev:12\"). "
     "`without`: noise sources "
-    "to switch off (shot, dark, read, dsnu, prnu, column, row, defects, crosstalk, microlens, linearity, blooming). "
+    "to switch off (shot, dark, read, dsnu, prnu, column, row, defects, crosstalk, microlens, linearity, "
+    "blooming). "
     "`frames` are averaged, exposures of "
     "`bracket_ev` merged. `illuminant`: for white balance; empty: as the light says. `f_number` (for "
     "exposure values) and `exit_pupil_mm` (from the sensor, negative in front of it; for microlenses): the "

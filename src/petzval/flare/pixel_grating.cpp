@@ -38,9 +38,9 @@ void SensorReflection::validate() const {
   if (!(reflectance >= 0 && reflectance <= 1))
     throw InputError(fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", reflectance));
   if (!(microlens_sag_um >= 0 && microlens_sag_um <= 100))
-    throw InputError(fmt::format("`microlens_sag_um` is {:g}; 0 to 100 would be right", microlens_sag_um));
+    throw InputError(fmt::format("microlenses {:g} um deep; 0 to 100 would be right", microlens_sag_um));
   if (microlens_sag_um > 0 && !(pitch_um > 0))
-    throw InputError(fmt::format("microlenses of {:g} um; more than 0 would be right", pitch_um));
+    throw InputError(fmt::format("microlenses {:g} um wide; more than 0 would be right", pitch_um));
 }
 
 SensorReflection reflection_of(const Sensor& sensor) {
