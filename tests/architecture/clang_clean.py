@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compiles with clang, warnings as errors and without making anything: every public header alone, and the sources that
-changed within the last hours before the newest commit, or that are not committed yet.
+changed within the last hours before the newest commit, or that are not committed yet. Sources of one folder are compiled
+several at once, as the build does it; those that complain together again one by one.
 
     clang_clean.py headers|sources PROJECT_FOLDER BUILD_FOLDER CLANG
 """
@@ -14,6 +15,7 @@ import subprocess
 import sys
 
 HOURS = 2
+AT_ONCE = 8
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unknown-warning-option"]
 
 
@@ -43,9 +45,24 @@ def changed_sources(project):
             and not name.startswith("tests/consumer")]
 
 
-def complaint(clang, flags, words):
-    done = subprocess.run([clang, "-std=c++20", "-fsyntax-only", *WARNINGS, *flags, *words], capture_output=True, text=True)
+def complaint(clang, flags, words, text=None):
+    done = subprocess.run([clang, "-std=c++20", "-fsyntax-only", *WARNINGS, *flags, *words], capture_output=True, text=True, input=text)
     return done.stderr if done.returncode else ""
+
+
+def complaints_of_sources(clang, flags, sources):
+    quote = ["-iquote", str(sources[0].parent)]
+    together = "".join(f'#include "{source}"\n' for source in sources)
+    if len(sources) > 1 and not complaint(clang, flags, ["-x", "c++", "-", *quote], together):
+        return []
+    return list(filter(None, (complaint(clang, flags, [str(source), *quote]) for source in sources)))
+
+
+def in_groups(sources):
+    folders = {}
+    for source in sources:
+        folders.setdefault(source.parent, []).append(source)
+    return [of[i : i + AT_ONCE] for of in folders.values() for i in range(0, len(of), AT_ONCE)]
 
 
 def main():
@@ -53,19 +70,21 @@ def main():
     flags = include_flags(build)
     if what == "headers":
         names = (build / "public_headers.txt").read_text().split()
-        tasks = {name: ["-x", "c++", str(project / "src/petzval" / name), "-Wno-pragma-once-outside-header"] for name in names}
+        checks = [(complaint, ["-x", "c++", str(project / "src/petzval" / name), "-Wno-pragma-once-outside-header"]) for name in names]
     else:
         try:
             sources = changed_sources(project)
         except (subprocess.CalledProcessError, FileNotFoundError, IndexError):
             print("no history to tell what changed")
             return 77
-        tasks = {str(path.relative_to(project)): [str(path), "-iquote", str(path.parent)] for path in sources}
+        names = sources
+        checks = [(complaints_of_sources, group) for group in in_groups(sources)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        complaints = list(filter(None, pool.map(lambda words: complaint(clang, flags, words), tasks.values())))
+        found = list(pool.map(lambda check: check[0](clang, flags, check[1]), checks))
+    complaints = [text for each in found for text in ([each] if isinstance(each, str) else each) if text]
     print("\n".join(complaints))
-    print(f"{len(tasks)} files, {len(complaints)} with complaints")
-    return 1 if complaints or (what == "headers" and not tasks) else 0
+    print(f"{len(names)} files, {len(complaints)} with complaints")
+    return 1 if complaints or (what == "headers" and not names) else 0
 
 
 sys.exit(main())
