@@ -205,12 +205,13 @@ void expect_geometric_mtf(const Lens& lens, double distance_m, double height_mm,
 }
 
 /// With diffraction it is the MTF of waves, up to where that ends and beyond.
-void expect_wave_mtf(double f_number, double height_mm, MtfDirection direction) {
+void expect_wave_mtf(double f_number, double height_mm, MtfDirection direction, double sensor_shift_mm = 0) {
   constexpr double nm = 550, distance_m = 1.5;
   MountedLens camera(read_lens("dgauss-50mm").lens);
   camera.set_f_number(f_number);
   camera.set_focus_wavelength_nm(nm);
   camera.focus_at_m(distance_m);
+  camera.move_sensor_mm(sensor_shift_mm);
   FieldTableRequest request;
   request.field_kind = Fields::Kind::real_image_height_mm;
   request.fields = {height_mm}, request.wavelengths_nm = {nm};
@@ -218,7 +219,7 @@ void expect_wave_mtf(double f_number, double height_mm, MtfDirection direction) 
   const double cut_off_cpmm = 1 / (nm * mm_per_nm * first_order(camera.lens()).working_f_number);
   const double pitch_mm = 0.6 / cut_off_cpmm;
   const int up = static_cast<int>(std::lround(height_mm / pitch_mm));
-  EdgePicture edge{{48, 2 * up + 48, pitch_mm * um_per_mm}, {0, 0, 48, 48}, {}, 256};
+  EdgePicture edge{{48, 2 * up + 48, pitch_mm * um_per_mm}, {0, 0, 48, 48}, {}, 128};
   std::vector<double> of_cut_off;
   MtfOptions options;
   for (int i = 1; i <= 11; ++i) of_cut_off.push_back(0.1 * i);
@@ -236,9 +237,9 @@ void expect_wave_mtf(double f_number, double height_mm, MtfDirection direction) 
   for (std::size_t i = 0; i < sfr.size(); ++i) {
     const double f = frequencies_cpp[i];
     const double pixel =
-        Photosite{}.transform(f * std::cos(radians(tilt_deg)), f * std::sin(radians(tilt_deg)));
+        std::abs(Photosite{}.transform(f * std::cos(radians(tilt_deg)), f * std::sin(radians(tilt_deg))));
     const double lens_mtf = direction == MtfDirection::tangential ? table[i].tangential : table[i].sagittal;
-    EXPECT_NEAR(sfr[i], lens_mtf * std::abs(pixel), 0.02)
+    EXPECT_NEAR(sfr[i], lens_mtf * pixel, 0.02)
         << "f/" << f_number << ", " << height_mm << " mm, " << of_cut_off[i] << " of the cut-off";
   }
 }
@@ -249,7 +250,8 @@ TEST(RenderedEdge, HasTheMtfOfWavesAtF16) {
 }
 
 TEST(RenderedEdge, HasTheMtfOfWavesAtF28) {
-  expect_wave_mtf(2.8, 0, MtfDirection::sagittal);
+  // Spherical aberration is least blurred in front of the paraxial focus, where it stands without a shift.
+  expect_wave_mtf(2.8, 0, MtfDirection::sagittal, -0.07);
 }
 
 TEST(RenderedEdge, HasTheGeometricMtfOfTheLens) {

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t paths_between_questions = 4;
 constexpr std::uint32_t wave_stream = 0x7761766eu;
 /// Light straight from a lamp is spread over so many places: it is bright, and few paths may find it.
-constexpr int places_of_lamp = 8;
+constexpr int places_of_lamp = 32;
 /// Multiples of these fill a square evenly (Roberts 2018: powers of the inverse of the plastic number).
 constexpr std::array<double, 2> even_places{0.7548776662466927, 0.5698402909980532};
 
@@ -78,9 +78,11 @@ class TileRenderer {
     samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
-    // A stream of their own: the paths are those without waves.
+    // The same in all pixels: even light stays even. And the paths are those without waves.
     if (waves_)
-      numbers_.push_back(SobolSample(hashed(seed, wave_stream), static_cast<std::uint32_t>(index)).next4());
+      numbers_.push_back(
+          SobolSample(hashed(half_ ? ~stream_ : stream_, wave_stream), static_cast<std::uint32_t>(index))
+              .next4());
     if (const auto& motion = task_.options.motion)
       times_.push_back(motion->opens(pixel.row + 0.5, task_.sensor.rows) +
                        motion->exposure() * samples_.back().next2()[0]);

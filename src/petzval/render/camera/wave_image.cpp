@@ -17,9 +17,9 @@ namespace petzval::render {
 
 namespace {
 
-/// Film beyond the frame whose points are followed: the square about an image point that holds 98 % of Airy's
-/// light.
-constexpr double margin_lambda_n = 12;
+/// Film beyond the frame whose points are followed. Light of a disk of q = 9, the widest that waves have half
+/// of, is moved by two radii at most, 2 · √2 · 9 λN.
+constexpr double margin_lambda_n = 25;
 /// RMS spot of a round pupil with one wave of defocus [λN].
 constexpr double spread_per_wave = 2 * std::numbers::sqrt2;
 /// Between two nodes of defocus a mixture of their PSFs stands for the one there: at the peak it is too low
