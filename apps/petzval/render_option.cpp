@@ -29,7 +29,7 @@ void add_camera_options(RenderChoice& choice, CLI::App& command) {
   choice.camera.add_blades(command);
   choice.camera.add_apertures(command);
   command.add_flag("--diffraction", request.diffraction,
-                   "Bend rays at the stop at random as its edge does: spread without rings, more noise");
+                   "Let light of what is about in focus land as waves do, by the lens's diffraction PSFs");
   command.add_flag("--pinhole", request.pinhole, "The scene's perspective through a pinhole, for comparison");
   choice.camera.add_sensor(
       command,

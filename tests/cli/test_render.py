@@ -126,14 +126,15 @@ class Render(ProgramTest):
         self.assertEqual([(row["line"], row["column"]) for row in rows], [(2, 1), (3, 1)])
         self.assert_refused("render", "s.pbrt", "-o", "x.npy", words=["s.pbrt:2:1: "])
 
-    def test_bends_rays_at_the_stop(self):
+    def test_diffracts(self):
         def picture(*options):
             self.assert_succeeds("render", "s.pbrt", *LENS, "--f-number", "64", "--spp", "8", "--quiet", *options, "-o", "p.npy")
             return (self.folder / "p.npy").read_bytes()
-        bent = picture("--diffraction", "--threads", "1")
-        self.assertEqual(bent, picture("--diffraction", "--threads", "2"))
-        self.assertNotEqual(bent, picture())
-        self.assertNotEqual(bent, picture("--diffraction", "--blades", "5"))
+        waves = picture("--diffraction", "--threads", "1")
+        self.assertEqual(waves, picture("--diffraction", "--threads", "2"))
+        self.assertNotEqual(waves, picture())
+        self.assertNotEqual(waves, picture("--diffraction", "--blades", "5"))
+        self.assert_refused("render", "s.pbrt", "--pinhole", "--diffraction", "-o", "p.npy", words=["diffraction"])
 
     def test_reads_gltf(self):
         subprocess.run([sys.executable, EXAMPLES / "gltf_vases.py", self.folder / "vases.gltf"], check=True)

@@ -5,6 +5,7 @@
 #include <petzval/analysis/mtf.h>
 #include <petzval/base/units.h>
 #include <petzval/camera/mounted_lens.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/measure/sfr/measure_edge.h>
 #include <petzval/render/camera/lens_camera.h>
@@ -201,6 +202,59 @@ void expect_geometric_mtf(const Lens& lens, double distance_m, double height_mm,
     EXPECT_NEAR(sfr[i], lens_mtf * std::abs(Photosite{}.transform(along, across)), 0.01)
         << height_mm << " mm, " << f * 100 << " cycles/mm";
   }
+}
+
+/// With diffraction it is the MTF of waves, up to where that ends and beyond.
+void expect_wave_mtf(double f_number, double height_mm, MtfDirection direction, double sensor_shift_mm = 0) {
+  constexpr double nm = 550, distance_m = 1.5;
+  MountedLens camera(read_lens("dgauss-50mm").lens);
+  camera.set_f_number(f_number);
+  camera.set_focus_wavelength_nm(nm);
+  camera.focus_at_m(distance_m);
+  camera.move_sensor_mm(sensor_shift_mm);
+  FieldTableRequest request;
+  request.field_kind = Fields::Kind::real_image_height_mm;
+  request.fields = {height_mm}, request.wavelengths_nm = {nm};
+  const double object_mm = std::abs(distortion_table(camera.lens(), request)[0].object_field);
+  const double cut_off_cpmm = 1 / (nm * mm_per_nm * first_order(camera.lens()).working_f_number);
+  const double pitch_mm = 0.6 / cut_off_cpmm;
+  const int up = static_cast<int>(std::lround(height_mm / pitch_mm));
+  EdgePicture edge{{48, 2 * up + 48, pitch_mm * um_per_mm}, {0, 0, 48, 48}, {}, 64};
+  std::vector<double> of_cut_off;
+  MtfOptions options;
+  for (int i = 1; i <= 11; ++i) of_cut_off.push_back(0.1 * i);
+  for (const double f : of_cut_off) options.frequencies_cpmm.push_back(f * cut_off_cpmm);
+  const std::vector<MtfRow> table = mtf_table(camera.lens(), request, options);
+
+  const double normal_deg = direction == MtfDirection::tangential ? 90 + tilt_deg : tilt_deg;
+  const auto world = world_of(glowing_half_plane(0, object_mm * 1e-3, distance_m, normal_deg), {nm});
+  LensCameraOptions waves;
+  waves.diffraction = true;
+  const LensCamera lens(camera.lens(), edge.film, world->groups, waves);
+  std::vector<double> frequencies_cpp;
+  for (const double f : of_cut_off) frequencies_cpp.push_back(0.6 * f);
+  const std::vector<double> sfr = measured(*world, lens, edge, frequencies_cpp)[0].sfr;
+  for (std::size_t i = 0; i < sfr.size(); ++i) {
+    const double f = frequencies_cpp[i];
+    const double pixel =
+        std::abs(Photosite{}.transform(f * std::cos(radians(tilt_deg)), f * std::sin(radians(tilt_deg))));
+    const double lens_mtf = direction == MtfDirection::tangential ? table[i].tangential : table[i].sagittal;
+    EXPECT_NEAR(sfr[i], lens_mtf * pixel, 0.02)
+        << "f/" << f_number << ", " << height_mm << " mm, " << of_cut_off[i] << " of the cut-off";
+  }
+}
+
+TEST(RenderedEdge, HasTheMtfOfWavesAtF16) {
+  expect_wave_mtf(16, 0, MtfDirection::sagittal);
+}
+
+TEST(RenderedEdge, HasTheMtfOfWavesOffTheAxis) {
+  expect_wave_mtf(16, 5, MtfDirection::tangential);
+}
+
+TEST(RenderedEdge, HasTheMtfOfWavesAtF28) {
+  // Spherical aberration is least blurred in front of the paraxial focus, where it stands without a shift.
+  expect_wave_mtf(2.8, 0, MtfDirection::sagittal, -0.07);
 }
 
 TEST(RenderedEdge, HasTheGeometricMtfOfTheLens) {

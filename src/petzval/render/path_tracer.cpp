@@ -122,15 +122,18 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
   Path path;
   path.origin = origin, path.direction = direction, path.hero = hero;
   int interfaces = 0;
+  bool mirrored = true;  // so far there were only mirrors
   for (;;) {
     const std::optional<Hit> hit =
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
     if (!hit) {
       add_sky(path, group);
+      if (mirrored) path.light.distance = infinity;
       break;
     }
     const Geometry& geometry = world_.geometries[static_cast<std::size_t>(hit->geometry)];
     SurfacePoint point = surface_point(geometry, *hit, path.origin, path.direction, world_.place_of(*hit));
+    if (mirrored) path.light.distance += length(point.position - path.origin);
     add_emitted(path, *hit, point, group);
     const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
     const Material& material =
@@ -146,6 +149,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     const Bsdf bsdf = material.bsdf(texture_point, group, hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
+    mirrored = mirrored && bsdf.is_mirror();
     // A rough surface that disperses sends each wavelength its own way from here on.
     if (bsdf.disperses() && !bsdf.is_mirror()) path.alone = true;
     if (path.depth++ >= options_.max_depth) break;

@@ -24,6 +24,8 @@ struct PathLight {
   /// Irradiance of the first surface straight from the lights [W·m⁻²·nm⁻¹].
   Lanes arriving = Lanes::all(0);
   float alone = 0;  ///< of the hero wavelength, over paths through dispersing glass, which only it takes
+  /// To the first surface that is no mirror, along the path; infinite where none is met.
+  double distance = 0;
 };
 
 /// The first surface along a ray, as pictures of depth, normals and albedo need it.

@@ -92,6 +92,36 @@ Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const
   return result;
 }
 
+Rendering cropped(Rendering picture, const PixelWindow& window, const PixelWindow& part) {
+  if (part == window) return picture;
+  const auto crop = [&](const auto& values, std::size_t each) {
+    std::decay_t<decltype(values)> result;
+    const std::size_t planes = values.size() / (window.size() * each);
+    for (std::size_t plane = 0; plane < planes; ++plane)
+      for (int row = part.top; row < part.bottom; ++row) {
+        const auto begin =
+            values.begin() +
+            static_cast<std::ptrdiff_t>((plane * window.size() + window.index(part.left, row)) * each);
+        result.insert(result.end(), begin, begin + static_cast<std::ptrdiff_t>(each) * part.columns());
+      }
+    return result;
+  };
+  const SpectralImage& all = picture.irradiance;
+  SpectralImage image(part.columns(), part.rows(), all.wavelengths_nm(), all.pitch_um(),
+                      all.pixel_aperture());
+  image.photosite = all.photosite, image.illuminant = all.illuminant;
+  image.lamps = crop(all.lamps, 1);
+  for (int band = 0; band < all.bands(); ++band) {
+    const std::span<const float> plane = all.band(band);
+    image.store_band(band, crop(std::vector<float>(plane.begin(), plane.end()), 1));
+  }
+  picture.irradiance = std::move(image);
+  if (std::optional<FirstSurfaces>& first = picture.first_surfaces)
+    first = FirstSurfaces{crop(first->depth, 1), crop(first->normal, 3), crop(first->albedo, 1),
+                          crop(first->share, 1)};
+  return picture;
+}
+
 void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool half, Film& film) {
   // Groups of wavelengths have no band in common.
   parallel_for(groups, [&](std::size_t group) {

@@ -23,4 +23,7 @@ std::optional<Rendering> picture_of_stopped_pass(const std::vector<PixelWindow>&
                                                  const WavelengthGroups& groups, const SensorGeometry& sensor,
                                                  const Photosite& photosite, const Passes& passes);
 
+/// Some of its pixels. \param window  what it shows. \param part  what is wanted.
+Rendering cropped(Rendering picture, const PixelWindow& window, const PixelWindow& part);
+
 }  // namespace petzval::render

@@ -40,6 +40,13 @@ PixelWindow checked_window(const SensorGeometry& sensor, const RenderOptions& op
   return window;
 }
 
+/// A piece of a picture, and where it ends with the picture a margin beyond it, whose light reaches in.
+PixelWindow with_margin(const PixelWindow& piece, const PixelWindow& picture, int margin) {
+  const auto beyond = [&](int at, int end, int by) { return at == end ? at + by : at; };
+  return {beyond(piece.left, picture.left, -margin), beyond(piece.top, picture.top, -margin),
+          beyond(piece.right, picture.right, margin), beyond(piece.bottom, picture.bottom, margin)};
+}
+
 /// \returns passes [first, last). \throws InputError.
 std::array<int, 2> passes_of_piece(const FilmPiece& piece, const PixelWindow& whole, const Passes& passes,
                                    const WavelengthGroups& groups, const RenderOptions& options) {
@@ -126,14 +133,19 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
                          const SensorGeometry& sensor, const RenderOptions& options,
                          const ProgressCallback& progress) {
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
-  const PixelWindow window = checked_window(sensor, options);
-  const FilmSampling sampling(window, options.photosite);
+  const PixelWindow wanted = checked_window(sensor, options);
   const Passes passes(world.groups, options);
-  const auto [first_pass, end_pass] = passes_of_piece(options.piece, window, passes, world.groups, options);
+  const auto [first_pass, end_pass] = passes_of_piece(options.piece, wanted, passes, world.groups, options);
   const int wanted_passes = end_pass - first_pass;
-  Film film(options.piece.region.value_or(window), static_cast<int>(world.groups.wavelengths_nm().size()),
+  const PixelWindow shown = options.piece.region.value_or(wanted);
+  const int margin = camera.waves() ? camera.waves()->margin_pixels() : 0;
+  const PixelWindow window = with_margin(wanted, wanted, margin);
+  Film film(with_margin(shown, wanted, margin), static_cast<int>(world.groups.wavelengths_nm().size()),
             world.groups.count(), options.first_surfaces, options.noise > 0);
   film.whole = window, film.first_pass = first_pass;
+  const FilmSampling gathering(window, options.photosite);
+  const FilmSampling everywhere = gathering.without_gaps();
+  const bool gaps = camera.waves() && gathering.site_share() < 1;
   const bool keeps = !options.checkpoint.empty();
   if (keeps && read_checkpoint(options.checkpoint, film, options.fingerprint) &&
       film.end_pass() > passes.full())
@@ -141,7 +153,11 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
                      fmt::format("has {} samples a pixel; as many `samples_per_pixel` or more would be right",
                                  film.end_pass() * samples_a_pass(world.groups)));
 
-  const TileTask task{world, camera, world_from_camera, sensor, sampling, options};
+  const TileTask task{world,     camera, world_from_camera, sensor, gaps ? everywhere : gathering,
+                      gathering, options};
+  const auto picture_of = [&](const Film& sums) {
+    return cropped(picture_so_far(sums, world.groups, sensor, options.photosite, passes), sums.window, shown);
+  };
   const std::vector<PixelWindow> tiles = tiles_of(film.window);
   const int resumed_at = film.passes;
   Outlook ahead = outlook(film, wanted_passes, options.noise, {});
@@ -171,12 +187,11 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       const ListenerScope unhurried(nullptr);
       const bool kept = full && full->passes > 0;
       if (kept) save();
-      std::optional<Rendering> picture =
-          !options.so_far ? std::nullopt
-          : kept          ? picture_so_far(*full, world.groups, sensor, options.photosite, passes)
-                 : picture_of_stopped_pass(tiles, results, film, world.groups, sensor, options.photosite,
-                                           passes);
-      if (picture) options.so_far(*std::move(picture));
+      std::optional<Rendering> picture = !options.so_far ? std::nullopt
+                                         : kept          ? picture_of(*full)
+                                                : picture_of_stopped_pass(tiles, results, film, world.groups,
+                                                                          sensor, options.photosite, passes);
+      if (picture) options.so_far(cropped(*std::move(picture), film.window, shown));
       throw;
     }
     if (keeps && film.end_pass() <= passes.full()) full = film;
@@ -187,11 +202,11 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       saved = std::chrono::steady_clock::now();
     }
     if (options.preview && !ahead.done && (!previewed || due(*previewed, options.preview_seconds))) {
-      options.preview(picture_so_far(film, world.groups, sensor, options.photosite, passes));
+      options.preview(picture_of(film));
       previewed = std::chrono::steady_clock::now();
     }
   }
-  Rendering result = picture_so_far(film, world.groups, sensor, options.photosite, passes);
+  Rendering result = picture_of(film);
   result.complete = ahead.done;
   result.noise = ahead.noise;
   return result;

@@ -2,12 +2,24 @@
 #include <petzval/base/stop.h>
 #include <petzval/render/tile_renderer.h>
 
+#include <cmath>
+
 namespace petzval::render {
 
 namespace {
 
 /// Paths that are followed before anybody is asked whether to go on.
 constexpr std::size_t paths_between_questions = 4;
+constexpr std::uint32_t wave_stream = 0x7761766eu;
+/// Light straight from a lamp is spread over so many places: it is bright, and few paths may find it.
+constexpr int places_of_lamp = 32;
+/// Multiples of these fill a square evenly (Roberts 2018: powers of the inverse of the plastic number).
+constexpr std::array<double, 2> even_places{0.7548776662466927, 0.5698402909980532};
+
+double turned(double number, double by) {
+  const double sum = number + by;
+  return sum - std::floor(sum);
+}
 
 /// Follows the samples of one tile.
 class TileRenderer {
@@ -15,6 +27,7 @@ class TileRenderer {
   TileRenderer(const TileTask& task, const PixelWindow& tile, bool half, Film& film)
       : task_(task),
         tracer_(task.world, task.options.path),
+        waves_(task.camera.waves()),
         tile_(tile),
         half_(half),
         whole_(film),
@@ -42,7 +55,7 @@ class TileRenderer {
     stream_ = hashed(static_cast<std::uint32_t>(task_.options.seed),
                      static_cast<std::uint32_t>(task_.options.seed >> 32) ^
                          static_cast<std::uint32_t>(group) * 0x9e3779b9u);
-    samples_.clear(), places_.clear(), times_.clear();
+    samples_.clear(), places_.clear(), times_.clear(), numbers_.clear();
     each_ = range.last - range.first;
     const std::size_t count = tile_.size() * static_cast<std::size_t>(each_);
     for (std::size_t i = 0; i < count; ++i)
@@ -56,13 +69,20 @@ class TileRenderer {
   }
 
   void start_sample(int index, Pixel pixel) {
-    const auto number = static_cast<std::uint32_t>(pixel.row * task_.sensor.columns + pixel.column);
+    const bool inside = pixel.row >= 0 && pixel.column >= 0 && pixel.column < task_.sensor.columns;
+    const auto number =
+        inside ? static_cast<std::uint32_t>(pixel.row * task_.sensor.columns + pixel.column)
+               : hashed(static_cast<std::uint32_t>(pixel.row), static_cast<std::uint32_t>(pixel.column));
     // The halves of a picture whose noise is wanted are independent of each other.
     const std::uint32_t seed = hashed(number, half_ ? ~stream_ : stream_);
     samples_.emplace_back(seed, static_cast<std::uint32_t>(index));
     const auto [x, y, u, v] = samples_.back().next4();
     places_.push_back(task_.sampling.place(pixel, x, y, u, v));
-    if (task_.camera.bends()) places_.back().bend = samples_.back().next2();
+    // The same in all pixels: even light stays even. And the paths are those without waves.
+    if (waves_)
+      numbers_.push_back(
+          SobolSample(hashed(half_ ? ~stream_ : stream_, wave_stream), static_cast<std::uint32_t>(index))
+              .next4());
     if (const auto& motion = task_.options.motion)
       times_.push_back(motion->opens(pixel.row + 0.5, task_.sensor.rows) +
                        motion->exposure() * samples_.back().next2()[0]);
@@ -86,29 +106,51 @@ class TileRenderer {
     const PathLight light =
         tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
                       (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
-    add_light(i, group, light);
+    const SeenPoint seen{ray.origin, ray.direction, part.from + light.distance / length(along)};
+    add_light(i, group, light, seen);
     if (!light.arriving.is_black())
       for (int lane = 0; lane < lanes_; ++lane)
         result_.arriving[band(group, lane)] += static_cast<double>(light.arriving[lane]);
     if (first.met) add_first(i, group, first, place);
   }
 
-  void add_light(std::size_t i, int group, const PathLight& light) {
+  void add_light(std::size_t i, int group, const PathLight& light, const SeenPoint& seen) {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
     const Pixel own = pixel_of(i);
     if (!light.straight.is_black()) add_lamp(own, light.straight, ray);
+    const int places = light.straight.is_black() ? 1 : places_of_lamp;
+    const bool own_gathers = &task_.gathering == &task_.sampling;
     for (int lane = 0; lane < lanes_; ++lane) {
       double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
       if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
       if (value == 0) continue;
+      if (waves_) value = add_waves(i, group, lane, value, seen, places);
+      if (value == 0) continue;
       std::optional<Pixel> pixel = own;
       if (ray.spread && lane != hero)
-        pixel = task_.sampling.pixel_at(places_[i],
-                                        static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
-                                        static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
+        pixel = task_.gathering.pixel_at(places_[i],
+                                         static_cast<double>(ray.column[static_cast<std::size_t>(lane)]),
+                                         static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
+      else if (!own_gathers)
+        pixel = task_.gathering.pixel_at(places_[i], places_[i].column, places_[i].row);
       if (pixel) add(*pixel, group, lane, value);
     }
+  }
+
+  /// The share of waves, at places that wavelengths do not have in common. \returns what is left to rays.
+  double add_waves(std::size_t i, int group, int lane, double value, const SeenPoint& seen, int places) {
+    const auto& [u, v, lot, turn] = numbers_[i];
+    value /= task_.gathering.site_share();
+    const WaveImage::Spread spread =
+        waves_->spread_of(static_cast<int>(band(group, lane)), seen, {lot, turn});
+    if (spread.share == 0) return value;
+    for (int k = lane * places; k < (lane + 1) * places; ++k) {
+      const auto [column, row] = spread.place(turned(u, k * even_places[0]), turned(v, k * even_places[1]));
+      if (const auto pixel = task_.gathering.pixel_at(places_[i], column, row))
+        add(*pixel, group, lane, value * spread.share / places);
+    }
+    return value * (1 - spread.share);
   }
 
   /// In the pixel where the hero lands: metering asks for no more.
@@ -153,6 +195,7 @@ class TileRenderer {
 
   const TileTask& task_;
   PathTracer tracer_;
+  const WaveImage* waves_;
   PixelWindow tile_;
   bool half_;
   int each_ = 0;              ///< samples of a pixel in a batch
@@ -163,8 +206,9 @@ class TileRenderer {
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;
-  std::vector<double> times_;  ///< of the samples, if the camera moves
-  Transform moved_;            ///< where it then is
+  std::vector<std::array<double, 4>> numbers_;  ///< that choose where waves land, if any
+  std::vector<double> times_;                   ///< of the samples, if the camera moves
+  Transform moved_;                             ///< where it then is
   std::vector<CameraRay> rays_;
 };
 

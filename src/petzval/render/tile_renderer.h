@@ -17,7 +17,8 @@ struct TileTask {
   const FilmCamera& camera;
   const Transform& world_from_camera;
   const SensorGeometry& sensor;
-  const FilmSampling& sampling;
+  const FilmSampling& sampling;   ///< where samples begin
+  const FilmSampling& gathering;  ///< and which pixels their light goes to: the same without waves
   const RenderOptions& options;
 };
 

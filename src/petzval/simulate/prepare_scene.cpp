@@ -77,6 +77,7 @@ void require_no_lens_settings(const RenderRequest& request) {
                           : camera.defocus_mm != 0           ? "defocus_mm"
                           : camera.move_lens_mm != 0         ? "move_lens_mm"
                           : camera.blades                    ? "blades"
+                          : request.diffraction              ? "diffraction"
                           : camera.losses.any()              ? "losses"
                           : !request.autofocus.zones.empty() ? "zones"
                                                              : nullptr;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/units.h>
 #include <petzval/base/version.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/render/camera/wave_image.h>
 #include <petzval/render/film/checkpoint.h>
 #include <petzval/render/lamps.h>
 #include <petzval/sensor/lens_facts.h>
@@ -112,10 +114,13 @@ FlareLayers scene_flare(const PreparedScene& scene, const FlareOptions& options,
   const SensorReflection reflection =
       request.camera.sensor ? reflection_of(*request.camera.sensor) : SensorReflection();
   if (options.scatter) scattering_lens(*scene.lens, options.surfaces_scatter);
-  return flare_layers({*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflection}, scene.film,
-                      world.groups.wavelengths_nm(),
-                      options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{},
-                      visible, context);
+  const std::vector<double>& nm = world.groups.wavelengths_nm();
+  const double psf_mm = request.diffraction ? render::WaveImage::reach_lambda_n * nm.back() * mm_per_nm *
+                                                  first_order(*scene.lens).working_f_number
+                                            : 0;
+  return flare_layers(
+      {*scene.lens, request.camera.losses, Tracer::Clip::apertures, reflection, psf_mm}, scene.film, nm,
+      options.seeks() ? lights_seen(world, place, options.search.most) : SourcesFound{}, visible, context);
 }
 
 void add_scene_flare(const PreparedScene& scene, const FlareOptions& options, FlareLayers& layers,

@@ -74,7 +74,7 @@ struct RenderRequest {
 
   Sampling sampling = Sampling::exit_pupil;
   Origin camera_origin = Origin::film;
-  bool diffraction = false;           ///< bend rays at the stop at random as its edge does
+  bool diffraction = false;  ///< light of what is about in focus lands as waves do (render::WaveImage)
   std::optional<int> max_depth = {};  ///< times that light is scattered; absent: the scene's, or 5
   /// Surfaces outside of these planes are not seen [scene units from the camera's place]; absent: the
   /// scene's.

@@ -2,6 +2,7 @@
 // From places on the film to rays in the scene.
 #pragma once
 
+#include <petzval/render/camera/wave_image.h>
 #include <petzval/render/film/film_sampling.h>
 #include <petzval/render/spectra/lanes.h>
 #include <petzval/render/vector3.h>
@@ -35,8 +36,8 @@ class FilmCamera {
                      std::span<CameraRay> rays) const = 0;
   /// Whether wavelengths part on their way, so that it matters which one leads.
   virtual bool disperses() const { return false; }
-  /// Whether it uses FilmSample::bend.
-  virtual bool bends() const { return false; }
+  /// Where light lands by wave optics, where that is wanted; null: everywhere as rays have it.
+  virtual const WaveImage* waves() const { return nullptr; }
 };
 
 }  // namespace petzval::render

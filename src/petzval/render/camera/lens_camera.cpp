@@ -58,9 +58,12 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     for (KernelSurface<double>& surface : to_scene_.back().surfaces) surface.counts_path = false;
     if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
-  if (options.diffraction)
-    for (std::size_t i = 0; i < nm.size(); ++i)
-      diffraction_.emplace_back(tracers_[disperses_ ? i : 0].with_blades(blades), nm[i]);
+  if (options.diffraction) {
+    const double origin_z_mm = options.origin_at_front ? 0 : tracers_.front().image_z_mm();
+    waves_ = std::make_shared<const WaveImage>(
+        lens, film, nm, WaveImage::Options{options.scene_units_per_mm, origin_z_mm, options.losses});
+    options_.margin_pixels += waves_->margin_pixels();
+  }
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
     ExitPupilRegions regions = find_regions(lens);
     if (options.losses.any()) {
@@ -68,11 +71,11 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
       transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
     }
     if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_ = std::move(regions);
-    if (regions_ && !options.diffraction && !options.lamps.empty())
+    if (regions_ && !options.lamps.empty())
       guide_ =
           LampGuide(options.lamps, spectrum_ends(),
                     {options.scene_units_per_mm, options.origin_at_front ? 0 : tracers_.front().image_z_mm()},
-                    film, options.margin_pixels * film.pitch_um * mm_per_um, *regions_);
+                    film, options_.margin_pixels * film.pitch_um * mm_per_um, *regions_);
   }
 
   const Surface& last = lens.surfaces.back();
@@ -179,10 +182,10 @@ void LensCamera::trace(int group, const FilmSampling& sampling, std::span<const 
                        std::span<CameraRay> rays) const {
   const int lanes = groups_.lanes(group);
   Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}, {}, {}, {}, {}};
-  for (led.hero = 0; led.hero < (apart() ? lanes : 1); ++led.hero) {
+  for (led.hero = 0; led.hero < (disperses_ ? lanes : 1); ++led.hero) {
     led.which.clear();
     for (std::size_t i = 0; i < samples.size(); ++i)
-      if (!apart() || samples[i].hero == led.hero) led.which.push_back(i);
+      if (!disperses_ || samples[i].hero == led.hero) led.which.push_back(i);
     if (!led.which.empty()) trace_led(led);
   }
 }
@@ -217,10 +220,7 @@ void LensCamera::trace_to_scene(Led& led) const {
   const RayColumns<double> rays{batch.x_mm.data(),   batch.y_mm.data(), batch.z_mm.data(),
                                 batch.l.data(),      batch.m.data(),    batch.n.data(),
                                 batch.opl_mm.data(), led.passes.data(), batch.size()};
-  if (diffraction_.empty()) return trace_columns(to_scene_[band(led.group, led.hero)], rays);
-  std::vector<std::array<double, 2>> bends;
-  for (const std::size_t which : led.which) bends.push_back(led.samples[which].bend);
-  diffraction_[static_cast<std::size_t>(groups_.band(led.group, led.hero))].trace(rays, bends);
+  trace_columns(to_scene_[band(led.group, led.hero)], rays);
 }
 
 void LensCamera::trace_led(Led& led) const {
@@ -237,10 +237,9 @@ void LensCamera::trace_led(Led& led) const {
     ray.origin = unit * Vector3{batch.x_mm[k], batch.y_mm[k], origin_z - batch.z_mm[k]};
     ray.direction = {batch.l[k], batch.m[k], -batch.n[k]};
     ray.weight_alone = static_cast<float>(led.lanes / led.density[k]);
-    ray.weight = Lanes::all(options_.diffraction ? 0 : 1 / led.density[k]);
-    if (options_.diffraction) ray.weight[led.hero] = ray.weight_alone;
+    ray.weight = Lanes::all(1 / led.density[k]);
   }
-  if (disperses_ && !options_.diffraction) share_among_wavelengths(led);
+  if (disperses_) share_among_wavelengths(led);
   if (transmittance_) dim(led);
 }
 
@@ -250,7 +249,7 @@ void LensCamera::dim(const Led& led) const {
     CameraRay& ray = led.rays[led.which[k]];
     if (!ray.passes) continue;
     for (int lane = 0; lane < led.lanes; ++lane) {
-      if (apart() && lane != led.hero) continue;
+      if (disperses_ && lane != led.hero) continue;
       const double through = transmittance_->at(static_cast<std::size_t>(groups_.band(led.group, lane)),
                                                 led.x_mm[k], led.y_mm[k], led.alpha[k], led.beta[k]);
       ray.weight[lane] *= static_cast<float>(through);

@@ -4,7 +4,7 @@
 
 #include <petzval/render/camera/film_camera.h>
 #include <petzval/render/camera/lamp_guide.h>
-#include <petzval/render/camera/stop_diffraction.h>
+#include <petzval/render/camera/wave_image.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 #include <petzval/sensor/sensor.h>
 #include <petzval/trace/exit_pupil_region.h>
@@ -31,10 +31,10 @@ struct LensCameraOptions {
   double margin_pixels = 0;
   bool origin_at_front =
       false;  ///< the camera's place is the first vertex, as in 2006; else the film's centre
-  /// Rays are bent at the stop (StopDiffraction), each wavelength by itself: every path serves one alone.
+  /// Light of what is about in focus lands as waves do (WaveImage).
   bool diffraction = false;
-  /// What is small and bright in the scene: directions are drawn towards it, too (LampGuide). Not with
-  /// diffraction, nor over the disk of the last surface.
+  /// What is small and bright in the scene: directions are drawn towards it, too (LampGuide). Not over the
+  /// disk of the last surface.
   std::vector<Lamp> lamps;
 };
 
@@ -53,7 +53,7 @@ class LensCamera final : public FilmCamera {
   void trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
   bool disperses() const override { return disperses_; }
-  bool bends() const override { return options_.diffraction; }
+  const WaveImage* waves() const override { return waves_.get(); }
 
  private:
   struct Start {
@@ -69,7 +69,6 @@ class LensCamera final : public FilmCamera {
   void launch(Led& led) const;
   void trace_led(Led& led) const;
   void trace_to_scene(Led& led) const;
-  bool apart() const { return disperses_ || options_.diffraction; }
   void share_among_wavelengths(const Led& led) const;
   float through(const Led& led, int lane, const RadianceRays& landed, std::size_t k) const;
   void dim(const Led& led) const;
@@ -81,7 +80,7 @@ class LensCamera final : public FilmCamera {
   std::vector<Tracer> tracers_;               ///< by band; one when nothing disperses; with a round stop
   std::vector<KernelPath<double>> to_scene_;  ///< of each tracer
   std::vector<RadianceTracer> to_film_;       ///< of each tracer, if anything disperses
-  std::vector<StopDiffraction> diffraction_;  ///< by band, if it is wanted
+  std::shared_ptr<const WaveImage> waves_;    ///< if diffraction is wanted
   bool disperses_ = false;
   LampGuide guide_;
   std::optional<ExitPupilRegions> regions_;  ///< that directions are drawn from

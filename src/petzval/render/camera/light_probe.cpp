@@ -21,7 +21,6 @@ bool passes(const FilmCamera& camera, const SensorGeometry& film, int group, dou
     samples[i].column = film.columns * (0.5 + share * (x - 0.5));
     samples[i].row = film.rows * (0.5 + share * (y - 0.5));
     samples[i].u = u, samples[i].v = v;
-    samples[i].bend = numbers.next2();
   }
   std::vector<CameraRay> rays(samples.size());
   camera.trace(group, sampling, samples, rays);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/render/disk_point.h>
 #include <petzval/render/film/film_sampling.h>
 
@@ -43,6 +44,16 @@ FilmSample FilmSampling::place(Pixel pixel, double x, double y, double u, double
   sample.column = pixel.column + x - sample.dot_column;
   sample.row = pixel.row + y - sample.dot_row;
   return sample;
+}
+
+FilmSampling FilmSampling::without_gaps() const {
+  Photosite whole = site_;
+  whole.shape = Photosite::Shape::rectangle, whole.width = whole.height = 1;
+  return FilmSampling(window_, whole);
+}
+
+double FilmSampling::site_share() const {
+  return site_.width * site_.height * (site_.shape == Photosite::Shape::ellipse ? pi / 4 : 1);
 }
 
 bool FilmSampling::is_on_site(double x, double y) const {

@@ -7,6 +7,7 @@
 #include <petzval/wave/photosite.h>
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 namespace petzval::render {
@@ -19,7 +20,6 @@ struct FilmSample {
   double u = 0, v = 0;
   double dot_column = 0, dot_row = 0;
   int hero = 0;
-  std::array<double, 2> bend{0.5, 0.5};  ///< two more numbers in [0, 1), for cameras that bend rays at random
 };
 
 /// A pixel of the picture.
@@ -42,6 +42,10 @@ class FilmSampling {
   /// A sample of a pixel for four numbers in [0, 1); neighbours stay neighbours. Half of the samples go
   /// through each of two dots along an axis: the leading digit of x (of y) chooses, and the rest goes on.
   FilmSample place(Pixel pixel, double x, double y, double u, double v) const;
+  /// The same dots on photosites without gaps: light that is to land elsewhere may begin between them.
+  FilmSampling without_gaps() const;
+  /// Of a pixel's area, that of its photosite.
+  double site_share() const;
   /// The pixel of the window that gathers light which lands on the film at a place, through the dot of the
   /// sample that found it.
   std::optional<Pixel> pixel_at(const FilmSample& found_by, double column, double row) const {
@@ -49,8 +53,7 @@ class FilmSampling {
     // Before they are made whole numbers, which may not hold them.
     if (!(column >= window_.left && column < window_.right && row >= window_.top && row < window_.bottom))
       return std::nullopt;
-    // Not negative: the fraction is cut off downwards.
-    const Pixel pixel{static_cast<int>(column), static_cast<int>(row)};
+    const Pixel pixel{static_cast<int>(std::floor(column)), static_cast<int>(std::floor(row))};
     if (whole_pixel_ || is_on_site(column - pixel.column, row - pixel.row)) return pixel;
     return std::nullopt;
   }
