@@ -122,11 +122,11 @@ Rendering cropped(Rendering picture, const PixelWindow& window, const PixelWindo
   return picture;
 }
 
-void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool half, Film& film) {
+void add_strays(std::span<const TileResult> results, std::size_t groups, bool half, Film& film) {
   // Groups of wavelengths have no band in common.
   parallel_for(groups, [&](std::size_t group) {
     for (const TileResult& tile : results)
-      if (tile.done)
+      if (tile.done && !tile.strays.empty())
         for (const Stray& stray : tile.strays[group]) film.light[stray.at] += stray.light;
   });
   for (const TileResult& tile : results) {

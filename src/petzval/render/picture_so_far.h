@@ -5,6 +5,7 @@
 #include <petzval/render/passes.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace petzval::render {
@@ -13,8 +14,8 @@ namespace petzval::render {
 Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const SensorGeometry& sensor,
                          const Photosite& photosite, const Passes& passes);
 
-/// Adds what tiles found elsewhere than in themselves.
-void add_strays(const std::vector<TileResult>& results, std::size_t groups, bool half, Film& film);
+/// Adds what tiles found elsewhere than in themselves; those whose strays have been added have none.
+void add_strays(std::span<const TileResult> results, std::size_t groups, bool half, Film& film);
 
 /// The picture of a pass that was stopped: its tiles that are done have a pass more than the others, which
 /// are black if it was the first. Nothing if none is done.

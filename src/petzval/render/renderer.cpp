@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <span>
 
 namespace petzval::render {
 
@@ -88,11 +89,22 @@ void add_pass(const TileTask& task, const std::vector<PixelWindow>& tiles, const
   const bool half = !film.half.empty() && film.passes % 2 == 1;
   results.assign(tiles.size(), {});
   std::atomic<std::size_t> done{0};
-  parallel_tasks(tiles.size(), [&](std::size_t i) {
-    results[i] = render_tile(task, tiles[i], ranges, half, film);
-    told(static_cast<double>(++done) / static_cast<double>(tiles.size()));
-  });
-  add_strays(results, ranges.size(), half, film);
+  // Light that lands in other tiles waits for the end of so many: a few hundred megabytes where waves spread
+  // it.
+  constexpr std::size_t tiles_at_once = 1024;
+  for (std::size_t begin = 0; begin < tiles.size(); begin += tiles_at_once) {
+    const std::size_t count = std::min(tiles_at_once, tiles.size() - begin);
+    parallel_tasks(count, [&](std::size_t i) {
+      results[begin + i] = render_tile(task, tiles[begin + i], ranges, half, film);
+      told(static_cast<double>(++done) / static_cast<double>(tiles.size()));
+    });
+    const std::span<TileResult> here(results.data() + begin, count);
+    add_strays(here, ranges.size(), half, film);
+    for (TileResult& result : here) {
+      result = {};
+      result.done = true;
+    }
+  }
   ++film.passes;
 }
 
