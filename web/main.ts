@@ -340,10 +340,14 @@ class Page {
   }
 
   private way: [number, number][][] = [];
+  private toldOfGhost = "";
   private takeStray(message: Incoming): void {
     this.sky = message.sky;
     this.ghosts = message.ghosts;
     this.way = message.way;
+    const ghost = this.session.stray.ghost;
+    if (ghost && this.way.length === 0 && String(ghost) !== this.toldOfGhost) this.tell(`no light from there comes to the sensor by surfaces ${ghost[0]} and ${ghost[1]}`);
+    this.toldOfGhost = ghost && this.way.length === 0 ? String(ghost) : "";
     this.layout.showWay(this.session.stray.ghost ? this.way : []);
     this.showSun();
     if (this.session.plot === "ghosts") this.drawPlot();

@@ -133,6 +133,9 @@ class LivePage(unittest.TestCase):
         self.assertNotIn("--ghosts", browser.text(".command"))
         self.change_shows(SLIDE, "roughness_nm", 300)
         self.assertIn("--scatter roughness=3 ", browser.text(".command"))
+        self.change_shows("document.querySelector('[data-check=sun]').click()")
+        self.assertFalse(mark.is_displayed())
+        self.assertNotIn("--sun ", browser.text(".command"))
         self.change_shows("document.getElementById('tab-ghosts').click()")
         rows = browser.driver.find_elements(By.CSS_SELECTOR, "tr[data-ghost]")
         self.assertEqual(len(rows), 3, "pairs of three surfaces")
@@ -143,9 +146,6 @@ class LivePage(unittest.TestCase):
         browser.run("document.querySelector('tr[data-ghost] button').click()")
         browser.settle()
         self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".ghost-way .ray")), 0)
-        self.change_shows("document.querySelector('[data-check=sun]').click()")
-        self.assertFalse(mark.is_displayed())
-        self.assertNotIn("--sun ", browser.text(".command"))
 
     def test_table_undo_and_redo(self):
         path = "surfaces[1].thickness_mm"

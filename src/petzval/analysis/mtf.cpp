@@ -149,64 +149,37 @@ void check(const FieldTableRequest& request, const MtfOptions& options) {
 /// is good to some 1e-4.
 constexpr int nodes_of_dark_edges = 400;
 
-/// The overlap of a pupil with itself, asked frequency by frequency; what all of them share is worked out
-/// once.
 template <class Wave>
-class PupilOverlap {
- public:
-  PupilOverlap(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave, int whole_nodes)
-      : tracer_(tracer), pupil_(pupil), wave_(wave), whole_nodes_(whole_nodes) {}
+std::complex<double> overlap_of_pupil(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
+                                      int nodes, int whole_nodes, MtfDirection direction,
+                                      double frequency_cpmm) {
+  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
+  const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
+  if (!pupil.whole_outline().empty())
+    return bladed_otf(
+        pupil.whole_outline(),
+        [&](double alpha, double beta) { return wave(pupil.mirrored() ? std::abs(alpha) : alpha, beta); },
+        direction, shift, nodes, pupil.detail().overlap_panels, whole_nodes);
+  const Autocorrelation<Wave> pairs(pupil, wave, nodes);
+  // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
+  const Autocorrelation<Wave> whole(pupil, wave, whole_nodes);
+  return direction == MtfDirection::tangential ? pairs.tangential(shift) / whole.tangential(0).real()
+                                               : pairs.sagittal(shift) / whole.sagittal(0).real();
+}
 
-  std::complex<double> otf(MtfDirection direction, double frequency_cpmm, int nodes) {
-    const double lambda_mm = tracer_.tracer().wavelength_nm() * mm_per_nm;
-    const double shift = lambda_mm * frequency_cpmm / tracer_.tracer().image_index();
-    if (!pupil_.whole_outline().empty())
-      return bladed_otf(
-          pupil_.whole_outline(),
-          [&](double alpha, double beta) { return wave_(pupil_.mirrored() ? std::abs(alpha) : alpha, beta); },
-          direction, shift, nodes, pupil_.detail().overlap_panels, whole_nodes_);
-    const Autocorrelation<Wave> pairs(pupil_, wave_, nodes);
-    return direction == MtfDirection::tangential ? pairs.tangential(shift) / whole(direction)
-                                                 : pairs.sagittal(shift) / whole(direction);
-  }
-
- private:
-  /// The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
-  double whole(MtfDirection direction) {
-    const bool tangential = direction == MtfDirection::tangential;
-    std::optional<double>& known = whole_[tangential ? 0 : 1];
-    if (!known) {
-      const Autocorrelation<Wave> pupil(pupil_, wave_, whole_nodes_);
-      known = (tangential ? pupil.tangential(0) : pupil.sagittal(0)).real();
-    }
-    return *known;
-  }
-
-  const FieldTracer& tracer_;
-  const ExitPupil& pupil_;
-  const Wave& wave_;
-  int whole_nodes_;
-  std::array<std::optional<double>, 2> whole_{};
-};
-
-/// Hands what tells an OTF from direction and frequency to `use`; `transverse_mm` is the reach of the pupil's
-/// rays.
-template <class Wave, class Use>
-auto with_overlap(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave, double transverse_mm,
-                  Use&& use) {
+/// OTF by the overlap of the pupil with itself; `transverse_mm` is the reach of its rays.
+template <class Wave>
+std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
+                                 double transverse_mm, MtfDirection direction, double frequency_cpmm) {
   if (const std::optional<PupilMask> mask = PupilMask::of(tracer, pupil.chief())) {
     const auto lit = [&](double alpha, double beta) {
       return mask->is_dark(alpha, beta) ? std::complex<double>(0) : std::complex<double>(wave(alpha, beta));
     };
-    PupilOverlap overlap(tracer, pupil, lit, nodes_of_dark_edges);
-    return use([&](MtfDirection direction, double frequency_cpmm) {
-      return overlap.otf(direction, frequency_cpmm, nodes_of_dark_edges);
-    });
+    return overlap_of_pupil(tracer, pupil, lit, nodes_of_dark_edges, nodes_of_dark_edges, direction,
+                            frequency_cpmm);
   }
-  PupilOverlap overlap(tracer, pupil, wave, fewest_nodes);
-  return use([&](MtfDirection direction, double frequency_cpmm) {
-    return overlap.otf(direction, frequency_cpmm, nodes_for(2 * frequency_cpmm * transverse_mm));
-  });
+  return overlap_of_pupil(tracer, pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm), fewest_nodes,
+                          direction, frequency_cpmm);
 }
 
 /// Both OTFs of a field and wavelength on one sensor, frequency by frequency.
@@ -308,12 +281,10 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
           fmt::format("{}: the wave at field {:g} is too rough to be moved by {:g} mm; set the "
                       "last thickness instead",
                       tracer.lens().name, chief.object_field, shift));
-    const auto filled = [&](auto&& otf) { return fill(frequencies, image_mm(shift), otf); };
-    const auto aimed = [&](double alpha, double beta) { return pupil->wave(alpha, beta, options.model); };
-    const auto fitted = [&](double alpha, double beta) { return smooth->wave(alpha, beta); };
-    row.sensors.push_back(
-        smooth ? with_overlap(tracer, *pupil, fitted, smooth->transverse_mm(), filled)
-               : with_overlap(tracer, *pupil, aimed, pupil->transverse_mm(), filled));
+    row.sensors.push_back(fill(frequencies, image_mm(shift), [&](MtfDirection direction, double frequency) {
+      return smooth ? diffraction_otf(tracer, *pupil, *smooth, direction, frequency)
+                    : diffraction_otf(tracer, *pupil, direction, frequency, options.model);
+    }));
   }
   return row;
 }
@@ -344,16 +315,14 @@ SensorOtf polychromatic(const OtfRow* rows, std::size_t sensor, const MtfOptions
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
                                      MtfDirection direction, double frequency_cpmm, const PupilModel& model) {
   const auto wave = [&](double alpha, double beta) { return pupil.wave(alpha, beta, model); };
-  return with_overlap(tracer, pupil, wave, pupil.transverse_mm(),
-                      [&](auto&& otf) { return otf(direction, frequency_cpmm); });
+  return overlap_otf(tracer, pupil, wave, pupil.transverse_mm(), direction, frequency_cpmm);
 }
 
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
                                      const ExitPupilFit& smooth, MtfDirection direction,
                                      double frequency_cpmm) {
   const auto wave = [&](double alpha, double beta) { return smooth.wave(alpha, beta); };
-  return with_overlap(tracer, pupil, wave, smooth.transverse_mm(),
-                      [&](auto&& otf) { return otf(direction, frequency_cpmm); });
+  return overlap_otf(tracer, pupil, wave, smooth.transverse_mm(), direction, frequency_cpmm);
 }
 
 std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirection direction,
