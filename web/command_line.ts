@@ -31,9 +31,8 @@ export function commandLine(session: Session, picture: Incoming | null): string 
   if (stray.sun_deg) {
     words.push("--sun", stray.sun_deg.join(","));
     // Of the sun alone: charts have sources of their own.
-    if (stray.ghosts) words.push("--ghosts");
+    if (stray.ghosts) words.push("--ghosts", "--ghost-threshold", "1e9");
     if (stray.starburst) words.push("--starburst");
-    if (stray.ghosts || stray.starburst) words.push("--ghost-threshold", "1e9");
   }
   if (stray.roughness_nm > 0) words.push("--scatter", `roughness=${stray.roughness_nm}`);
   const shot = session.shot;
