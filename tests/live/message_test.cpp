@@ -20,8 +20,11 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   json message = bench_state(9, "tessar");
   message["camera"] = {{"f_number", 5.6}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
   message["cursor_mm"] = {1.5, -2};
-  message["stray"] = {
-      {"sun_deg", {20, -15.5}}, {"ghosts", true}, {"starburst", true}, {"roughness_nm", 2}, {"ghost", {5, 0}}};
+  message["stray"] = {{"sun_deg", {20, -15.5}},
+                      {"ghosts", true},
+                      {"starburst", true},
+                      {"roughness_nm", 2},
+                      {"ghost", {5, 0}}};
   const auto state = std::get<BenchState>(parsed(message));
   EXPECT_EQ(state.id, 9);
   EXPECT_EQ(state.f_number, 5.6);

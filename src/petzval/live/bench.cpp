@@ -243,11 +243,12 @@ void Bench::Impl::show(const BenchState& state) {
       pictures.show(state, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
                     sensor_path(state), quality, context, send);
     };
-    return stage(state.id, name,
-                 fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, stray_key, state.scene,
-                             state.illuminant, state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
-                             state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
-                 work);
+    return stage(
+        state.id, name,
+        fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, stray_key, state.scene, state.illuminant,
+                    state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
+                    state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
+        work);
   };
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });

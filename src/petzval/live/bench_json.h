@@ -20,8 +20,8 @@ nlohmann::json plot_json(const Plot& plot);
 nlohmann::json layout_json(const Lens& lens);
 
 /// Ghosts of the lens, the brightest first; the way of one of them through it, of the sun's light or
-/// else of light along the axis; and where on the sensor light from infinity lands: pairs of the tangent of its angle from
-/// the axis and its height [mm]. \throws InputError for lenses that have no ghosts to follow.
+/// else of light along the axis; and where on the sensor light from infinity lands: pairs of the tangent of
+/// its angle from the axis and its height [mm]. \throws InputError for lenses that have no ghosts to follow.
 nlohmann::json stray_json(const Lens& lens, const std::optional<Sun>& sun,
                           const std::optional<GhostPair>& ghost, double sensor_reflectance);
 

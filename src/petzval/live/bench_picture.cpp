@@ -47,9 +47,9 @@ std::string stray_light_key(const BenchState& state) {
 
 /// And what its picture does, besides.
 std::string shown_key_of(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", light_key_of(state), stray_light_key(state), static_cast<int>(state.exposure.kind),
-                     state.exposure.value, state.compensation_ev, state.noise, state.denoise, state.sharpen,
-                     state.tone);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", light_key_of(state), stray_light_key(state),
+                     static_cast<int>(state.exposure.kind), state.exposure.value, state.compensation_ev,
+                     state.noise, state.denoise, state.sharpen, state.tone);
 }
 
 OutputOptions output_options(const BenchState& state) {
@@ -156,9 +156,8 @@ std::vector<std::uint8_t> pixels_of(const PngImage& picture) {
 }
 
 /// The picture with a sun, its ghosts and its star, and with what surfaces scatter.
-SpectralImage with_stray_light(const BenchState& state, const Lens& used, const Sensor& sensor,
-                               double psf_mm, const QualityCost& cost, const SpectralImage& light,
-                               const Context& context) {
+SpectralImage with_stray_light(const BenchState& state, const Lens& used, const Sensor& sensor, double psf_mm,
+                               const QualityCost& cost, const SpectralImage& light, const Context& context) {
   FlareOptions options;
   if (state.sun) options.suns = {*state.sun};
   options.ghosts = state.sun && state.ghosts;
@@ -177,10 +176,8 @@ SpectralImage with_stray_light(const BenchState& state, const Lens& used, const 
 }
 
 const QualityCost full_cost{
-    "full",       640,
-    960,          {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
-    "400:20:700", 1e-2,
-    16,           128,
+    "full",       640,  960, {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
+    "400:20:700", 1e-2, 16,  128,
     1e-3};
 const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), preview_cost(640, 960)};
 

@@ -40,11 +40,11 @@ struct BenchState {
   double denoise = 0, sharpen = 0;
   std::string tone = "none";
   std::array<double, 2> cursor_mm =
-      {};  ///< a place on the sensor, as the upright picture shows it: x right, y up
-  std::optional<Sun> sun = {};          ///< added to the scene
-  bool ghosts = false;                  ///< of the sun
-  bool starburst = false;               ///< of the sun
-  double roughness_nm = 0;              ///< of surfaces that do not say how they scatter; 0: nothing scatters
+      {};                       ///< a place on the sensor, as the upright picture shows it: x right, y up
+  std::optional<Sun> sun = {};  ///< added to the scene
+  bool ghosts = false;          ///< of the sun
+  bool starburst = false;       ///< of the sun
+  double roughness_nm = 0;      ///< of surfaces that do not say how they scatter; 0: nothing scatters
   std::optional<GhostPair> ghost = {};  ///< whose way the layout shows
   std::vector<std::string> plots = {};  ///< analyses that are shown
   bool picture = true;
