@@ -27,6 +27,14 @@ export function commandLine(session: Session, picture: Incoming | null): string 
   words.push("--sensor", session.sensor);
   for (const setting of picture?.sensor_settings ?? []) words.push("--sensor-set", setting);
   if (picture?.tolerance) words.push("--tolerance", String(picture.tolerance));
+  const stray = session.stray;
+  if (stray.sun_deg) {
+    words.push("--sun", stray.sun_deg.join(","));
+    // Of the sun alone: charts have sources of their own.
+    if (stray.ghosts) words.push("--ghosts", "--ghost-threshold", "1e9");
+    if (stray.starburst) words.push("--starburst");
+  }
+  if (stray.roughness_nm > 0) words.push("--scatter", `roughness=${stray.roughness_nm}`);
   const shot = session.shot;
   if (shot.compensation_ev !== 0) words.push("--exposure-compensation", String(shot.compensation_ev));
   if (!shot.noise) for (const source of ["shot", "dark", "read", "dsnu", "prnu", "column", "row", "defects"]) words.push("--without", source);

@@ -17,6 +17,7 @@ export class LayoutView {
   readonly element = h("div", {class: "layout-box", tabindex: "0", "aria-label": "layout of the lens"});
   private last: Incoming | null = null;
   private lens: Lens | null = null;
+  private way: Point[][] = [];
   private scale = 1;
   private drag: {first: number; last: number; from: number; stop: boolean} | null = null;
 
@@ -28,6 +29,12 @@ export class LayoutView {
     this.last = message;
     this.lens = lens;
     this.element.classList.remove("stale");
+    this.draw();
+  }
+
+  /** The way of a ghost in place of the rays of the picture; empty: none. */
+  showWay(way: Point[][]): void {
+    this.way = way;
     this.draw();
   }
 
@@ -54,8 +61,8 @@ export class LayoutView {
     data.surfaces.forEach((surface: any) => {
       if (!surface.stop) svg.append(s("path", {class: "surface", d: path(surface.profile)}));
     });
-    const rays = s("g", {class: "rays"});
-    for (const field of data.fields)
+    const rays = s("g", {class: this.way.length ? "rays ghost-way" : "rays"});
+    for (const field of this.way.length ? [{rays: this.way, colour: "var(--ghost)"}] : data.fields)
       for (const ray of field.rays as Point[][]) rays.append(s("path", {class: "ray", d: path(ray), stroke: field.colour}));
     svg.append(rays);
     data.surfaces.forEach((surface: any, i: number) => {

@@ -5,7 +5,8 @@ import {choice, Slider} from "./controls";
 import {h, icon, icons, shown} from "./dom";
 import {LayoutView} from "./layout_view";
 import {Incoming, Link, takeToken} from "./link";
-import {copied, History, Lens, newSession, packed, pinAbout, Session, setValue, unpacked, valueAt} from "./model";
+import {Ghost, ghostTable} from "./ghost_view";
+import {copied, History, Lens, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, unpacked, usualStray, valueAt} from "./model";
 import {PictureView} from "./picture_view";
 import {drawPlots, PlotData} from "./plot_view";
 import {PsfView} from "./psf_view";
@@ -18,6 +19,7 @@ const shownPlots: [string, string, string][] = [
   ["illumination", "Illumination", "illumination"], ["field-curvature", "Field curvature", "field-curvature"],
   ["fans", "Ray fans", "fans"], ["colour", "Colour", "colour"], ["vignetting", "Vignetting", "vignetting"],
   ["wavefront", "Wavefront", "wavefront"], ["encircled-energy", "Encircled energy", "encircled-energy"],
+  ["ghosts", "Ghosts", "ghosts"],
 ];
 
 class Page {
@@ -53,7 +55,11 @@ class Page {
   });
   private readonly picture = new PictureView({
     placed: (x, y, done) => this.change(() => { this.session.cursor_mm = [x, y]; }, done ? "" : "cursor"),
+    sunMoved: (x, y, done) => this.change(() => { this.session.stray.sun_deg = sunAt(this.sky, x, y); }, "sun", done),
   });
+  private sky: Sky = [];
+  private ghosts: Ghost[] = [];
+  private efl_mm = 50;
   private readonly psf = new PsfView();
   private readonly plotBox = h("div", {class: "plot-box"});
   private readonly tabs = h("div", {class: "tabs", role: "tablist"});
@@ -209,7 +215,27 @@ class Page {
         h("label", {class: "check", "data-term": "noise"}, h("input", {type: "checkbox", checked: session.shot.noise, "data-check": "noise",
           onchange: (event: Event) => this.change(() => { session.shot.noise = (event.target as HTMLInputElement).checked; })}), "noise"),
         choice("Tone", "tone", this.welcome!.tones.map((tone: string) => [tone, tone]), session.shot.tone, tone => this.change(() => { session.shot.tone = tone; }))));
+    list.push(h("hr"));
+    const stray = session.stray;
+    const check = (label: string, name: string, term: string, checked: boolean, act: (on: boolean) => void) => h("label", {class: "check", "data-term": term},
+        h("input", {type: "checkbox", checked, "data-check": name, onchange: (event: Event) => this.change(() => { act((event.target as HTMLInputElement).checked); this.buildControls(); })}), label);
+    list.push(h("div", {class: "checks"}, check("sun", "sun", "sun", stray.sun_deg !== null, on => { stray.sun_deg = on ? this.firstSun() : null; }),
+        stray.sun_deg && check("ghosts", "ghosts", "ghosts", stray.ghosts, on => { stray.ghosts = on; }),
+        stray.sun_deg && check("star", "starburst", "starburst", stray.starburst, on => { stray.starburst = on; })));
+    if (stray.sun_deg)
+      for (const [i, label] of [[0, "sun right"], [1, "sun up"]] as [0 | 1, string][])
+        slider({label, name: `sun_deg[${i}]`, term: "sun", unit: "°", from: -60, to: 60, value: stray.sun_deg[i], usual: 0, digits: 4,
+          changed: (value, done) => this.change(() => { if (stray.sun_deg) stray.sun_deg[i] = value ?? 0; }, `sun ${i}`, done)});
+    slider({label: "roughness", name: "roughness_nm", term: "roughness", unit: "nm", from: 0, to: 10, value: stray.roughness_nm, usual: 0, digits: 3,
+      changed: (value, done) => this.change(() => { stray.roughness_nm = Math.max(0, value ?? 0); }, "roughness", done)});
     this.controls.replaceChildren(...list.filter((each): each is Node => each !== null));
+  }
+
+  /** Inside the frame, above and to the right. */
+  private firstSun(): [number, number] {
+    const angle = (side: number) => Number((Math.atan(0.3 * side / Math.abs(this.efl_mm)) * 180 / Math.PI).toFixed(1));
+    const [width, height] = this.picture.size_mm;
+    return [angle(width), angle(height)];
   }
 
   private widestOpen = 2;
@@ -291,6 +317,10 @@ class Page {
     const session = this.session;
     this.table.show(session.lens);
     this.picture.setCursor(session.cursor_mm);
+    this.showSun();
+    this.layout.showWay(session.stray.ghost ? this.way : []);
+    this.sliders.get("roughness_nm")?.show(session.stray.roughness_nm);
+    for (const i of [0, 1]) this.sliders.get(`sun_deg[${i}]`)?.show(session.stray.sun_deg?.[i] ?? 0);
     for (const pin of session.pins) this.sliders.get(pin.path)?.show(valueAt(session.lens, pin.path));
     this.sliders.get("f_number")?.show(session.f_number ?? this.widest());
     for (const name of ["distance_m", "defocus_mm", "focus_m"] as const) this.sliders.get(name)?.show(session[name]);
@@ -302,6 +332,25 @@ class Page {
     this.command.textContent = commandLine(session, this.lastPicture);
     this.command.title = this.command.textContent;
     this.keepSoon();
+  }
+
+  private showSun(): void {
+    const sun = this.session.stray.sun_deg;
+    this.picture.setSun(sun ? placeOfSun(this.sky, sun) : null);
+  }
+
+  private way: [number, number][][] = [];
+  private toldOfGhost = "";
+  private takeStray(message: Incoming): void {
+    this.sky = message.sky;
+    this.ghosts = message.ghosts;
+    this.way = message.way;
+    const ghost = this.session.stray.ghost;
+    if (ghost && this.way.length === 0 && String(ghost) !== this.toldOfGhost) this.tell(`no light from there comes to the sensor by surfaces ${ghost[0]} and ${ghost[1]}`);
+    this.toldOfGhost = ghost && this.way.length === 0 ? String(ghost) : "";
+    this.layout.showWay(this.session.stray.ghost ? this.way : []);
+    this.showSun();
+    if (this.session.plot === "ghosts") this.drawPlot();
   }
 
   /** Keeps the session for a reload, once the hand rests or the page goes. */
@@ -340,7 +389,7 @@ class Page {
     const session = this.session;
     this.link.send({kind: "state", id: ++this.id, lens: session.lens,
       camera: {f_number: session.f_number, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
-      scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot,
+      scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot, stray: session.stray,
       cursor_mm: session.cursor_mm, plots: [session.plot], picture: true});
     document.body.dataset.busy = "1";
   }
@@ -364,6 +413,7 @@ class Page {
       case "plots":
         this.plots.set(message.analysis, message);
         return this.drawPlot();
+      case "stray": return this.takeStray(message);
       case "psf": return this.psf.show(message, bytes!, this.session.cursor_mm);
       case "picture":
         this.picture.show(message, bytes!);
@@ -422,7 +472,7 @@ class Page {
   private checked(session: Session): Session {
     const welcome = this.welcome!;
     const usual = newSession(welcome.lens_name, session.lens, welcome.scene, welcome.sensor);
-    const whole = {...usual, ...session, shot: {...usual.shot, ...session.shot}};
+    const whole = {...usual, ...session, shot: {...usual.shot, ...session.shot}, stray: {...usualStray, ...session.stray}};
     if (!welcome.scenes.includes(whole.scene)) whole.scene = welcome.scene;
     if (!welcome.sensors.includes(whole.sensor)) whole.sensor = welcome.sensor;
     return whole;
@@ -431,8 +481,8 @@ class Page {
   private takeLens(message: Incoming): void {
     for (const note of message.notes ?? []) this.tell(note);
     const session = newSession(message.name, message.lens as Lens, this.session.scene, message.sensor);
-    const {illuminant, shot, plot} = this.session;
-    const next = {...session, illuminant, shot: copied(shot), plot};
+    const {illuminant, shot, stray, plot} = this.session;
+    const next = {...session, illuminant, shot: copied(shot), stray: {...copied(stray), ghost: null}, plot};
     this.knowsWidest = false;
     this.session = next;
     this.history.record(JSON.stringify(next));
@@ -446,6 +496,7 @@ class Page {
     const first = message.first_order;
     this.stopNow = first.stop_semi_diameter_mm ?? 0;
     this.fNumberNow = first.f_number ?? 1;
+    this.efl_mm = first.efl_mm ?? 50;
     if (!this.knowsWidest && this.session.f_number === null && first.f_number) {
       this.knowsWidest = true;
       this.widestOpen = Number(first.f_number.toPrecision(4));
@@ -571,11 +622,21 @@ class Page {
 
   private drawPlot(problem = ""): void {
     const plots = this.plots.get(this.session?.plot);
-    const drawn = [plots, this.plotBox.clientWidth, this.plotBox.clientHeight];
-    if (plots && drawn.every((each, i) => each === this.drawnPlot[i])) return;
+    const ofGhosts = this.session?.plot === "ghosts" ? [this.ghosts, JSON.stringify(this.session.stray.ghost)] : [];
+    const drawn = [plots, this.plotBox.clientWidth, this.plotBox.clientHeight, ...ofGhosts];
+    if (plots && drawn.length === this.drawnPlot.length && drawn.every((each, i) => each === this.drawnPlot[i])) return;
     this.drawnPlot = drawn;
+    if (plots && ofGhosts.length > 0) return this.drawGhosts(plots);
     if (plots) return drawPlots(this.plotBox, plots.plots as PlotData[], plots.across);
     this.plotBox.replaceChildren(h("p", {class: "nothing"}, problem || "…"));
+  }
+
+  private drawGhosts(plots: Incoming): void {
+    const plot = h("div", {class: "ghost-plot"}), scrolled = this.plotBox.querySelector(".ghost-box")?.scrollTop ?? 0;
+    const table = ghostTable(this.ghosts, this.session.stray.ghost, pair => this.change(() => { this.session.stray.ghost = pair; }));
+    this.plotBox.replaceChildren(plot, table);
+    drawPlots(plot, plots.plots as PlotData[], plots.across);
+    table.scrollTop = scrolled;
   }
 
   private drawnPlot: unknown[] = [];  ///< what drawPlot() drew last, and in how many pixels

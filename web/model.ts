@@ -43,6 +43,47 @@ export interface Shot {
   tone: string;
 }
 
+/** Light that goes astray: as the server is told. */
+export interface Stray {
+  sun_deg: [number, number] | null;  ///< to the right and up
+  ghosts: boolean;
+  starburst: boolean;
+  roughness_nm: number;  ///< 0: nothing scatters
+  ghost: [number, number] | null;  ///< whose way the layout shows
+}
+
+export const usualStray: Stray = {sun_deg: null, ghosts: true, starburst: false, roughness_nm: 0, ghost: null};
+
+/** Where on the sensor light from infinity lands: pairs of the tangent of its angle from the axis and its height [mm]. */
+export type Sky = [number, number][];
+
+/** A curve through points whose abscissae grow; straight beyond the last. */
+function along(points: [number, number][], x: number): number {
+  let i = 1;
+  while (i + 1 < points.length && points[i][0] < x) ++i;
+  const [x0, y0] = points[i - 1], [x1, y1] = points[i];
+  return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+}
+
+const radian = Math.PI / 180;
+
+export function placeOfSun(sky: Sky, deg: [number, number]): [number, number] | null {
+  if (sky.length < 2) return null;
+  const x = Math.tan(deg[0] * radian), y = Math.tan(deg[1] * radian), far = Math.hypot(x, y);
+  const scale = far > 0 ? along(sky, far) / far : 0;
+  return [x * scale, y * scale];
+}
+
+export function sunAt(sky: Sky, x_mm: number, y_mm: number): [number, number] {
+  const height = Math.hypot(x_mm, y_mm);
+  const far = along(sky.map(([t, h]): [number, number] => [h, t]), height);
+  const angle = (part: number) => {
+    const most_deg = 79, deg = height > 0 ? Math.atan(far * part / height) / radian : 0;
+    return Number(Math.min(most_deg, Math.max(-most_deg, deg)).toFixed(2));
+  };
+  return [angle(x_mm), angle(y_mm)];
+}
+
 export interface Session {
   lensName: string;
   base: Lens;  ///< as it was read
@@ -56,6 +97,7 @@ export interface Session {
   illuminant: string;
   sensor: string;
   shot: Shot;
+  stray: Stray;
   cursor_mm: [number, number];
   plot: string;
   pins: Pin[];
@@ -66,7 +108,7 @@ export function newSession(lensName: string, lens: Lens, scene: string, sensor: 
     lensName, base: lens, lens: copied(lens), f_number: null, focus: "design", focus_m: 2, distance_m: null,
     defocus_mm: 0, scene, illuminant: "", sensor,
     shot: {exposure: "auto", compensation_ev: 0, noise: true, denoise: 0, sharpen: 0, tone: "none"},
-    cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),
+    stray: copied(usualStray), cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),
   };
 }
 

@@ -5,6 +5,7 @@ import {Incoming} from "./link";
 
 export interface PictureListener {
   placed(x_mm: number, y_mm: number, done: boolean): void;
+  sunMoved(x_mm: number, y_mm: number, done: boolean): void;
 }
 
 interface Kept {
@@ -18,6 +19,8 @@ export class PictureView {
   private readonly stage = h("div", {class: "picture-stage"});
   private readonly now = h("canvas", {class: "picture", role: "img", "aria-label": "the picture"});
   private readonly mark = h("div", {class: "cursor-mark"});
+  private readonly sun = h("button", {type: "button", class: "sun-mark", "data-term": "sun", "aria-label": "the sun; drag it, or move it by arrow keys"}, "☀");
+  private sunPlace: [number, number] | null = null;
   private readonly divider = h("div", {class: "divider", role: "slider", tabindex: "0", "aria-label": "before and after",
     "aria-valuemin": "0", "aria-valuemax": "100"});
   private readonly captions = h("div", {class: "captions"});
@@ -28,8 +31,16 @@ export class PictureView {
 
   constructor(private readonly listener: PictureListener) {
     this.stage.append(this.now, this.mark, this.divider, this.captions);
-    this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage);
-    this.divider.hidden = true;
+    this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage, this.sun);
+    this.divider.hidden = this.sun.hidden = true;
+    this.sun.addEventListener("pointerdown", event => this.dragSun(event));
+    this.sun.addEventListener("keydown", event => {
+      const move = this.stepOf(event);
+      if (!move || !this.sunPlace) return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.listener.sunMoved(this.sunPlace[0] + move[0] * this.frame_mm[0], this.sunPlace[1] + move[1] * this.frame_mm[1], true);
+    });
     new ResizeObserver(() => this.fit()).observe(this.element);
     this.stage.addEventListener("pointerdown", event => this.down(event));
     this.divider.addEventListener("pointerdown", event => this.dragDivider(event));
@@ -87,6 +98,39 @@ export class PictureView {
     this.mark.title = `${shown(cursor[0], 3)}, ${shown(cursor[1], 3)} mm`;
   }
 
+  /** Where the sun is imaged, within the frame or beside it; null: there is none. */
+  setSun(place_mm: [number, number] | null): void {
+    this.sunPlace = place_mm;
+    this.sun.hidden = !place_mm;
+    if (!place_mm) return;
+    // Beyond the box it waits at its edge.
+    const box = this.element.getBoundingClientRect(), stage = this.stage.getBoundingClientRect(), room = 12;
+    const within = (v: number, most: number) => Math.min(most - room, Math.max(room, v));
+    this.sun.style.left = `${within(stage.left - box.left + stage.width * (0.5 + place_mm[0] / this.frame_mm[0]), box.width)}px`;
+    this.sun.style.top = `${within(stage.top - box.top + stage.height * (0.5 - place_mm[1] / this.frame_mm[1]), box.height)}px`;
+  }
+
+  get size_mm(): [number, number] { return this.frame_mm; }
+
+  private dragSun(event: PointerEvent): void {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.sun.focus();
+    this.sun.setPointerCapture(event.pointerId);
+    const place = (next: PointerEvent, done: boolean) => {
+      const stage = this.stage.getBoundingClientRect();
+      this.listener.sunMoved(((next.clientX - stage.left) / stage.width - 0.5) * this.frame_mm[0],
+          (0.5 - (next.clientY - stage.top) / stage.height) * this.frame_mm[1], done);
+    };
+    const move = (next: PointerEvent) => place(next, false);
+    this.sun.addEventListener("pointermove", move);
+    this.sun.addEventListener("pointerup", next => {
+      this.sun.removeEventListener("pointermove", move);
+      place(next, true);
+    }, {once: true});
+  }
+
   /** As large as the box takes, in the sensor's own proportions. */
   private fit(): void {
     const box = this.element.getBoundingClientRect();
@@ -94,6 +138,7 @@ export class PictureView {
     this.stage.style.width = `${Math.floor(scale * this.frame_mm[0])}px`;
     this.stage.style.height = `${Math.floor(scale * this.frame_mm[1])}px`;
     this.setCursor(this.cursor);
+    this.setSun(this.sunPlace);
   }
 
   private setSplit(split: number): void {
@@ -134,11 +179,16 @@ export class PictureView {
     }, {once: true});
   }
 
-  private key(event: KeyboardEvent): void {
+  /** What an arrow key moves, in frames. */
+  private stepOf(event: KeyboardEvent): [number, number] | undefined {
     const step = event.shiftKey ? 0.1 : 0.02;
     const moves: Record<string, [number, number]> = {
       ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step]};
-    const move = moves[event.key];
+    return moves[event.key];
+  }
+
+  private key(event: KeyboardEvent): void {
+    const move = this.stepOf(event);
     if (!move) return;
     event.preventDefault();
     const limit = (v: number, half: number) => Math.min(half, Math.max(-half, v));

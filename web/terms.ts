@@ -47,6 +47,11 @@ export const terms: Record<string, Term> = {
   "preview": {title: "Preview", text: "Few pixels, three wavelengths and a loose tolerance of the blur, so that it follows the hand. The full picture replaces it when the hand rests."},
   "exposure": {title: "Exposure", text: "More or less light than the automatic exposure takes, in stops: +1 doubles it."},
   "distance": {title: "Distance of the scene", text: "From the sensor. Where nobody says, the scene stands where the lens expects its object."},
+  "sun": {title: "A sun", text: "A disc of 0.53° and 100,000 lx at infinity. Drag it in the picture, also out of the frame: its ghosts may stay in."},
+  "ghosts": {title: "Ghosts", text: "Light that two surfaces reflect, one back and the other on again, and that comes to the sensor after all: patches, often in the shape of the stop. Bare glass, as this lens says nothing of coatings, unless it does.",
+    drawing: [["glass", "M52 10c8 16 8 36 0 52c-8-16-8-36 0-52z"], ["glass", "M98 10c8 16 8 36 0 52c-8-16-8-36 0-52z"], ["ray", "M4 20L96 34L54 44L150 62"], ["mark", "M150 8v56"]]},
+  "starburst": {title: "Star", text: "What the edges of the stop diffract: a pair of rays across each edge of a stop with blades, rings for a round one."},
+  "roughness": {title: "Roughness", text: "RMS roughness of all polished surfaces that do not say how they scatter. What they scatter is a halo about bright points and a veil over the picture. 0: nothing scatters."},
   "noise": {title: "Noise", text: "Photons arrive at random, and the sensor adds its own. Off: what an average of endless exposures would show."},
 };
 

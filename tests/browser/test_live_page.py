@@ -105,6 +105,48 @@ class LivePage(unittest.TestCase):
                 self.browser.settle()
                 self.assertGreater(self.browser.run("return document.querySelectorAll('.plot-box .plot g path').length"), 0)
 
+    def test_a_sun_can_be_dragged_and_its_ghosts_followed(self):
+        browser = self.browser
+        mark = browser.driver.find_element(By.CSS_SELECTOR, ".sun-mark")
+        self.assertFalse(mark.is_displayed())
+        self.change_shows("document.querySelector('[data-check=sun]').click()")
+        self.assertTrue(mark.is_displayed())
+        first = browser.session()["stray"]["sun_deg"]
+        self.assertIn(f"--sun {first[0]:g},{first[1]:g} --ghosts", browser.text(".command"))
+        ActionChains(browser.driver).click_and_hold(mark).move_by_offset(-30, 10).move_by_offset(-30, 10).release().perform()
+        browser.settle()
+        dragged = browser.session()["stray"]["sun_deg"]
+        self.assertLess(dragged[0], first[0])
+        self.assertLess(dragged[1], first[1])
+        before = mark.location
+        mark.send_keys(Keys.ARROW_LEFT)
+        browser.settle()
+        self.assertLess(browser.session()["stray"]["sun_deg"][0], dragged[0])
+        self.assertLess(mark.location["x"], before["x"], "the sun stands where it was put")
+        self.change_shows(SLIDE, "sun_deg[0]", 0)
+        self.change_shows(SLIDE, "sun_deg[1]", 400)
+        self.assertIn("--sun -60,-12 ", browser.text(".command"))
+        self.assertTrue(mark.is_displayed(), "at the edge, though it is far outside")
+        self.change_shows("document.querySelector('[data-check=starburst]').click()")
+        self.assertIn("--starburst", browser.text(".command"))
+        self.change_shows("document.querySelector('[data-check=ghosts]').click()")
+        self.assertNotIn("--ghosts", browser.text(".command"))
+        self.change_shows(SLIDE, "roughness_nm", 300)
+        self.assertIn("--scatter roughness=3 ", browser.text(".command"))
+        self.change_shows("document.querySelector('[data-check=sun]').click()")
+        self.assertFalse(mark.is_displayed())
+        self.assertNotIn("--sun ", browser.text(".command"))
+        self.change_shows("document.getElementById('tab-ghosts').click()")
+        pairs = browser.run("return [...document.querySelectorAll('tr[data-ghost]')].map(row => row.dataset.ghost)")
+        self.assertEqual(sorted(pairs), ["1,0", "2,0", "2,1"], "pairs of three surfaces")
+        self.change_shows("document.querySelector('tr[data-ghost] button').click()")
+        self.assertEqual(browser.session()["stray"]["ghost"], [int(n) for n in pairs[0].split(",")])
+        self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, "tr.selected[data-ghost]")), 1)
+        self.assertGreater(len(browser.driver.find_elements(By.CSS_SELECTOR, ".ghost-way .ray")), 0)
+        browser.run("document.querySelector('tr[data-ghost] button').click()")
+        browser.settle()
+        self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".ghost-way .ray")), 0)
+
     def test_table_undo_and_redo(self):
         path = "surfaces[1].thickness_mm"
         self.change_shows(TYPE, path, "4")

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 #include <numeric>
 
 #include "live_page.h"
@@ -57,6 +58,49 @@ TEST(Bench, ShowsThePreviewBeforeThePicture) {
   };
   EXPECT_GT(level(full["columns"].get<std::size_t>() * 3 / 4),
             level(full["columns"].get<std::size_t>() / 4) + 50);
+}
+
+TEST(Bench, PutsTheSunWhereItsAnglesSayAndFollowsOneGhost) {
+  RunningServer server;
+  LivePage page(*server);
+  const double right_deg = -2.5, up_deg = 1.5, degree = std::numbers::pi / 180;
+  json state = bench_state(5);
+  state["picture"] = true;
+  state["stray"]["sun_deg"] = {right_deg, up_deg};
+  state["stray"]["ghosts"] = true;
+  state["stray"]["ghost"] = {2, 0};
+  page.send(state);
+  const json layout = page.next("layout"), stray = page.next("stray");
+  const double efl_mm = layout["first_order"]["efl_mm"];
+  // An achromat has no distortion to speak of: f tan θ.
+  const json& near = stray["sky"][2];
+  EXPECT_NEAR(near[1].get<double>(), efl_mm * near[0].get<double>(), 2e-3 * near[1].get<double>());
+  for (std::size_t i = 1; i < stray["ghosts"].size(); ++i)
+    EXPECT_LE(stray["ghosts"][i]["relative_irradiance"], stray["ghosts"][i - 1]["relative_irradiance"]);
+  EXPECT_EQ(stray["ghosts"].size(), 3u) << "pairs of three surfaces";
+  const json& rays = stray["way"];
+  ASSERT_FALSE(rays.empty());
+  for (const json& ray : rays) {
+    int turns = 0;
+    for (std::size_t i = 2; i < ray.size(); ++i)
+      turns += (ray[i][0].get<double>() > ray[i - 1][0].get<double>()) !=
+               (ray[i - 1][0].get<double>() > ray[i - 2][0].get<double>());
+    EXPECT_EQ(turns, 2) << "it is reflected twice";
+    EXPECT_NEAR(ray.back()[0].get<double>(), layout["image_z"].get<double>(), 1e-6);
+  }
+  const json preview = page.next("picture");
+  const double pitch_mm = preview["pitch_um"].get<double>() / 1000;
+  const std::size_t columns = preview["columns"], rows = preview["rows"];
+  const auto level = [&](double x_mm, double y_mm) {
+    const auto column = static_cast<std::size_t>(static_cast<double>(columns) / 2 + x_mm / pitch_mm),
+               row = static_cast<std::size_t>(static_cast<double>(rows) / 2 - y_mm / pitch_mm);
+    return static_cast<unsigned char>(page.bytes[4 * (row * columns + column) + 1]);
+  };
+  const double x_mm = efl_mm * std::tan(right_deg * degree), y_mm = efl_mm * std::tan(up_deg * degree);
+  EXPECT_EQ(level(x_mm, y_mm), 255) << "the sun";
+  // The other three quarters have none; the left half of the chart is dark.
+  EXPECT_LT(level(x_mm, -y_mm), 200);
+  EXPECT_LT(level(-x_mm, y_mm), 255);
 }
 
 TEST(Bench, GivesUpAnOlderPictureForANewerState) {

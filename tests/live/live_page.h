@@ -183,6 +183,12 @@ inline json bench_state(int id, const std::string& lens = "achromat-50mm") {
         {"denoise", 0},
         {"sharpen", 0},
         {"tone", "none"}}},
+      {"stray",
+       {{"sun_deg", nullptr},
+        {"ghosts", false},
+        {"starburst", false},
+        {"roughness_nm", 0},
+        {"ghost", nullptr}}},
       {"cursor_mm", {0, 0}},
       {"plots", {"distortion"}},
       {"picture", false}};

@@ -20,6 +20,11 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   json message = bench_state(9, "tessar");
   message["camera"] = {{"f_number", 5.6}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
   message["cursor_mm"] = {1.5, -2};
+  message["stray"] = {{"sun_deg", {20, -15.5}},
+                      {"ghosts", true},
+                      {"starburst", true},
+                      {"roughness_nm", 2},
+                      {"ghost", {5, 0}}};
   const auto state = std::get<BenchState>(parsed(message));
   EXPECT_EQ(state.id, 9);
   EXPECT_EQ(state.f_number, 5.6);
@@ -27,6 +32,12 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   EXPECT_EQ(state.distance_m, 3);
   EXPECT_EQ(state.defocus_mm, -0.25);
   EXPECT_EQ(state.cursor_mm[1], -2);
+  ASSERT_TRUE(state.sun && state.ghost);
+  EXPECT_EQ(state.sun->right_deg, 20);
+  EXPECT_EQ(state.sun->up_deg, -15.5);
+  EXPECT_TRUE(state.ghosts && state.starburst);
+  EXPECT_EQ(state.roughness_nm, 2);
+  EXPECT_EQ(*state.ghost, (GhostPair{5, 0}));
   EXPECT_EQ(lens_to_json(lens_from_json(state.lens_json, "test")), lens_to_json(read_lens("tessar").lens));
 }
 
@@ -80,6 +91,12 @@ TEST(LiveMessage, RefusesNumbersOutOfRange) {
   EXPECT_THROW(parsed(with("/shot/noise", 1)), InputError);
   EXPECT_THROW(parsed(with("/cursor_mm", json::array({1}))), InputError);
   EXPECT_THROW(parsed(with("/cursor_mm/0", 1e300)), InputError);
+  EXPECT_THROW(parsed(with("/stray/sun_deg", {80, 0})), InputError);
+  EXPECT_THROW(parsed(with("/stray/sun_deg", {1, 2, 3})), InputError);
+  EXPECT_THROW(parsed(with("/stray/roughness_nm", -1)), InputError);
+  EXPECT_THROW(parsed(with("/stray/ghost", {0, 5})), InputError);
+  EXPECT_THROW(parsed(with("/stray/ghost", {1.5, 0})), InputError);
+  EXPECT_THROW(parsed(with("/stray/ghost", {1, -1})), InputError);
   EXPECT_THROW(parsed(with("/plots", json(std::vector<std::string>(17, "mtf")))), InputError);
 }
 

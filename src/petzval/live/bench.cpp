@@ -43,6 +43,13 @@ std::string optics_key(const BenchState& state) {
                      state.distance_m.value_or(0), state.defocus_mm);
 }
 
+std::string stray_key_of(const BenchState& state) {
+  const Sun sun = state.sun.value_or(Sun{});
+  const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
+                     state.ghosts, state.starburst, state.roughness_nm, ghost.first, ghost.second);
+}
+
 /// As the picture uses it: focused, and the object where the scene stands.
 Lens used_for_scene(Camera camera, const std::optional<double>& distance_m, const Context& context) {
   const double scene_m = distance_m.value_or(INFINITY);
@@ -153,6 +160,11 @@ struct Bench::Impl {
   void show_layout(const BenchState& state) const;
   void show_plots(const BenchState& state);
   void show_psf(const BenchState& state, const Context& context) const;
+  void show_stray(const BenchState& state) const;
+  std::string sensor_path(const BenchState& state) const {
+    const auto found = sensor_paths.find(state.sensor);
+    return found == sensor_paths.end() ? state.sensor : found->second;
+  }
 };
 
 void Bench::Impl::show_layout(const BenchState& state) const {
@@ -173,6 +185,14 @@ void Bench::Impl::show_psf(const BenchState& state, const Context& context) cons
              {"captured", psf.captured}}
             .dump(),
         float_bytes(psf.rgb), true});
+}
+
+void Bench::Impl::show_stray(const BenchState& state) const {
+  const double sensor_reflectance = read_sensor(sensor_path(state)).reflectance.value_or(0.0);
+  json message = stray_json(use.lens, state.sun, state.ghost, sensor_reflectance);
+  message["kind"] = "stray";
+  message["id"] = state.id;
+  tell(message);
 }
 
 void Bench::Impl::show_plots(const BenchState& state) {
@@ -214,22 +234,26 @@ void Bench::Impl::show(const BenchState& state) {
     use.key = key;
   }
   if (!stage(state.id, "layout", key, [&](const Context&) { show_layout(state); })) return;
+  const std::string stray_key = stray_key_of(state);
   const auto picture = [&](const char* name, PictureQuality quality) {
     const auto scene = scene_paths.find(state.scene);
-    const auto sensor = sensor_paths.find(state.sensor);
     // The picture knows itself whether it is new.
     const auto work = [&](const Context& context) {
       pictures.show(state, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
-                    sensor == sensor_paths.end() ? state.sensor : sensor->second, quality, context, send);
+                    sensor_path(state), quality, context, send);
     };
-    return stage(state.id, name,
-                 fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, state.scene, state.illuminant,
-                             state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
-                             state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
-                 work);
+    return stage(
+        state.id, name,
+        fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, stray_key, state.scene, state.illuminant,
+                    state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
+                    state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
+        work);
   };
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
+  if (state.sun || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
+    stage(state.id, "stray", fmt::format("{}|{}|{}", key, stray_key, state.sensor),
+          [&](const Context&) { show_stray(state); });
   const bool previewed = state.picture && picture("preview", PictureQuality::preview);
   show_plots(state);
   if (previewed) {

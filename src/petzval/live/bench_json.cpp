@@ -3,7 +3,10 @@
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/field_values.h>
+#include <petzval/analysis/ghosts.h>
 #include <petzval/analysis/ray_fan.h>
+#include <petzval/base/units.h>
+#include <petzval/flare/ghost_fan.h>
 #include <petzval/glass/catalogue.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/live/bench_json.h>
@@ -101,6 +104,42 @@ LayoutRays layout_rays(const Lens& lens) {
   return rays;
 }
 
+/// Rays of the sun, as far from the axis as it stands, or else along it.
+json ghost_way(const Lens& lens, const std::optional<Sun>& sun, const GhostPair& pair,
+               double sensor_reflectance) {
+  if (pair.first > lens.surfaces.size()) return json::array();
+  constexpr int rays_a_source = 7;
+  constexpr double lead = 0.25;  // of the length of the lens
+  const GhostTracer tracer(lens, lens.reference_wavelength_nm, {}, sensor_reflectance);
+  BrightSource source;
+  if (sun) {
+    const double up = std::tan(radians(sun->up_deg));
+    source.up = std::copysign(std::hypot(std::tan(radians(sun->right_deg)), up), up);
+  }
+  json rays = json::array();
+  for (const GhostRay& ray :
+       ghost_fan(tracer, pair, SourceBeam(source), rays_a_source, lead * lens.total_track_mm()))
+    rays.push_back(points_json({ray.begin(), ray.end()}));
+  return rays;
+}
+
+json sky_heights(Lens lens) {
+  constexpr int steps = 32;
+  constexpr double most_deg = 79;
+  lens.object_distance_mm.reset();
+  FieldTracer tracer(lens, lens.reference_wavelength_nm, Tracer::Clip::stop_only);
+  json heights = json::array({{0, 0}});
+  double before = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double angle_deg = most_deg * i / steps;
+    const std::optional<ChiefRay> chief = tracer.chief_ray(angle_deg);
+    if (!chief || !(std::abs(chief->image_height_mm) > before)) break;
+    before = std::abs(chief->image_height_mm);
+    heights.push_back({std::tan(radians(angle_deg)), before});
+  }
+  return heights;
+}
+
 /// A number of a search such as "1.62 60".
 std::optional<std::array<double, 2>> two_numbers(const std::string& text) {
   double nd = 0, vd = 0;
@@ -194,6 +233,20 @@ json layout_json(const Lens& lens) {
           {"image_z", z},
           {"image_height", image_height},
           {"first_order", first_order_json(lens)}};
+}
+
+json stray_json(const Lens& lens, const std::optional<Sun>& sun, const std::optional<GhostPair>& ghost,
+                double sensor_reflectance) {
+  json rows = json::array();
+  for (const Ghost& each : ghosts(lens, {.sensor_reflectance = sensor_reflectance}))
+    rows.push_back({{"first", each.first},
+                    {"second", each.second},
+                    {"focus_mm", finite_or_null(each.focus_mm)},
+                    {"diameter_mm", finite_or_null(each.diameter_mm)},
+                    {"relative_irradiance", finite_or_null(each.relative_irradiance)}});
+  return {{"ghosts", std::move(rows)},
+          {"way", ghost ? ghost_way(lens, sun, *ghost, sensor_reflectance) : json::array()},
+          {"sky", sky_heights(lens)}};
 }
 
 std::string blocking_surface(const Tracer& tracer, const Lens& lens, double object_field, int& surface) {

@@ -7,6 +7,7 @@
 #include <petzval/trace/tracer.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 namespace petzval {
@@ -17,6 +18,12 @@ nlohmann::json plot_json(const Plot& plot);
 /// Surfaces, glass, rays and first-order data of a lens as it is used. Where no ray of a field passes,
 /// "blocked" says which surface is in the way.
 nlohmann::json layout_json(const Lens& lens);
+
+/// Ghosts of the lens, the brightest first; the way of one of them through it, of the sun's light or
+/// else of light along the axis; and where on the sensor light from infinity lands: pairs of the tangent of
+/// its angle from the axis and its height [mm]. \throws InputError for lenses that have no ghosts to follow.
+nlohmann::json stray_json(const Lens& lens, const std::optional<Sun>& sun,
+                          const std::optional<GhostPair>& ghost, double sensor_reflectance);
 
 /// What keeps the light of an object field from the sensor, in a line: "rays miss surface 3". Told by the
 /// rays of a fan that get farthest. \param surface  its number; -1: none is to blame.

@@ -3,14 +3,15 @@
 #include <petzval/base/error.h>
 #include <petzval/imaging/image_table.h>
 #include <petzval/live/bench_picture.h>
-#include <petzval/live/bench_sensor.h>
+#include <petzval/sensor/colour_calibration.h>
+#include <petzval/simulate/flare.h>
+#include <petzval/simulate/prepared_exposure.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace petzval {
-
-namespace {
 
 /// What a quality costs. The bands of a preview lie where the three channels of a camera are most sensitive.
 struct QualityCost {
@@ -20,16 +21,13 @@ struct QualityCost {
   const char* wavelengths;  ///< the same, as they are typed
   double tolerance;
   int fields, largest_psf_size;
+  double neglected_ghosts;  ///< share of their light
 };
 
-const QualityCost& cost_of(PictureQuality quality) {
-  static const QualityCost preview{"preview", 160, 320, {460, 540, 610}, "460,540,610", 5e-2, 6, 48};
-  static const QualityCost full{
-      "full",       640,
-      960,          {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
-      "400:20:700", 1e-2,
-      16,           128};
-  return quality == PictureQuality::preview ? preview : full;
+namespace {
+
+QualityCost preview_cost(int most_columns, int scene_columns) {
+  return {"preview", most_columns, scene_columns, {460, 540, 610}, "460,540,610", 2e-2, 6, 64, 1e-2};
 }
 
 /// All that the light on the sensor depends on.
@@ -39,11 +37,19 @@ std::string light_key_of(const BenchState& state) {
                      state.illuminant, state.sensor);
 }
 
+/// All that stray light depends on besides the light of the picture.
+std::string stray_light_key(const BenchState& state) {
+  if (!state.sun && state.roughness_nm == 0) return {};
+  const Sun sun = state.sun.value_or(Sun{});
+  return fmt::format("{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg, state.ghosts,
+                     state.starburst, state.roughness_nm);
+}
+
 /// And what its picture does, besides.
 std::string shown_key_of(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", light_key_of(state), static_cast<int>(state.exposure.kind),
-                     state.exposure.value, state.compensation_ev, state.noise, state.denoise, state.sharpen,
-                     state.tone);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", light_key_of(state), stray_light_key(state),
+                     static_cast<int>(state.exposure.kind), state.exposure.value, state.compensation_ev,
+                     state.noise, state.denoise, state.sharpen, state.tone);
 }
 
 OutputOptions output_options(const BenchState& state) {
@@ -109,16 +115,31 @@ ImagingSession session_of(const std::string& scene_path, const std::string& illu
   return ImagingSession(std::move(request), std::move(options));
 }
 
+/// Levels of a display by their linear light, which is asked for every pixel.
+class DisplayLevels {
+ public:
+  DisplayLevels() {
+    for (std::size_t i = 0; i <= steps; ++i)
+      levels_[i] = quantised_8(srgb_encoded(static_cast<double>(i) / steps));
+  }
+  std::uint8_t operator()(double linear) const {
+    return linear > 0 ? levels_[static_cast<std::size_t>(std::min(linear, 1.0) * steps + 0.5)] : levels_[0];
+  }
+
+ private:
+  static constexpr std::size_t steps = 1 << 14;  // the steepest level is four of them wide
+  std::array<std::uint8_t, steps + 1> levels_{};
+};
+
 /// RGBA of 8 bits, as a canvas takes them.
 std::vector<std::uint8_t> pixels_of(const Planes& planes) {
-  std::vector<std::uint8_t> pixels;
+  static const DisplayLevels level;
   const std::size_t count = static_cast<std::size_t>(planes.columns) * static_cast<std::size_t>(planes.rows);
-  pixels.reserve(4 * count);
+  std::vector<std::uint8_t> pixels(4 * count, 255);
   const std::size_t channels = planes.values.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < 3; ++c)
-      pixels.push_back(quantised_8(srgb_encoded(planes.values[std::min(c, channels - 1)][i])));
-    pixels.push_back(255);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto& plane = planes.values[std::min(c, channels - 1)];
+    for (std::size_t i = 0; i < count; ++i) pixels[4 * i + c] = level(plane[i]);
   }
   return pixels;
 }
@@ -134,73 +155,142 @@ std::vector<std::uint8_t> pixels_of(const PngImage& picture) {
   return pixels;
 }
 
+/// The picture with a sun, its ghosts and its star, and with what surfaces scatter.
+SpectralImage with_stray_light(const BenchState& state, const Lens& used, const Sensor& sensor, double psf_mm,
+                               const QualityCost& cost, const SpectralImage& light, const Context& context) {
+  FlareOptions options;
+  if (state.sun) options.suns = {*state.sun};
+  options.ghosts = state.sun && state.ghosts;
+  options.starburst = state.sun && state.starburst;
+  options.neglected_share = cost.neglected_ghosts;
+  const LitLens lens{used, {}, Tracer::Clip::apertures, sensor.reflectance.value_or(0.0), psf_mm};
+  SpectralImage stray = light;
+  FlareLayers layers =
+      flare_layers(lens, sensor.geometry, light.wavelengths_nm(), SourcesFound{}, options, context);
+  add_layers(layers, stray);
+  if (state.roughness_nm > 0) {
+    options.surfaces_scatter = Scatter{.roughness_nm = state.roughness_nm};
+    add_scatter(lens, options, layers, stray, context);
+  }
+  return stray;
+}
+
+const QualityCost full_cost{
+    "full",       640,  960, {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
+    "400:20:700", 1e-2, 16,  128,
+    1e-3};
+const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), preview_cost(640, 960)};
+
 }  // namespace
+
+bool BenchPicture::form_light(Shot& shot, const BenchState& state, const Lens& used,
+                              const std::string& scene_path, const std::string& sensor_path,
+                              const QualityCost& cost, const Context& context) {
+  const std::string light_key = light_key_of(state);
+  bool in_stride = false;
+  if (shot.light_key != light_key || !shot.light) {
+    shot.light_key.clear();
+    shot.stray_key.clear();
+    int most_columns = cost.most_columns;
+    if (const Shot& preview = previews_[preview_size_]; &shot == &full_ && preview.light_key == light_key)
+      most_columns = columns_for(preview.spread_um, preview.sensor.sensor.geometry.width_mm(),
+                                 preview_costs[0].most_columns, cost.most_columns);
+    const std::string sensor_key = fmt::format("{}|{}", sensor_path, most_columns);
+    if (shot.sensor_key != sensor_key) {
+      shot.sensor_key.clear();
+      shot.sensor = binned_sensor(sensor_path, most_columns);
+      shot.calibrations = shot.sensor.sensor.electronics ? standard_calibrations(shot.sensor.sensor)
+                                                         : std::vector<ColourCalibration>{};
+      shot.sensor_key = sensor_key;
+    }
+    TableCamera optics = bench_optics(used, shot.sensor.sensor, cost, context);
+    shot.spread_um = spread_um(optics.table);
+    ImageReport report;
+    const std::string scene_key = scene_path + '|' + state.illuminant;
+    in_stride = shot.scene_key == scene_key && shot.session;
+    if (!in_stride) shot.session = session_of(scene_path, state.illuminant, cost);
+    shot.scene_key = scene_key;
+    shot.light = shot.session->image(std::move(optics), context, &report);
+    shot.method = report.method;
+    shot.light_key = light_key;
+  }
+  const std::string stray_key = stray_light_key(state);
+  if (shot.stray_key != stray_key || stray_key.empty()) {
+    shot.stray_key.clear();
+    shot.stray.reset();
+    constexpr double mm_per_um = 1e-3;
+    if (!stray_key.empty())
+      shot.stray = with_stray_light(state, used, shot.sensor.sensor, shot.spread_um * mm_per_um, cost,
+                                    *shot.light, context);
+    shot.stray_key = stray_key;
+  }
+  return in_stride;
+}
+
+void BenchPicture::choose_preview(double seconds) {
+  // The next size takes two to three times as long.
+  constexpr double too_long_s = 0.13, short_s = 0.045;
+  if (seconds > too_long_s && preview_size_ > 0)
+    --preview_size_;
+  else if (seconds < short_s && preview_size_ + 1 < preview_sizes)
+    ++preview_size_;
+}
 
 void BenchPicture::show(const BenchState& state, const Lens& used, const std::string& scene_path,
                         const std::string& sensor_path, PictureQuality quality, const Context& context,
                         const SendReply& send) {
-  Shot& shot = shots_[quality == PictureQuality::full ? 1 : 0];
-  const std::string light_key = light_key_of(state), shown_key = shown_key_of(state);
+  const bool full = quality == PictureQuality::full;
+  Shot& shot = full ? full_ : previews_[preview_size_];
+  const QualityCost& cost = full ? full_cost : preview_costs[preview_size_];
+  const std::string shown_key = shown_key_of(state);
   if (shot.shown_key == shown_key) return;
-  const QualityCost& cost = cost_of(quality);
-  if (shot.light_key != light_key || !shot.light) {
-    shot.light_key.clear();
-    int most_columns = cost.most_columns;
-    if (quality == PictureQuality::full && shots_[0].light_key == light_key)
-      most_columns = columns_for(shots_[0].spread_um, shots_[0].sensor->geometry.width_mm(),
-                                 cost_of(PictureQuality::preview).most_columns, cost.most_columns);
-    BinnedSensor binned = binned_sensor(sensor_path, most_columns);
-    TableCamera optics = bench_optics(used, binned.sensor, cost, context);
-    shot.spread_um = spread_um(optics.table);
-    ImageReport report;
-    const std::string scene_key = scene_path + '|' + state.illuminant;
-    if (shot.scene_key != scene_key || !shot.session)
-      shot.session = session_of(scene_path, state.illuminant, cost);
-    shot.scene_key = scene_key;
-    shot.light = shot.session->image(std::move(optics), context, &report);
-    shot.sensor = std::move(binned.sensor);
-    shot.sensor_settings = std::move(binned.settings);
-    shot.pixels_added = binned.pixels_added;
-    shot.method = report.method;
-    shot.light_key = light_key;
-  }
-  shot.shown_key.clear();
+  const auto began = std::chrono::steady_clock::now();
+  const bool in_stride = form_light(shot, state, used, scene_path, sensor_path, cost, context);
+  for (Shot& other : previews_)
+    if (!full) other.shown_key.clear();
+  if (full) shot.shown_key.clear();
   shot.outputs = output_options(state);
+  const Sensor& sensor = shot.sensor.sensor;
   std::vector<std::uint8_t> pixels;
   std::string exposure;
-  if (develops(shot.outputs, shot.sensor)) {
-    const RawImage raw = expose(*shot.light, *shot.sensor, shot.outputs.expose, context);
+  if (develops(shot.outputs, sensor)) {
+    const RawImage raw = result_within(context, [&](const ProgressCallback&) {
+      const PreparedExposure exposed(shot.lit(), sensor, shot.outputs.expose, context, shot.calibrations);
+      return exposed.raw({&exposed.first_current(), 1}, context.seed);
+    });
     exposure = fmt::format("{:.4g} s", raw.exposure_s);
     pixels = pixels_of(develop(raw, shot.outputs.development, context).planes);
   } else {
-    pixels = pixels_of(srgb_picture(*shot.light, shot.outputs.shown));
+    pixels = pixels_of(srgb_picture(shot.lit(), shot.outputs.shown));
     exposure = "light on the sensor";
   }
-  const SensorGeometry& frame = shot.sensor->geometry;
+  const SensorGeometry& frame = sensor.geometry;
   send({nlohmann::json{{"kind", "picture"},
                        {"id", state.id},
                        {"quality", cost.name},
                        {"columns", frame.columns},
                        {"rows", frame.rows},
                        {"pitch_um", frame.pitch_um},
-                       {"pixels_added", shot.pixels_added},
+                       {"pixels_added", shot.sensor.pixels_added},
                        {"bands", shot.light->bands()},
                        {"wavelengths", cost.wavelengths},
                        {"tolerance", cost.tolerance},
                        {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
-                       {"sensor_settings", shot.sensor_settings},
+                       {"sensor_settings", shot.sensor.settings},
                        {"exposure", exposure},
                        {"method", shot.method}}
             .dump(),
         std::move(pixels), true});
   shot.shown_key = shown_key;
+  if (in_stride && !full)
+    choose_preview(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
 }
 
 void BenchPicture::write(const std::string& path, const Context& context) const {
-  const Shot& shot = shots_[1];
+  const Shot& shot = full_;
   if (!shot.light || shot.shown_key.empty())
     throw InputError("there is no full picture yet; wait until it is no preview");
-  write_outputs(*shot.light, {path}, shot.sensor, shot.outputs, context);
+  write_outputs(shot.lit(), {path}, shot.sensor.sensor, shot.outputs, context);
 }
 
 }  // namespace petzval

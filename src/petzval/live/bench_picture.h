@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/live/bench.h>
+#include <petzval/live/bench_sensor.h>
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/imaging_session.h>
 #include <petzval/simulate/outputs.h>
@@ -16,7 +17,7 @@ namespace petzval {
 
 /// How much a picture is to tell.
 enum class PictureQuality {
-  preview,  ///< at most 160 pixels across, three bands, blur to a twentieth
+  preview,  ///< as many pixels as are made in a tenth of a second, three bands, blur to a fiftieth
   full      ///< at most 640 pixels across, fewer of a blur that is wide, 16 bands, blur to a hundredth
 };
 
@@ -34,18 +35,28 @@ class BenchPicture {
 
  private:
   struct Shot {
-    std::string light_key = {}, shown_key = {};
-    std::string scene_key = {};
+    std::string light_key = {}, stray_key = {}, shown_key = {};
+    std::string scene_key = {}, sensor_key = {};
     std::optional<ImagingSession> session = {};  ///< of the scene
-    std::optional<SpectralImage> light = {};
-    std::optional<Sensor> sensor = {};
-    std::vector<std::string> sensor_settings = {};
-    int pixels_added = 1;
-    double spread_um = 0;  ///< how far light spreads about its chief ray
+    std::optional<SpectralImage> light = {};     ///< without what goes astray
+    std::optional<SpectralImage> stray = {};     ///< with it; absent: nothing does
+    BinnedSensor sensor = {};
+    std::vector<ColourCalibration> calibrations = {};  ///< of the sensor
+    double spread_um = 0;                              ///< how far light spreads about its chief ray
     OutputOptions outputs = {};
     std::string method = {};
+
+    const SpectralImage& lit() const { return stray ? *stray : *light; }
   };
-  Shot shots_[2];
+  /// Forms the light unless it holds. \returns whether a scene was there already and light was formed anew.
+  bool form_light(Shot& shot, const BenchState& state, const Lens& used, const std::string& scene_path,
+                  const std::string& sensor_path, const struct QualityCost& cost, const Context& context);
+  /// How many pixels a preview has from now on, by how long the last one took.
+  void choose_preview(double seconds);
+
+  static constexpr std::size_t preview_sizes = 3;
+  Shot previews_[preview_sizes], full_;
+  std::size_t preview_size_ = 1;
 };
 
 }  // namespace petzval

@@ -12,7 +12,7 @@ namespace petzval {
 /// A sensor whose pixels are added up k × k, and the settings of its file that make it so ("pitch_um=35.82"),
 /// by which `read_sensor(name, settings)` makes it anywhere.
 struct BinnedSensor {
-  Sensor sensor;
+  Sensor sensor = {};
   std::vector<std::string> settings = {};  ///< none: the sensor as it is
   int pixels_added = 1;                    ///< k
 };

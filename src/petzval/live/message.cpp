@@ -37,6 +37,13 @@ std::int64_t id_of(const JsonEntry& message) {
   return static_cast<std::int64_t>(id);
 }
 
+std::size_t surface_of(const JsonEntry& entry) {
+  constexpr double most = 1000;
+  const double number = number_within(entry, 0, most);
+  if (number != std::floor(number)) entry.fail("must be a whole number");
+  return static_cast<std::size_t>(number);
+}
+
 std::string short_text(const JsonEntry& entry) {
   std::string text = entry.text("a text");
   if (text.size() > most_name_bytes) entry.fail(fmt::format("must be of at most {} bytes", most_name_bytes));
@@ -69,9 +76,32 @@ void read_shot(const JsonEntry& shot, BenchState& state) {
   state.sharpen = number_within(shot.at("sharpen"), 0, 10);
 }
 
+/// Angles of a sun reach as far as Sun::at() takes them.
+void read_stray(const JsonEntry& stray, BenchState& state) {
+  stray.allow_only({"sun_deg", "ghosts", "starburst", "roughness_nm", "ghost"});
+  if (const JsonEntry sun = stray.at("sun_deg"); !sun.is_null()) {
+    constexpr double most_deg = 79;
+    const std::vector<JsonEntry> angles = sun.items("two numbers");
+    if (angles.size() != 2) sun.fail("must be two numbers");
+    state.sun.emplace();
+    state.sun->right_deg = number_within(angles[0], -most_deg, most_deg);
+    state.sun->up_deg = number_within(angles[1], -most_deg, most_deg);
+  }
+  state.ghosts = stray.at("ghosts").truth();
+  state.starburst = stray.at("starburst").truth();
+  state.roughness_nm = number_within(stray.at("roughness_nm"), 0, 100);
+  if (const JsonEntry ghost = stray.at("ghost"); !ghost.is_null()) {
+    const std::vector<JsonEntry> pair = ghost.items("two surfaces");
+    if (pair.size() != 2) ghost.fail("must be two surfaces");
+    state.ghost = GhostPair{surface_of(pair[0]), surface_of(pair[1])};
+    if (state.ghost->first <= state.ghost->second)
+      ghost.fail("must be the surface that reflects first and one in front of it");
+  }
+}
+
 BenchState read_state(const JsonEntry& message, const JsonDocument& document, const LiveNames& names) {
-  message.allow_only({"kind", "id", "lens", "camera", "scene", "illuminant", "sensor", "shot", "cursor_mm",
-                      "plots", "picture"});
+  message.allow_only({"kind", "id", "lens", "camera", "scene", "illuminant", "sensor", "shot", "stray",
+                      "cursor_mm", "plots", "picture"});
   BenchState state;
   state.id = id_of(message);
   if (!message.at("lens").is_object()) message.at("lens").fail("must be a lens");
@@ -82,6 +112,7 @@ BenchState read_state(const JsonEntry& message, const JsonDocument& document, co
   state.sensor = one_of(message.at("sensor"), names.sensors);
   read_shot(message.at("shot"), state);
   state.tone = one_of(message.at("shot").at("tone"), names.tones);
+  read_stray(message.at("stray"), state);
   const std::vector<JsonEntry> cursor = message.at("cursor_mm").items("two numbers");
   if (cursor.size() != 2) message.at("cursor_mm").fail("must be two numbers");
   for (std::size_t i = 0; i < 2; ++i) state.cursor_mm[i] = number_within(cursor[i], -1e4, 1e4);

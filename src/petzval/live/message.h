@@ -2,7 +2,9 @@
 // What a page may say to the live server. Whatever else comes is refused (docs/LIVE.md, "Protocol").
 #pragma once
 
+#include <petzval/flare/ghost_way.h>
 #include <petzval/simulate/expose.h>
+#include <petzval/simulate/flare.h>
 #include <petzval/simulate/focus.h>
 
 #include <array>
@@ -38,7 +40,12 @@ struct BenchState {
   double denoise = 0, sharpen = 0;
   std::string tone = "none";
   std::array<double, 2> cursor_mm =
-      {};  ///< a place on the sensor, as the upright picture shows it: x right, y up
+      {};                       ///< a place on the sensor, as the upright picture shows it: x right, y up
+  std::optional<Sun> sun = {};  ///< added to the scene
+  bool ghosts = false;          ///< of the sun
+  bool starburst = false;       ///< of the sun
+  double roughness_nm = 0;      ///< of surfaces that do not say how they scatter; 0: nothing scatters
+  std::optional<GhostPair> ghost = {};  ///< whose way the layout shows
   std::vector<std::string> plots = {};  ///< analyses that are shown
   bool picture = true;
 };

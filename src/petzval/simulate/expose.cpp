@@ -119,7 +119,7 @@ RawImage captured(const ExposeOptions& options, const Sensor& sensor, std::span<
 }  // namespace
 
 PreparedExposure::PreparedExposure(const SpectralImage& light, Sensor sensor, const ExposeOptions& options,
-                                   const Context& context)
+                                   const Context& context, std::vector<ColourCalibration> calibrations)
     : sensor_(altered(std::move(sensor), options)), options_(options) {
   const SensorElectronics& electronics = *sensor_.electronics;
   note_unmeasured_light(light, sensor_, context);
@@ -127,7 +127,7 @@ PreparedExposure::PreparedExposure(const SpectralImage& light, Sensor sensor, co
   current_ = current(light);
   seconds_ = exposure_s(options, light, current_, electronics.saturation_e(mode, options.analog_gain));
 
-  facts_.calibrations = standard_calibrations(sensor_);
+  facts_.calibrations = calibrations.empty() ? standard_calibrations(sensor_) : std::move(calibrations);
   facts_.as_shot_neutral = neutral(options, light, sensor_, current_, context);
   constexpr const char* daylight = "D55";
   facts_.iso = saturation_speed(sensor_, mode, options.analog_gain, illuminant(daylight));

@@ -12,8 +12,10 @@ namespace petzval {
 class PreparedExposure {
  public:
   /// \param light  that exposure and white balance are measured on. \throws InputError as expose().
+  /// \param calibrations  standard_calibrations() of the sensor where they are known, for they cost more than
+  /// a small picture; empty: they are worked out.
   PreparedExposure(const SpectralImage& light, Sensor sensor, const ExposeOptions& options,
-                   const Context& context);
+                   const Context& context, std::vector<ColourCalibration> calibrations = {});
 
   double seconds() const { return seconds_; }
   void set_seconds(double seconds) { seconds_ = seconds; }
