@@ -14,9 +14,10 @@ constexpr double b = 1;  // pixels: scale of the closed-form part
 
 /// 550 nm at f/8 on pixels of 4.73 µm.
 constexpr double usual_airy_px = 0.93;
-/// Standard deviations of an offset [pixels], of the logarithm of the Airy disc's width, and of the variance
-/// [pixels²], that are expected of edges of the family.
-constexpr double shape_spread[] = {1, 1, 4};
+/// Standard deviations of the logarithm of the Airy disc's width, and of a variance below 0 [pixels²].
+constexpr double airy_spread = 1, sharpened_spread = 0.04;
+/// The same of a variance above 0, and of an offset [pixels].
+constexpr double variance_spread = 4, offset_spread_px = 1;
 constexpr double least_variance = -0.1;
 constexpr double tail_spread_px = 0.06;
 
@@ -26,7 +27,7 @@ constexpr double least_smoothing = 1e-12;
 /// step.
 constexpr double edge_roughness = 0.1;
 /// The same of the least deviations from the family that are reckoned with, over those.
-const double least_deviation = getenv("LD") ? atof(getenv("LD")) : 0.01;
+constexpr double least_deviation = 0.01;
 /// Greatest weight of the roughness far from the edge, over that at the edge.
 constexpr double most_weight = 1e8;
 
@@ -186,18 +187,17 @@ BorderedBand EdgeSpreadModel::to_family(const BorderedBand& matrix) const {
   return result;
 }
 
-void EdgeSpreadModel::add_shape_priors(BorderedBand& normal) const {
-  for (int k = 0; k < shapes; ++k) {
-    const double weight = options_.noise / shape_spread[k];
-    double& entry = normal.at(splines_ + closed_forms + k, splines_ + closed_forms + k);
-    // Along the pixel grid, what a shape does may be nothing at all.
-    entry += weight * weight + 1e-12 * entry;
-  }
+/// Of the offset, and of what is still to be added to the shape.
+std::array<EdgeSpreadModel::ShapePrior, EdgeSpreadModel::shapes> EdgeSpreadModel::shape_priors() const {
+  const EdgeShape& shape = options_.shape;
+  const auto weight = [&](double spread) { return options_.noise * options_.noise / (spread * spread); };
+  return {{{0, weight(offset_spread_px)},
+           {std::log(usual_airy_px) - shape.log_airy, weight(airy_spread)},
+           {-shape.variance, weight(shape.variance < 0 ? sharpened_spread : variance_spread)}}};
 }
 
 /// The shape that fits best alone, by Gauss and Newton's method.
 void EdgeSpreadModel::find_shape(double step_guess) {
-  const double usual = std::log(usual_airy_px), noise2 = options_.noise * options_.noise;
   constexpr int most_rounds = 8, first_light = 2 + shapes;
   EdgeShape& shape = options_.shape;
   for (int round = 0; round < most_rounds; ++round) {
@@ -216,9 +216,12 @@ void EdgeSpreadModel::find_shape(double step_guess) {
       for (int s = 0; s <= r; ++s)
         normal(r, s) = normal(s, r) = all.at(row, splines_ + rows[static_cast<std::size_t>(s)]);
     }
-    for (int k = 0; k < shapes; ++k)
-      normal(2 + k, 2 + k) += noise2 / (shape_spread[k] * shape_spread[k]) + 1e-9 * normal(2 + k, 2 + k);
-    side[3] += noise2 / (shape_spread[1] * shape_spread[1]) * (usual - shape.log_airy);
+    const auto priors = shape_priors();
+    for (int k = 0; k < shapes; ++k) {
+      const ShapePrior& prior = priors[static_cast<std::size_t>(k)];
+      normal(2 + k, 2 + k) += prior.weight + 1e-9 * normal(2 + k, 2 + k);
+      side[2 + k] += prior.weight * prior.mean;
+    }
     const Eigen::VectorXd change = normal.ldlt().solve(side);
     if (!change.allFinite()) return;
     const double most_variance = 0.1 + 0.5 * std::abs(shape.variance);
@@ -235,15 +238,16 @@ void EdgeSpreadModel::find_shape(double step_guess) {
 BorderedBand EdgeSpreadModel::roughness(double rough) const {
   BorderedBand matrix(splines_, fixed() + shapes);
   for (int j = -3; j < splines_; ++j) {
-    // A line spread that falls as 1/d² has curvature that falls as 1/d⁴.
+    // What a line spread may be off by falls as 1/d², as it does itself.
     const double d = (j + 1.5 - 0.5 * (splines_ - 1)) * options_.knot_px / options_.blur_px;
-    const double square = (1 + d * d) * (1 + d * d), weight = std::min(square * square, most_weight);
+    const double weight = std::min((1 + d * d) * (1 + d * d), most_weight);
     constexpr double difference[4] = {-1, 3, -3, 1};
     for (int p = std::max(0, -j); p < 4 && j + p < splines_; ++p)
       for (int q = std::max(0, -j); q <= p; ++q)
         matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
   }
-  const double weight1 = rough / tail_spread_px, weight3 = weight1 / (4 * options_.blur_px * options_.blur_px);
+  const double weight1 = rough / tail_spread_px,
+               weight3 = weight1 / (4 * options_.blur_px * options_.blur_px);
   matrix.at(splines_ + 2, splines_ + 2) = weight1 * weight1;
   matrix.at(splines_ + 3, splines_ + 3) = weight3 * weight3;
   return matrix;
@@ -290,8 +294,15 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     set_family(step_guess);
   family_normal_ = to_family(data_normal_);
   BorderedBand normal = family_normal_;
-  add_shape_priors(normal);
-  const Eigen::VectorXd right = to_family(right_);
+  Eigen::VectorXd right = to_family(right_);
+  const auto priors = shape_priors();
+  for (int k = 0; k < shapes; ++k) {
+    const ShapePrior& prior = priors[static_cast<std::size_t>(k)];
+    const int at = splines_ + closed_forms + k;
+    // Along the pixel grid, what a shape does may be nothing at all.
+    normal.at(at, at) += prior.weight + 1e-12 * normal.at(at, at);
+    right[at] += prior.weight * prior.mean;
+  }
   const double count = static_cast<double>(points.size());
   const double unit = count * options_.knot_px / (2 * options_.core_px);
   const double rough = edge_roughness * std::pow(options_.knot_px / (0.25 * options_.blur_px), 3);
@@ -314,13 +325,18 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     // What an edge of any shape can bear, and what one can that is nearly of the family.
     const double bearable = std::pow(options_.noise / (rough * step_guess), 2) / unit;
     const double most = std::max(least_smoothing, bearable / (least_deviation * least_deviation));
-    constexpr double factor = 4;
     const double from = std::max(least_smoothing, options_.least_smoothing_share * bearable);
-    for (double smoothing = from; smoothing < factor * most; smoothing *= factor)
-      if (Solved solved = solve(std::min(smoothing, most)); solved.criterion < best.criterion) {
+    const auto try_with = [&](double smoothing) {
+      if (Solved solved = solve(smoothing); solved.criterion < best.criterion) {
         best = std::move(solved);
-        options_.smoothing = std::min(smoothing, most);
+        options_.smoothing = smoothing;
       }
+    };
+    // In steps of 16, then of 4.
+    for (double smoothing = from; smoothing < 16 * most; smoothing *= 16) try_with(std::min(smoothing, most));
+    const double chosen = options_.smoothing;
+    for (const double smoothing : {0.25 * chosen, 4 * chosen})
+      if (smoothing >= from && smoothing <= most) try_with(smoothing);
   } else {
     options_.smoothing = std::max(options_.smoothing, least_smoothing);
     best = solve(options_.smoothing);
@@ -541,22 +557,56 @@ void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient,
   });
 }
 
+std::vector<BorderedBand::Block> EdgeSpreadModel::Deviation::solved_gradients(
+    std::span<const double> frequencies_cpp) const {
+  constexpr std::size_t lanes = BorderedBand::lanes;
+  std::vector<BorderedBand::Block> blocks;
+  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
+    BorderedBand::Block x = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
+    for (std::size_t k = first; k < std::min(first + lanes, frequencies_cpp.size()); ++k)
+      gradient_of_modulus(frequencies_cpp[k], x.data() + (k - first), BorderedBand::lanes);
+    blocks.push_back(model_.to_family(x));
+    model_.factor_.solve_in_place(blocks.back());
+  }
+  return blocks;
+}
+
 std::vector<double> EdgeSpreadModel::Deviation::of_moduli(std::span<const double> frequencies_cpp) const {
   constexpr std::size_t lanes = BorderedBand::lanes;
   std::vector<double> deviations;
-  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
-    BorderedBand::Block x = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
-    const std::size_t count = std::min(lanes, frequencies_cpp.size() - first);
-    for (std::size_t k = 0; k < count; ++k)
-      gradient_of_modulus(frequencies_cpp[first + k], x.data() + k, BorderedBand::lanes);
-    x = model_.to_family(x);
-    model_.factor_.solve_in_place(x);
-    std::array<double, lanes> variance = spread_.quadratic(x);
-    for (std::size_t k = 0; k < count; ++k) {
-      variance[k] += quadratic_of_rounding(x, static_cast<int>(k));
-      deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
-    }
+  for (const BorderedBand::Block& x : solved_gradients(frequencies_cpp)) {
+    const std::array<double, lanes> variance = spread_.quadratic(x);
+    for (std::size_t k = 0; k < lanes && deviations.size() < frequencies_cpp.size(); ++k)
+      deviations.push_back(
+          std::sqrt(std::max(0.0, variance[k] + quadratic_of_rounding(x, static_cast<int>(k)))));
   }
+  return deviations;
+}
+
+std::vector<double> EdgeSpreadModel::Deviation::of_moduli_by_parts(
+    std::span<const EdgePoint> points, std::span<const double> residuals, double length_px,
+    std::span<const double> frequencies_cpp) const {
+  constexpr std::size_t lanes = BorderedBand::lanes;
+  constexpr double part_px = 10;
+  const int parts = std::clamp(static_cast<int>(length_px / part_px), 3, BorderedBand::lanes);
+  BorderedBand::Block all = BorderedBand::Block::Zero(model_.padded() + model_.fixed(), BorderedBand::lanes);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Row& row = model_.rows_[i];
+    const int part = std::clamp(static_cast<int>(0.5 * (points[i].along + 1) * parts), 0, parts - 1);
+    for (int p = 0; p < support && row.first >= 0; ++p)
+      all(row.first + p, part) += row.splines[static_cast<std::size_t>(p)] * residuals[i];
+    for (int r = 0; r < model_.fixed(); ++r)
+      all(model_.padded() + r, part) += row.fixed[static_cast<std::size_t>(r)] * residuals[i];
+  }
+  BorderedBand::Block sums(model_.coefficients_.size(), BorderedBand::lanes);
+  sums << all.middleRows(margin, model_.splines_), all.bottomRows(model_.fixed());
+  sums = model_.to_family(sums);
+  const std::vector<BorderedBand::Block> solved = solved_gradients(frequencies_cpp);
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < frequencies_cpp.size(); ++k)
+    // What the fit has taken of the sums is as if there were a part less.
+    deviations.push_back((solved[k / lanes].col(k % lanes).transpose() * sums).norm() *
+                         std::sqrt(parts / (parts - 1.0)));
   return deviations;
 }
 
@@ -567,11 +617,7 @@ double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Blo
 }
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
-  BorderedBand::Block x = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
-  for (int k = 0; k < 3; ++k)
-    gradient_of_modulus(f[static_cast<std::size_t>(k)], x.data() + k, BorderedBand::lanes);
-  x = model_.to_family(x);
-  model_.factor_.solve_in_place(x);
+  BorderedBand::Block x = solved_gradients(f).front();
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) x.col(3 + k) = x.col(pairs[k][0]) + x.col(pairs[k][1]);

@@ -48,10 +48,11 @@ struct EdgeSpreadOptions {
 /// without bins, so there is no bin and no derivative to correct for, and the transform of E′ is known in
 /// closed form. A weak prior keeps the tail sensible where noise hides it.
 ///
-/// Third differences of the splines' coefficients cost as much as the restricted likelihood of the samples
-/// finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows
-/// itself to be, without noise it is free but for 1e-10 of the weight of the data, which joins the splines
-/// where samples leave gaps.
+/// What noise hides is told by physics: EdgeFamily, whose shape is fitted first. Third differences of what
+/// the splines' coefficients are off from it by, and what its tail is, cost as much as the restricted
+/// likelihood of the samples finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is
+/// as near to the family as it shows itself to be, without noise it is free but for 1e-12 of the weight of
+/// the data, which joins the splines where samples leave gaps.
 ///
 /// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
 /// as K₃/r³, and K₃ is half of what the edge keeps.
@@ -123,8 +124,16 @@ class EdgeSpreadModel {
     /// How what noise does to |transform| at three frequencies hangs together: correlations of the first and
     /// second, first and third, second and third.
     std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
+    /// Standard deviations of |transform| as they follow from residuals of the points that hang together over
+    /// parts of the edge of some 10 pixels, whatever makes them: sums over each part count as independent
+    /// (K.-Y. Liang & S. L. Zeger, Biometrika 73, 13, 1986). Of few parts, so rough.
+    std::vector<double> of_moduli_by_parts(std::span<const EdgePoint> points,
+                                           std::span<const double> residuals, double length_px,
+                                           std::span<const double> frequencies_cpp) const;
 
    private:
+    /// Gradients of |transform|, a frequency a lane, taken through the fit.
+    std::vector<BorderedBand::Block> solved_gradients(std::span<const double> frequencies_cpp) const;
     double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
     /// d|transform|/d(right side), into every `stride`-th place.
     void gradient_of_modulus(double frequency_cpp, double* gradient, int stride) const;
@@ -167,7 +176,10 @@ class EdgeSpreadModel {
   BorderedBand to_family(const BorderedBand& matrix) const;
   int unknown_count() const { return splines_ + fixed() + shapes; }
   void evaluate_points(std::span<const EdgePoint> points);
-  void add_shape_priors(BorderedBand& normal) const;
+  struct ShapePrior {
+    double mean = 0, weight = 0;
+  };
+  std::array<ShapePrior, shapes> shape_priors() const;
   BorderedBand roughness(double rough) const;
 
   EdgeSpreadOptions options_;
@@ -179,7 +191,8 @@ class EdgeSpreadModel {
   std::vector<double> variation_;
   BorderedBand data_normal_;  ///< of the data alone
   Eigen::VectorXd right_;     ///< side of the normal equations
-  /// The family's columns by the unknowns of the profile, in the first lanes; those of the shape times a step.
+  /// The family's columns by the unknowns of the profile, in the first lanes; those of the shape times a
+  /// step.
   BorderedBand::Block family_;
   BorderedBand family_normal_;  ///< of the data alone, by unknowns that count from the family, as all below
   BorderedBand priors_;         ///< of the priors and the roughness
