@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace petzval {
 
@@ -45,10 +46,11 @@ EdgeFamily::EdgeFamily(const EdgeShape& shape, double normal_rad, double knot_px
     const double w0 = weight * per_slope * odd[0], w1 = -weight * mtf, w2 = weight * per_slope * odd[2],
                  w3 = weight * per_slope * odd[3];
     for (int j = 0; j < half; ++j) {
-      splines(j, profile) += w0 * sine;
-      splines(j, offset) += w1 * cosine;
-      splines(j, log_airy) += w2 * sine;
-      splines(j, variance) += w3 * sine;
+      double* const of_spline = splines.data() + static_cast<std::ptrdiff_t>(j) * columns;
+      of_spline[profile] += w0 * sine;
+      of_spline[offset] += w1 * cosine;
+      of_spline[log_airy] += w2 * sine;
+      of_spline[variance] += w3 * sine;
       const double next = cosine * turn_cos - sine * turn_sin;
       sine = sine * turn_cos + cosine * turn_sin;
       cosine = next;

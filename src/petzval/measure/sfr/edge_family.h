@@ -19,7 +19,7 @@ struct EdgeShape {
 /// `knot_px` apart about the middle, and of its tail. Each of the columns belongs to a step of 1.
 struct EdgeFamily {
   enum Column { profile, offset, log_airy, variance, columns };
-  Eigen::Matrix<double, Eigen::Dynamic, columns> splines;
+  Eigen::Matrix<double, Eigen::Dynamic, columns, Eigen::RowMajor> splines;
   Eigen::Matrix<double, 1, columns> tail1;
 
   /// \param normal_rad  direction of the edge's normal against the photosite's sides.

@@ -225,11 +225,17 @@ void EdgeSpreadModel::find_shape(double step_guess) {
     const Eigen::VectorXd change = normal.ldlt().solve(side);
     if (!change.allFinite()) return;
     const double most_variance = 0.1 + 0.5 * std::abs(shape.variance);
-    const double airy = std::clamp(change[3], -0.5, 0.5),
-                 variance = std::clamp(change[4], -most_variance, most_variance);
-    shape.log_airy = std::clamp(shape.log_airy + airy, std::log(0.03), std::log(20.0));
-    shape.variance = std::max(least_variance, shape.variance + variance);
-    if (std::abs(airy) < 0.02 && std::abs(variance) < 0.02 * (0.1 + shape.variance)) break;
+    const EdgeShape before = shape;
+    shape.log_airy =
+        std::clamp(shape.log_airy + std::clamp(change[3], -0.5, 0.5), std::log(0.03), std::log(20.0));
+    shape.variance =
+        std::max(least_variance, shape.variance + std::clamp(change[4], -most_variance, most_variance));
+    constexpr double at_rest = 0.02;
+    if (std::abs(shape.log_airy - before.log_airy) < at_rest &&
+        std::abs(shape.variance - before.variance) < at_rest * (0.1 + std::abs(before.variance))) {
+      shape = before;
+      return;
+    }
   }
   set_family(step_guess);
 }
