@@ -31,26 +31,6 @@ void BorderedBand::add(double factor, const BorderedBand& other) {
   for (std::size_t i = 0; i < entries_.size(); ++i) entries_[i] += factor * other.entries_[i];
 }
 
-BorderedBand::Block BorderedBand::times(const Block& vectors) const {
-  Block product = Block::Zero(vectors.rows(), lanes);
-  for (int j = 0; j < size(); ++j) {
-    const double* const a = column(j);
-    const double* const x = vectors.data() + static_cast<std::ptrdiff_t>(j) * lanes;
-    double* const y = product.data() + static_cast<std::ptrdiff_t>(j) * lanes;
-    for (int k = 0; k < lanes; ++k) y[k] += at(j, j) * x[k];
-    const auto add = [&](double entry, int row) {
-      for (int k = 0; k < lanes; ++k) {
-        y[k] += entry * x[(row - j) * lanes + k];
-        y[(row - j) * lanes + k] += entry * x[k];
-      }
-    };
-    if (j < band_)
-      for (int p = 1; p <= below(*this, j); ++p) add(a[p], j + p);
-    for (int r = std::max(0, j - band_ + 1); r < border_; ++r) add(a[corner + r], band_ + r);
-  }
-  return product;
-}
-
 std::array<double, BorderedBand::lanes> BorderedBand::quadratic(const Block& vectors) const {
   std::array<double, lanes> sum{};
   for (int j = 0; j < size(); ++j) {

@@ -14,8 +14,8 @@ namespace petzval {
 /// in proportion to its size, where a full matrix takes the third power.
 class BorderedBand {
  public:
-  static constexpr int width = 5;         ///< places beside the diagonal
-  static constexpr int most_border = 12;  ///< unknowns that touch all
+  static constexpr int width = 5;        ///< places beside the diagonal
+  static constexpr int most_border = 9;  ///< unknowns that touch all
   /// Entries of a column: the diagonal and `width` below it, then one for each unknown of the border.
   static constexpr int stride = width + 1 + most_border;
 
@@ -39,8 +39,6 @@ class BorderedBand {
   void drop_border(int unknowns);
   /// Adds a multiple of a matrix of the same shape.
   void add(double factor, const BorderedBand& other);
-  /// M x of each vector.
-  Block times(const Block& vectors) const;
   /// xᵀ M x of each vector.
   std::array<double, lanes> quadratic(const Block& vectors) const;
 

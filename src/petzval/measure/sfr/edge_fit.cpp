@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
-#include <petzval/base/units.h>
 #include <petzval/measure/sfr/edge_fit.h>
 #include <petzval/measure/sfr/sample_comb.h>
 #include <petzval/measure/sfr/smooth_about_edge.h>
@@ -75,8 +74,6 @@ double likeness(const EdgeAlignment& step, const EdgeAlignment& earlier) {
 EdgeFit::EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess, const SfrOptions& options)
     : samples_(samples), guess_(guess), line_(guess.line), noise_(1e-4 * (guess.bright - guess.dark)) {
   line_.bend.assign(static_cast<std::size_t>(std::max(1, options.edge_order)), 0);
-  // A logistic function's variance, less those of the photosite and of the usual diffraction.
-  shape_.variance = std::max(0.0, pi * pi / 3 * guess.scale_px * guess.scale_px - 0.3);
   if (options.missing_target) find_missing(options.missing_target);
 }
 
@@ -175,13 +172,10 @@ void EdgeFit::fit_profile() {
   options.noise = noise_;
   // Quarters of a pixel carry frequencies up to 1.5 cycles/pixel; a wide blur has little beyond 0.7.
   options.knot_px = coarse_ ? 0.7 : options.core_px > 45 ? 0.5 : 0.25;
-  options.normal_rad = line_.normal_rad;
-  options.shape = shape_;
   options.light_order = light_order_;
   options.smoothing = smoothing_;
   if (in_rows_) options.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
-  shape_ = model_->options().shape;
   take_profile();
 }
 

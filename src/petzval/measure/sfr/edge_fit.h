@@ -67,7 +67,6 @@ class EdgeFit {
   std::optional<EdgeSpreadModel> model_;
   std::vector<double> missing_, light_;  ///< of each sample
   double noise_, smoothing_ = 0, unknowns_ = 0, comb_px_ = 0, light_variation_ = 0;
-  EdgeShape shape_;
   int light_order_ = 0;
   bool in_rows_ = false, coarse_ = false;
 };

@@ -12,22 +12,13 @@ namespace {
 
 constexpr double b = 1;  // pixels: scale of the closed-form part
 
-/// 550 nm at f/8 on pixels of 4.73 µm.
-constexpr double usual_airy_px = 0.93;
-/// Standard deviations of the logarithm of the Airy disc's width, and of a variance below 0 [pixels²].
-constexpr double airy_spread = 1, sharpened_spread = 0.04;
-/// The same of a variance above 0, and of an offset [pixels].
-constexpr double variance_spread = 4, offset_spread_px = 1;
-constexpr double least_variance = -0.1;
-constexpr double tail_spread_px = 0.06;
+constexpr double usual_tail_spread_px = 0.06;
 
 /// Least weight of the roughness, for samples without noise.
 constexpr double least_smoothing = 1e-12;
 /// Third differences of the coefficients of a sharp edge with knots a quarter of a pixel apart, over the
 /// step.
 constexpr double edge_roughness = 0.1;
-/// The same of the least deviations from the family that are reckoned with, over those.
-constexpr double least_deviation = 0.01;
 /// Greatest weight of the roughness far from the edge, over that at the edge.
 constexpr double most_weight = 1e8;
 
@@ -124,138 +115,30 @@ BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
   return result;
 }
 
-void EdgeSpreadModel::set_family(double step_guess) {
-  const EdgeFamily family(options_.shape, options_.normal_rad, options_.knot_px, splines_);
-  family_ = BorderedBand::Block::Zero(splines_ + fixed(), BorderedBand::lanes);
-  family_.topLeftCorner(splines_, EdgeFamily::columns) = family.splines;
-  family_.row(splines_ + 2).head(EdgeFamily::columns) = family.tail1;
-  family_.rightCols(BorderedBand::lanes - 1) *= step_guess;
-  family_(splines_ + 1, EdgeFamily::profile) = 1;
+void EdgeSpreadModel::add_priors(BorderedBand& normal, double step_guess) const {
+  // In units of the noise: the first tail is about the usual one, the second below it at twice the blur.
+  const double noise = std::max(options_.noise, 1e-7 * step_guess);
+  const double weight1 = noise / (usual_tail_spread_px * step_guess);
+  const double offset = b / pi - usual_tail_px;
+  const int step = splines_ + 1, tail1 = splines_ + 2, tail3 = splines_ + 3;
+  normal.at(step, step) += weight1 * weight1 * offset * offset;
+  normal.at(tail1, step) += weight1 * weight1 * offset;
+  normal.at(tail1, tail1) += weight1 * weight1;
+  const double weight3 =
+      noise / (usual_tail_spread_px * step_guess * 4 * options_.blur_px * options_.blur_px);
+  normal.at(tail3, tail3) += weight3 * weight3;
 }
 
-Eigen::VectorXd EdgeSpreadModel::of_profile(const Eigen::VectorXd& x) const {
-  const int shape = splines_ + closed_forms, step = splines_ + 1;
-  Eigen::VectorXd result(splines_ + fixed());
-  result << x.head(shape), x.tail(lights());
-  result += (x[step] * family_.col(EdgeFamily::profile)).eval();
-  result[step] -= x[step];
-  for (int k = 0; k < shapes; ++k) result += x[shape + k] * family_.col(1 + k);
-  return result;
-}
-
-template <typename Matrix>
-Matrix EdgeSpreadModel::to_family(const Matrix& gradients) const {
-  const int shape = splines_ + closed_forms;
-  Matrix result(unknown_count(), gradients.cols());
-  result << gradients.topRows(shape), Matrix::Zero(shapes, gradients.cols()), gradients.bottomRows(lights());
-  result.row(splines_ + 1) = family_.col(EdgeFamily::profile).transpose() * gradients;
-  for (int k = 0; k < shapes; ++k) result.row(shape + k) = family_.col(1 + k).transpose() * gradients;
-  return result;
-}
-
-BorderedBand EdgeSpreadModel::to_family(const BorderedBand& matrix) const {
-  const BorderedBand::Block times = matrix.times(family_);
-  const int border = fixed() + shapes;
-  // Of each unknown of the border: the family's column, or −1 and its place without the family.
-  std::array<int, BorderedBand::most_border> column{}, place{};
-  for (int r = 0; r < border; ++r) {
-    const bool of_shape = r >= closed_forms && r < closed_forms + shapes;
-    column[static_cast<std::size_t>(r)] = r == 1 ? 0 : of_shape ? 1 + r - closed_forms : -1;
-    place[static_cast<std::size_t>(r)] = splines_ + (r < closed_forms ? r : r - shapes);
-  }
-  BorderedBand result(splines_, border);
-  for (int j = 0; j < splines_; ++j) {
-    std::copy_n(matrix.column(j), support, result.column(j));
-    for (int r = 0; r < border; ++r) {
-      const int c = column[static_cast<std::size_t>(r)];
-      result.at(splines_ + r, j) = c < 0 ? matrix.at(place[static_cast<std::size_t>(r)], j) : times(j, c);
-    }
-  }
-  for (int r = 0; r < border; ++r)
-    for (int s = 0; s <= r; ++s) {
-      const auto i = static_cast<std::size_t>(r), k = static_cast<std::size_t>(s);
-      double& entry = result.at(splines_ + r, splines_ + s);
-      if (column[i] >= 0 && column[k] >= 0)
-        entry = family_.col(column[i]).dot(times.col(column[k]));
-      else if (column[i] >= 0)
-        entry = times(place[k], column[i]);
-      else if (column[k] >= 0)
-        entry = times(place[i], column[k]);
-      else
-        entry = matrix.at(place[i], place[k]);
-    }
-  return result;
-}
-
-/// Of the offset, and of what is still to be added to the shape.
-std::array<EdgeSpreadModel::ShapePrior, EdgeSpreadModel::shapes> EdgeSpreadModel::shape_priors() const {
-  const EdgeShape& shape = options_.shape;
-  const auto weight = [&](double spread) { return options_.noise * options_.noise / (spread * spread); };
-  return {{{0, weight(offset_spread_px)},
-           {std::log(usual_airy_px) - shape.log_airy, weight(airy_spread)},
-           {-shape.variance, weight(shape.variance < 0 ? sharpened_spread : variance_spread)}}};
-}
-
-/// The shape that fits best alone, by Gauss and Newton's method.
-void EdgeSpreadModel::find_shape(double step_guess) {
-  constexpr int most_rounds = 8, first_light = 2 + shapes;
-  EdgeShape& shape = options_.shape;
-  for (int round = 0; round < most_rounds; ++round) {
-    set_family(step_guess);
-    const BorderedBand all = to_family(data_normal_);
-    const Eigen::VectorXd right = to_family(right_);
-    // Dark, step, shape, light: what is left are splines and tails.
-    std::array<int, BorderedBand::most_border> rows{0, 1, 4, 5, 6};
-    const int n = first_light + lights();
-    for (int k = 0; k < lights(); ++k) rows[static_cast<std::size_t>(first_light + k)] = 7 + k;
-    Eigen::MatrixXd normal(n, n);
-    Eigen::VectorXd side(n);
-    for (int r = 0; r < n; ++r) {
-      const int row = splines_ + rows[static_cast<std::size_t>(r)];
-      side[r] = right[row];
-      for (int s = 0; s <= r; ++s)
-        normal(r, s) = normal(s, r) = all.at(row, splines_ + rows[static_cast<std::size_t>(s)]);
-    }
-    const auto priors = shape_priors();
-    for (int k = 0; k < shapes; ++k) {
-      const ShapePrior& prior = priors[static_cast<std::size_t>(k)];
-      normal(2 + k, 2 + k) += prior.weight + 1e-9 * normal(2 + k, 2 + k);
-      side[2 + k] += prior.weight * prior.mean;
-    }
-    const Eigen::VectorXd change = normal.ldlt().solve(side);
-    if (!change.allFinite()) return;
-    const double most_variance = 0.1 + 0.5 * std::abs(shape.variance);
-    const EdgeShape before = shape;
-    shape.log_airy =
-        std::clamp(shape.log_airy + std::clamp(change[3], -0.5, 0.5), std::log(0.03), std::log(20.0));
-    shape.variance =
-        std::max(least_variance, shape.variance + std::clamp(change[4], -most_variance, most_variance));
-    constexpr double at_rest = 0.02;
-    if (std::abs(shape.log_airy - before.log_airy) < at_rest &&
-        std::abs(shape.variance - before.variance) < at_rest * (0.1 + std::abs(before.variance))) {
-      shape = before;
-      return;
-    }
-  }
-  set_family(step_guess);
-}
-
-/// \param rough  third differences of coefficients, over the step, against which tails are weighed.
-BorderedBand EdgeSpreadModel::roughness(double rough) const {
-  BorderedBand matrix(splines_, fixed() + shapes);
-  for (int j = -3; j < splines_; ++j) {
-    // What a line spread may be off by falls as 1/d², as it does itself.
+BorderedBand EdgeSpreadModel::roughness() const {
+  BorderedBand matrix(splines_, fixed());
+  for (int j = 0; j + 3 < splines_; ++j) {
+    // A line spread that falls as 1/d² has curvature that falls as 1/d⁴.
     const double d = (j + 1.5 - 0.5 * (splines_ - 1)) * options_.knot_px / options_.blur_px;
-    const double weight = std::min((1 + d * d) * (1 + d * d), most_weight);
+    const double square = (1 + d * d) * (1 + d * d), weight = std::min(square * square, most_weight);
     constexpr double difference[4] = {-1, 3, -3, 1};
-    for (int p = std::max(0, -j); p < 4 && j + p < splines_; ++p)
-      for (int q = std::max(0, -j); q <= p; ++q)
-        matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
+    for (int p = 0; p < 4; ++p)
+      for (int q = 0; q <= p; ++q) matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
   }
-  const double weight1 = rough / tail_spread_px,
-               weight3 = weight1 / (4 * options_.blur_px * options_.blur_px);
-  matrix.at(splines_ + 2, splines_ + 2) = weight1 * weight1;
-  matrix.at(splines_ + 3, splines_ + 3) = weight3 * weight3;
   return matrix;
 }
 
@@ -293,64 +176,45 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
     low = std::min(low, point.value), high = std::max(high, point.value);
     square += point.value * point.value;
   }
-  const double step_guess = high - low;
-  if (options_.smoothing < 0)
-    find_shape(step_guess);
-  else
-    set_family(step_guess);
-  family_normal_ = to_family(data_normal_);
-  BorderedBand normal = family_normal_;
-  Eigen::VectorXd right = to_family(right_);
-  const auto priors = shape_priors();
-  for (int k = 0; k < shapes; ++k) {
-    const ShapePrior& prior = priors[static_cast<std::size_t>(k)];
-    const int at = splines_ + closed_forms + k;
-    // Along the pixel grid, what a shape does may be nothing at all.
-    normal.at(at, at) += prior.weight + 1e-12 * normal.at(at, at);
-    right[at] += prior.weight * prior.mean;
-  }
+  BorderedBand normal = data_normal_;
+  add_priors(normal, high - low);
   const double count = static_cast<double>(points.size());
   const double unit = count * options_.knot_px / (2 * options_.core_px);
-  const double rough = edge_roughness * std::pow(options_.knot_px / (0.25 * options_.blur_px), 3);
-  const BorderedBand deviations = roughness(rough);
-  const double rank = splines_ + 2, unpenalised = normal.size() - rank;
+  const BorderedBand rough = roughness();
+  const double rank = std::max(0, splines_ - 3), unpenalised = normal.size() - rank;
   const auto solve = [&](double smoothing) {
     BorderedBand whole = normal;
-    whole.add(smoothing * unit, deviations);
+    whole.add(smoothing * unit, rough);
     Solved solved{HUGE_VAL, BorderedCholesky(std::move(whole)), {}};
-    if (!solved.factor.good() || !right.allFinite())
+    if (!solved.factor.good() || !right_.allFinite())
       throw InputError("the pixels do not determine the edge's profile; a larger ROI is needed");
-    solved.solution = solved.factor.solve(right);
-    const double rest = std::max(square - right.dot(solved.solution), 1e-14 * square);
+    solved.solution = solved.factor.solve(right_);
+    const double rest = std::max(square - right_.dot(solved.solution), 1e-14 * square);
     solved.criterion =
         (count - unpenalised) * std::log(rest) + solved.factor.log_determinant() - rank * std::log(smoothing);
     return solved;
   };
   Solved best;
   if (options_.smoothing < 0) {
-    // What an edge of any shape can bear, and what one can that is nearly of the family.
-    const double bearable = std::pow(options_.noise / (rough * step_guess), 2) / unit;
-    const double most = std::max(least_smoothing, bearable / (least_deviation * least_deviation));
-    const double from = std::max(least_smoothing, options_.least_smoothing_share * bearable);
-    const auto try_with = [&](double smoothing) {
-      if (Solved solved = solve(smoothing); solved.criterion < best.criterion) {
+    // The evidence may not call a profile smoother than edges are.
+    const double roughness =
+        edge_roughness * std::pow(options_.knot_px / (0.25 * options_.blur_px), 3) * (high - low);
+    const double most = std::max(least_smoothing, std::pow(options_.noise / roughness, 2) / unit);
+    constexpr double factor = 4;
+    const double from = std::max(least_smoothing, options_.least_smoothing_share * most);
+    for (double smoothing = from; smoothing < factor * most; smoothing *= factor)
+      if (Solved solved = solve(std::min(smoothing, most)); solved.criterion < best.criterion) {
         best = std::move(solved);
-        options_.smoothing = smoothing;
+        options_.smoothing = std::min(smoothing, most);
       }
-    };
-    // In steps of 16, then of 4.
-    for (double smoothing = from; smoothing < 16 * most; smoothing *= 16) try_with(std::min(smoothing, most));
-    const double chosen = options_.smoothing;
-    for (const double smoothing : {0.25 * chosen, 4 * chosen})
-      if (smoothing >= from && smoothing <= most) try_with(smoothing);
   } else {
     options_.smoothing = std::max(options_.smoothing, least_smoothing);
     best = solve(options_.smoothing);
   }
   priors_ = std::move(normal);
-  priors_.add(-1, family_normal_);
-  priors_.add(options_.smoothing * unit, deviations);
-  coefficients_ = of_profile(best.solution);
+  priors_.add(-1, data_normal_);
+  priors_.add(options_.smoothing * unit, rough);
+  coefficients_ = best.solution;
   factor_ = std::move(best.factor);
   dark_ = coefficients_[splines_];
   step_ = coefficients_[splines_ + 1];
@@ -416,9 +280,9 @@ EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, doub
   const double reach = reach_px / options_.core_px;
   const std::array<double, light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
   for (int k = light_terms[static_cast<std::size_t>(options_.light_order - 1)]; k < lights(); ++k) {
-    const Eigen::Index at = splines_ + closed_forms + shapes + k;
-    const double spread = factor_.solve(Eigen::VectorXd::Unit(unknown_count(), at))[at];
-    const double coefficient = std::abs(coefficients_[at - shapes]);
+    const Eigen::Index at = splines_ + closed_forms + k;
+    const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
+    const double coefficient = std::abs(coefficients_[at]);
     result.significance = std::max(result.significance,
                                    coefficient / std::max(1e-300, noise * std::sqrt(std::max(0.0, spread))));
     result.share =
@@ -428,7 +292,7 @@ EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, doub
 }
 
 double EdgeSpreadModel::unknowns() const {
-  return trace_of_product(factor_.inverse(), family_normal_);
+  return trace_of_product(factor_.inverse(), data_normal_);
 }
 
 EdgeSpreadModel::Projection::Projection(const EdgeSpreadModel& model)
@@ -450,7 +314,6 @@ void EdgeSpreadModel::Projection::add(std::size_t point,
 EdgeSpreadModel::Projection::Matrix EdgeSpreadModel::Projection::taken() const {
   BorderedBand::Block sums(model_.splines_ + model_.fixed(), BorderedBand::lanes);
   sums << sums_.middleRows(margin, model_.splines_), sums_.bottomRows(model_.fixed());
-  sums = model_.to_family(sums);
   BorderedBand::Block solved = sums;
   model_.factor_.solve_in_place(solved);
   return sums.transpose() * solved;
@@ -510,7 +373,7 @@ std::complex<double> EdgeSpreadModel::transform(double f) const {
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
-    : model_(model), spread_() {
+    : model_(model), spread_(model.splines_, model.fixed()) {
   const int splines = model.splines_, fixed = model.fixed();
   BorderedBand all(model.padded(), fixed);
   double mean = 0;
@@ -527,11 +390,11 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
       for (int r = 0; r < fixed; ++r) column[support + r] += value * row.fixed[r];
     }
   }
-  spread_ = model.to_family(model.trimmed(all));
+  spread_ = model.trimmed(all);
   // What the priors say of the profile is as uncertain as they are weak.
   spread_.add(mean, model.priors_);
   if (rounding.none()) return;
-  rounding_ = Eigen::MatrixXd::Zero(splines + fixed, splines + fixed);
+  rounding_ = Eigen::MatrixXd::Zero(spread_.size(), spread_.size());
   rounding.add_spread(
       [&](std::size_t i, const std::function<void(int, double)>& entry) {
         const Row& row = model.rows_[i];
@@ -563,67 +426,35 @@ void EdgeSpreadModel::Deviation::gradient_of_modulus(double f, double* gradient,
   });
 }
 
-std::vector<BorderedBand::Block> EdgeSpreadModel::Deviation::solved_gradients(
-    std::span<const double> frequencies_cpp) const {
-  constexpr std::size_t lanes = BorderedBand::lanes;
-  std::vector<BorderedBand::Block> blocks;
-  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
-    BorderedBand::Block x = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
-    for (std::size_t k = first; k < std::min(first + lanes, frequencies_cpp.size()); ++k)
-      gradient_of_modulus(frequencies_cpp[k], x.data() + (k - first), BorderedBand::lanes);
-    blocks.push_back(model_.to_family(x));
-    model_.factor_.solve_in_place(blocks.back());
-  }
-  return blocks;
-}
-
 std::vector<double> EdgeSpreadModel::Deviation::of_moduli(std::span<const double> frequencies_cpp) const {
   constexpr std::size_t lanes = BorderedBand::lanes;
   std::vector<double> deviations;
-  for (const BorderedBand::Block& x : solved_gradients(frequencies_cpp)) {
-    const std::array<double, lanes> variance = spread_.quadratic(x);
-    for (std::size_t k = 0; k < lanes && deviations.size() < frequencies_cpp.size(); ++k)
-      deviations.push_back(
-          std::sqrt(std::max(0.0, variance[k] + quadratic_of_rounding(x, static_cast<int>(k)))));
+  for (std::size_t first = 0; first < frequencies_cpp.size(); first += lanes) {
+    BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
+    const std::size_t count = std::min(lanes, frequencies_cpp.size() - first);
+    for (std::size_t k = 0; k < count; ++k)
+      gradient_of_modulus(frequencies_cpp[first + k], x.data() + k, BorderedBand::lanes);
+    model_.factor_.solve_in_place(x);
+    std::array<double, lanes> variance = spread_.quadratic(x);
+    for (std::size_t k = 0; k < count; ++k) {
+      variance[k] += quadratic_of_rounding(x, static_cast<int>(k));
+      deviations.push_back(std::sqrt(std::max(0.0, variance[k])));
+    }
   }
-  return deviations;
-}
-
-std::vector<double> EdgeSpreadModel::Deviation::of_moduli_by_parts(
-    std::span<const EdgePoint> points, std::span<const double> residuals, double length_px,
-    std::span<const double> frequencies_cpp) const {
-  constexpr std::size_t lanes = BorderedBand::lanes;
-  constexpr double part_px = 10;
-  const int parts = std::clamp(static_cast<int>(length_px / part_px), 3, BorderedBand::lanes);
-  BorderedBand::Block all = BorderedBand::Block::Zero(model_.padded() + model_.fixed(), BorderedBand::lanes);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Row& row = model_.rows_[i];
-    const int part = std::clamp(static_cast<int>(0.5 * (points[i].along + 1) * parts), 0, parts - 1);
-    for (int p = 0; p < support && row.first >= 0; ++p)
-      all(row.first + p, part) += row.splines[static_cast<std::size_t>(p)] * residuals[i];
-    for (int r = 0; r < model_.fixed(); ++r)
-      all(model_.padded() + r, part) += row.fixed[static_cast<std::size_t>(r)] * residuals[i];
-  }
-  BorderedBand::Block sums(model_.coefficients_.size(), BorderedBand::lanes);
-  sums << all.middleRows(margin, model_.splines_), all.bottomRows(model_.fixed());
-  sums = model_.to_family(sums);
-  const std::vector<BorderedBand::Block> solved = solved_gradients(frequencies_cpp);
-  std::vector<double> deviations;
-  for (std::size_t k = 0; k < frequencies_cpp.size(); ++k)
-    // What the fit has taken of the sums is as if there were a part less.
-    deviations.push_back((solved[k / lanes].col(k % lanes).transpose() * sums).norm() *
-                         std::sqrt(parts / (parts - 1.0)));
   return deviations;
 }
 
 double EdgeSpreadModel::Deviation::quadratic_of_rounding(const BorderedBand::Block& x, int lane) const {
   if (rounding_.size() == 0) return 0;
-  const Eigen::VectorXd one = model_.of_profile(x.col(lane));
+  const Eigen::VectorXd one = x.col(lane);
   return one.dot(rounding_.selfadjointView<Eigen::Lower>() * one);
 }
 
 std::array<double, 3> EdgeSpreadModel::Deviation::correlations(const std::array<double, 3>& f) const {
-  BorderedBand::Block x = solved_gradients(f).front();
+  BorderedBand::Block x = BorderedBand::Block::Zero(spread_.size(), BorderedBand::lanes);
+  for (int k = 0; k < 3; ++k)
+    gradient_of_modulus(f[static_cast<std::size_t>(k)], x.data() + k, BorderedBand::lanes);
+  model_.factor_.solve_in_place(x);
   // (a + b)² = a² + b² + 2ab
   constexpr int pairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int k = 0; k < 3; ++k) x.col(3 + k) = x.col(pairs[k][0]) + x.col(pairs[k][1]);

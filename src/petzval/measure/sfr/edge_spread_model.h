@@ -3,7 +3,6 @@
 #pragma once
 
 #include <petzval/measure/sfr/bordered_band.h>
-#include <petzval/measure/sfr/edge_family.h>
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <Eigen/Core>
@@ -29,13 +28,11 @@ struct EdgePoint {
 struct EdgeSpreadOptions {
   double core_px = 10;    ///< splines reach as far as this from the edge; beyond it there is only the tail
   double knot_px = 0.25;  ///< spacing of the splines
-  double blur_px = 1;     ///< scale of the transition
-  double normal_rad = 0;  ///< direction of the edge's normal against the photosite's sides
-  EdgeShape shape;        ///< where the fit of the family begins; the fitted one where smoothing is chosen
+  double blur_px = 1;     ///< scale of the transition, for the prior of the tail's second term
   double noise = 0;       ///< standard deviation of the values, 0: not known yet
   /// Weight of the roughness of the profile against the data; negative: chosen by the evidence.
   double smoothing = -1;
-  /// The least that is chosen over what edges of any shape can bear: more where samples leave gaps, for there
+  /// The least that is chosen over the most that edges can bear: more where samples leave gaps, for there
   /// the evidence is of what else the model lacks.
   double least_smoothing_share = 1e-6;
   /// The light on the target may vary along the edge and across it: 0 not, 1 linearly, 2 as a parabola.
@@ -48,11 +45,10 @@ struct EdgeSpreadOptions {
 /// without bins, so there is no bin and no derivative to correct for, and the transform of E′ is known in
 /// closed form. A weak prior keeps the tail sensible where noise hides it.
 ///
-/// What noise hides is told by physics: EdgeFamily, whose shape is fitted first. Third differences of what
-/// the splines' coefficients are off from it by, and what its tail is, cost as much as the restricted
-/// likelihood of the samples finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is
-/// as near to the family as it shows itself to be, without noise it is free but for 1e-12 of the weight of
-/// the data, which joins the splines where samples leave gaps.
+/// Third differences of the splines' coefficients cost as much as the restricted likelihood of the samples
+/// finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows
+/// itself to be, without noise it is free but for 1e-10 of the weight of the data, which joins the splines
+/// where samples leave gaps.
 ///
 /// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
 /// as K₃/r³, and K₃ is half of what the edge keeps.
@@ -124,16 +120,8 @@ class EdgeSpreadModel {
     /// How what noise does to |transform| at three frequencies hangs together: correlations of the first and
     /// second, first and third, second and third.
     std::array<double, 3> correlations(const std::array<double, 3>& frequencies_cpp) const;
-    /// Standard deviations of |transform| as they follow from residuals of the points that hang together over
-    /// parts of the edge of some 10 pixels, whatever makes them: sums over each part count as independent
-    /// (K.-Y. Liang & S. L. Zeger, Biometrika 73, 13, 1986). Of few parts, so rough.
-    std::vector<double> of_moduli_by_parts(std::span<const EdgePoint> points,
-                                           std::span<const double> residuals, double length_px,
-                                           std::span<const double> frequencies_cpp) const;
 
    private:
-    /// Gradients of |transform|, a frequency a lane, taken through the fit.
-    std::vector<BorderedBand::Block> solved_gradients(std::span<const double> frequencies_cpp) const;
     double quadratic_of_rounding(const BorderedBand::Block& x, int lane) const;
     /// d|transform|/d(right side), into every `stride`-th place.
     void gradient_of_modulus(double frequency_cpp, double* gradient, int stride) const;
@@ -145,8 +133,6 @@ class EdgeSpreadModel {
 
  private:
   static constexpr int closed_forms = 4;  ///< dark, step, tail1, tail3
-  /// Unknowns that the family adds: offset, width of the Airy disc, and variance.
-  static constexpr int shapes = EdgeFamily::columns - 1;
   /// Terms of light that varies, to each order.
   static constexpr std::array<int, 3> light_terms = {0, 2, 5};
   static constexpr int support = 6;
@@ -166,21 +152,9 @@ class EdgeSpreadModel {
   void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);
   BorderedBand trimmed(const BorderedBand& padded) const;
   void fit(std::span<const EdgePoint> points);
-  void find_shape(double step_guess);
-  void set_family(double step_guess);
-  /// From unknowns that count from the family, to those of the profile; and the transpose of that, which
-  /// takes gradients and normal matrices the other way. Those of the shape stand after the closed forms.
-  Eigen::VectorXd of_profile(const Eigen::VectorXd& x) const;
-  template <typename Matrix>
-  Matrix to_family(const Matrix& gradients) const;
-  BorderedBand to_family(const BorderedBand& matrix) const;
-  int unknown_count() const { return splines_ + fixed() + shapes; }
   void evaluate_points(std::span<const EdgePoint> points);
-  struct ShapePrior {
-    double mean = 0, weight = 0;
-  };
-  std::array<ShapePrior, shapes> shape_priors() const;
-  BorderedBand roughness(double rough) const;
+  void add_priors(BorderedBand& normal, double step_guess) const;
+  BorderedBand roughness() const;
 
   EdgeSpreadOptions options_;
   int splines_ = 0;
@@ -191,12 +165,8 @@ class EdgeSpreadModel {
   std::vector<double> variation_;
   BorderedBand data_normal_;  ///< of the data alone
   Eigen::VectorXd right_;     ///< side of the normal equations
-  /// The family's columns by the unknowns of the profile, in the first lanes; those of the shape times a
-  /// step.
-  BorderedBand::Block family_;
-  BorderedBand family_normal_;  ///< of the data alone, by unknowns that count from the family, as all below
-  BorderedBand priors_;         ///< of the priors and the roughness
-  BorderedCholesky factor_;     ///< of the whole normal matrix
+  BorderedBand priors_;       ///< of the priors and the roughness
+  BorderedCholesky factor_;   ///< of the whole normal matrix
 };
 
 }  // namespace petzval

@@ -144,10 +144,7 @@ class Uncertainty {
     if (fit.noise() < quiet * fit.model().step() && fit.comb_px() == 0) variant_.emplace(fit.variant());
     constexpr double extrapolated = 7e-4;  // of the step, for samples up to a pixel from the edge
     tail_ = extrapolated / std::min(-fit.profile().low, fit.profile().high);
-    look_at_residuals();
   }
-  /// Whether residuals are no noise.
-  bool hang_together() const { return hang_together_; }
   std::vector<double> of_moduli(const std::vector<double>& frequencies_cpp) const {
     std::vector<double> deviations = noise_.of_moduli(frequencies_cpp);
     for (std::size_t i = 0; i < deviations.size(); ++i) {
@@ -156,35 +153,14 @@ class Uncertainty {
           variant_ ? std::abs(variant_->transform(f)) - std::abs(fit_.model().transform(f)) : 0;
       constexpr double all_of_it_cpp = 0.02;
       const double model = std::hypot(other, tail_ * std::min(1.0, std::abs(f) / all_of_it_cpp));
-      deviations[i] =
-          factor_ * std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
+      deviations[i] = std::hypot(deviations[i], model, alias_deviation(fit_.model(), fit_.comb_px(), f));
     }
     return deviations;
   }
 
  private:
-  void look_at_residuals() {
-    const EdgeProfile& profile = fit_.profile();
-    std::vector<double> residuals;
-    for (std::size_t i = 0; i < profile.points.size(); ++i)
-      residuals.push_back(profile.points[i].value - profile.fitted[i].value - profile.variation[i]);
-    const std::vector<double> frequencies{0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4};
-    const std::vector<double> stated = of_moduli(frequencies),
-                              seen = noise_.of_moduli_by_parts(profile.points, residuals,
-                                                               2 * fit_.line().half_length, frequencies);
-    double ratio = 0;
-    for (std::size_t i = 0; i < frequencies.size(); ++i)
-      ratio += std::pow(seen[i] / stated[i], 2) / static_cast<double>(frequencies.size());
-    // Noise alone comes to 1 ± 0.4: contrasts hang together, too.
-    constexpr double more_than_noise = 1.5, plainly = 2.5;
-    if (ratio > more_than_noise) factor_ = std::sqrt(ratio);
-    hang_together_ = ratio > plainly;
-  }
-
   const EdgeFit& fit_;
   const EdgeSpreadModel::Deviation& noise_;
-  double factor_ = 1;
-  bool hang_together_ = false;
   std::optional<EdgeSpreadModel> variant_;
   double tail_;
 };
@@ -272,11 +248,6 @@ EdgeMeasurement measure_edge(const std::vector<EdgeSample>& samples, double latt
                     "every {:.2f} pixels; a tilt "
                     "by half a degree is enough to tell what lies between",
                     fit.comb_px()));
-  if (uncertainty.hang_together())
-    result.notes.push_back(
-        "what is left of the fit hangs together along the edge, as JPEG, dust or a pattern leave it: it is "
-        "no "
-        "noise, and the deviation that is stated is as large as what is seen of it");
   fill_levels(result, model, uncertainty);
   const std::array<double, 3> levels{result.mtf[1].frequency_cpp, result.mtf[4].frequency_cpp,
                                      result.mtf[7].frequency_cpp};
