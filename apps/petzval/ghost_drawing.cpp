@@ -10,8 +10,10 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/lens_drawing.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "plot_output.h"
 
@@ -20,16 +22,21 @@ namespace petzval::app {
 namespace {
 
 GhostPair parsed_pair(const std::string& text, std::size_t sensor) {
-  const std::size_t comma = text.find(',');
-  const std::optional<int> first = parse_integer(text.substr(0, comma));
-  const std::optional<int> second =
-      comma == std::string::npos ? std::nullopt : parse_integer(text.substr(comma + 1));
-  if (!first || !second || *second < 0 || *first <= *second || static_cast<std::size_t>(*first) > sensor)
+  std::vector<std::size_t> turns;
+  bool right = true;
+  for (const std::string& part : CLI::detail::split(text, ',')) {
+    const std::optional<int> surface = parse_integer(part);
+    right = right && surface && *surface >= 0 && static_cast<std::size_t>(*surface) <= sensor;
+    turns.push_back(right ? static_cast<std::size_t>(*surface) : 0);
+  }
+  right = right && (turns.size() == 2 || turns.size() == 4) && turns[1] < turns[0];
+  if (!right || (turns.size() == 4 && (turns[2] <= turns[1] || turns[3] >= turns[2])))
     throw InputError(
         fmt::format("--draw {}: the surface that reflects first and one in front of it, of 0 to "
-                    "{} (the sensor), as in {},0, would be right",
+                    "{} (the sensor), as in {},0, would be right, or two such pairs",
                     text, sensor, sensor > 1 ? 2 : 1));
-  return {static_cast<std::size_t>(*first), static_cast<std::size_t>(*second)};
+  if (turns.size() == 2) return {turns[0], turns[1]};
+  return {turns[0], turns[1], turns[2], turns[3]};
 }
 
 /// A point of the field in the y-z plane; light at a positive field angle runs upwards.
@@ -57,8 +64,10 @@ void GhostDrawing::draw(const Lens& lens, const FieldTableRequest& request, doub
   const double wavelength_nm = lens.reference_wavelength_nm;
   const GhostTracer tracer(lens, wavelength_nm, request.losses, sensor_reflectance, request.clip);
   LensDrawingOptions drawing;
-  drawing.title = fmt::format("{} — ghost of surfaces {} and {} at {:g} nm", lens.name, way.first, way.second,
-                              wavelength_nm);
+  std::string surfaces = fmt::format("{} and {}", way.first, way.second);
+  if (way.reflections() == 4)
+    surfaces = fmt::format("{}, {}, {} and {}", way.first, way.second, way.third, way.fourth);
+  drawing.title = fmt::format("{} — ghost of surfaces {} at {:g} nm", lens.name, surfaces, wavelength_nm);
   std::vector<DrawnRay> rays;
   constexpr int count = 7;
   for (std::size_t i = 0; i < request.fields.size(); ++i) {

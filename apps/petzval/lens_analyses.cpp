@@ -207,8 +207,13 @@ const OwnOptions own_options[] = {
        app.add_option("--source-diameter", command.request.source_diameter_deg,
                       "Angle under which the lens sees the source [degrees]; default: the Sun's")
            ->check(positive_number());
+       app.add_option("--ghost-reflections", command.request.ghost_reflections,
+                      "2, or 4: light that is reflected four times, too, down to 1e-4 of the brightest")
+           ->check(CLI::IsMember({2, 4}))
+           ->capture_default_str();
        app.add_option("--draw", command.ghost.pair,
-                      "Draw the way of one ghost: the surfaces that reflect first and second, as in 4,1");
+                      "Draw the way of one ghost: the surfaces that reflect first and second, as in 4,1; "
+                      "or all four");
        app.add_option("-o,--output", command.ghost.output, "The drawing of --draw: .svg, .png or .pdf")
            ->check(output_file());
      }},

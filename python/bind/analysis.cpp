@@ -96,9 +96,10 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                         Maybe<double> through_focus_mm, const Numbers& radii_um, const std::string& about,
                         int rays, bool opd, int samples, const std::string& zernike_order, int terms,
                         const std::string& spot_weight, double focus_frequency_cpmm,
-                        double sensor_reflectance, double source_diameter_deg, double azimuth_deg,
-                        bool as_psf, const Maybe<std::string>& scatter, double hole_percent,
-                        double surround_deg, bool ghosts, int threads, const nb::object& progress) {
+                        double sensor_reflectance, double source_diameter_deg, int ghost_reflections,
+                        double azimuth_deg, bool as_psf, const Maybe<std::string>& scatter,
+                        double hole_percent, double surround_deg, bool ghosts, int threads,
+                        const nb::object& progress) {
   const Lens lens = lens_to_look_at(self);
   AnalysisRequest request;
   request.at = request_of(lens, fields, field_type, wavelengths_nm,
@@ -121,6 +122,7 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
                                           {{"area", RayWeight::stop_area}, {"light", RayWeight::light}});
   request.focus_frequency_cpmm = focus_frequency_cpmm;
   request.sensor_reflectance = sensor_reflectance, request.source_diameter_deg = source_diameter_deg;
+  request.ghost_reflections = ghost_reflections;
   if (scatter && *scatter != "lens") request.glare.surfaces_scatter = parse_scatter(*scatter);
   request.glare.hole_percent = hole_percent, request.glare.surround_deg = surround_deg,
   request.glare.ghosts = ghosts;
@@ -290,19 +292,19 @@ constexpr const char* trace_text =
 constexpr const char* draw_text =
     "The layout with `rays` rays of each field, as SVG text that notebooks show.";
 
-#define PETZVAL_ANALYSE_ARGUMENTS                                                                           \
-  nb::arg("name"),                                                                                          \
-      nb::arg("fields") = Numbers(), nb::kw_only(), nb::arg("field_type").none() = nb::none(),              \
-      nb::arg("wavelengths_nm") = Numbers(), nb::arg("ignore_apertures") = false, nb::arg("plots") = false, \
-      nb::arg("frequencies_cpmm") = Numbers(), nb::arg("geometric") = false,                                \
-      nb::arg("polychromatic") = false, nb::arg("weights") = Numbers(), nb::arg("over_field") = false,      \
-      nb::arg("through_focus_mm").none() = nb::none(), nb::arg("radii_um") = Numbers(),                     \
-      nb::arg("about") = "centroid", nb::arg("rays") = 21, nb::arg("opd") = false, nb::arg("samples") = 64, \
-      nb::arg("zernike_order") = "fringe", nb::arg("terms") = 0, nb::arg("spot_weight") = "area",           \
-      nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("sensor_reflectance") = 0.0,                          \
-      nb::arg("source_diameter_deg") = 0.53, nb::arg("azimuth_deg") = 0.0, nb::arg("as_psf") = false,       \
-      nb::arg("scatter").none() = nb::none(), nb::arg("hole_percent") = 10.0,                               \
-      nb::arg("surround_deg") = 60.0, nb::arg("ghosts") = false, nb::arg("threads") = 0,                    \
+#define PETZVAL_ANALYSE_ARGUMENTS                                                                            \
+  nb::arg("name"),                                                                                           \
+      nb::arg("fields") = Numbers(), nb::kw_only(), nb::arg("field_type").none() = nb::none(),               \
+      nb::arg("wavelengths_nm") = Numbers(), nb::arg("ignore_apertures") = false, nb::arg("plots") = false,  \
+      nb::arg("frequencies_cpmm") = Numbers(), nb::arg("geometric") = false,                                 \
+      nb::arg("polychromatic") = false, nb::arg("weights") = Numbers(), nb::arg("over_field") = false,       \
+      nb::arg("through_focus_mm").none() = nb::none(), nb::arg("radii_um") = Numbers(),                      \
+      nb::arg("about") = "centroid", nb::arg("rays") = 21, nb::arg("opd") = false, nb::arg("samples") = 64,  \
+      nb::arg("zernike_order") = "fringe", nb::arg("terms") = 0, nb::arg("spot_weight") = "area",            \
+      nb::arg("focus_frequency_cpmm") = 40.0, nb::arg("sensor_reflectance") = 0.0,                           \
+      nb::arg("source_diameter_deg") = 0.53, nb::arg("ghost_reflections") = 2, nb::arg("azimuth_deg") = 0.0, \
+      nb::arg("as_psf") = false, nb::arg("scatter").none() = nb::none(), nb::arg("hole_percent") = 10.0,     \
+      nb::arg("surround_deg") = 60.0, nb::arg("ghosts") = false, nb::arg("threads") = 0,                     \
       nb::arg("progress").none() = nb::none()
 
 /// What a lens and a camera have alike.

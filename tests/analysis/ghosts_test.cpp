@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -40,7 +42,9 @@ class ReflectedRays {
   };
 
   /// \param first, second  as in Ghost; both the number of surfaces: nothing is reflected but by nobody.
-  Result trace(GhostReal y, GhostReal slope, std::size_t first, std::size_t second) {
+  /// \param third, fourth  as in Ghost, if there are any.
+  Result trace(GhostReal y, GhostReal slope, std::size_t first, std::size_t second,
+               std::optional<std::size_t> third = {}, std::optional<std::size_t> fourth = {}) {
     const std::size_t sensor = lens_.surfaces.size();
     Result result;
     y_ = y;
@@ -68,7 +72,15 @@ class ReflectedRays {
       meet(first), turn(first);
       for (std::size_t i = first - 1; i > second; --i) meet(i), pass(i);
       meet(second), turn(second);
-      for (std::size_t i = second + 1; i < sensor; ++i) meet(i), pass(i);
+      std::size_t next = second + 1;
+      if (third) {
+        for (; next < *third; ++next) meet(next), pass(next);
+        meet(*third), turn(*third);
+        for (std::size_t i = *third - 1; i > *fourth; --i) meet(i), pass(i);
+        meet(*fourth), turn(*fourth);
+        next = *fourth + 1;
+      }
+      for (; next < sensor; ++next) meet(next), pass(next);
     }
     meet(sensor);
     result.height = y_;
@@ -124,26 +136,32 @@ class ReflectedRays {
   GhostReal y_ = 0, z_ = 0, dy_ = 0, dz_ = 1, normal_y_ = 0, normal_z_ = 1;
 };
 
-constexpr GhostReal tiny = 1e-6L;
+constexpr GhostReal tiny = 1e-8L;
 
 TEST(Ghosts, AreWhereReflectedRaysGo) {
   for (const char* name : {"cooke-triplet", "double-gauss", "petzval-lens", "tessar"}) {
     const Lens lens = read_lens(name).lens;
     GhostOptions options;
     options.sensor_reflectance = 0.05;
+    options.reflections = 4;
     const std::vector<Ghost> all = ghosts(lens, options);
     const std::size_t sensor = lens.surfaces.size();
-    ASSERT_GE(all.size(), sensor * (sensor - 1) / 4) << name;
+    const auto of_four = [](const Ghost& ghost) { return ghost.third.has_value(); };
+    ASSERT_GE(std::ranges::count_if(all, std::not_fn(of_four)),
+              static_cast<std::ptrdiff_t>(sensor * (sensor - 1) / 4))
+        << name;
+    ASSERT_GE(std::ranges::count_if(all, of_four), 5) << name;
     ReflectedRays rays(lens, lens.reference_wavelength_nm);
     rays.sensor_reflectance = options.sensor_reflectance;
     const GhostReal stop_by_height = rays.trace(tiny, 0, sensor, sensor).at_stop,
                     stop_by_slope = rays.trace(0, tiny, sensor, sensor).at_stop;
-    const auto chief = [&](std::size_t first, std::size_t second) {
-      return rays.trace(-tiny * stop_by_slope / stop_by_height, tiny, first, second).height;
+    const auto chief = [&](std::size_t first, std::size_t second, std::optional<std::size_t> third,
+                           std::optional<std::size_t> fourth) {
+      return rays.trace(-tiny * stop_by_slope / stop_by_height, tiny, first, second, third, fourth).height;
     };
-    const GhostReal image = chief(sensor, sensor);
+    const GhostReal image = chief(sensor, sensor, {}, {});
     for (const Ghost& ghost : all) {
-      const auto traced = rays.trace(tiny, 0, ghost.first, ghost.second);
+      const auto traced = rays.trace(tiny, 0, ghost.first, ghost.second, ghost.third, ghost.fourth);
       const std::string where =
           std::string(name) + " " + std::to_string(ghost.first) + " " + std::to_string(ghost.second);
       EXPECT_NEAR(ghost.focus_mm / static_cast<double>(-traced.height / traced.slope), 1, 1e-9) << where;
@@ -151,8 +169,10 @@ TEST(Ghosts, AreWhereReflectedRaysGo) {
           ghost.diameter_mm / static_cast<double>(2 * std::abs(traced.height) * traced.smallest_clearance), 1,
           1e-9)
           << where;
-      EXPECT_NEAR(ghost.magnification / static_cast<double>(chief(ghost.first, ghost.second) / image), 1,
-                  1e-9)
+      EXPECT_NEAR(
+          ghost.magnification /
+              static_cast<double>(chief(ghost.first, ghost.second, ghost.third, ghost.fourth) / image),
+          1, 1e-9)
           << where;
       EXPECT_NEAR(ghost.transmittance / static_cast<double>(traced.transmittance), 1, 1e-12) << where;
     }
@@ -221,6 +241,9 @@ TEST(Ghosts, RefuseWhatNoSurfaceReflects) {
   EXPECT_THROW(ghosts(lens, options), InputError);
   options.sensor_reflectance = 0;
   options.source_diameter_deg = 0;
+  EXPECT_THROW(ghosts(lens, options), InputError);
+  options.source_diameter_deg = 1;
+  options.reflections = 3;
   EXPECT_THROW(ghosts(lens, options), InputError);
 }
 

@@ -8,8 +8,10 @@
 #include <petzval/trace/tracer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace petzval {
 
@@ -70,39 +72,49 @@ class UnfoldedLens {
   const GhostSurface& operator[](std::size_t i) const { return surfaces_[i]; }
   double image_index() const { return surfaces_.back().index_before; }
 
-  /// What happens to a ray from in front of vertex 1 to the sensor. \param visit  the height at each surface
-  /// that it meets. \param first  where it is first reflected; the sensor without `second`: nowhere.
+  /// What happens to a ray from in front of vertex 1 to the sensor. \param turns  where it is reflected,
+  /// twice for each way back. \param visit  the height at each surface that it meets.
   template <class Visit>
-  UnfoldedRay follow(UnfoldedRay ray, std::size_t first, std::size_t second, Visit&& visit) const {
-    forwards(ray, 0, first, visit);
-    if (second == none) return ray;
-    // Met from the front; then backwards, where the powers are the same; then from behind.
-    ray.refract(-2 * surfaces_[first].index_before * surfaces_[first].curvature_per_mm);
-    for (std::size_t i = first; i-- > second;) {
-      ray.move(surfaces_[i].gap_mm, surfaces_[i].index_after);
-      visit(i, ray.height);
-      if (i > second) ray.refract(surfaces_[i].power());
+  UnfoldedRay follow(UnfoldedRay ray, std::span<const std::size_t> turns, Visit&& visit) const {
+    std::size_t next = 0;
+    for (std::size_t turn = 0; turn + 1 < turns.size(); turn += 2) {
+      const std::size_t far = turns[turn], near = turns[turn + 1];
+      forwards(ray, next, far, visit);
+      // Met from the front; then backwards, where the powers are the same; then from behind.
+      ray.refract(-2 * surfaces_[far].index_before * surfaces_[far].curvature_per_mm);
+      for (std::size_t i = far; i-- > near;) {
+        ray.move(surfaces_[i].gap_mm, surfaces_[i].index_after);
+        visit(i, ray.height);
+        if (i > near) ray.refract(surfaces_[i].power());
+      }
+      ray.refract(2 * surfaces_[near].index_after * surfaces_[near].curvature_per_mm);
+      ray.move(surfaces_[near].gap_mm, surfaces_[near].index_after);
+      next = near + 1;
     }
-    ray.refract(2 * surfaces_[second].index_after * surfaces_[second].curvature_per_mm);
-    ray.move(surfaces_[second].gap_mm, surfaces_[second].index_after);
-    forwards(ray, second + 1, sensor(), visit);
+    forwards(ray, next, sensor(), visit);
     return ray;
   }
-  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-  double transmittance(std::size_t first, std::size_t second) const {
+  double transmittance(std::span<const std::size_t> turns) const {
     double share = 1;
-    for (std::size_t i = 0; i < sensor(); ++i) {
-      const GhostSurface& surface = surfaces_[i];
-      const bool between = second != none && i > second && i < first;
-      const bool gap_thrice = second != none && i >= second && i < first;
-      if (second != none && (i == first || i == second))
-        share *= surface.reflectance * (1 - surface.reflectance);
-      else
-        share *= std::pow(1 - surface.reflectance, between ? 3 : 1);
-      share *= std::pow(surface.gap_transmittance, gap_thrice ? 3 : 1);
+    const auto through = [&](std::size_t i) { share *= 1 - surfaces_[i].reflectance; };
+    const auto along = [&](std::size_t gap) { share *= surfaces_[gap].gap_transmittance; };
+    std::size_t next = 0;
+    const auto onwards = [&](std::size_t to) {
+      for (; next < to; ++next) through(next), along(next);
+    };
+    for (std::size_t turn = 0; turn + 1 < turns.size(); turn += 2) {
+      const std::size_t far = turns[turn], near = turns[turn + 1];
+      onwards(far);
+      share *= surfaces_[far].reflectance * surfaces_[near].reflectance;
+      for (std::size_t i = far; i-- > near;) {
+        along(i);
+        if (i > near) through(i);
+      }
+      along(near);
+      next = near + 1;
     }
-    if (second != none && first == sensor()) share *= surfaces_[first].reflectance;
+    onwards(sensor());
     return share;
   }
 
@@ -145,35 +157,46 @@ struct Way {
   }
 };
 
-Way way(const UnfoldedLens& unfolded, const Lens& lens, std::size_t first, std::size_t second,
+Way way(const UnfoldedLens& unfolded, const Lens& lens, std::span<const std::size_t> turns,
         double source_diameter_deg) {
   const auto ignore = [](std::size_t, double) {};
   const double slope = lens.object_distance_mm ? 1 / *lens.object_distance_mm : 0;
   Way result;
   result.entrance_mm = std::numeric_limits<double>::infinity();
-  const UnfoldedRay axial =
-      unfolded.follow({1, slope}, first, second, [&](std::size_t surface, double height) {
-        result.entrance_mm = std::min(result.entrance_mm, unfolded[surface].clear_mm / std::abs(height));
-      });
+  const UnfoldedRay axial = unfolded.follow({1, slope}, turns, [&](std::size_t surface, double height) {
+    result.entrance_mm = std::min(result.entrance_mm, unfolded[surface].clear_mm / std::abs(height));
+  });
   result.diameter_mm = 2 * axial.height * result.entrance_mm;
   result.focus_mm = axial.reduced_slope == 0
                         ? std::copysign(std::numeric_limits<double>::infinity(), axial.height)
                         : -axial.height / axial.reduced_slope * unfolded.image_index();
   // A source that is turned by a small angle moves what one point of the entrance sends.
-  const UnfoldedRay turned = unfolded.follow({0, 1}, first, second, ignore);
+  const UnfoldedRay turned = unfolded.follow({0, 1}, turns, ignore);
   result.source_mm = std::abs(turned.height) * 2 * std::tan(radians(source_diameter_deg) / 2);
   // Through the middle of the stop, where light first comes to it.
   const auto height_at_stop = [&](const UnfoldedRay& start) {
     double at_stop = 0;
-    unfolded.follow(start, unfolded.sensor(), UnfoldedLens::none, [&](std::size_t surface, double height) {
+    unfolded.follow(start, {}, [&](std::size_t surface, double height) {
       if (surface == lens.stop_index()) at_stop = height;
     });
     return at_stop;
   };
   const UnfoldedRay chief{-height_at_stop({0, 1}), height_at_stop({1, 0})};
-  result.chief_mm = unfolded.follow(chief, first, second, ignore).height;
-  result.transmittance = unfolded.transmittance(first, second);
+  result.chief_mm = unfolded.follow(chief, turns, ignore).height;
+  result.transmittance = unfolded.transmittance(turns);
   return result;
+}
+
+/// Of the brightest ghost.
+constexpr double least_of_four = 1e-4;
+
+/// The farther one first.
+std::vector<std::array<std::size_t, 2>> reflecting_pairs(const UnfoldedLens& unfolded) {
+  std::vector<std::array<std::size_t, 2>> pairs;
+  for (std::size_t far = 1; far <= unfolded.sensor(); ++far)
+    for (std::size_t near = 0; near < far; ++near)
+      if (unfolded[far].reflectance > 0 && unfolded[near].reflectance > 0) pairs.push_back({far, near});
+  return pairs;
 }
 
 void check(const Lens& lens, const GhostOptions& options) {
@@ -182,6 +205,8 @@ void check(const Lens& lens, const GhostOptions& options) {
   if (!(options.sensor_reflectance >= 0 && options.sensor_reflectance <= 1))
     throw InputError(
         fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", options.sensor_reflectance));
+  if (options.reflections != 2 && options.reflections != 4)
+    throw InputError(fmt::format("`ghost_reflections` is {}; 2 or 4 would be right", options.reflections));
   if (!(options.source_diameter_deg > 0 && options.source_diameter_deg < 180))
     throw InputError(
         fmt::format("`source_diameter_deg` is {:g}; more than 0 and less than 180 would be right",
@@ -200,17 +225,37 @@ std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options) {
                                               : options.wavelengths_nm;
   for (const double wavelength_nm : wavelengths) {
     const UnfoldedLens unfolded(lens, wavelength_nm, options);
-    const Way image = way(unfolded, lens, unfolded.sensor(), UnfoldedLens::none, options.source_diameter_deg);
+    const Way image = way(unfolded, lens, {}, options.source_diameter_deg);
+    const auto ghost_of = [&](const std::vector<std::size_t>& turns) {
+      const Way found = way(unfolded, lens, turns, options.source_diameter_deg);
+      Ghost ghost{turns[0],
+                  turns[1],
+                  wavelength_nm,
+                  found.focus_mm,
+                  std::abs(found.diameter_mm),
+                  found.chief_mm / image.chief_mm,
+                  found.transmittance,
+                  found.irradiance(),
+                  found.irradiance() / image.irradiance(),
+                  {},
+                  {}};
+      if (turns.size() == 4) ghost.third = turns[2], ghost.fourth = turns[3];
+      return ghost;
+    };
     std::vector<Ghost> here;
-    const std::size_t last = options.sensor_reflectance > 0 ? unfolded.sensor() : unfolded.sensor() - 1;
-    for (std::size_t first = 1; first <= last; ++first)
-      for (std::size_t second = 0; second < first; ++second) {
-        if (!(unfolded[first].reflectance > 0) || !(unfolded[second].reflectance > 0)) continue;
-        const Way ghost = way(unfolded, lens, first, second, options.source_diameter_deg);
-        here.push_back({first, second, wavelength_nm, ghost.focus_mm, std::abs(ghost.diameter_mm),
-                        ghost.chief_mm / image.chief_mm, ghost.transmittance, ghost.irradiance(),
-                        ghost.irradiance() / image.irradiance()});
-      }
+    const std::vector<std::array<std::size_t, 2>> pairs = reflecting_pairs(unfolded);
+    double brightest = 0;
+    for (const auto& [first, second] : pairs) {
+      here.push_back(ghost_of({first, second}));
+      brightest = std::max(brightest, here.back().irradiance);
+    }
+    if (options.reflections == 4)
+      for (const auto& [first, second] : pairs)
+        for (const auto& [third, fourth] : pairs) {
+          if (third <= second) continue;
+          const Ghost ghost = ghost_of({first, second, third, fourth});
+          if (ghost.irradiance >= least_of_four * brightest) here.push_back(ghost);
+        }
     std::stable_sort(here.begin(), here.end(),
                      [](const Ghost& a, const Ghost& b) { return a.irradiance > b.irradiance; });
     all.insert(all.end(), here.begin(), here.end());

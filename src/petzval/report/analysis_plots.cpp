@@ -280,8 +280,9 @@ Plot ghost_plot(const std::vector<Ghost>& rows, std::size_t sensor) {
     if (plot.notes.size() < most_named && has_room(plot.notes, ghost))
       plot.notes.push_back(
           {ghost.diameter_mm, ghost.relative_irradiance,
-           fmt::format(" {}, {}", ghost.first == sensor ? "sensor" : fmt::format("{}", ghost.first),
-                       ghost.second)});
+           fmt::format(" {}, {}{}", ghost.first == sensor ? "sensor" : fmt::format("{}", ghost.first),
+                       ghost.second,
+                       ghost.third ? fmt::format(", {}, {}", *ghost.third, *ghost.fourth) : "")});
     x.push_back(ghost.diameter_mm);
     y.push_back(ghost.relative_irradiance);
   }

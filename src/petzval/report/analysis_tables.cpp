@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace petzval {
@@ -310,12 +311,20 @@ Table tabulate(const std::vector<Ghost>& rows, std::size_t sensor) {
                {"over the image's", "", 10, "relative_irradiance", {"", ".3g"}}},
               {}};
   table.columns[0].text = {"", "g"};
-  const auto name = [&](std::size_t surface) {
-    return surface == sensor ? std::string("sensor") : fmt::format("{}", surface);
+  const auto name = [&](std::optional<std::size_t> surface) {
+    return !surface             ? std::string("-")
+           : *surface == sensor ? std::string("sensor")
+                                : fmt::format("{}", *surface);
   };
-  for (const Ghost& row : rows)
+  const bool four = std::ranges::any_of(rows, [](const Ghost& row) { return row.third.has_value(); });
+  if (four)
+    table.columns.insert(table.columns.begin() + 3,
+                         {{"then at", "", 0, "third_surface"}, {"then at", "", 0, "fourth_surface"}});
+  for (const Ghost& row : rows) {
     table.rows.push_back({row.wavelength_nm, name(row.first), name(row.second), row.focus_mm, row.diameter_mm,
                           row.magnification, row.transmittance, row.irradiance, row.relative_irradiance});
+    if (four) table.rows.back().insert(table.rows.back().begin() + 3, {name(row.third), name(row.fourth)});
+  }
   return table;
 }
 

@@ -334,12 +334,13 @@ AnalysisResult ghost_reflections(const Lens& lens, const AnalysisRequest& reques
   options.losses = request.at.losses;
   options.sensor_reflectance = request.sensor_reflectance;
   options.source_diameter_deg = request.source_diameter_deg;
+  options.reflections = request.ghost_reflections;
   const std::size_t sensor = lens.surfaces.size();
   const std::vector<Ghost> rows = ghosts(lens, options);
   AnalysisResult result = result_of(
       lens, request.at,
-      fmt::format("double reflections, paraxial, of a source {:g} deg wide; focus from the image surface",
-                  options.source_diameter_deg),
+      fmt::format("{} reflections, paraxial, of a source {:g} deg wide; focus from the image surface",
+                  options.reflections == 4 ? "two and four" : "double", options.source_diameter_deg),
       tabulate(rows, sensor));
   result.facts = {{"source_diameter_deg", std::vector<double>{options.source_diameter_deg}}};
   if (request.plots) result.plots = {ghost_plot(rows, sensor)};

@@ -50,6 +50,7 @@ struct AnalysisRequest {
   EncircledEnergyOptions encircled_energy = {};
   double sensor_reflectance = 0;      ///< for ghosts: 0: of the sensor there are none
   double source_diameter_deg = 0.53;  ///< of what makes ghosts, as the lens sees it; the Sun's
+  int ghost_reflections = 2;          ///< or 4: ghosts of light that is reflected four times, too
   double focus_frequency_cpmm = 40;   ///< of the MTF by which best focus is sought
   GlareRequest glare = {};
 };
