@@ -75,6 +75,17 @@ class Flare(ProgramTest):
         self.assert_refused("image", "wall", "--optics", "t.h5", "--sensor", "60x40@500", "--wavelengths", "550", "--ghosts", "-o",
                             "light.npy", words=("--lens",))
 
+    def test_a_way_of_four_reflections_is_listed_and_drawn(self):
+        rows = self.json_of("lens", "ghosts", "cooke-triplet", "--ghost-reflections", "4", "--wavelengths", "550")["rows"]
+        four = [row for row in rows if row["third_surface"] != "-"]
+        self.assertGreater(len(four), 0)
+        self.assertEqual(len(rows) - len(four), 15)
+        self.assertLess(max(row["irradiance"] for row in four), max(row["irradiance"] for row in rows))
+        self.assert_succeeds("lens", "ghosts", "cooke-triplet", "--draw", "5,0,4,1", "--fields", "0", "-o", "way.svg")
+        self.assertIn("5, 0, 4 and 1", (self.folder / "way.svg").read_text())
+        for way in ("5,0,4", "5,0,0,1", "0,5", "5,0,4,4", "5,x"):
+            self.assert_refused("lens", "ghosts", "cooke-triplet", "--draw", way, "-o", "way.svg", words=("two such pairs",))
+
 
 if __name__ == "__main__":
     unittest.main()
