@@ -87,6 +87,25 @@ TEST(ChebyshevSurface, GivesItsSeriesAlongX) {
   }
 }
 
+TEST(ChebyshevSurface, MeetsPolynomialsAlongLinesBothWays) {
+  const auto f = [](double x, double y) { return 1 + x - 0.5 * y * x * x + x * x * x * y - y * y * y; };
+  Points points = sample(f);
+  for (std::size_t i = 0, half = points.x.size(); i < half; ++i) {  // the other half of the disc
+    points.x.push_back(-points.x[i]);
+    points.y.push_back(points.y[i]);
+    points.value.push_back(f(-points.x[i], points.y[i]));
+  }
+  const std::array<std::span<const double>, 1> values{points.value};
+  const std::vector<ChebyshevSurface> surfaces =
+      ChebyshevSurface::fit(points.x, points.y, values, 4, ChebyshevSurface::Symmetry::none);
+  ASSERT_EQ(surfaces.size(), 1u);
+  for (const double x : {-1.5, -0.25, 0.0, 0.7})
+    for (const double y : {1.9, 3.0, 4.25}) {
+      EXPECT_NEAR(surfaces[0].at_y(y)(x), f(x, y), 1e-10);
+      EXPECT_NEAR(surfaces[0].at_x(x)(y), f(x, y), 1e-10);
+    }
+}
+
 TEST(ChebyshevSurface, SaysWhenPointsDoNotDetermineIt) {
   Points line = sample([](double, double y) { return y; });
   for (double& y : line.y) y = 1;

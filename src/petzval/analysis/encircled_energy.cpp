@@ -131,7 +131,7 @@ std::vector<EncircledEnergyRow> encircled_energy_table(const Lens& lens, const F
   std::vector<EncircledEnergyRow> rows;
   for (EncircledCurve& curve : field_rows<EncircledCurve>(
            lens, request,
-           [&](FieldTracer&tracer, const ChiefRay&chief) { return curve_of(tracer, chief, options); }))
+           [&](const FieldTracer&tracer, const ChiefRay&chief) { return curve_of(tracer, chief, options); }))
     for (EncircledEnergyRow& row : curve.rows) {
       row.field = curve.field;
       row.wavelength_nm = curve.wavelength_nm;

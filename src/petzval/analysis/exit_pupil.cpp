@@ -23,6 +23,33 @@ constexpr int aim_steps = 12;
 
 }  // namespace
 
+OutlineEdges::OutlineEdges(const std::vector<double>& at) {
+  const auto [low, high] = std::minmax_element(at.begin(), at.end());
+  low_ = *low;
+  const std::size_t bands = at.size();
+  per_band_ = (*high - *low) / static_cast<double>(bands);
+  if (!(per_band_ > 0)) return;
+  std::vector<std::vector<std::size_t>> of(bands);
+  const auto band = [&](double value) {
+    return std::min(static_cast<std::size_t>((value - low_) / per_band_), bands - 1);
+  };
+  for (std::size_t i = 1; i < at.size(); ++i)
+    for (std::size_t b = band(std::min(at[i - 1], at[i])); b <= band(std::max(at[i - 1], at[i])); ++b)
+      of[b].push_back(i);
+  first_ = {0};
+  for (const std::vector<std::size_t>& edges : of) {
+    edges_.insert(edges_.end(), edges.begin(), edges.end());
+    first_.push_back(edges_.size());
+  }
+}
+
+std::span<const std::size_t> OutlineEdges::near(double value) const {
+  const double band = (value - low_) / per_band_;
+  if (first_.empty() || !(band >= 0)) return {};
+  const std::size_t at = std::min(static_cast<std::size_t>(std::min(band, 1e9)), first_.size() - 2);
+  return std::span(edges_).subspan(first_[at], first_[at + 1] - first_[at]);
+}
+
 ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief, const PupilDetail& detail)
     : tracer_(&tracer),
       chief_(chief),
@@ -31,18 +58,43 @@ ExitPupil::ExitPupil(const FieldTracer& tracer, const ChiefRay& chief, const Pup
       sphere_radius_mm_(reference_sphere_radius_mm(tracer, chief)),
       pupil_position_mm_(first_order(tracer.lens()).exit_pupil.position_mm) {}
 
+ExitPupil::Probe ExitPupil::at_sensor(const Ray& traced) const {
+  Probe probe{traced.direction[0], traced.direction[1], 0, traced.point_mm[0] - chief_.image_x_mm,
+              traced.point_mm[1] - chief_.image_height_mm};
+  const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
+  const double to_foot_mm = -probe.x_mm * probe.alpha - probe.y_mm * probe.beta;
+  probe.phase_waves =
+      (traced.opl_mm - chief_.at_image.opl_mm + tracer_->tracer().image_index() * to_foot_mm) / lambda_mm;
+  return probe;
+}
+
 std::optional<ExitPupil::Probe> ExitPupil::probe(double u, double v) const {
   const std::optional<Ray> launched = pencil_.ray(u, v);
   if (!launched) return {};
   const Ray ray = tracer_->tracer().trace(*launched, Tracer::Clip::none);
   if (ray.status != RayStatus::ok) return {};
-  Probe probe{ray.direction[0], ray.direction[1], 0, ray.point_mm[0] - chief_.image_x_mm,
-              ray.point_mm[1] - chief_.image_height_mm};
-  const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
-  const double to_foot_mm = -probe.x_mm * probe.alpha - probe.y_mm * probe.beta;
-  probe.phase_waves =
-      (ray.opl_mm - chief_.at_image.opl_mm + tracer_->tracer().image_index() * to_foot_mm) / lambda_mm;
-  return probe;
+  return at_sensor(ray);
+}
+
+std::vector<std::optional<ExitPupil::Probe>> ExitPupil::probe(
+    const std::vector<std::array<double, 2>>& places) const {
+  RayBatch rays;
+  std::vector<std::size_t> launched;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::optional<Ray> ray = pencil_.ray(places[i][0], places[i][1]);
+    if (!ray) continue;
+    const auto& [x, y, z] = ray->point_mm;
+    const auto& [l, m, n] = ray->direction;
+    rays.push_back(x, y, z, l, m, n, ray->opl_mm);
+    launched.push_back(i);
+  }
+  tracer_->tracer().trace(rays, Tracer::Clip::none);
+  std::vector<std::optional<Probe>> probes(places.size());
+  for (std::size_t i = 0; i < launched.size(); ++i)
+    if (rays.status[i] == RayStatus::ok)
+      probes[launched[i]] = at_sensor(
+          {{rays.x_mm[i], rays.y_mm[i], rays.z_mm[i]}, {rays.l[i], rays.m[i], rays.n[i]}, rays.opl_mm[i]});
+  return probes;
 }
 
 std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay& chief,
@@ -72,47 +124,69 @@ std::optional<ExitPupil> ExitPupil::of(const FieldTracer& tracer, const ChiefRay
   return exit;
 }
 
-std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model, double sensor_shift_mm) const {
+std::vector<ExitPupil::Sample> ExitPupil::samples(const PupilModel& model,
+                                                  const std::vector<double>& sensor_shifts_mm) const {
   const std::array<double, 3> chief = chief_.at_image.direction;
   const double index = tracer_->tracer().image_index();
   const double lambda_mm = tracer_->tracer().wavelength_nm() * mm_per_nm;
   const double chief_slope = chief[1] / chief[2], chief_slope_x = mirrored() ? 0 : chief[0] / chief[2];
-  const double height_mm = chief_.image_height_mm + sensor_shift_mm * chief_slope;
-  const double x_mm = chief_.image_x_mm + sensor_shift_mm * chief_slope_x;
-  const double pupil_mm = pupil_position_mm_ - sensor_shift_mm;
-  const double radius_mm = std::copysign(std::hypot(pupil_mm, std::hypot(height_mm, x_mm)), -pupil_mm);
-  std::vector<Sample> samples;
-  const auto add = [&](double u, double v) {
-    const std::optional<Probe> at = probe(u, v), right = probe(u + nudge_, v), above = probe(u, v + nudge_);
-    if (!at || !right || !above) return;
-    const double jacobian = ((right->alpha - at->alpha) * (above->beta - at->beta) -
-                             (above->alpha - at->alpha) * (right->beta - at->beta)) /
-                            (nudge_ * nudge_);
-    const double gamma = std::sqrt(1 - at->alpha * at->alpha - at->beta * at->beta);
-    Sample sample{
-        mirrored() ? std::abs(at->alpha) : at->alpha, at->beta, at->phase_waves, 1, at->x_mm, at->y_mm};
-    if (model.amplitude == PupilModel::Amplitude::light) sample.amplitude = 1 / std::sqrt(std::abs(jacobian));
-    sample.x_mm += sensor_shift_mm * (at->alpha / gamma - chief_slope_x);
-    sample.y_mm += sensor_shift_mm * (at->beta / gamma - chief_slope);
-    double more_mm =
-        sensor_shift_mm * (at->alpha * chief_slope_x + at->beta * chief_slope + gamma - 1 / chief[2]);
-    if (model.phase == PupilModel::Phase::reference_sphere)
-      more_mm -= sphere_behind_foot_mm(sample.x_mm, sample.y_mm, at->alpha, at->beta, radius_mm);
-    sample.phase_waves += index * more_mm / lambda_mm;
-    samples.push_back(sample);
+  const auto on_sensor = [&](const Probe& at, double shift_mm) {
+    const double gamma = std::sqrt(1 - at.alpha * at.alpha - at.beta * at.beta);
+    OnSensor sensor{at.phase_waves, at.x_mm + shift_mm * (at.alpha / gamma - chief_slope_x),
+                    at.y_mm + shift_mm * (at.beta / gamma - chief_slope)};
+    double more_mm = shift_mm * (at.alpha * chief_slope_x + at.beta * chief_slope + gamma - 1 / chief[2]);
+    if (model.phase == PupilModel::Phase::reference_sphere) {
+      const double height_mm = chief_.image_height_mm + shift_mm * chief_slope,
+                   aside_mm = chief_.image_x_mm + shift_mm * chief_slope_x,
+                   pupil_mm = pupil_position_mm_ - shift_mm;
+      const double radius_mm =
+          std::copysign(std::hypot(pupil_mm, std::hypot(height_mm, aside_mm)), -pupil_mm);
+      more_mm -= sphere_behind_foot_mm(sensor.x_mm, sensor.y_mm, at.alpha, at.beta, radius_mm);
+    }
+    sensor.phase_waves += index * more_mm / lambda_mm;
+    return sensor;
   };
-  for (const PupilNode& node : pupil_nodes(boundary_, detail_.sample_radii)) add(node.u, node.v);
-  for (std::size_t i = 0; i < boundary_.own(); ++i) add(boundary_.rim(i)[0], boundary_.rim(i)[1]);
+  std::vector<std::array<double, 2>> places;
+  for (const PupilNode& node : pupil_nodes(boundary_, detail_.sample_radii))
+    places.push_back({node.u, node.v});
+  for (std::size_t i = 0; i < boundary_.own(); ++i) places.push_back(boundary_.rim(i));
+  const std::vector<std::optional<Probe>> probes = probe(places);
+  std::vector<std::optional<Probe>> right, above;
+  const bool as_bright = model.amplitude == PupilModel::Amplitude::light;
+  if (as_bright) {
+    std::vector<std::array<double, 2>> beside = places;
+    for (auto& [u, v] : beside) u += nudge_;
+    right = probe(beside);
+    for (auto& [u, v] : places) v += nudge_;
+    above = probe(places);
+  }
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const std::optional<Probe>& at = probes[i];
+    if (!at || (as_bright && (!right[i] || !above[i]))) continue;
+    Sample sample{mirrored() ? std::abs(at->alpha) : at->alpha, at->beta, 1};
+    if (as_bright) {
+      const double jacobian = ((right[i]->alpha - at->alpha) * (above[i]->beta - at->beta) -
+                               (above[i]->alpha - at->alpha) * (right[i]->beta - at->beta)) /
+                              (nudge_ * nudge_);
+      sample.amplitude = 1 / std::sqrt(std::abs(jacobian));
+    }
+    for (const double shift_mm : sensor_shifts_mm) sample.sensors.push_back(on_sensor(*at, shift_mm));
+    samples.push_back(std::move(sample));
+  }
   return samples;
 }
 
 bool ExitPupil::find_outline(const PupilBoundary& pupil) {
   nudge_ = nudge_per_radius * *std::max_element(pupil.radius.begin(), pupil.radius.end());
   double low_v = pupil.centre_v, high_v = pupil.centre_v;
-  for (std::size_t i = 0; i < pupil.own(); ++i) {
-    const auto [u, v] = pupil.rim(i);
-    const std::optional<Probe> rim = probe(u, v);
+  std::vector<std::array<double, 2>> places;
+  for (std::size_t i = 0; i < pupil.own(); ++i) places.push_back(pupil.rim(i));
+  const std::vector<std::optional<Probe>> rims = probe(places);
+  for (std::size_t i = 0; i < rims.size(); ++i) {
+    const std::optional<Probe>& rim = rims[i];
     if (!rim) continue;
+    const double v = places[i][1];
     outline_alpha_.push_back(std::abs(rim->alpha));
     outline_beta_.push_back(rim->beta);
     transverse_mm_ = std::max(transverse_mm_, std::hypot(rim->x_mm, rim->y_mm));
@@ -124,6 +198,8 @@ bool ExitPupil::find_outline(const PupilBoundary& pupil) {
   outline_beta_.insert(outline_beta_.begin(), outline_beta_.front());
   outline_alpha_.push_back(0);
   outline_beta_.push_back(outline_beta_.back());
+  across_alpha_ = OutlineEdges(outline_alpha_);
+  across_beta_ = OutlineEdges(outline_beta_);
   alpha_max_ = *std::max_element(outline_alpha_.begin(), outline_alpha_.end());
   const auto [low, high] = std::minmax_element(outline_beta_.begin(), outline_beta_.end());
   beta_range_ = {*low, *high};
@@ -144,14 +220,15 @@ bool ExitPupil::find_outline(const PupilBoundary& pupil) {
 }
 
 void ExitPupil::take_whole_outline(const PupilBoundary& pupil) {
-  for (std::size_t i = 0; i < pupil.radius.size(); ++i)
-    if (const std::optional<Probe> rim = probe(pupil.rim(i)[0], pupil.rim(i)[1]))
-      whole_outline_.push_back({rim->alpha, rim->beta});
+  std::vector<std::array<double, 2>> places;
+  for (std::size_t i = 0; i < pupil.radius.size(); ++i) places.push_back(pupil.rim(i));
+  for (const std::optional<Probe>& rim : probe(places))
+    if (rim) whole_outline_.push_back({rim->alpha, rim->beta});
 }
 
 ExitPupil::Chord ExitPupil::along_beta(double alpha) const {
   Chord chord{beta_range_.high, beta_range_.low};
-  for (std::size_t i = 1; i < outline_alpha_.size(); ++i) {
+  for (const std::size_t i : across_alpha_.near(alpha)) {
     const double a = outline_alpha_[i - 1], b = outline_alpha_[i];
     if (a == b || (a <= alpha) == (b <= alpha)) continue;
     const double beta =
@@ -163,7 +240,7 @@ ExitPupil::Chord ExitPupil::along_beta(double alpha) const {
 
 ExitPupil::Chord ExitPupil::along_alpha(double beta) const {
   double widest = 0;
-  for (std::size_t i = 1; i < outline_beta_.size(); ++i) {
+  for (const std::size_t i : across_beta_.near(beta)) {
     const double a = outline_beta_[i - 1], b = outline_beta_[i];
     if (a == b || (a < beta) == (b < beta)) continue;
     widest = std::max(

@@ -9,6 +9,7 @@
 #include <array>
 #include <complex>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace petzval {
@@ -36,6 +37,20 @@ struct PupilDetail {
 
   /// An MTF to 2e-3 at a tenth of the cost, for thousands of lenses.
   static constexpr PupilDetail quick() { return {128, 9, 12}; }
+};
+
+/// Which edges of an outline cross a line, looked up by bands of one coordinate.
+class OutlineEdges {
+ public:
+  OutlineEdges() = default;
+  /// \param at  that coordinate of the corners, in order.
+  explicit OutlineEdges(const std::vector<double>& at);
+  /// The edges, from corner i − 1 to corner i, that may reach a value.
+  std::span<const std::size_t> near(double value) const;
+
+ private:
+  double low_ = 0, per_band_ = 0;
+  std::vector<std::size_t> first_, edges_;  ///< of each band
 };
 
 /// The light that converges on the chief ray's image point, as a function of the exit direction cosines (α,
@@ -71,15 +86,18 @@ class ExitPupil {
   /// of a lens with poses nothing but its size.
   const std::vector<std::array<double, 2>>& whole_outline() const { return whole_outline_; }
 
+  /// Where a ray ends on a sensor, from the chief ray's point there, and wave()'s phase about that point.
+  struct OnSensor {
+    double phase_waves = 0, x_mm = 0, y_mm = 0;
+  };
   /// A ray of the half pupil α ≥ 0, or of the whole where that is not mirrored.
   struct Sample {
-    double alpha = 0, beta = 0;
-    double phase_waves = 0, amplitude = 0;  ///< of wave() in that direction
-    double x_mm = 0, y_mm = 0;              ///< on the sensor, from the chief ray's point
+    double alpha = 0, beta = 0, amplitude = 0;  ///< of wave() in that direction
+    std::vector<OnSensor> sensors = {};         ///< one a sensor
   };
-  /// Rays over the pupil and on its rim, none of them aimed; for a sensor `sensor_shift_mm` behind the image
-  /// surface, about the chief ray's point on it. The rays stay, the paths to them change.
-  std::vector<Sample> samples(const PupilModel& model, double sensor_shift_mm = 0) const;
+  /// Rays over the pupil and on its rim, none of them aimed, on sensors that stand so far behind the image
+  /// surface. The rays stay, the paths to them change.
+  std::vector<Sample> samples(const PupilModel& model, const std::vector<double>& sensor_shifts_mm) const;
 
   /// Amplitude and phase in a direction, a exp(2πi φ). Aimed with real rays; zero where none goes that way.
   std::complex<double> wave(double alpha, double beta, const PupilModel& model) const;
@@ -90,6 +108,9 @@ class ExitPupil {
     double alpha, beta, phase_waves, x_mm, y_mm;
   };
   std::optional<Probe> probe(double u, double v) const;
+  /// Many at once.
+  std::vector<std::optional<Probe>> probe(const std::vector<std::array<double, 2>>& places) const;
+  Probe at_sensor(const Ray& traced) const;
   bool find_outline(const PupilBoundary& pupil);
   void take_whole_outline(const PupilBoundary& pupil);
 
@@ -101,6 +122,7 @@ class ExitPupil {
   double u_per_alpha_ = 0, v_per_beta_ = 0, middle_u_ = 0, middle_v_ = 0, middle_alpha_ = 0,
          middle_beta_ = 0;                            ///< first guess
   std::vector<double> outline_alpha_, outline_beta_;  ///< half of it, α ≥ 0, closed on the axis
+  OutlineEdges across_alpha_, across_beta_;
   std::vector<std::array<double, 2>> whole_outline_;
   double alpha_max_ = 0, transverse_mm_ = 0, sphere_radius_mm_ = 0;
   double pupil_position_mm_ = 0;  ///< of the paraxial exit pupil, from the image surface

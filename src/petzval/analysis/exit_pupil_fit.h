@@ -3,10 +3,11 @@
 #pragma once
 
 #include <petzval/analysis/exit_pupil.h>
-#include <petzval/numeric/chebyshev_surface.h>
+#include <petzval/wave/line_overlap.h>
 
 #include <complex>
 #include <optional>
+#include <vector>
 
 namespace petzval {
 
@@ -24,8 +25,14 @@ class ExitPupilFit {
   /// then ExitPupil::wave is there.
   static std::optional<ExitPupilFit> of(const ExitPupil& pupil, const PupilModel& model,
                                         double sensor_shift_mm = 0);
+  /// One a sensor; their rays are the same and traced once.
+  static std::vector<std::optional<ExitPupilFit>> of(const ExitPupil& pupil, const PupilModel& model,
+                                                     const std::vector<double>& sensor_shifts_mm);
 
-  std::complex<double> wave(double alpha, double beta) const;
+  std::complex<double> wave(double alpha, double beta) const { return at_beta(beta)(alpha); }
+  /// The wave along a line of one α, over β, and of one β, over α.
+  WaveLine at_alpha(double alpha) const;
+  WaveLine at_beta(double beta) const;
   /// As ExitPupil::transverse_mm, on the moved sensor.
   double transverse_mm() const { return transverse_mm_; }
 

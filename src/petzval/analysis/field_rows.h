@@ -9,6 +9,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,27 +29,34 @@ inline FieldTableRequest with_own_lists(FieldTableRequest request, const Lens& l
   return request;
 }
 
-/// Rows [field][wavelength], wavelengths in parallel; `make(tracer, chief)` gives one row as an optional,
-/// empty where no ray passes. Sets row.field and row.wavelength_nm.
+/// Rows [field][wavelength], all in parallel; `make(tracer, chief)` gives one row as an optional, empty where
+/// no ray passes. Sets row.field and row.wavelength_nm.
 /// \throws InputError naming a field at which no chief ray or no ray at all passes.
 template <class Row, class Make>
 std::vector<Row> field_rows(const Lens& lens, FieldTableRequest request, Make&& make) {
   request = with_own_lists(std::move(request), lens);
+  const std::size_t fields = request.fields.size(), wavelengths = request.wavelengths_nm.size();
+  std::vector<std::optional<FieldTracer>> tracers(wavelengths);
+  std::vector<std::optional<ChiefRay>> chiefs(fields * wavelengths);
   std::vector<double> objects;
   for (const double field : request.fields) objects.push_back(object_field(lens, request.field_kind, field));
-  const std::size_t wavelengths = request.wavelengths_nm.size();
-  std::vector<Row> rows(objects.size() * wavelengths);
   parallel_for(wavelengths, [&](std::size_t w) {
-    FieldTracer tracer(lens, request.wavelengths_nm[w], request.clip, request.azimuth_deg);
-    for (std::size_t f = 0; f < objects.size(); ++f) {
-      const std::optional<ChiefRay> chief = tracer.chief_ray(objects[f]);
-      std::optional<Row> row = chief ? make(tracer, *chief) : std::nullopt;
-      if (!row) throw no_ray_passes(lens, request.fields[f], request.wavelengths_nm[w]);
-      row->field = request.fields[f];
-      row->wavelength_nm = request.wavelengths_nm[w];
-      rows[f * wavelengths + w] = *row;
-    }
+    tracers[w].emplace(lens, request.wavelengths_nm[w], request.clip, request.azimuth_deg);
+    for (std::size_t f = 0; f < fields; ++f) chiefs[f * wavelengths + w] = tracers[w]->chief_ray(objects[f]);
   });
+  std::vector<std::optional<Row>> made(chiefs.size());
+  parallel_tasks(made.size(), [&](std::size_t i) {
+    if (chiefs[i]) made[i] = make(std::as_const(*tracers[i % wavelengths]), *chiefs[i]);
+  });
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    const double field = request.fields[i / wavelengths],
+                 wavelength_nm = request.wavelengths_nm[i % wavelengths];
+    if (!made[i]) throw no_ray_passes(lens, field, wavelength_nm);
+    made[i]->field = field;
+    made[i]->wavelength_nm = wavelength_nm;
+    rows.push_back(*std::move(made[i]));
+  }
   return rows;
 }
 

@@ -23,7 +23,8 @@ struct ChiefRay {
 };
 
 /// A lens at one wavelength, asked field by field. Object fields are degrees when the object is at infinity,
-/// else object heights in mm. Not for use from several threads at once (it remembers the last chief ray).
+/// else object heights in mm. From several threads at once all but chief_ray() may be asked, which remembers
+/// the last one.
 class FieldTracer {
  public:
   /// \param clip  apertures: every clear aperture counts; stop_only: --ignore-apertures.

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/analysis/bladed_otf.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/mtf.h>
-#include <petzval/analysis/pupil_mask.h>
 #include <petzval/base/stop.h>
 #include <petzval/base/units.h>
-#include <petzval/numeric/quadrature.h>
 
 #include <algorithm>
 #include <array>
@@ -14,115 +11,6 @@
 namespace petzval {
 
 namespace {
-
-/// Nodes along and across the chords: what a smooth overlap needs, and what the waves across it take, half as
-/// many nodes as radians; beyond the largest number the transfer is lost in noise anyway.
-constexpr int fewest_nodes = 24, most_nodes = 160;
-
-int nodes_for(double cycles) {
-  return std::clamp(static_cast<int>(std::ceil(fewest_nodes + 4 * cycles)), fewest_nodes, most_nodes);
-}
-
-/// The largest x in [low, high] at which `fits` holds, if it does at low and is lost but once on the way.
-template <class Fits>
-double last_fit(double low, double high, Fits&& fits) {
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (fits(middle) ? low : high) = middle;
-  }
-  return low;
-}
-
-/// ∫ f over [low, high], with nodes crowded towards both ends as cos θ: a chord ends there like a square
-/// root.
-template <class F>
-void over_chords(double low, double high, int count, F&& f) {
-  const QuadratureRule rule = gauss_legendre(count, -0.5 * pi, 0.5 * pi);
-  const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
-  for (std::size_t i = 0; i < rule.nodes.size(); ++i)
-    f(middle + half * std::sin(rule.nodes[i]), half * std::cos(rule.nodes[i]) * rule.weights[i]);
-}
-
-/// \tparam Wave  (α ≥ 0, β) → complex amplitude.
-template <class Wave>
-class Autocorrelation {
- public:
-  Autocorrelation(const ExitPupil& pupil, const Wave& wave, int nodes)
-      : pupil_(pupil), wave_(wave), nodes_(nodes), rule_(gauss_legendre(nodes)) {}
-
-  /// Chords along β, pupil against itself shifted by s in β.
-  std::complex<double> tangential(double s) const {
-    const auto fits = [&](double alpha) { return pupil_.along_beta(alpha).length() > s; };
-    if (!fits(0)) return 0;
-    const double edge = last_fit(0, pupil_.alpha_max(), fits);
-    std::complex<double> sum = 0;
-    over_chords(-edge, edge, 2 * nodes_, [&](double alpha, double weight) {
-      if (alpha < 0) return;  // the mirror image
-      const ExitPupil::Chord chord = pupil_.along_beta(alpha);
-      if (chord.length() <= s) return;
-      sum += 2 * weight *
-             along(
-                 chord.low + s, chord.high, [&](double beta) { return wave(alpha, beta); },
-                 [&](double beta) { return wave(alpha, beta - s); });
-    });
-    return sum;
-  }
-  /// Chords along α, shifted in α; the two halves of the overlap are conjugates.
-  std::complex<double> sagittal(double s) const {
-    const auto fits = [&](double beta) { return pupil_.along_alpha(beta).length() > s; };
-    const auto [low, high] = pupil_.beta_range();
-    const std::optional<double> inner = widest_beta(s);
-    if (!inner) return 0;
-    const double from = -last_fit(-*inner, -low, [&](double beta) { return fits(-beta); });
-    const double to = last_fit(*inner, high, fits);
-    double sum = 0;
-    over_chords(from, to, nodes_, [&](double beta, double weight) {
-      const double half = 0.5 * pupil_.along_alpha(beta).length();
-      if (2 * half <= s) return;
-      sum += 2 * weight *
-             along(
-                 0.5 * s, half, [&](double alpha) { return wave(alpha, beta); },
-                 [&](double alpha) { return wave(alpha - s, beta); })
-                 .real();
-    });
-    return sum;
-  }
-
- private:
-  std::complex<double> wave(double alpha, double beta) const {
-    // Mirror symmetric.
-    return wave_(std::abs(alpha), beta);
-  }
-  template <class P, class Q>
-  std::complex<double> along(double low, double high, P&& p, Q&& q) const {
-    std::complex<double> sum = 0;
-    for (std::size_t i = 0; i < rule_.nodes.size(); ++i) {
-      const double at = low + (high - low) * rule_.nodes[i];
-      sum += rule_.weights[i] * p(at) * std::conj(q(at));
-    }
-    return sum * (high - low);
-  }
-  /// Where the pupil is widest in α, if that is wider than s.
-  std::optional<double> widest_beta(double s) const {
-    constexpr int steps = 64;
-    const auto [low, high] = pupil_.beta_range();
-    double best = low, width = 0;
-    for (int i = 1; i < steps; ++i) {
-      const double beta = low + (high - low) * i / steps, here = pupil_.along_alpha(beta).length();
-      if (here > width) {
-        best = beta;
-        width = here;
-      }
-    }
-    if (width <= s) return {};
-    return best;
-  }
-
-  const ExitPupil& pupil_;
-  const Wave& wave_;
-  int nodes_;
-  QuadratureRule rule_;
-};
 
 void check(const FieldTableRequest& request, const MtfOptions& options) {
   if (options.frequencies_cpmm.empty())
@@ -143,43 +31,6 @@ void check(const FieldTableRequest& request, const MtfOptions& options) {
     sum += weight;
   }
   if (!(sum > 0)) throw InputError("all weights are zero; at least one wavelength must count");
-}
-
-/// Where a pupil is dark inside, the waves end at edges that no rule knows: by so many nodes both ways an OTF
-/// is good to some 1e-4.
-constexpr int nodes_of_dark_edges = 400;
-
-template <class Wave>
-std::complex<double> overlap_of_pupil(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
-                                      int nodes, int whole_nodes, MtfDirection direction,
-                                      double frequency_cpmm) {
-  const double lambda_mm = tracer.tracer().wavelength_nm() * mm_per_nm;
-  const double shift = lambda_mm * frequency_cpmm / tracer.tracer().image_index();
-  if (!pupil.whole_outline().empty())
-    return bladed_otf(
-        pupil.whole_outline(),
-        [&](double alpha, double beta) { return wave(pupil.mirrored() ? std::abs(alpha) : alpha, beta); },
-        direction, shift, nodes, pupil.detail().overlap_panels, whole_nodes);
-  const Autocorrelation<Wave> pairs(pupil, wave, nodes);
-  // The whole pupil by chords of the same direction: where it has corners, the two differ by 1e-5.
-  const Autocorrelation<Wave> whole(pupil, wave, whole_nodes);
-  return direction == MtfDirection::tangential ? pairs.tangential(shift) / whole.tangential(0).real()
-                                               : pairs.sagittal(shift) / whole.sagittal(0).real();
-}
-
-/// OTF by the overlap of the pupil with itself; `transverse_mm` is the reach of its rays.
-template <class Wave>
-std::complex<double> overlap_otf(const FieldTracer& tracer, const ExitPupil& pupil, const Wave& wave,
-                                 double transverse_mm, MtfDirection direction, double frequency_cpmm) {
-  if (const std::optional<PupilMask> mask = PupilMask::of(tracer, pupil.chief())) {
-    const auto lit = [&](double alpha, double beta) {
-      return mask->is_dark(alpha, beta) ? std::complex<double>(0) : std::complex<double>(wave(alpha, beta));
-    };
-    return overlap_of_pupil(tracer, pupil, lit, nodes_of_dark_edges, nodes_of_dark_edges, direction,
-                            frequency_cpmm);
-  }
-  return overlap_of_pupil(tracer, pupil, wave, nodes_for(2 * frequency_cpmm * transverse_mm), fewest_nodes,
-                          direction, frequency_cpmm);
 }
 
 /// Both OTFs of a field and wavelength on one sensor, frequency by frequency.
@@ -273,17 +124,19 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   }
   const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief, options.detail);
   if (!pupil) return {};
-  for (const double shift : shifts) {
+  const std::vector<std::optional<ExitPupilFit>> fits = ExitPupilFit::of(*pupil, options.model, shifts);
+  for (std::size_t s = 0; s < shifts.size(); ++s) {
     check_stop();
-    const std::optional<ExitPupilFit> smooth = ExitPupilFit::of(*pupil, options.model, shift);
-    if (!smooth && shift != 0)
+    const double shift = shifts[s];
+    if (!fits[s] && shift != 0)
       throw InputError(
           fmt::format("{}: the wave at field {:g} is too rough to be moved by {:g} mm; set the "
                       "last thickness instead",
                       tracer.lens().name, chief.object_field, shift));
+    PupilOverlap overlap =
+        fits[s] ? PupilOverlap(tracer, *pupil, *fits[s]) : PupilOverlap(tracer, *pupil, options.model);
     row.sensors.push_back(fill(frequencies, image_mm(shift), [&](MtfDirection direction, double frequency) {
-      return smooth ? diffraction_otf(tracer, *pupil, *smooth, direction, frequency)
-                    : diffraction_otf(tracer, *pupil, direction, frequency, options.model);
+      return overlap.otf(direction, frequency);
     }));
   }
   return row;
@@ -314,15 +167,13 @@ SensorOtf polychromatic(const OtfRow* rows, std::size_t sensor, const MtfOptions
 
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
                                      MtfDirection direction, double frequency_cpmm, const PupilModel& model) {
-  const auto wave = [&](double alpha, double beta) { return pupil.wave(alpha, beta, model); };
-  return overlap_otf(tracer, pupil, wave, pupil.transverse_mm(), direction, frequency_cpmm);
+  return PupilOverlap(tracer, pupil, model).otf(direction, frequency_cpmm);
 }
 
 std::complex<double> diffraction_otf(const FieldTracer& tracer, const ExitPupil& pupil,
                                      const ExitPupilFit& smooth, MtfDirection direction,
                                      double frequency_cpmm) {
-  const auto wave = [&](double alpha, double beta) { return smooth.wave(alpha, beta); };
-  return overlap_otf(tracer, pupil, wave, smooth.transverse_mm(), direction, frequency_cpmm);
+  return PupilOverlap(tracer, pupil, smooth).otf(direction, frequency_cpmm);
 }
 
 std::complex<double> geometric_otf(const std::vector<PupilRay>& rays, MtfDirection direction,

@@ -5,6 +5,7 @@
 #include <petzval/analysis/exit_pupil.h>
 #include <petzval/analysis/exit_pupil_fit.h>
 #include <petzval/analysis/field_tables.h>
+#include <petzval/analysis/pupil_overlap.h>
 #include <petzval/analysis/pupil_rays.h>
 
 #include <complex>
@@ -12,10 +13,6 @@
 #include <vector>
 
 namespace petzval {
-
-/// Along which direction on the sensor the pattern varies: tangential, along y (away from the axis: lines at
-/// right angles to the field), or sagittal, along x.
-enum class MtfDirection { tangential, sagittal };
 
 /// Optical transfer function about the chief ray's image point, 1 at frequency zero:
 /// OTF(ν) = ∬ P(p) P*(p − s) d²p / ∬ |P|² d²p, P the pupil over exit direction cosines p = (α, β), and s the

@@ -51,8 +51,9 @@ std::optional<SpotRow> spot(const FieldTracer& tracer, const ChiefRay& chief, Ra
 }
 
 std::vector<SpotRow> spot_table(const Lens& lens, const FieldTableRequest& request, RayWeight weight) {
-  return field_rows<SpotRow>(
-      lens, request, [&](FieldTracer& tracer, const ChiefRay& chief) { return spot(tracer, chief, weight); });
+  return field_rows<SpotRow>(lens, request, [&](const FieldTracer& tracer, const ChiefRay& chief) {
+    return spot(tracer, chief, weight);
+  });
 }
 
 }  // namespace petzval

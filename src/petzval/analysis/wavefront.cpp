@@ -107,8 +107,9 @@ std::optional<WavefrontRow> wavefront(const FieldTracer& tracer, const ChiefRay&
 
 std::vector<WavefrontRow> wavefront_table(const Lens& lens, const FieldTableRequest& request) {
   require_round_stop(lens, "wavefronts are measured over round ones");
-  return field_rows<WavefrontRow>(
-      lens, request, [](FieldTracer& tracer, const ChiefRay& chief) { return wavefront(tracer, chief); });
+  return field_rows<WavefrontRow>(lens, request, [](const FieldTracer& tracer, const ChiefRay& chief) {
+    return wavefront(tracer, chief);
+  });
 }
 
 }  // namespace petzval

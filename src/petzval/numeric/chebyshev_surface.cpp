@@ -123,23 +123,58 @@ void ChebyshevSurface::series(double y, std::span<double> series) const {
   }
 }
 
-double ChebyshevSurface::operator()(double x, double y) const {
-  Terms room;
-  const std::span<double> of_x(room.data(), terms());
-  series(y, of_x);
-  const double ratio = x / x_scale_, u = 2 * ratio * ratio - 1;
-  const double even = chebyshev_sum(of_x, u);
-  if (odd_.empty()) return even;
+ChebyshevSurface::Line ChebyshevSurface::at_y(double y) const {
+  Line line;
+  line.scale = x_scale_;
+  if (odd_.empty()) {
+    line.count = terms();
+    line.folded = true;
+    series(y, line.terms);
+    return line;
+  }
   const auto order = static_cast<std::size_t>(degree_);
-  Terms of_v;
+  line.count = order + 1;
+  Terms even, of_v;
+  series(y, even);
+  std::fill_n(line.terms.begin(), line.count, 0.0);
+  for (std::size_t m = 0; 2 * m < line.count; ++m) line.terms[2 * m] = even[m];  // T_m(2r² − 1) = T_2m(r)
   chebyshev((y - y_middle_) / y_scale_, order, of_v.data());
   const double* from = odd_.data();
-  std::size_t count = 0;
-  for (std::size_t m = 0; 2 * m < order; ++m, ++count) {
-    of_x[m] = 0;
-    for (std::size_t n = 0; n + 2 * m < order; ++n) of_x[m] += *from++ * of_v[n];
+  for (std::size_t m = 0; 2 * m < order; ++m) {
+    double odd = 0;
+    for (std::size_t n = 0; n + 2 * m < order; ++n) odd += *from++ * of_v[n];
+    // r T_2m = (T_2m+1 + T_|2m−1|)/2
+    line.terms[2 * m + 1] += 0.5 * odd;
+    line.terms[m == 0 ? 1 : 2 * m - 1] += 0.5 * odd;
   }
-  return even + ratio * chebyshev_sum(of_x.first(count), u);
+  return line;
+}
+
+ChebyshevSurface::Line ChebyshevSurface::at_x(double x) const {
+  Line line;
+  line.middle = y_middle_;
+  line.scale = y_scale_;
+  line.count = static_cast<std::size_t>(degree_) + 1;
+  std::fill_n(line.terms.begin(), line.count, 0.0);
+  const double ratio = x / x_scale_;
+  Terms of_u;
+  chebyshev(2 * ratio * ratio - 1, terms(), of_u.data());
+  const double* from = coefficients_.data();
+  for (std::size_t m = 0; 2 * m < line.count; ++m)
+    for (std::size_t n = 0; n + 2 * m < line.count; ++n) line.terms[n] += *from++ * of_u[m];
+  from = odd_.data();
+  for (std::size_t m = 0; 2 * m + 1 < line.count && !odd_.empty(); ++m)
+    for (std::size_t n = 0; n + 2 * m + 1 < line.count; ++n) line.terms[n] += *from++ * ratio * of_u[m];
+  return line;
+}
+
+double ChebyshevSurface::operator()(double x, double y) const {
+  return at_y(y)(x);
+}
+
+double ChebyshevSurface::Line::operator()(double along) const {
+  const double ratio = (along - middle) / scale;
+  return chebyshev_sum(std::span(terms).first(count), folded ? 2 * ratio * ratio - 1 : ratio);
 }
 
 double chebyshev_sum(std::span<const double> series, double u) {

@@ -2,6 +2,8 @@
 // A smooth function of two variables, known at scattered points.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -13,6 +15,7 @@ namespace petzval {
 class ChebyshevSurface {
  public:
   static constexpr int highest_degree = 47;
+  struct Line;
   enum class Symmetry { even_in_x, none };
 
   ChebyshevSurface() = default;
@@ -27,6 +30,9 @@ class ChebyshevSurface {
   static std::size_t unknowns(int degree, Symmetry symmetry = Symmetry::even_in_x);
 
   double operator()(double x, double y) const;
+  /// All of one y, over x, and all of one x, over y.
+  Line at_y(double y) const;
+  Line at_x(double x) const;
   /// The length of a series().
   std::size_t terms() const { return static_cast<std::size_t>(degree_ / 2 + 1); }
   double x_scale() const { return x_scale_; }
@@ -43,6 +49,16 @@ class ChebyshevSurface {
   std::vector<double> coefficients_{0.0};  ///< m-major, n = 0 … degree − 2m
   std::vector<double> odd_ = {};           ///< likewise, n = 0 … degree − 1 − 2m; empty: even
   double rms_residual_ = 0, max_residual_ = 0;
+};
+
+/// A surface along a line: Σ terms[n] T_n(t) with t = r = (along − middle)/scale, or, folded, t = 2r² − 1.
+struct ChebyshevSurface::Line {
+  std::array<double, highest_degree + 1> terms;  ///< the first `count` of them
+  std::size_t count = 0;
+  double middle = 0, scale = 1;
+  bool folded = false;
+
+  double operator()(double along) const;
 };
 
 /// Σ series[m] T_m(u), by Clenshaw's recurrence; at least one term.

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <memory>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "petzval/wave/chord_kernel.cpp"
+// clang-format off
 #include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include <petzval/numeric/turn-inl.h>
+// clang-format on
 
 #ifndef PETZVAL_WAVE_CELL_SHARES
 #define PETZVAL_WAVE_CELL_SHARES
@@ -70,43 +71,11 @@ using HalfFloats = hn::Rebind<float, Doubles>;
 using Double = hn::Vec<Doubles>;
 using Float = hn::Vec<Floats>;
 
-constexpr double two_pi = 6.283185307179586477;
 /// Pairs of columns about a middle that share the nodes' waves there; a power of two, at least four.
 constexpr std::size_t pairs = 8;
 /// Nodes of each chord that are summed together: what is kept of them fits the first-level cache.
 constexpr std::size_t block_nodes = 24;
 constexpr std::size_t block_values = block_nodes * ChordSum::chords_together;
-
-/// e^{2πi cycles}: Taylor's series about the nearest quarter turn, to 1e-16.
-HWY_ATTR HWY_INLINE void turn_by(Double cycles, Double& cosine, Double& sine) {
-  const Doubles d;
-  const hn::RebindToSigned<Doubles> whole;
-  const auto quarters = hn::Round(hn::Mul(cycles, hn::Set(d, 4.0)));
-  const auto angle = hn::Mul(hn::NegMulAdd(quarters, hn::Set(d, 0.25), cycles), hn::Set(d, two_pi));
-  const auto square = hn::Mul(angle, angle);
-  constexpr double factorials[] = {1.0 / 1307674368000, 1.0 / 6227020800, 1.0 / 39916800, 1.0 / 362880,
-                                   1.0 / 5040,          1.0 / 120,        1.0 / 6,        1.0};
-  constexpr double even[] = {1.0 / 20922789888000, 1.0 / 87178291200, 1.0 / 479001600, 1.0 / 3628800,
-                             1.0 / 40320,          1.0 / 720,         1.0 / 24,        1.0 / 2};
-  auto s = hn::Set(d, -factorials[0]), c = hn::Set(d, even[0]);
-  double sign = 1;
-  for (std::size_t i = 1; i < std::size(factorials); ++i, sign = -sign) {
-    s = hn::MulAdd(s, square, hn::Set(d, sign * factorials[i]));
-    c = hn::MulAdd(c, square, hn::Set(d, -sign * even[i]));
-  }
-  s = hn::Mul(s, angle);
-  c = hn::MulAdd(c, square, hn::Set(d, 1.0));
-  // A quarter turn takes (c, s) to (−s, c).
-  const auto turns = hn::ConvertTo(whole, quarters);
-  const auto one = hn::Set(whole, 1), two = hn::Set(whole, 2);
-  const auto odd = hn::RebindMask(d, hn::TestBit(turns, one));
-  const auto cosine_negative = hn::RebindMask(d, hn::TestBit(hn::Add(turns, one), two));
-  const auto sine_negative = hn::RebindMask(d, hn::TestBit(turns, two));
-  cosine = hn::IfThenElse(odd, s, c);
-  sine = hn::IfThenElse(odd, c, s);
-  cosine = hn::IfThenElse(cosine_negative, hn::Neg(cosine), cosine);
-  sine = hn::IfThenElse(sine_negative, hn::Neg(sine), sine);
-}
 
 /// Clenshaw's sum of one Chebyshev series a lane at u; terms are `stride` apart.
 HWY_ATTR HWY_INLINE Double chebyshev_sum(const double* series, std::size_t terms, std::size_t stride,
@@ -161,15 +130,15 @@ HWY_ATTR void start_nodes(const ChordSum& sum, std::size_t chord, std::size_t la
     const auto strength = hn::Mul(hn::Mul(weight, hn::Set(d, rule.weights[first + j])),
                                   chebyshev_sum(&sum.amplitude[own], sum.terms, chords, u));
     Double c, s;
-    turn_by(hn::Add(chebyshev_sum(&sum.phase[own], sum.terms, chords, u), row_waves), c, s);
+    turn_by(Doubles(), hn::Add(chebyshev_sum(&sum.phase[own], sum.terms, chords, u), row_waves), c, s);
     hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, c)), f, &nodes.re[at]);
     hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, s)), f, &nodes.im[at]);
     const auto waves_per_mm = hn::Mul(alpha, hn::Set(d, sum.waves_per_mm));
-    turn_by(hn::Mul(waves_per_mm, hn::Set(d, middle_mm)), c, s);
+    turn_by(Doubles(), hn::Mul(waves_per_mm, hn::Set(d, middle_mm)), c, s);
     hn::StoreU(c, d, &nodes.cosine[at]);
     hn::StoreU(s, d, &nodes.sine[at]);
     // Half a step, and by its square the steps from pair to pair and from group to group.
-    turn_by(hn::Mul(waves_per_mm, hn::Set(d, 0.5 * sum.step_mm)), c, s);
+    turn_by(Doubles(), hn::Mul(waves_per_mm, hn::Set(d, 0.5 * sum.step_mm)), c, s);
     Double step_c = c, step_s = s;
     square(step_c, step_s);
     for (std::size_t p = 0; p < pairs; ++p) {
@@ -307,13 +276,13 @@ HWY_ATTR RowWaves start_rows(const ChordSum& sum, double first_mm) {
     for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d)) {
       const auto row = hn::Iota(d, static_cast<double>(lane));
       const auto mm = hn::MulAdd(row, hn::Set(d, sum.step_mm), hn::Set(d, first_mm));
-      turn_by(hn::Mul(mm, hn::Set(d, sum.beta[i] * sum.waves_per_mm)), c, s);
+      turn_by(Doubles(), hn::Mul(mm, hn::Set(d, sum.beta[i] * sum.waves_per_mm)), c, s);
       hn::StoreU(c, d, &waves.cosine[i * lanes + lane]);
       hn::StoreU(s, d, &waves.sine[i * lanes + lane]);
     }
   const double stride_waves = static_cast<double>(lanes) * sum.step_mm * sum.waves_per_mm;
   for (std::size_t i = 0; i < chords; i += hn::Lanes(d)) {  // whole vectors, as chords_together are
-    turn_by(hn::Mul(hn::LoadU(d, &sum.beta[i]), hn::Set(d, stride_waves)), c, s);
+    turn_by(Doubles(), hn::Mul(hn::LoadU(d, &sum.beta[i]), hn::Set(d, stride_waves)), c, s);
     hn::StoreU(c, d, &waves.turn_cosine[i]);
     hn::StoreU(s, d, &waves.turn_sine[i]);
   }

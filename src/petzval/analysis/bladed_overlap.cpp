@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/analysis/bladed_otf.h>
-#include <petzval/numeric/quadrature.h>
+#include <petzval/analysis/bladed_overlap.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace petzval {
 
@@ -54,62 +54,60 @@ class Chords {
       }
     }
     if (longest <= s) return {};
-    return {edge(best, low_, s), edge(best, high_, s)};
+    const auto spare = [&](double across) { return at(across).length() - s; };
+    return {last_above_zero(best, low_, spare), last_above_zero(best, high_, spare)};
   }
 
  private:
-  double edge(double inside, double outside, double s) const {
-    for (int i = 0; i < 50; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (at(middle).length() > s ? inside : outside) = middle;
-    }
-    return inside;
-  }
-
   const std::vector<std::array<double, 2>>& outline_;
   std::size_t along_, across_;
   double low_ = 0, high_ = 0;
 };
 
-using Wave = std::function<std::complex<double>(double, double)>;
+}  // namespace
 
-std::complex<double> overlap(const Chords& chords, const Wave& wave, bool tangential, double shift,
-                             int panels, const QuadratureRule& along) {
+std::complex<double> bladed_overlap(const std::vector<std::array<double, 2>>& outline,
+                                    const OverlapAlong& along, MtfDirection direction, double shift,
+                                    const QuadratureRule& rule, int panels) {
+  const Chords chords(outline, direction == MtfDirection::tangential ? 1 : 0);
   const Chord range = chords.longer_than(shift);
-  const auto value = [&](double across, double at) {
-    return tangential ? wave(across, at) : wave(at, across);
-  };
   std::complex<double> sum = 0;
   const double width = range.length() / panels;
   for (int panel = 0; panel < panels && width > 0; ++panel) {
-    const QuadratureRule rule =
+    const QuadratureRule across =
         gauss_legendre(panel_nodes, range.low + panel * width, range.low + (panel + 1) * width);
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-      const double across = rule.nodes[i];
-      const Chord chord = chords.at(across);
+    for (std::size_t i = 0; i < across.nodes.size(); ++i) {
+      const Chord chord = chords.at(across.nodes[i]);
       const double length = chord.length() - shift;
-      if (!(length > 0)) continue;
-      std::complex<double> part = 0;
-      for (std::size_t k = 0; k < along.nodes.size(); ++k) {
-        const double at = chord.low + shift + length * along.nodes[k];
-        part += along.weights[k] * value(across, at) * std::conj(value(across, at - shift));
-      }
-      sum += rule.weights[i] * length * part;
+      if (length > 0)
+        sum +=
+            across.weights[i] * along(direction, {across.nodes[i], chord.low + shift, length, shift}, rule);
     }
   }
   return sum;
 }
 
-}  // namespace
-
-std::complex<double> bladed_otf(const std::vector<std::array<double, 2>>& outline, const Wave& wave,
-                                MtfDirection direction, double shift, int nodes, int panels,
-                                int whole_nodes) {
-  const bool tangential = direction == MtfDirection::tangential;
-  const Chords chords(outline, tangential ? 1 : 0);
-  const QuadratureRule along = gauss_legendre(nodes);
-  return overlap(chords, wave, tangential, shift, panels, along) /
-         overlap(chords, wave, tangential, 0, panels, gauss_legendre(whole_nodes)).real();
+double last_above_zero(double inside, double outside, const std::function<double(double)>& f) {
+  double above = f(inside), below = f(outside);
+  if (below > 0) return outside;
+  // The Illinois method, now and then a half: f may fall off a step.
+  constexpr int most_steps = 100;
+  constexpr double close = 1e-14;
+  const double enough = close * above, near = close * std::abs(outside - inside);
+  int side = 0;
+  for (int step = 0; step < most_steps && std::abs(outside - inside) > near; ++step) {
+    const double share = step % 4 == 3 ? 0.5 : above / (above - below);
+    const double at = inside + share * (outside - inside), here = f(at);
+    if (std::abs(here) <= enough) return at;
+    if (here > 0) {
+      inside = at, above = here;
+      if (std::exchange(side, 1) == 1) below *= 0.5;
+    } else {
+      outside = at, below = here;
+      if (std::exchange(side, -1) == -1) above *= 0.5;
+    }
+  }
+  return inside;
 }
 
 }  // namespace petzval

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The overlap of a pupil that blades cut with itself, without mirror symmetry.
+#pragma once
+
+#include <petzval/analysis/pupil_overlap.h>
+
+#include <array>
+#include <complex>
+#include <vector>
+
+namespace petzval {
+
+/// ∬ P(p) P*(p − s e) dp, e along β (tangential) or α (sagittal).
+/// \param outline  of the pupil, once round in (α, β), convex.
+/// \param shift    s, in direction cosines: λ times the frequency.
+/// \param rule     along a chord, on [0, 1]. \param panels  of eight chords each, across: several hundred
+/// chords for corners.
+std::complex<double> bladed_overlap(const std::vector<std::array<double, 2>>& outline,
+                                    const OverlapAlong& along, MtfDirection direction, double shift,
+                                    const QuadratureRule& rule, int panels);
+
+/// The x between `inside`, where f is above 0, and `outside` at which f comes down to 0, if it does so but
+/// once on the way; else `outside`.
+double last_above_zero(double inside, double outside, const std::function<double(double)>& f);
+
+}  // namespace petzval
