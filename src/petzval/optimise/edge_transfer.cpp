@@ -65,32 +65,60 @@ std::optional<std::array<double, 2>> object_at(FieldTracer& tracer, const Place&
   return {};
 }
 
-/// Products T_i(x) T_j(y), i + j ≤ degree, over the box about the pupil.
+/// Products T_i(x) T_j(y), i + j ≤ degree, over the box about the pupil whose sides are along the normal of
+/// an edge (x) and along the edge (y).
 class Basis {
  public:
-  Basis(int degree, const std::vector<std::array<double, 2>>& outline) : degree_(degree) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      double low = outline[0][k], high = low;
-      for (const auto& point : outline) low = std::min(low, point[k]), high = std::max(high, point[k]);
-      middle_[k] = 0.5 * (low + high), half_[k] = 0.5 * (high - low);
+  /// \param ex, ey  unit vector along the normal.
+  Basis(int degree, const std::vector<std::array<double, 2>>& outline, double ex, double ey)
+      : degree_(degree), ex_(ex), ey_(ey) {
+    std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};
+    for (const auto& [alpha, beta] : outline) {
+      const std::array at{alpha * ex + beta * ey, beta * ex - alpha * ey};
+      for (std::size_t k = 0; k < 2; ++k)
+        low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
     }
+    for (std::size_t k = 0; k < 2; ++k)
+      middle_[k] = 0.5 * (low[k] + high[k]), half_[k] = 0.5 * (high[k] - low[k]);
   }
   Eigen::Index terms() const { return (degree_ + 1) * (degree_ + 2) / 2; }
+  Eigen::Index line_terms() const { return degree_ + 1; }
   void row(double alpha, double beta, double* values, Eigen::Index stride) const {
-    std::array<double, 32> t{}, s{};
-    const double x = (alpha - middle_[0]) / half_[0], y = (beta - middle_[1]) / half_[1];
-    t[0] = s[0] = 1, t[1] = x, s[1] = y;
-    for (std::size_t i = 2; i <= static_cast<std::size_t>(degree_); ++i)
-      t[i] = 2 * x * t[i - 1] - t[i - 2], s[i] = 2 * y * s[i - 1] - s[i - 2];
+    std::array<double, most_terms> t, s;
+    chebyshev((alpha * ex_ + beta * ey_ - middle_[0]) / half_[0], t.data());
+    chebyshev((beta * ex_ - alpha * ey_ - middle_[1]) / half_[1], s.data());
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i)
       for (std::size_t j = 0; i + j <= static_cast<std::size_t>(degree_); ++j) {
         *values = t[i] * s[j];
         values += stride;
       }
   }
+  /// Sums of terms, a column each, become series in T_i(x) along the line at y = `across`.
+  Eigen::MatrixXd along(double across, const Eigen::MatrixXd& coefficients) const {
+    std::array<double, most_terms> s;
+    chebyshev((across - middle_[1]) / half_[1], s.data());
+    Eigen::MatrixXd series(line_terms(), coefficients.cols());
+    Eigen::Index from = 0;
+    for (Eigen::Index i = 0; i < line_terms(); ++i) {
+      const Eigen::Index count = line_terms() - i;
+      series.row(i) =
+          Eigen::Map<const Eigen::RowVectorXd>(s.data(), count) * coefficients.middleRows(from, count);
+      from += count;
+    }
+    return series;
+  }
+  /// T_i at x = `where`, line_terms() of them.
+  void line_row(double where, double* values) const { chebyshev((where - middle_[0]) / half_[0], values); }
 
  private:
+  static constexpr std::size_t most_terms = 32;
+  void chebyshev(double x, double* t) const {
+    t[0] = 1, t[1] = x;
+    for (int i = 2; i <= degree_; ++i) t[i] = 2 * x * t[i - 1] - t[i - 2];
+  }
+
   int degree_;
+  double ex_, ey_;
   std::array<double, 2> middle_{}, half_{};
 };
 
@@ -146,8 +174,10 @@ class PupilReader {
     if (const auto chief = tracer_.chief_ray(field)) chief_ = *chief;
   }
 
-  /// About a fixed place of the sensor, (x, y) in its own axes [mm].
-  std::optional<PlacePupil> read(std::span<const Lens> altered, double x_mm, double y_mm) const {
+  /// About a fixed place of the sensor, (x, y) in its own axes [mm]. \param ex, ey  the edge's normal, turned
+  /// with the field.
+  std::optional<PlacePupil> read(std::span<const Lens> altered, double x_mm, double y_mm, double ex,
+                                 double ey) const {
     if (!chief_) return {};
     const std::optional<PupilBoundary> boundary = tracer_.object_pupil(*chief_, detail_.azimuths);
     if (!boundary) return {};
@@ -166,11 +196,11 @@ class PupilReader {
     const Outline traced_outline = pupil.outline;
     keep_area(pupil.outline);
     for (int degree = detail_.degree;; degree += degrees_more) {
-      pupil.basis.emplace(degree, traced_outline);
+      pupil.basis.emplace(degree, traced_outline, ex, ey);
       const auto missed = fit(pupil, *boundary, nodes, pencil, altered, x_mm, y_mm);
       if (!missed) return {};
-      const bool enough =
-          2 * Basis(degree + degrees_more, traced_outline).terms() > static_cast<Eigen::Index>(nodes.size());
+      const bool enough = 2 * Basis(degree + degrees_more, traced_outline, ex, ey).terms() >
+                          static_cast<Eigen::Index>(nodes.size());
       if (*missed < close_wave || degree >= highest_degree || enough) return pupil;
     }
   }
@@ -216,7 +246,10 @@ class PupilReader {
     }
     if (count < 2 * rows.cols()) return {};
     const auto used = rows.topRows(count);
-    pupil.coefficients = (used.transpose() * used).ldlt().solve(used.transpose() * values.topRows(count));
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(used.cols(), used.cols());
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(used.transpose());
+    pupil.coefficients =
+        Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>(normal).solve(used.transpose() * values.topRows(count));
     if (!pupil.coefficients.allFinite()) return {};
     return std::sqrt((used * pupil.coefficients.col(1) - values.col(1).head(count)).squaredNorm() /
                      static_cast<double>(count));
@@ -315,40 +348,43 @@ class Cuts {
 };
 
 /// OTF and its derivatives, not yet over that at frequency zero.
-Eigen::VectorXcd overlap(const PlacePupil& pupil, const Cuts& cuts, double ex, double ey, double shift,
-                         const EdgeDetail& detail) {
+Eigen::VectorXcd overlap(const PlacePupil& pupil, const Cuts& cuts, double shift, const EdgeDetail& detail) {
   const Eigen::Index altered = pupil.coefficients.cols() - 2;
-  Eigen::VectorXcd sums = Eigen::VectorXcd::Zero(1 + altered);
   const Cuts::Cut range = cuts.longer_than(shift);
-  if (!(range.length() > 0)) return sums;
+  if (!(range.length() > 0)) return Eigen::VectorXcd::Zero(1 + altered);
   const QuadratureRule across = gauss_legendre(detail.chords, -pi / 2, pi / 2),
                        along = gauss_legendre(detail.chord_nodes);
-  const Eigen::Index pairs = detail.chords * detail.chord_nodes;
-  Eigen::MatrixXd rows(pupil.basis->terms(), 2 * pairs);
-  std::vector<double> weights;
+  Eigen::MatrixXd rows(pupil.basis->line_terms(), 2 * detail.chord_nodes);
+  std::complex<double> sum = 0;
+  Eigen::MatrixX2d parts(detail.chord_nodes, 2), slopes = Eigen::MatrixX2d::Zero(altered, 2);
+  Eigen::MatrixXd differences(altered, detail.chord_nodes);
   // Lines end as roots do at both ends of the range: nodes of an angle take that up.
   for (std::size_t i = 0; i < across.nodes.size(); ++i) {
     const double at = 0.5 * (range.low + range.high) + 0.5 * range.length() * std::sin(across.nodes[i]);
     const double weight = across.weights[i] * 0.5 * range.length() * std::cos(across.nodes[i]);
     const Cuts::Cut cut = cuts.at(at);
     const double length = std::max(0.0, cut.length() - shift);
-    for (std::size_t k = 0; k < along.nodes.size(); ++k) {
-      const double far = cut.low + shift + length * along.nodes[k], near = far - shift;
-      const auto pair = static_cast<Eigen::Index>(weights.size());
-      pupil.basis->row(far * ex - at * ey, far * ey + at * ex, &rows(0, 2 * pair), 1);
-      pupil.basis->row(near * ex - at * ey, near * ey + at * ex, &rows(0, 2 * pair + 1), 1);
-      weights.push_back(weight * length * along.weights[k]);
+    for (Eigen::Index k = 0; k < detail.chord_nodes; ++k) {
+      const double far = cut.low + shift + length * along.nodes[static_cast<std::size_t>(k)];
+      pupil.basis->line_row(far, &rows(0, 2 * k));
+      pupil.basis->line_row(far - shift, &rows(0, 2 * k + 1));
     }
+    const Eigen::MatrixXd values = pupil.basis->along(at, pupil.coefficients).transpose() * rows;
+    for (Eigen::Index k = 0; k < detail.chord_nodes; ++k) {
+      const auto far = values.col(2 * k), near = values.col(2 * k + 1);
+      const double share = weight * length * along.weights[static_cast<std::size_t>(k)];
+      const std::complex<double> part =
+          share * far[0] * near[0] * std::polar(1.0, 2 * pi * (far[1] - near[1]));
+      sum += part;
+      parts.row(k) << part.real(), part.imag();
+      differences.col(k) = far.tail(altered) - near.tail(altered);
+    }
+    slopes.noalias() += differences * parts;
   }
-  const Eigen::MatrixXd values = pupil.coefficients.transpose() * rows;
-  for (Eigen::Index pair = 0; pair < pairs; ++pair) {
-    const auto far = values.col(2 * pair), near = values.col(2 * pair + 1);
-    const std::complex<double> part =
-        std::polar(weights[static_cast<std::size_t>(pair)] * far[0] * near[0], 2 * pi * (far[1] - near[1]));
-    sums[0] += part;
-    for (Eigen::Index k = 0; k < altered; ++k)
-      sums[1 + k] += part * std::complex<double>(0, 2 * pi * (far[2 + k] - near[2 + k]));
-  }
+  Eigen::VectorXcd sums(1 + altered);
+  sums[0] = sum;
+  sums.tail(altered).real() = -2 * pi * slopes.col(1);
+  sums.tail(altered).imag() = 2 * pi * slopes.col(0);
   return sums;
 }
 
@@ -387,14 +423,14 @@ std::optional<EdgeTransfer> edge_transfer(const Lens& lens, std::span<const Lens
     for (std::size_t w = 0; w < light.wavelengths_nm.size(); ++w) {
       const double nm = light.wavelengths_nm[w];
       const PupilReader reader(lens, nm, field, turn, detail);
-      const auto pupil = reader.read(altered, places[p].x_mm, places[p].y_mm);
+      const auto pupil = reader.read(altered, places[p].x_mm, places[p].y_mm, ex, ey);
       if (!pupil) return {};
       const Cuts cuts(pupil->outline, ex, ey);
-      const double whole = overlap(*pupil, cuts, ex, ey, 0, detail)[0].real();
+      const double whole = overlap(*pupil, cuts, 0, detail)[0].real();
       for (Eigen::Index k = 0; k < frequencies; ++k)
         sums.row(k) +=
             light.shares[w] / whole *
-            overlap(*pupil, cuts, ex, ey,
+            overlap(*pupil, cuts,
                     nm * mm_per_nm * frequencies_cpmm[static_cast<std::size_t>(k)] / pupil->index, detail)
                 .transpose();
     }
