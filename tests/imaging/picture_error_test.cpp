@@ -16,12 +16,12 @@ namespace {
 
 using namespace testing;
 
-constexpr double focal_mm = 6, g_source_sr = 0.25, pitch_um = 6;
+constexpr double coma_focal_mm = 6, g_source_sr = 0.25, pitch_um = 6;
 constexpr int pixels = 48;
 
 /// A comatic PSF of three round spots that grows with height: positions and widths are cubics of it, which a
 /// table's interpolation follows.
-std::vector<Spot> spots_at(double height_mm, double scale) {
+std::vector<Spot> coma_spots(double height_mm, double scale) {
   const double t = height_mm / 0.2;
   return {{0, 0, scale, scale, 0.5},
           {0, 1.5 * t * scale, 1.5 * scale, 1.5 * scale, 0.3},
@@ -29,7 +29,7 @@ std::vector<Spot> spots_at(double height_mm, double scale) {
 }
 
 double height_of(double field_deg) {
-  return focal_mm * std::tan(radians(field_deg));
+  return coma_focal_mm * std::tan(radians(field_deg));
 }
 
 LensDataTable coma_table(double scale) {
@@ -39,7 +39,7 @@ LensDataTable coma_table(double scale) {
   recipe.height_mm = [](double field, double) { return height_of(field); };
   recipe.g_source_sr = [](double) { return g_source_sr; };
   recipe.psf = [=](double field, double) {
-    std::vector<Spot> spots = spots_at(height_of(field), scale);
+    std::vector<Spot> spots = coma_spots(height_of(field), scale);
     // psf_of_spots() weighs peaks by 1/σ², as densities.
     return psf_of_spots(spots, 181, 0.15 * scale);
   };
@@ -78,7 +78,7 @@ std::vector<double> summed(const Scene& scene, double sample_um, double scale) {
       const double height_um = std::hypot(right, down);
       const double out_right = height_um > 0 ? right / height_um : 0,
                    out_down = height_um > 0 ? down / height_um : 1;
-      for (const Spot& spot : spots_at(height_um * mm_per_um, scale)) {
+      for (const Spot& spot : coma_spots(height_um * mm_per_um, scale)) {
         const double x = middle + right + spot.t_um * out_right, y = middle + down + spot.t_um * out_down;
         const double reach_um = 6 * spot.sigma_s_um;
         const auto pixel = [](double um) { return static_cast<int>(std::floor(um / pitch_um)); };
@@ -102,8 +102,8 @@ class PictureError : public ::testing::TestWithParam<Case> {};
 TEST_P(PictureError, IsWithinTheTolerance) {
   const auto [sample_um, scale, tolerance] = GetParam();
   const int samples = static_cast<int>(std::ceil((pixels + 40) * pitch_um / sample_um));
-  Scene scene(samples, samples, {550}, degrees(2 * std::atan(samples * sample_um * mm_per_um / 2 / focal_mm)),
-              std::nullopt);
+  Scene scene(samples, samples, {550},
+              degrees(2 * std::atan(samples * sample_um * mm_per_um / 2 / coma_focal_mm)), std::nullopt);
   std::mt19937 random(1843);
   std::uniform_real_distribution<float> bright(0, 1);
   for (int row = 0; row < samples; ++row)

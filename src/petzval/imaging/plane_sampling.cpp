@@ -21,7 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Without vectors nothing is done at once: all is left to SceneRows.
 void look(const SceneMapSteps&, const CellRow&, std::size_t, std::size_t, RowView&) {}
 
-std::size_t sample(const PlaneView&, const RowView&, double, std::size_t from, float*) {
+std::size_t sample(const PlaneView&, const RowView&, double, std::size_t from, std::size_t, float*) {
   return from;
 }
 
@@ -119,14 +119,14 @@ HWY_ATTR HWY_INLINE Means means_of(hn::Vec<Floats> beyond, hn::Vec<Floats> lengt
 }
 
 HWY_ATTR std::size_t sample(const PlaneView& view, const RowView& cells, double down_sign, std::size_t from,
-                            float* irradiance) {
+                            std::size_t to, float* irradiance) {
   const Doubles d;
   const Floats f;
   const hn::Rebind<std::int32_t, Floats> integers;
   const std::size_t half = hn::Lanes(d), lanes = hn::Lanes(f);
   const Vector sign = hn::Set(d, down_sign), columns = hn::Set(d, view.columns);
   const auto stride = static_cast<std::ptrdiff_t>(view.columns);
-  const std::size_t end = cells.g_source_sr.size() - cells.dark;
+  const std::size_t end = std::min(to, cells.g_source_sr.size() - cells.dark);
   if (from < cells.dark) return from;
   for (; from + lanes <= end; from += lanes) {
     const auto across_at = [&](std::size_t first) {
@@ -204,8 +204,8 @@ void RowView::look(const SceneMapSteps& map, const CellRow& cells) {
 }
 
 std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,
-                       float* irradiance) {
-  return HWY_DYNAMIC_DISPATCH(sample)(view, cells, down, from, irradiance);
+                       std::size_t to, float* irradiance) {
+  return HWY_DYNAMIC_DISPATCH(sample)(view, cells, down, from, to, irradiance);
 }
 
 std::size_t sampled_at_once() {

@@ -64,14 +64,14 @@ struct LinearMean {
   }
 };
 
-/// Mean radiance × g_source of the cells [from, …) of a row for as long as they see the inside of the scene,
+/// Mean radiance × g_source of the cells [from, to) of a row for as long as they see the inside of the scene,
 /// no more than a sample of it along either side, and light from the lens. Between sample centres radiance is
 /// bilinear, and the mean is exact, so that the light of a sample is the same wherever it falls on the cells.
 /// SIMD: places in double, light in float; scalar code with the same result to rounding is SceneRows's.
 /// \param down  1, or −1 for the row on the other side of the axis.
 /// \return the first cell that is not done.
 std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,
-                       float* irradiance);
+                       std::size_t to, float* irradiance);
 
 /// Cells done at a time.
 std::size_t sampled_at_once();

@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace petzval {
 
@@ -56,6 +57,10 @@ SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const Se
     panorama_ = std::make_unique<PanoramaBand>(
         scene, band,
         PanoramaView{scene.view().yaw_deg + aim.pan_deg, scene.view().pitch_deg + aim.pitch_deg});
+  else
+    flat_.emplace(radiance_, static_cast<std::size_t>(scene.columns()),
+                  static_cast<std::size_t>(scene.rows()));
+  if (flat_ && !flat_->any()) flat_.reset();
 }
 
 SceneRows::~SceneRows() = default;
@@ -105,12 +110,44 @@ void SceneRows::write_samples(std::size_t row, const RowView& cells, std::span<c
   // From a cell's middle to the farthest sample that it needs, and one more for rounding.
   const PlaneView view{samples.data(), double(scene_.columns()), double(scene_.rows()), 2.5};
   const std::size_t at_once = sampled_at_once();
-  for (std::size_t column = 0; column < columns;) {
-    if (!panorama_) column = sample_row(view, cells, 1, column, irradiance);
-    const std::size_t end = panorama_ ? columns : std::min(columns, column + at_once);
-    for (; column < end; ++column)
-      irradiance[column] = static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), y_mm));
+  constexpr std::size_t stretch = 64;
+  for (std::size_t from = 0; from < columns; from += stretch) {
+    const std::size_t to = std::min(columns, from + stretch);
+    if (const std::optional<float> value = flat_value(cells, samples, from, to)) {
+      for (std::size_t column = from; column < to; ++column)
+        irradiance[column] = *value * cells.g_source_sr[column];
+      continue;
+    }
+    for (std::size_t column = from; column < to;) {
+      if (!panorama_) column = sample_row(view, cells, 1, column, to, irradiance);
+      const std::size_t end = panorama_ ? to : std::min(to, column + at_once);
+      for (; column < end; ++column)
+        irradiance[column] = static_cast<float>(cell(samples, grid_.x_mm(double(column) + 0.5), y_mm));
+    }
   }
+}
+
+std::optional<float> SceneRows::flat_value(const RowView& cells, std::span<const float> samples,
+                                           std::size_t from, std::size_t to) const {
+  if (!flat_ || samples.data() != radiance_.data() || from < cells.dark ||
+      to > cells.g_source_sr.size() - cells.dark)
+    return {};
+  // Smooth maps: between three places of a short stretch a parabola tells how far the others go.
+  const std::size_t last = to - 1, half = (from + last) / 2;
+  const auto range = [&](const auto& of) {
+    const double ends[] = {double(of[from]), double(of[half]), double(of[last])};
+    const double bend = std::abs(ends[1] - (ends[0] + ends[2]) / 2);
+    const auto [low, high] = std::minmax({ends[0], ends[1], ends[2]});
+    return std::pair(low - bend, high + bend);
+  };
+  const auto [left, right] = range(cells.right);
+  const auto [top, bottom] = range(cells.down);
+  if (!(std::max(range(cells.width).second, range(cells.height).second) <= 1)) return {};
+  if (!std::isfinite(left + right + top + bottom)) return {};
+  constexpr double around = 1.5;  // half a cell, and the neighbour to whose centre radiance runs
+  const double middle = scene_.columns() / 2.0, centre = scene_.rows() / 2.0;
+  return flat_->value_in(middle + left - around, middle + right + around, centre + top - around,
+                         centre + bottom + around, surround_ == Surround::extend);
 }
 
 bool SceneRows::is_inside(const RowView& cells, std::size_t column) const {

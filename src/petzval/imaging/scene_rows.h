@@ -4,10 +4,12 @@
 
 #include <petzval/imaging/cell_plane.h>
 #include <petzval/imaging/distortion.h>
+#include <petzval/imaging/flat_blocks.h>
 #include <petzval/imaging/scene_aim.h>
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace petzval {
@@ -50,6 +52,9 @@ class SceneRows {
   double cell(std::span<const float> samples, double x_mm, double y_mm) const;
   void write_samples(std::size_t row, const RowView& cells, std::span<const float> samples,
                      float* irradiance) const;
+  /// The radiance that the cells [from, to) of a row see, if all of them see the same.
+  std::optional<float> flat_value(const RowView& cells, std::span<const float> samples, std::size_t from,
+                                  std::size_t to) const;
   /// Whether a cell of a row sees the inside of the scene.
   bool is_inside(const RowView& cells, std::size_t column) const;
 
@@ -63,6 +68,7 @@ class SceneRows {
   std::span<const float> radiance_;
   std::unique_ptr<PanoramaBand> panorama_;
   std::unique_ptr<DrawnCells> drawn_;
+  std::optional<FlatBlocks> flat_;  ///< of radiance_; nothing where none is
 };
 
 /// All rows of SceneRows.
