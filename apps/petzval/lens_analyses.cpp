@@ -197,6 +197,8 @@ const OwnOptions own_options[] = {
     {"colour", "petzval lens colour cooke-triplet --plot colour.svg"},
     {"vignetting", "petzval lens vignetting dgauss-50mm --plot vignetting.svg"},
     {"chief-ray-angle", "petzval lens chief-ray-angle edmund-54852 --plot angle.svg"},
+    {"polarisation", "petzval lens polarisation dgauss-50mm --coating mgf2 --plot polarisation.svg",
+     [](CLI::App& app, AnalysisCommand& command) { command.losses.add_to(app); }},
     {"ghosts",
      "petzval lens ghosts cooke-triplet --coating 0.005 --sensor-reflectance 0.05 --plot ghosts.svg",
      [](CLI::App& app, AnalysisCommand& command) {

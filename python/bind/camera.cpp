@@ -53,7 +53,7 @@ Coating coating_from(const nb::handle& coating) {
 }
 
 nb::object coating_to(const Coating& coating) {
-  if (coating.has_films()) return nb::cast(coating.name);
+  if (coating.has_films() || !coating.by_angle.empty()) return nb::cast(coating.name);
   if (coating.table.size() == 1 && coating.table[0].first == 0) return nb::float_(coating.table[0].second);
   Numbers nm, values;
   for (const auto& [wavelength, value] : coating.table) nm.push_back(wavelength), values.push_back(value);

@@ -19,6 +19,7 @@ ANALYSES = {
     "field-curvature": {"tangential_mm", "sagittal_mm", "petzval_mm", "real_image_height_mm"},
     "colour": {"lateral_colour_um"},
     "vignetting": {"open_share", "pupil_low", "pupil_high", "low_surface"},
+    "polarisation": {"diattenuation_percent", "rms_retardance_nm", "strehl"},
     "chief-ray-angle": {"chief_ray_angle_deg", "mean_ray_angle_deg"},
 }
 

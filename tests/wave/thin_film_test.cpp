@@ -88,6 +88,80 @@ TEST(ThinFilm, EnergyIsKeptAndWaysAreReversible) {
   }
 }
 
+// Two layers of given indices that leave nothing: tan² of their phases. (Macleod, ch. 4.)
+TEST(ThinFilm, VCoatingLeavesNothing) {
+  constexpr double n1 = 1.38, n2 = 2.1, glass = 1.52;
+  const double tan_sq_1 = (glass - 1) * (n2 * n2 - glass) * n1 * n1 /
+                          ((n1 * n1 * glass - n2 * n2) * (glass - n1 * n1)),
+               tan_sq_2 = (glass - 1) * (glass - n1 * n1) * n2 * n2 /
+                          ((n1 * n1 * glass - n2 * n2) * (n2 * n2 - glass));
+  const double first = pi - std::atan(std::sqrt(tan_sq_1)), second = std::atan(std::sqrt(tan_sq_2));
+  const std::vector<ThinFilm> films{{n1, first / (2 * pi * n1) * film_nm},
+                                    {n2, second / (2 * pi * n2) * film_nm}};
+  EXPECT_NEAR(film_power(1, films, glass, 1, film_nm, Polarisation::s).reflectance, 0, 1e-15);
+  EXPECT_NEAR(first / (pi / 2), 1.2698013814610714, 1e-12);  // as data/coatings/v-550.json has them
+  EXPECT_NEAR(second / (pi / 2), 0.268484855474908, 1e-12);
+}
+
+// Quarter, half and quarter wave on glass of 1.52. The numbers are those of the program tmm 0.2.0 by S.
+// Byrnes (coh_tmm with indices 1, 1.38, 2.1, 1.63, 1.52 and wavelength 550 nm for the quarters): reflectances
+// of s and p, and the phase of what is let through, which has the other sign there.
+TEST(ThinFilm, BroadbandCoatingHasTheCurveOfAnotherProgram) {
+  const std::vector<ThinFilm> films{
+      {1.38, 550 / (4 * 1.38)}, {2.1, 550 / (2 * 2.1)}, {1.63, 550 / (4 * 1.63)}};
+  struct {
+    double degrees, nm, s, p;
+    FilmComplex t_s, t_p;
+  } const rows[] = {{0,
+                     420,
+                     0.019227065695941,
+                     0.019227065695941,
+                     {-0.32809223339522453, 0.7332126825836839},
+                     {-0.32809223339522453, 0.7332126825836839}},
+                    {0,
+                     480,
+                     0.000043808141130,
+                     0.000043808141130,
+                     {0.4831487051020148, 0.6514854138465964},
+                     {0.4831487051020148, 0.6514854138465964}},
+                    {0,
+                     680,
+                     0.000722295829949,
+                     0.000722295829949,
+                     {0.27508460991313083, -0.7627240651809013},
+                     {0.27508460991313083, -0.7627240651809013}},
+                    {45,
+                     480,
+                     0.012756006427619,
+                     0.002359130164787,
+                     {0.6937877849844959, 0.19361070932086913},
+                     {0.6964419580926403, 0.19813901559495753}},
+                    {45,
+                     550,
+                     0.013936834836538,
+                     0.000876143635187,
+                     {0.6020047569579927, -0.394710411429642},
+                     {0.6114991257783292, -0.3887655385560478}},
+                    {45,
+                     680,
+                     0.015585959362180,
+                     0.011585002828732,
+                     {-0.1063012173109965, -0.7113644794622329},
+                     {-0.07497828601093388, -0.7168125639354285}}};
+  for (const auto& row : rows) {
+    const double cosine = std::cos(radians(row.degrees));
+    const auto of = [&](Polarisation which) { return film_power(1, films, 1.52, cosine, row.nm, which); };
+    EXPECT_NEAR(of(Polarisation::s).reflectance, row.s, 1e-12);
+    EXPECT_NEAR(of(Polarisation::p).reflectance, row.p, 1e-12);
+    for (const auto& [which, other] :
+         {std::pair{Polarisation::s, row.t_s}, std::pair{Polarisation::p, row.t_p}}) {
+      const FilmComplex t = film_amplitude(1, films, 1.52, cosine, row.nm, which);
+      EXPECT_NEAR(std::norm(t), of(which).transmittance, 1e-12);
+      EXPECT_NEAR(std::abs(t / std::abs(t) - std::conj(other / std::abs(other))), 0, 1e-9);
+    }
+  }
+}
+
 TEST(ThinFilm, BeyondTheCriticalAngleAllIsReflected) {
   const ThinFilm film{1.38, 100};
   for (const auto polarisation : {Polarisation::s, Polarisation::p}) {

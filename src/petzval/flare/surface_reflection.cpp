@@ -51,8 +51,8 @@ SurfaceReflection::SurfaceReflection(double index_before, double index_after, co
     kind_ = Kind::films;
     tabulate(*coating, wavelength_nm);
   } else if (coating) {
-    reflectance_ = coating->at(wavelength_nm);
-    kind_ = reflectance_ > 0 ? Kind::constant : Kind::nothing;
+    reflectance_ = coating->by_angle_at(wavelength_nm);
+    kind_ = reflectance_.any() ? Kind::measured : Kind::nothing;
   } else if (index_before == index_after) {
     kind_ = Kind::nothing;
   }
@@ -60,8 +60,8 @@ SurfaceReflection::SurfaceReflection(double index_before, double index_after, co
 
 SurfaceReflection SurfaceReflection::mirror(double reflectance, double index_before) {
   SurfaceReflection surface(index_before, index_before, nullptr, 0);
-  surface.reflectance_ = reflectance;
-  surface.kind_ = reflectance > 0 ? Kind::constant : Kind::nothing;
+  surface.reflectance_ = {{}, {{reflectance, reflectance}}};
+  surface.kind_ = reflectance > 0 ? Kind::measured : Kind::nothing;
   return surface;
 }
 
@@ -99,9 +99,9 @@ SurfaceReflection::Factors SurfaceReflection::factors(double cosine, bool behind
   switch (kind_) {
     case Kind::nothing:
       return reflect ? Factors{0, 0} : Factors{1, 1};
-    case Kind::constant: {
-      const double share = std::sqrt(reflect ? reflectance_ : 1 - reflectance_);
-      return {share, reflect ? -share : share};
+    case Kind::measured: {
+      const auto [s, p] = reflectance_.at(n1 <= n2 ? cosine : cosine_after);
+      return reflect ? Factors{std::sqrt(s), -std::sqrt(p)} : Factors{std::sqrt(1 - s), std::sqrt(1 - p)};
     }
     case Kind::bare: {
       const double s = (n1 * cosine - n2 * cosine_after) / (n1 * cosine + n2 * cosine_after);

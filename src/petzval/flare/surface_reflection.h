@@ -23,8 +23,8 @@ struct LightFields {
 /// Principles of Optics, 7th ed. 1999, 1.5.2), polarisations and the signs of their fields followed. Films
 /// (F. Abelès 1950) are tabulated over the cosine on the side of the lower index and interpolated linearly;
 /// their fields turn their sign as those of glass do near normal incidence, and by how much they delay one
-/// polarisation against the other is not followed. A measured reflectance holds for all angles; beyond the
-/// critical angle everything is reflected.
+/// polarisation against the other is not followed. A measured reflectance goes by the angle on that side, if
+/// it tells any; beyond the critical angle everything is reflected.
 class SurfaceReflection {
  public:
   SurfaceReflection(double index_before, double index_after, const Coating* coating, double wavelength_nm);
@@ -43,7 +43,7 @@ class SurfaceReflection {
                         bool behind) const;
 
  private:
-  enum class Kind { nothing, bare, constant, films };
+  enum class Kind { nothing, bare, measured, films };
   /// Factors of the two fields.
   struct Factors {
     double s = 0, p = 0;
@@ -55,7 +55,8 @@ class SurfaceReflection {
   void tabulate(const Coating& coating, double wavelength_nm);
 
   Kind kind_ = Kind::bare;
-  double index_before_, index_after_, reflectance_ = 0;
+  double index_before_, index_after_;
+  AngleReflectance reflectance_;
   std::array<std::vector<FilmRow>, 2> films_;  ///< from the front, from behind; over the cosine, evenly
 };
 

@@ -225,6 +225,23 @@ Table tabulate(Fields::Kind kind, const std::vector<ChiefRayAngleRow>& rows) {
                      [](const Row& row) { return row.mean_ray_angle_deg; }}});
 }
 
+Table tabulate(Fields::Kind kind, const std::vector<PolarisationRow>& rows) {
+  using Row = PolarisationRow;
+  return make<Row>(kind, rows,
+                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                    {{"transmittance", "%", 3, "transmittance_percent"},
+                     [](const Row& row) { return 100 * row.transmittance; }},
+                    {{"diattenuation", "%", 3, "diattenuation_percent"},
+                     [](const Row& row) { return 100 * row.diattenuation; }},
+                    {{"largest", "%", 3, "largest_diattenuation_percent"},
+                     [](const Row& row) { return 100 * row.largest_diattenuation; }},
+                    {{"RMS retardance", "nm", 3, "rms_retardance_nm"},
+                     [](const Row& row) { return row.rms_retardance_nm; }},
+                    {{"largest", "nm", 3, "largest_retardance_nm"},
+                     [](const Row& row) { return row.largest_retardance_nm; }},
+                    {{"Strehl ratio", "", 5, "strehl"}, [](const Row& row) { return row.strehl; }}});
+}
+
 Table tabulate(Fields::Kind kind, const std::vector<AberrationFans>& rows) {
   Table table{{field_column(kind),
                wavelength_column,

@@ -9,6 +9,7 @@
 #include <petzval/analysis/field_tables.h>
 #include <petzval/analysis/ghosts.h>
 #include <petzval/analysis/mtf.h>
+#include <petzval/analysis/polarisation.h>
 #include <petzval/analysis/seidel.h>
 #include <petzval/analysis/spot_diagram.h>
 #include <petzval/analysis/spots.h>
@@ -33,6 +34,7 @@ Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<VignettingRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<ChiefRayAngleRow>& rows);
+Table tabulate(Fields::Kind kind, const std::vector<PolarisationRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows);
 
 /// One row a point, a term or a sample.

@@ -253,6 +253,23 @@ AnalysisResult vignetting(const Lens& lens, const AnalysisRequest& request, cons
   return result;
 }
 
+AnalysisResult polarisation(const Lens& lens, const AnalysisRequest& request, const Context&) {
+  const std::vector<PolarisationRow> rows = polarisation_table(lens, request.at);
+  AnalysisResult result = result_of(
+      lens, request.at, "what surfaces do to polarisation; Strehl ratio of unpolarised light by that alone",
+      tabulate(request.at.field_kind, rows));
+  if (!request.plots) return result;
+  const std::vector<PolarisationRow> smooth = polarisation_table(lens, dense(request.at));
+  const std::size_t wavelengths = request.at.wavelengths_nm.size();
+  result.plots = {
+      curves("Diattenuation, largest of the pupil", {"diattenuation", "", PlotScale::linear, 0.0, {}}, smooth,
+             wavelengths, &PolarisationRow::real_image_height_mm, &PolarisationRow::largest_diattenuation),
+      curves("Retardance, largest of the pupil", {"retardance", "nm", PlotScale::linear, 0.0, {}}, smooth,
+             wavelengths, &PolarisationRow::real_image_height_mm, &PolarisationRow::largest_retardance_nm)};
+  result.plots_across = 2;
+  return result;
+}
+
 AnalysisResult chief_ray_angle(const Lens& lens, const AnalysisRequest& request, const Context&) {
   AnalysisResult result = result_of(lens, request.at, "angle at the sensor, positive away from the axis",
                                     tabulate(request.at.field_kind, chief_ray_angle_table(lens, request.at)));
@@ -360,6 +377,8 @@ const Analysis table_of_analyses[] = {
     {"colour", "Axial and lateral colour of real rays", colour},
     {"vignetting", "How much of the stop each field fills, and which surfaces take the rest", vignetting},
     {"chief-ray-angle", "At what angle the light meets the sensor", chief_ray_angle},
+    {"polarisation", "Diattenuation and retardance by the surfaces, and what they take from a point's image",
+     polarisation},
     {"ghosts", "Light that two surfaces reflect: where it is focused, how wide and how bright",
      ghost_reflections},
     {"glare", "Veiling glare by scatter and ghosts, and the glare spread function, by field", glare_analysis},

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace petzval {
 
@@ -45,32 +46,55 @@ Incidence incidence(const Vec& before, const Vec& after, const Vec& normal) {
   return {s, cross(before, s), cross(after, s), std::abs(dot(before, normal)), std::abs(dot(after, normal))};
 }
 
-/// Square roots of the share of the power that a surface lets through.
+/// Square roots of the share of the power that a surface lets through, with what films delay if complex.
+template <class Number>
 struct Amplitudes {
-  double s = 1, p = 1;
+  Number s = 1, p = 1;
 };
 
-Amplitudes fresnel(double n1, double n2, const Incidence& at) {
+template <class Number>
+Amplitudes<Number> fresnel(double n1, double n2, const Incidence& at) {
   const double c1 = at.cosine_before, c2 = at.cosine_after;
   const double r_s = (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2);
   const double r_p = (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
   return {std::sqrt(1 - r_s * r_s), std::sqrt(1 - r_p * r_p)};
 }
 
-Amplitudes through_films(double before, const std::vector<ThinFilm>& films, double after,
-                         double cosine_before, double wavelength_nm) {
-  const auto share = [&](Polarisation polarisation) {
-    return film_power(before, films, after, cosine_before, wavelength_nm, polarisation).transmittance;
+template <class Number>
+Amplitudes<Number> through_films(double before, const std::vector<ThinFilm>& films, double after,
+                                 double cosine_before, double wavelength_nm) {
+  const auto amplitude = [&](Polarisation polarisation) -> Number {
+    if constexpr (std::is_same_v<Number, double>)
+      return std::sqrt(
+          film_power(before, films, after, cosine_before, wavelength_nm, polarisation).transmittance);
+    else
+      return film_amplitude(before, films, after, cosine_before, wavelength_nm, polarisation);
   };
-  return {std::sqrt(share(Polarisation::s)), std::sqrt(share(Polarisation::p))};
+  return {amplitude(Polarisation::s), amplitude(Polarisation::p)};
+}
+
+template <class Number>
+Number component(const std::array<Number, 3>& field, const Vec& axis) {
+  return field[0] * axis[0] + field[1] * axis[1] + field[2] * axis[2];
 }
 
 /// An electric field, in units of the square root of its power, through a surface.
-Vec transmit(const Vec& field, const Incidence& at, const Amplitudes& through) {
-  const double s = through.s * dot(field, at.s), p = through.p * dot(field, at.p_before);
-  Vec out;
+template <class Number>
+std::array<Number, 3> transmit(const std::array<Number, 3>& field, const Incidence& at,
+                               const Amplitudes<Number>& through) {
+  const Number s = through.s * component(field, at.s), p = through.p * component(field, at.p_before);
+  std::array<Number, 3> out;
   for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = s * at.s[axis] + p * at.p_after[axis];
   return out;
+}
+
+/// Two perpendicular fields across a ray. \param first  across it, a unit vector.
+template <class Number>
+std::array<std::array<Number, 3>, 2> fields_across(const Vec& direction, const Vec& first) {
+  const Vec second = cross(direction, first);
+  std::array<std::array<Number, 3>, 2> fields;
+  for (std::size_t axis = 0; axis < 3; ++axis) fields[0][axis] = first[axis], fields[1][axis] = second[axis];
+  return fields;
 }
 
 bool is_air_to_glass(double index_before, double index_after) {
@@ -117,7 +141,7 @@ LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, con
       if (coating->has_films())
         interface.films = coating->films(wavelength_nm, interface.index_before);
       else
-        interface.reflectance = coating->at(wavelength_nm);
+        interface.reflectance = coating->by_angle_at(wavelength_nm);
     }
     if (losses.absorption && !material.is_air()) {
       if (const std::optional<double> k = material.extinction(wavelength_nm))
@@ -158,11 +182,10 @@ bool has_obscurations(const Lens& lens) {
   });
 }
 
-double LensTransmittance::along(const Ray& start, const std::vector<Intersection>& path,
-                                bool backward) const {
-  if (is_obscured(path, backward)) return 0;
+template <class Number>
+double LensTransmittance::follow(const Ray& start, const std::vector<Intersection>& path, bool backward,
+                                 std::array<std::array<Number, 3>, 2>& fields) const {
   Vec before = start.direction;
-  Vec first = perpendicular(before), second = cross(before, first);
   double transmitted = 1;
   const auto absorb = [&](std::size_t gap, const Vec& from, const Vec& to, const Vec& direction) {
     const Vec along = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
@@ -176,25 +199,58 @@ double LensTransmittance::along(const Ray& start, const std::vector<Intersection
     const Interface& interface = interfaces_[i];
     const Vec& after = path[step].direction_after;
     const Incidence at = incidence(before, after, path[step].normal);
-    Amplitudes through;
-    if (interface.reflectance)
-      through.s = through.p =
-          std::sqrt(interface.mirror ? *interface.reflectance : 1 - *interface.reflectance);
-    else if (interface.mirror)
+    Amplitudes<Number> through;
+    if (interface.reflectance) {
+      // The angle is that on the side of the air.
+      const bool from_air = (interface.index_before <= interface.index_after) != backward;
+      const auto [s, p] =
+          interface.reflectance->at(from_air || interface.mirror ? at.cosine_before : at.cosine_after);
+      through.s = std::sqrt(interface.mirror ? s : 1 - s);
+      through.p = std::sqrt(interface.mirror ? p : 1 - p);
+    } else if (interface.mirror)
       through = {};
     else if (!interface.films.empty())  // the same from both sides
-      through = through_films(interface.index_before, interface.films, interface.index_after,
-                              backward ? at.cosine_after : at.cosine_before, wavelength_nm_);
+      through = through_films<Number>(interface.index_before, interface.films, interface.index_after,
+                                      backward ? at.cosine_after : at.cosine_before, wavelength_nm_);
     else if (fresnel_)
-      through = backward ? fresnel(interface.index_after, interface.index_before, at)
-                         : fresnel(interface.index_before, interface.index_after, at);
-    first = transmit(first, at, through);
-    second = transmit(second, at, through);
+      through = backward ? fresnel<Number>(interface.index_after, interface.index_before, at)
+                         : fresnel<Number>(interface.index_before, interface.index_after, at);
+    for (auto& field : fields) field = transmit(field, at, through);
     if (step + 1 < path.size())
       absorb(backward ? i - 1 : i, path[step].point_mm, path[step + 1].point_mm, after);
     before = after;
   }
-  return transmitted * 0.5 * (dot(first, first) + dot(second, second));
+  return transmitted;
+}
+
+double LensTransmittance::along(const Ray& start, const std::vector<Intersection>& path,
+                                bool backward) const {
+  if (is_obscured(path, backward)) return 0;
+  auto fields = fields_across<double>(start.direction, perpendicular(start.direction));
+  const double left = follow(start, path, backward, fields);
+  return left * 0.5 * (dot(fields[0], fields[0]) + dot(fields[1], fields[1]));
+}
+
+Jones LensTransmittance::jones(const Ray& start, const std::vector<Intersection>& path) const {
+  Jones result{};
+  if (is_obscured(path, false)) return result;
+  // y as the ray sees it: so the axes of a pencil's rays go together.
+  const double along_y = start.direction[1];
+  const Vec y{-along_y * start.direction[0], 1 - along_y * along_y, -along_y * start.direction[2]};
+  const Vec first = scaled(y, 1 / std::sqrt(dot(y, y)));
+  auto fields = fields_across<std::complex<double>>(start.direction, first);
+  const double left = std::sqrt(follow(start, path, false, fields));
+  // The axes alone.
+  auto axes = fields_across<double>(start.direction, first);
+  Vec before = start.direction;
+  for (std::size_t step = 0; step < std::min(path.size(), interfaces_.size()); ++step) {
+    const Incidence at = incidence(before, path[step].direction_after, path[step].normal);
+    for (auto& axis : axes) axis = transmit(axis, at, Amplitudes<double>());
+    before = path[step].direction_after;
+  }
+  for (std::size_t out = 0; out < 2; ++out)
+    for (std::size_t in = 0; in < 2; ++in) result[out][in] = left * component(fields[in], axes[out]);
+  return result;
 }
 
 double transmitted_area(const Tracer& tracer, const Pencil& pencil, const PupilBoundary& pupil,

@@ -7,6 +7,8 @@
 #include <petzval/trace/pupil.h>
 #include <petzval/trace/tracer.h>
 
+#include <array>
+#include <complex>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -32,12 +34,15 @@ struct Losses {
   void validate(const Lens& lens) const;
 };
 
+/// What a lens does to the field of a ray: [out][in].
+using Jones = std::array<std::array<std::complex<double>, 2>, 2>;
+
 /// The transmittance of a lens at one wavelength, ray by ray, for unpolarised light. Immutable.
 ///
 /// Reflection: Fresnel's equations for s and p (Born & Wolf, Principles of Optics, 7th ed. 1999, 1.5.2). Two
 /// perpendicular polarisations are carried through the lens, and their powers averaged at its end: what one
-/// surface polarises, the next one feels. Films let through what film_power() says of each polarisation; by
-/// how much they delay one against the other is not followed. Absorption: Lambert's law,
+/// surface polarises, the next one feels. Films let through what film_power() says of each polarisation; that
+/// they delay one against the other counts in jones() alone. Absorption: Lambert's law,
 /// exp(−4πk·distance/λ). A mirror throws back all, or the share that a coating of its own says. No gain where
 /// facing surfaces cross and a gap is walked backwards.
 class LensTransmittance {
@@ -52,16 +57,23 @@ class LensTransmittance {
   /// trace_backward recorded of it.
   double along(const Ray& start, const std::vector<Intersection>& path, bool backward = false) const;
 
+  /// The Jones matrix of a ray that passed, delays of films included (film_amplitude): fields in the root of
+  /// their power, in axes that the ray carries with it as a lens that does not polarise would turn them.
+  /// Half the sum of its squares is along(). (R. A. Chipman, W.-S. T. Lam, G. Young, Polarized Light and
+  /// Optical Systems, 2018, ch. 9 and 17.)
+  Jones jones(const Ray& start, const std::vector<Intersection>& path) const;
+
   /// Glasses of the lens whose extinction is not known, and which count as perfectly clear.
   const std::vector<std::string>& clear_for_want_of_data() const { return clear_; }
 
  private:
   struct Interface {
     double index_before = 1, index_after = 1;
-    bool mirror = false;                     ///< throws back what `reflectance` says, or all
-    std::optional<double> reflectance = {};  ///< nothing: films, or Fresnel, if that counts
-    std::vector<ThinFilm> films = {};        ///< from the front
-    double absorption_per_mm = 0;            ///< of the gap behind the surface, 4πk/λ
+    bool mirror = false;  ///< throws back what `reflectance` says, or all
+    /// Nothing: films, or Fresnel, if that counts.
+    std::optional<AngleReflectance> reflectance = {};
+    std::vector<ThinFilm> films = {};  ///< from the front
+    double absorption_per_mm = 0;      ///< of the gap behind the surface, 4πk/λ
   };
   /// Figures that close a surface inside.
   struct Obscuration {
@@ -71,6 +83,10 @@ class LensTransmittance {
     std::vector<ApertureFigure> figures;
   };
   bool is_obscured(const std::vector<Intersection>& path, bool backward) const;
+  /// Takes the fields of two polarisations along; power that glass absorbs is returned, what is left of it.
+  template <class Number>
+  double follow(const Ray& start, const std::vector<Intersection>& path, bool backward,
+                std::array<std::array<Number, 3>, 2>& fields) const;
 
   bool fresnel_;
   double wavelength_nm_;

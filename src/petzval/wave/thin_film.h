@@ -27,4 +27,10 @@ struct FilmPower {
 FilmPower film_power(double index_before, std::span<const ThinFilm> films, double index_after, double cosine,
                      double wavelength_nm, Polarisation polarisation);
 
+/// The field behind the films over that in front, each in the root of its power: |amplitude|² is the
+/// transmittance. Its phase is that of the field at the last interface against the first, light that is late
+/// falling behind: e^{−2πi n d cos θ/λ} for a film that does not reflect.
+std::complex<double> film_amplitude(double index_before, std::span<const ThinFilm> films, double index_after,
+                                    double cosine, double wavelength_nm, Polarisation polarisation);
+
 }  // namespace petzval
