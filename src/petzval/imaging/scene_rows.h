@@ -32,12 +32,22 @@ class SceneRows {
   /// `error` here means zero (form_image() looks before). Everything given must outlive the rows.
   SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
             Surround surround, const SceneAim& aim = {});
+  /// The same under another aim.
+  SceneRows(const SceneRows& other, const SceneAim& aim);
   ~SceneRows();
   SceneRows(const SceneRows&) = delete;
   SceneRows& operator=(const SceneRows&) = delete;
 
   /// Writes a row of the grid. From any thread.
-  void write(std::size_t row, float* irradiance) const;
+  void write(std::size_t row, float* irradiance) const {
+    RowView straight;
+    look(row, straight);
+    write(row, straight, irradiance);
+  }
+  /// The same in two steps: what the cells of a row would see of the scene if the camera looked at its
+  /// middle, which rows that differ in their aim alone share.
+  void look(std::size_t row, RowView& straight) const;
+  void write(std::size_t row, const RowView& straight, float* irradiance) const;
   const SensorGeometry& grid() const { return grid_; }
 
  private:
@@ -62,7 +72,7 @@ class SceneRows {
   AimedPlane aimed_;
   std::span<const float> radiance_;
   std::unique_ptr<PanoramaBand> panorama_;
-  std::unique_ptr<DrawnCells> drawn_;
+  std::shared_ptr<const DrawnCells> drawn_;  ///< if the camera looks straight
 };
 
 /// All rows of SceneRows.
