@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/simulate/vibration.h>
 
 #include "command.h"
 
@@ -28,6 +29,10 @@ void ClipChoice::add_to(CLI::App& command) {
       ->expected(1, 2);
   command.add_option("--path", path,
                      "A .csv of the way: columns t_s, and any of pan_deg, pitch_deg, right_m, up_m");
+  command.add_option(
+      "--vibration", vibration,
+      "The camera shakes too: 0.02@1-20 (degrees rms of pan and of pitch, flat from 1 to 20 Hz), or a "
+      ".csv of spectral densities, columns frequency_hz, pan_deg2_per_hz, pitch_deg2_per_hz");
   command
       .add_option("--shutter", shutter,
                   "rolling (with --row-time), global, or as the sensor says (global where it does not)")
@@ -83,7 +88,7 @@ Shutter ClipChoice::chosen_shutter(const Sensor& sensor) const {
   return chosen;
 }
 
-ClipOptions ClipChoice::options(const Sensor& sensor) const {
+ClipOptions ClipChoice::options(const Sensor& sensor, std::uint64_t seed) const {
   ClipOptions options = given;
   options.shutter = chosen_shutter(sensor);
   options.flicker = LampFlicker::parse(flicker);
@@ -93,10 +98,10 @@ ClipOptions ClipChoice::options(const Sensor& sensor) const {
   if (!path.empty() && !per_second.is_straight())
     throw InputError("--path says all that moves; without --pan, --pitch and --move it would be right");
   options.validate();
-  options.motion =
-      path.empty() ? MotionPath::steady(per_second, options.duration_s() +
-                                                        options.shutter->row_delay_s(sensor.geometry.rows))
-                   : MotionPath::read(path);
+  const double lasts_s = options.duration_s() + options.shutter->row_delay_s(sensor.geometry.rows);
+  options.motion = path.empty() ? MotionPath::steady(per_second, lasts_s) : MotionPath::read(path);
+  if (!vibration.empty())
+    options.motion = VibrationSpectrum::parse(vibration).shaken(options.motion, lasts_s, seed);
   return options;
 }
 

@@ -16,15 +16,15 @@ struct ClipChoice {
   ClipOptions given;
   double pan_deg_per_s = 0, pitch_deg_per_s = 0;
   std::vector<double> move_m_per_s, event_thresholds;
-  std::string path, shutter = "sensor", flicker = "none";
+  std::string path, vibration, shutter = "sensor", flicker = "none";
   std::optional<double> row_time_us;
   bool events = false;
   EventCameraOptions event_camera{.refractory_s = 1e-4};
 
   void add_to(CLI::App& command);
   /// \param sensor  whose shutter is used if nothing else is said. \throws InputError for words and numbers
-  /// that contradict each other.
-  ClipOptions options(const Sensor& sensor) const;
+  /// that contradict each other. \param seed  of the vibration.
+  ClipOptions options(const Sensor& sensor, std::uint64_t seed) const;
   /// \throws InputError for options of an event camera without one.
   EventCameraOptions event_options(const CLI::App& command, const Sensor& sensor, std::uint64_t seed) const;
 

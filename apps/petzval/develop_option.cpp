@@ -63,8 +63,12 @@ void DevelopChoice::add_to(CLI::App& command, bool after_light) {
   command.add_option("--tone", tone, "none (white is cut) or soft (highlights roll off)")
       ->check(CLI::IsMember({"none", "soft"}))
       ->capture_default_str();
-  command.add_option("--space", space, "srgb or display-p3")
-      ->check(CLI::IsMember({"srgb", "display-p3"}))
+  command
+      .add_option(
+          "--space", space,
+          "srgb, display-p3, or rec2100-pq: a .png of 16 bits for displays of high dynamic range, white "
+          "at 203 cd/m2, highlights beyond it kept")
+      ->check(CLI::IsMember({"srgb", "display-p3", "rec2100-pq"}))
       ->capture_default_str();
   command
       .add_option("--step", steps,

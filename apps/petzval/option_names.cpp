@@ -12,10 +12,11 @@ namespace petzval::app {
 namespace {
 
 /// Parameters whose options are not called after them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 17> other_names{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> other_names{
     {{"autofocus.from_mm", "--focus-from"},
      {"autofocus.to_mm", "--focus-to"},
      {"focus_pixel", "--focus"},
+     {"gain_mode", "--conversion-gain"},
      {"least_scene_angle_deg", "--scene-angle-least"},
      {"losses", "--fresnel, --coating or --absorption"},
      {"samples_per_pixel", "--spp"},

@@ -27,7 +27,8 @@ void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
   if (!after_light)
     command.add_option("--f-number", given.f_number, "For exposure values; default: the lens's, where known");
   command.add_option("--conversion-gain", given.gain_mode,
-                     "Of a sensor with several: its name; default: the first");
+                     "Of a sensor with several: its name, or dual: one exposure is read at all of them and "
+                     "merged; default: the first");
   command.add_option("--gain", given.analog_gain, "Analog gain")->capture_default_str();
   command.add_option("--temperature", given.temperature_c,
                      "Of the sensor [degrees C]; default: that of its dark current");

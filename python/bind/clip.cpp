@@ -2,6 +2,7 @@
 // Clips: frames of a scene that moves, of rows that begin one after the other, of light that flickers.
 #include <fmt/format.h>
 #include <petzval/simulate/clip.h>
+#include <petzval/simulate/vibration.h>
 
 #include <memory>
 
@@ -65,9 +66,10 @@ struct ClipRequest {
   Maybe<double> row_time_us;
   SceneAim per_second;
   nb::object path;
+  std::string vibration;
 
   /// All that is known once the sensor is.
-  ClipOptions with(const Sensor& sensor) const {
+  ClipOptions with(const Sensor& sensor, std::uint64_t seed) const {
     ClipOptions result = options;
     result.shutter = shutter_of(sensor, shutter, row_time_us);
     const bool has_path = !path.is_none();
@@ -79,26 +81,28 @@ struct ClipRequest {
     result.validate();
     const double lasts_s = result.duration_s() + result.shutter->row_delay_s(sensor.geometry.rows);
     result.motion = has_path ? path_of(path) : MotionPath::steady(per_second, lasts_s);
+    if (!vibration.empty())
+      result.motion = VibrationSpectrum::parse(vibration).shaken(result.motion, lasts_s, seed);
     return result;
   }
 };
 
 ClipRequest clip_request(int frames, double fps, double pan_deg_per_s, double pitch_deg_per_s,
                          std::pair<double, double> move_m_per_s, const nb::object& path,
-                         const std::string& shutter, Maybe<double> row_time_us, const std::string& flicker,
-                         double motion_step_px) {
-  ClipRequest request{{}, shutter, row_time_us, {pan_deg_per_s, pitch_deg_per_s, 0, 0}, path};
+                         const std::string& vibration, const std::string& shutter, Maybe<double> row_time_us,
+                         const std::string& flicker, double motion_step_px) {
+  ClipRequest request{{}, shutter, row_time_us, {pan_deg_per_s, pitch_deg_per_s, 0, 0}, path, vibration};
   std::tie(request.per_second.right_m, request.per_second.up_m) = move_m_per_s;
   request.options.frames = frames, request.options.fps = fps;
   request.options.flicker = LampFlicker::parse(flicker);
   request.options.step_px = motion_step_px;
   return request;
 }
-#define PETZVAL_CLIP_ARGUMENTS                                                                 \
-  nb::arg("scene"), nb::arg("frames"), nb::kw_only(),                                          \
-      nb::arg("fps") = 24.0, nb::arg("pan_deg_per_s") = 0.0, nb::arg("pitch_deg_per_s") = 0.0, \
-      nb::arg("move_m_per_s") = std::pair(0.0, 0.0), nb::arg("path").none() = nb::none(),      \
-      nb::arg("shutter") = "sensor", nb::arg("row_time_us").none() = nb::none(),               \
+#define PETZVAL_CLIP_ARGUMENTS                                                                              \
+  nb::arg("scene"), nb::arg("frames"), nb::kw_only(),                                                       \
+      nb::arg("fps") = 24.0, nb::arg("pan_deg_per_s") = 0.0, nb::arg("pitch_deg_per_s") = 0.0,              \
+      nb::arg("move_m_per_s") = std::pair(0.0, 0.0), nb::arg("path").none() = nb::none(),                   \
+      nb::arg("vibration") = "", nb::arg("shutter") = "sensor", nb::arg("row_time_us").none() = nb::none(), \
       nb::arg("flicker") = "none", nb::arg("motion_step_px") = ClipOptions().step_px
 
 Sensor sensor_of(const Optics& optics) {
@@ -134,7 +138,7 @@ auto shoot_function(ClipRequest (*)(OfClip...), ImageOptions (*)(OfImage...),
     Optics optics = optics_of(self);
     ClipRequest request = clip_request(of_clip...);
     request.options.expose = expose_options(of_exposure...);
-    const ClipOptions options = request.with(sensor_of(optics));
+    const ClipOptions options = request.with(sensor_of(optics), seed);
     return shot(std::move(optics), scene, image_options(of_image...), options, {threads, seed, progress});
   };
 }
@@ -144,7 +148,9 @@ constexpr const char* shoot_text =
     "`pan_deg_per_s` to the right and `pitch_deg_per_s` up before a scene at infinity or a panorama; the "
     "scene "
     "moves by `move_m_per_s` (right, up) at a finite distance; or both follow `path`, a .csv or keys (t_s, "
-    "pan_deg, pitch_deg, right_m, up_m). `shutter`: global, rolling with `row_time_us`, or as the sensor "
+    "pan_deg, pitch_deg, right_m, up_m). `vibration` on top: 0.02@1-20 (degrees rms, from and to Hz) or a "
+    ".csv of "
+    "spectral densities. `shutter`: global, rolling with `row_time_us`, or as the sensor "
     "says. "
     "`flicker` of all light: none, mains:50:0.4 (Hz of the mains, depth) or pwm:1000:0.25 (Hz, duty), :PHASE "
     "in periods behind it. Light is worked out anew when the picture has moved by `motion_step_px`. Other "

@@ -45,7 +45,9 @@ ExposeOptions expose_options(const nb::object& exposure, const std::string& mete
 namespace {
 
 using SpaceWords = std::initializer_list<std::pair<std::string_view, DisplaySpace>>;
-const SpaceWords space_words{{"srgb", DisplaySpace::srgb}, {"display-p3", DisplaySpace::display_p3}};
+const SpaceWords space_words{{"srgb", DisplaySpace::srgb},
+                             {"display-p3", DisplaySpace::display_p3},
+                             {"rec2100-pq", DisplaySpace::rec2100_pq}};
 
 RawImage expose_to(const SpectralImage& light, const Sensor& sensor, const ExposeOptions& options,
                    const CallOptions& how) {
@@ -347,7 +349,7 @@ void bind_raw(nb::module_& module) {
              "`sensor`: with a light, whose colours the matrix is fitted to. `demosaic`: None (the usual one "
              "of the mosaic), bilinear, malvar, "
              "hamilton-adams, gradient or general. `flat`: a Raw of a uniform surface. `tone`: none or soft. "
-             "`space`: srgb or display-p3.");
+             "`space`: srgb, display-p3 or rec2100-pq (high dynamic range, as .png).");
 }
 
 }  // namespace petzval::python

@@ -22,6 +22,7 @@
 #include <petzval/simulate/psf_stack.h>
 #include <petzval/simulate/render.h>
 #include <petzval/simulate/target.h>
+#include <petzval/simulate/vibration.h>
 
 // The lens as it is built, and a better one.
 #include <petzval/optimise/fit_build.h>

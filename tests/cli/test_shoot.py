@@ -64,6 +64,7 @@ class Shoot(ProgramTest):
                             (("--exposure", "1"), ("longer than a frame", "--fps")),
                             (("--event-noise", "3"), ("--events",)),
                             (("--path", "none.csv"), ("--pan",)),
+                            (("--vibration", "much"), ("0.02@1-20",)),
                             (("--pan", "x"), ("--pan",)),
                             (("--move", "1"), ("--scene-distance",)),
                             (("--step", "linear=a.npy"), ("petzval develop",)),

@@ -42,13 +42,13 @@ class PolarisedLight {
     const double light = weight * 0.5 * jones.squaredNorm();
     weight_ += weight;
     light_ += light;
-    mean_ += weight * jones;
+    // What both polarisations are late by is wavefront, most of which goes with a new focus: not counted.
+    mean_ += weight * std::polar(1.0, -std::arg(unitary.trace())) * jones;
     diattenuation_ += light * diattenuation;
     retardance_sq_ += light * retardance_nm * retardance_nm;
     row_.largest_diattenuation = std::max(row_.largest_diattenuation, diattenuation);
     row_.largest_retardance_nm = std::max(row_.largest_retardance_nm, retardance_nm);
   }
-  /// Twice a ray of a centred lens: its mirror image x → −x has the mirror image of its matrix.
   bool any() const { return light_ > 0; }
   PolarisationRow row() const {
     PolarisationRow row = row_;

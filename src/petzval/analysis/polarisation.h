@@ -17,9 +17,9 @@ struct PolarisationRow {
   double diattenuation = 0, largest_diattenuation = 0;
   /// How much later the slow polarisation of a ray arrives: root mean square over the light, and the largest.
   double rms_retardance_nm = 0, largest_retardance_nm = 0;
-  /// The peak of a point's image in unpolarised light over what the same light would reach if all of it were
-  /// in phase and of one polarisation, without any aberration of the lens's shape:
-  /// Σ|⟨J⟩|²/⟨Σ|J|²⟩ over the elements of the rays' Jones matrices.
+  /// The peak of a point's image in unpolarised light, by uneven transmittance and by what the polarisations
+  /// differ in, over what the same light would reach without either: Σ|⟨J⟩|²/⟨Σ|J|²⟩ over the elements of
+  /// the rays' Jones matrices, what both polarisations of a ray are late by (which is wavefront) taken out.
   double strehl = 1;
 };
 

@@ -62,10 +62,17 @@ void BandBlur::use_sections(const SectionOptions& options) {
 }
 
 void BandBlur::make_kernels() {
-  if (options_.method != BlurMethod::product || sections_) return;
+  if (options_.method != BlurMethod::product || sections_ || product_) return;
   const auto start = std::chrono::steady_clock::now();
   product_.emplace(*psfs_, grid_, *plan_, std::move(memory_));
+  if (plan_->exact.empty()) psfs_.reset();  // no more is wanted of them
   report_.kernel_seconds += seconds_since(start);
+}
+
+double BandBlur::bytes() const {
+  constexpr double psf_bytes = 64e6;
+  const bool keeps_psfs = options_.method != BlurMethod::none && !(product_ && plan_->exact.empty());
+  return (product_ ? plan_->kernel_bytes : 0) + (keeps_psfs ? psf_bytes : 0);
 }
 
 CellPlane BandBlur::operator()(CellPlane source, const ProgressCallback& progress) const {

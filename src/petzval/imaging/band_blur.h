@@ -33,8 +33,10 @@ class BandBlur {
   /// The first half of prepare(). \param hint  the plan() of a neighbouring band.
   void choose(double wavelength_nm, const SensorGeometry& grid, int margin,
               const std::optional<ProductPlan>& hint);
-  /// The second half.
+  /// The second half; nothing if they are made.
   void make_kernels();
+  /// That the kernels take.
+  double bytes() const;
   /// What was chosen; absent for other methods than `product`, and where PSFs are too large for it.
   const std::optional<ProductPlan>& plan() const { return plan_; }
   CellPlane operator()(CellPlane source, const ProgressCallback& progress = {}) const;

@@ -5,6 +5,7 @@
 #include <petzval/base/unset_vector.h>
 #include <petzval/sensor/sensor.h>
 
+#include <climits>
 #include <cstddef>
 
 namespace petzval {
@@ -25,6 +26,13 @@ struct CellPlane {
   std::size_t rows() const { return static_cast<std::size_t>(grid.rows); }
   float* row(std::size_t index) { return values.data() + index * columns(); }
   const float* row(std::size_t index) const { return values.data() + index * columns(); }
+};
+
+/// Rows [first, end).
+struct RowRange {
+  int first = 0, end = INT_MAX;
+
+  bool holds(int row) const { return row >= first && row < end; }
 };
 
 /// The grid with `margin` cells more on every side (fewer if negative).

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <climits>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -61,129 +62,233 @@ class BandProgress {
   std::vector<double> fraction_;
 };
 
-/// The bands of one image, some of them at a time.
-class BandByBand {
- public:
-  BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
-             const ImagingOptions& options, const std::vector<BandPlan>& plans, const LightPath& path,
-             const ProgressCallback& progress, ImagingReport& report, std::span<const SceneAim> aims,
-             const TakeBand& take)
-      : scene_(scene),
-        table_(table),
-        centres_(table),
-        frame_(frame),
-        options_(options),
-        plans_(plans),
-        path_(path),
-        taps_(pixel_taps(options.photosite, options.cells_per_pixel(), path)),
-        progress_(scene.bands(), progress),
-        report_(report),
-        aims_(aims),
-        take_(take) {}
-
-  void form() {
-    const auto start = std::chrono::steady_clock::now();
-    choose(0, places_.emplace_back(table_, centres_, options_));
-    while (places_.size() < places_wanted()) places_.emplace_back(table_, centres_, options_);
-    parallel_stages(plans_.size(), places_.size(),
-                    {[&](std::size_t band, std::size_t place) {
-                       if (band > 0) choose(band, places_[place]);
-                     },
-                     [&](std::size_t band, std::size_t place) { work(band, places_[place]); },
-                     [&](std::size_t band, std::size_t place) { end(band, places_[place]); }});
-    share_time(seconds_since(start));
+/// The same lights by rows of cells that pixels share in. \param further  cells that a pixel shares in beyond
+/// its own, from its first on.
+std::vector<AimedLight> on_cells(std::span<const AimedLight> lights, int cells_per_pixel, int further) {
+  std::vector<AimedLight> on_cells(lights.begin(), lights.end());
+  for (auto& [shares, rows] : on_cells) {
+    rows.first *= cells_per_pixel;
+    if (rows.end < (INT_MAX - further) / cells_per_pixel) rows.end = rows.end * cells_per_pixel + further;
   }
+  return on_cells;
+}
 
- private:
-  /// Where one band after the other is formed, using the same memory.
+}  // namespace
+
+/// What all images of a scene share, and the bands that are formed at a time.
+struct ImageSeries::Impl {
+  /// Where bands are formed.
   struct Place {
     Place(const LensDataTable& table, const LightCentres& centres, const ImagingOptions& options)
         : blur(table, centres, options, says) {}
     ImagingReport says;
     BandBlur blur;
-    std::vector<CellPlane> pixels;  ///< of each aim
+    bool chosen = false;
+    std::vector<CellPlane> pixels;  ///< of each light
     double seconds = 0;
   };
 
-  /// As many bands at a time as threads and memory allow, going by the first.
-  std::size_t places_wanted() const {
-    constexpr double most_bytes = 1.25e9, psf_bytes = 64e6;
+  Impl(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
+       const ImagingOptions& asked, bool keeps)
+      : scene(of_scene),
+        table(of_table),
+        sensor(of_sensor),
+        options(asked),
+        may_keep(keeps),
+        centres(checked()) {
+    const CellChoice choice = choose_cells(scene, table, sensor, options);
+    options.supersample = choice.cells;
+    of_all.sampling_error = choice.sampling.error;
+    of_all.finer_detail_error = choice.sampling.finer;
+    frame = options.cells_of(sensor);
+    plans = plan_bands(scene, table, frame, options);
+    of_all.scene_points_per_cell = points_per_cell(plans, frame);
+    of_all.cells_per_pixel = options.cells_per_pixel();
+    path = options.light_path(of_all.scene_points_per_cell);
+    taps = pixel_taps(options.photosite, of_all.cells_per_pixel, path);
+  }
+
+  /// Everything that can be refused is refused before the work starts.
+  const LensDataTable& checked() const {
+    options.validate();
+    scene.validate();
+    table.validate();
+    check_distances(scene, table);
+    SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
+    return table;
+  }
+
+  /// \param take  is handed each band of every light, then the next band.
+  void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
+            ImagingReport& report) {
+    report = of_all;
+    check_aims(lights, report.notes);
+    note_dark_corners(plans, sensor, report.notes);
+    const auto start = std::chrono::steady_clock::now();
+    if (places.empty()) {
+      choose(0, places.emplace_back(table, centres, options));
+      const std::size_t wanted = may_keep && fits(plans.size()) ? plans.size() : places_at_once();
+      while (places.size() < wanted) places.emplace_back(table, centres, options);
+    }
+    BandProgress progress(scene.bands(), callback);
+    double seconds = 0;  // of all bands
+    const auto begin = [&](std::size_t band, std::size_t) {
+      Place& place = place_of(band);
+      if (!place.chosen || places.size() < plans.size()) choose(band, place);
+    };
+    const auto end = [&](std::size_t band, std::size_t) {
+      seconds += hand_over(band, take, progress, report);
+    };
+    parallel_stages(plans.size(), std::min(places.size(), static_cast<std::size_t>(thread_count())),
+                    {begin, [&](std::size_t band, std::size_t) { work(band, lights, progress); }, end});
+    share_time(seconds_since(start), seconds, report);
+    note_result(report);
+    note_unused_layout(report);
+  }
+
+  void check_aims(std::span<const AimedLight> lights, std::vector<std::string>& notes) const {
+    for (const AimedLight& light : lights)
+      for (const AimedLight::Share& share : light.shares) {
+        share.aim.check(scene);
+        check_coverage(scene, plans, frame, options.surround, notes, share.aim);
+      }
+    const auto repeated = std::ranges::unique(notes);
+    notes.erase(repeated.begin(), repeated.end());
+  }
+
+  Place& place_of(std::size_t band) { return places[band % places.size()]; }
+
+  /// Whether so many places have room, going by the first.
+  bool fits(std::size_t count) const {
+    constexpr double most_bytes = 1.25e9;
     constexpr int planes = 4;  // the light before and after blur, with room for the pixels
-    const std::optional<ProductPlan>& plan = places_.front().blur.plan();
-    const double bytes = (plan ? plan->kernel_bytes : 0) + psf_bytes +
-                         planes * double(frame_.columns) * double(frame_.rows) * sizeof(float);
-    const auto by_memory = static_cast<std::size_t>(std::max(1.0, most_bytes / bytes));
-    return std::min({by_memory, static_cast<std::size_t>(thread_count()), plans_.size()});
+    const double of_planes = planes * double(frame.columns) * double(frame.rows) * sizeof(float);
+    return double(count) * (places.front().blur.bytes() + of_planes) <= most_bytes;
+  }
+  /// As many bands at a time as threads and memory allow.
+  std::size_t places_at_once() const {
+    std::size_t count = std::min(static_cast<std::size_t>(thread_count()), plans.size());
+    while (count > 1 && !fits(count)) --count;
+    return count;
   }
 
   void choose(std::size_t band, Place& place) {
     const auto start = std::chrono::steady_clock::now();
     place.says = {};
-    const int margin = plans_[band].margin;
-    place.blur.choose(scene_.wavelengths_nm()[band], grown(frame_, margin), margin, last_plan_);
-    last_plan_ = place.blur.plan();
+    const int margin = plans[band].margin;
+    place.blur.choose(scene.wavelengths_nm()[band], grown(frame, margin), margin, last_plan);
+    last_plan = place.blur.plan();
+    place.chosen = true;
     place.seconds = place.says.blur_seconds = seconds_since(start);
   }
 
-  void work(std::size_t band, Place& place) {
-    const BandPlan& plan = plans_[band];
+  void work(std::size_t band, std::span<const AimedLight> lights, BandProgress& progress) {
+    const BandPlan& plan = plans[band];
+    Place& place = place_of(band);
     const auto start = std::chrono::steady_clock::now();
     place.blur.make_kernels();
     place.says.blur_seconds += seconds_since(start);
-    for (std::size_t i = 0; i < aims_.size(); ++i) {
+    const SensorGeometry grid = grown(frame, plan.margin);
+    // What a pixel's light may come from, after blur and before.
+    const std::vector<AimedLight> on_source =
+        on_cells(lights, taps.cells, taps.size() - taps.cells + 2 * plan.margin);
+    // Lights that look at the same rows in turn share what the lens makes of them.
+    constexpr double most_bytes = 1e8;
+    const auto at_once = static_cast<std::size_t>(
+        std::max(1.0, most_bytes / (double(grid.columns) * double(grid.rows) * sizeof(float))));
+    for (std::size_t i = 0; i < lights.size();) {
       const auto start_of_light = std::chrono::steady_clock::now();
-      CellPlane ideal = source_light(scene_, static_cast<int>(band), plan.map, grown(frame_, plan.margin),
-                                     path_.source, options_.surround, aims_[i]);
+      const auto some = std::span(on_source).subspan(i, std::min(at_once, lights.size() - i));
+      std::vector<CellPlane> ideal =
+          source_lights(scene, static_cast<int>(band), plan.map, grid, path.source, options.surround, some);
       place.says.distortion_seconds += seconds_since(start_of_light);
       const auto start_of_blur = std::chrono::steady_clock::now();
-      CellPlane blurred = place.blur(std::move(ideal), [&](double fraction, const std::string& what) {
-        progress_.tell(band, (double(i) + fraction) / double(aims_.size()), what);
-      });
+      for (CellPlane& light : ideal) {
+        CellPlane blurred = place.blur(std::move(light), [&](double fraction, const std::string& what) {
+          progress.tell(band, (double(i) + fraction) / double(lights.size()), what);
+        });
+        place.pixels.push_back(without_negative_light(gathered(std::move(blurred), taps, lights[i++].rows)));
+      }
       place.says.blur_seconds += seconds_since(start_of_blur);
-      place.pixels.push_back(without_negative_light(gathered(std::move(blurred), taps_)));
     }
     place.seconds += seconds_since(start);
   }
 
-  void end(std::size_t band, Place& place) {
+  /// \return the time that the band took.
+  double hand_over(std::size_t band, const TakeBand& take, BandProgress& progress, ImagingReport& report) {
+    Place& place = place_of(band);
     const auto start = std::chrono::steady_clock::now();
     for (const CellPlane& pixels : place.pixels) {
-      note_extremes(pixels, static_cast<int>(band), report_);
-      take_(pixels.values);
+      note_extremes(pixels, static_cast<int>(band), report);
+      take(pixels.values);
     }
     place.pixels.clear();
-    scene_.release_memory();
-    place.says.margin_cells = plans_[band].margin;
-    place.says.least_captured = plans_[band].least_captured;
-    add_report(place.says, report_);
-    progress_.tell(band, 1, "image");
-    seconds_ += place.seconds + seconds_since(start);
+    scene.release_memory();
+    place.says.margin_cells = plans[band].margin;
+    place.says.least_captured = plans[band].least_captured;
+    add_report(place.says, report);
+    progress.tell(band, 1, "image");
+    const double seconds = place.seconds + seconds_since(start);
+    // What was chosen may serve again; time goes by anew.
+    place.seconds = place.says.distortion_seconds = place.says.blur_seconds = place.says.kernel_seconds = 0;
+    return seconds;
   }
 
-  void share_time(double seconds) {
-    if (seconds_ <= seconds) return;
-    for (double* of_step : {&report_.distortion_seconds, &report_.blur_seconds, &report_.kernel_seconds})
-      *of_step *= seconds / seconds_;
+  static void share_time(double seconds, double of_bands, ImagingReport& report) {
+    if (of_bands <= seconds) return;
+    for (double* of_step : {&report.distortion_seconds, &report.blur_seconds, &report.kernel_seconds})
+      *of_step *= seconds / of_bands;
   }
 
-  const Scene& scene_;
-  const LensDataTable& table_;
-  const LightCentres centres_;
-  const SensorGeometry& frame_;
-  const ImagingOptions& options_;
-  const std::vector<BandPlan>& plans_;
-  const LightPath path_;
-  const PixelTaps taps_;
-  BandProgress progress_;
-  ImagingReport& report_;
-  std::span<const SceneAim> aims_;
-  const TakeBand& take_;
-  std::deque<Place> places_;
-  std::optional<ProductPlan> last_plan_;
-  double seconds_ = 0;  ///< of all bands
+  void note_unused_layout(ImagingReport& report) const {
+    const ProductPlan& product = report.product;
+    if ((options.product.nodes != 0 || options.product.tile != 0) && product.tile != 0 && !product.direct &&
+        product.transform == 0)
+      report.notes.push_back(fmt::format(
+          "`nodes` and `tile` had no effect: tiles as asked for do not go into the transforms beside these "
+          "PSFs, or serve the tolerance; sections of {0} x {0} cells that fade into each other took their "
+          "place",
+          product.tile));
+  }
+
+  const Scene& scene;
+  const LensDataTable& table;
+  const SensorGeometry sensor;
+  ImagingOptions options;
+  const bool may_keep;
+  const LightCentres centres;
+  SensorGeometry frame;  ///< of cells
+  std::vector<BandPlan> plans;
+  LightPath path;
+  PixelTaps taps;
+  ImagingReport of_all;  ///< what there is to say of every image
+  std::deque<Place> places;
+  std::optional<ProductPlan> last_plan;
 };
 
-}  // namespace
+ImageSeries::ImageSeries(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+                         const ImagingOptions& options)
+    : impl_(std::make_unique<Impl>(scene, table, sensor, options, true)) {}
+
+ImageSeries::~ImageSeries() = default;
+
+std::vector<SpectralImage> ImageSeries::form(std::span<const AimedLight> lights, ImagingReport* report) {
+  ImagingReport unwanted;
+  std::vector<SpectralImage> images;
+  std::size_t planes = 0;
+  const auto put = [&](std::span<const float> pixels) {
+    if (images.empty())
+      images.assign(lights.size(), blank_image(impl_->scene, impl_->sensor, impl_->options));
+    images[planes % lights.size()].store_band(static_cast<int>(planes / lights.size()), pixels);
+    ++planes;
+  };
+  impl_->form(lights, put, {}, report != nullptr ? *report : unwanted);
+  for (SpectralImage& image : images) {
+    image.lens = lens_facts(impl_->table.lens_name, impl_->table.first_order);
+    add_corrections(*image.lens, impl_->table, impl_->sensor);
+  }
+  return images;
+}
 
 SectionOptions ImagingOptions::section_options() const {
   return {sections.section, sections.transform, method == BlurMethod::blended};
@@ -209,73 +314,13 @@ void ImagingOptions::validate() const {
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);
 }
 
-namespace {
-
-/// \param take  is handed each band of every aim, then the next band.
-void form_aimed_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
-                      const ImagingOptions& asked, std::span<const SceneAim> aims, const TakeBand& take,
-                      const ProgressCallback& progress, ImagingReport* report) {
-  ImagingReport own;
-  ImagingReport& says = report != nullptr ? *report : own;
-  says = {};
-
-  // Everything that can be refused is refused before the work starts.
-  asked.validate();
-  scene.validate();
-  table.validate();
-  check_distances(scene, table);
-  for (const SceneAim& aim : aims) aim.check(scene);
-  SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
-  const CellChoice choice = choose_cells(scene, table, sensor, asked);
-  ImagingOptions options = asked;
-  options.supersample = choice.cells;
-  says.sampling_error = choice.sampling.error;
-  says.finer_detail_error = choice.sampling.finer;
-  const SensorGeometry frame = options.cells_of(sensor);
-  const std::vector<BandPlan> plans = plan_bands(scene, table, frame, options);
-  for (const SceneAim& aim : aims) check_coverage(scene, plans, frame, options.surround, says.notes, aim);
-  note_dark_corners(plans, sensor, says.notes);
-  says.scene_points_per_cell = points_per_cell(plans, frame);
-
-  says.cells_per_pixel = options.cells_per_pixel();
-  const LightPath path = options.light_path(says.scene_points_per_cell);
-  BandByBand(scene, table, frame, options, plans, path, progress, says, aims, take).form();
-  note_result(says);
-  const ProductPlan& product = says.product;
-  if ((asked.product.nodes != 0 || asked.product.tile != 0) && product.tile != 0 && !product.direct &&
-      product.transform == 0)
-    says.notes.push_back(fmt::format(
-        "`nodes` and `tile` had no effect: tiles as asked for do not go into the transforms beside these "
-        "PSFs, or "
-        "serve the tolerance; sections of {0} x {0} cells that fade into each other took their place",
-        product.tile));
-}
-
-}  // namespace
-
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
                 ImagingReport* report) {
-  const SceneAim straight;
-  form_aimed_bands(scene, table, sensor, options, std::span(&straight, 1), take, progress, report);
-}
-
-std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataTable& table,
-                                             const SensorGeometry& sensor, const ImagingOptions& options,
-                                             std::span<const SceneAim> aims, ImagingReport* report) {
-  std::vector<SpectralImage> images;
-  std::size_t planes = 0;
-  const auto put = [&](std::span<const float> pixels) {
-    if (images.empty()) images.assign(aims.size(), blank_image(scene, sensor, options));
-    images[planes % aims.size()].store_band(static_cast<int>(planes / aims.size()), pixels);
-    ++planes;
-  };
-  form_aimed_bands(scene, table, sensor, options, aims, put, {}, report);
-  for (SpectralImage& image : images) {
-    image.lens = lens_facts(table.lens_name, table.first_order);
-    add_corrections(*image.lens, table, sensor);
-  }
-  return images;
+  ImagingReport unwanted;
+  const AimedLight straight;
+  ImageSeries::Impl(scene, table, sensor, options, false)
+      .form(std::span(&straight, 1), take, progress, report != nullptr ? *report : unwanted);
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,

@@ -10,6 +10,7 @@
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/imaging/scene_aim.h>
 #include <petzval/imaging/section_blur.h>
+#include <petzval/imaging/source_light.h>
 #include <petzval/optics/lens_data_table.h>
 #include <petzval/optics/table_interpolation.h>
 #include <petzval/scene/scene.h>
@@ -17,6 +18,7 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -116,16 +118,34 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
 /// What is done with the pixels of a band, row by row.
 using TakeBand = std::function<void(std::span<const float> pixels)>;
 
-/// Several images of one scene, the camera turned or the scene moved: the kernels of each band are made once.
-/// \param aims  one an image; of a panorama added to its own view. \throws InputError as form_image(), and as
-/// SceneAim::check().
-std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataTable& table,
-                                             const SensorGeometry& sensor, const ImagingOptions& options,
-                                             std::span<const SceneAim> aims, ImagingReport* report = nullptr);
-
 /// The same without keeping the bands: each is handed over as it is ready, in order.
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress = {},
                 ImagingReport* report = nullptr);
+
+/// Several images of one scene, the camera turned or the scene moved: what they share is made once, the
+/// kernels of each band too where there is memory for them. Everything given must outlive it.
+///
+///     ImageSeries series(scene, table, sensor.geometry, options);
+///     const AimedLight ahead, aside{{{{.pan_deg = 2}}}};
+///     const auto images = series.form(std::vector{ahead, aside});
+class ImageSeries {
+ public:
+  /// \throws InputError as form_image(), but for a scene that is too small.
+  ImageSeries(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
+              const ImagingOptions& options);
+  ~ImageSeries();
+  ImageSeries(const ImageSeries&) = delete;
+  ImageSeries& operator=(const ImageSeries&) = delete;
+
+  /// \param lights  one an image, by rows of pixels; aims are added to the view of a panorama. \throws
+  /// InputError as form_image(), and as SceneAim::check().
+  std::vector<SpectralImage> form(std::span<const AimedLight> lights, ImagingReport* report = nullptr);
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace petzval

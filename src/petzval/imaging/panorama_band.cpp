@@ -39,16 +39,24 @@ PanoramaBand::PanoramaBand(const Scene& panorama, int band, PanoramaView view)
       cos_yaw_(std::cos(radians(view.yaw_deg))),
       sin_yaw_(std::sin(radians(view.yaw_deg))),
       cos_pitch_(std::cos(radians(view.pitch_deg))),
-      sin_pitch_(std::sin(radians(view.pitch_deg))),
-      values_(panorama.band_size()) {
+      sin_pitch_(std::sin(radians(view.pitch_deg))) {
+  const auto values = std::make_shared<std::vector<float>>(panorama.band_size());
   const auto width = static_cast<std::size_t>(columns_);
   const std::span<const float> stored = panorama.band(band);
   parallel_for(static_cast<std::size_t>(rows_), [&](std::size_t row) {
     // The sine of the angle from the pole is the cosine of the latitude.
     const double circle = std::sin((static_cast<double>(row) + 0.5) * angle_per_sample_);
     widen(stored.subspan(row * width, width), std::min(1 / circle, static_cast<double>(width)),
-          std::span(values_).subspan(row * width, width));
+          std::span(*values).subspan(row * width, width));
   });
+  values_ = values;
+}
+
+PanoramaBand::PanoramaBand(const PanoramaBand& other, PanoramaView view) : PanoramaBand(other) {
+  cos_yaw_ = std::cos(radians(view.yaw_deg));
+  sin_yaw_ = std::sin(radians(view.yaw_deg));
+  cos_pitch_ = std::cos(radians(view.pitch_deg));
+  sin_pitch_ = std::sin(radians(view.pitch_deg));
 }
 
 double PanoramaBand::sample(std::ptrdiff_t row, double column) const {
@@ -59,7 +67,7 @@ double PanoramaBand::sample(std::ptrdiff_t row, double column) const {
   }
   const double left = std::floor(column);
   const auto j = ((static_cast<std::ptrdiff_t>(left) % columns_) + columns_) % columns_;
-  const float* const values = values_.data() + row * columns_;
+  const float* const values = values_->data() + row * columns_;
   const double here = values[j], next = values[j + 1 < columns_ ? j + 1 : 0];
   return here + (column - left) * (next - here);
 }

@@ -5,6 +5,7 @@
 #include <petzval/scene/scene.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace petzval {
@@ -17,6 +18,8 @@ namespace petzval {
 class PanoramaBand {
  public:
   PanoramaBand(const Scene& panorama, int band, PanoramaView view);
+  /// The same band, looked at by a camera that is turned otherwise.
+  PanoramaBand(const PanoramaBand& other, PanoramaView view);
 
   /// Radiance at a place of the azimuthal equidistant map about the optical axis: its distance from the
   /// middle is the angle from the axis. \param right, down  in samples of the equator (SceneMap::Place less
@@ -29,7 +32,7 @@ class PanoramaBand {
   std::ptrdiff_t columns_, rows_;
   double angle_per_sample_;
   double cos_yaw_, sin_yaw_, cos_pitch_, sin_pitch_;
-  std::vector<float> values_;
+  std::shared_ptr<const std::vector<float>> values_;
 };
 
 }  // namespace petzval

@@ -181,8 +181,8 @@ double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath&
   return std::sqrt(squares);
 }
 
-CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
-  if (taps.size() == 1) return plane;
+CellPlane gathered(CellPlane plane, const PixelTaps& taps, RowRange wanted) {
+  if (taps.size() == 1) return plane;  // of whose dark rows nothing came
   const SensorGeometry inner = grown(plane.grid, -taps.reach);
   CellPlane result =
       CellPlane::unset({inner.columns / taps.cells, inner.rows / taps.cells, inner.pitch_um * taps.cells});
@@ -192,6 +192,10 @@ CellPlane gathered(CellPlane plane, const PixelTaps& taps) {
     std::vector<double> column_sums(plane.columns()), pixels(result.columns());
     const std::size_t end = std::min(result.rows(), (block + 1) * rows_at_once);
     for (std::size_t row = block * rows_at_once; row < end; ++row) {
+      if (!wanted.holds(static_cast<int>(row))) {
+        std::fill_n(result.row(row), result.columns(), 0.0F);
+        continue;
+      }
       std::fill(pixels.begin(), pixels.end(), 0.0);
       for (const PixelTaps::Term& term : taps.terms) {
         std::fill(column_sums.begin(), column_sums.end(), 0.0);

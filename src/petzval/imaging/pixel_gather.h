@@ -58,7 +58,8 @@ PixelTaps pixel_taps(const Photosite& site, int cells, const LightPath& path);
 double taps_error(const PixelTaps& taps, const Photosite& site, const LightPath& path, double f_cpp,
                   const std::function<double(double)>& mtf);
 
-/// \param plane  S × S cells to a pixel and taps.reach more all around. \returns the plane of pixels.
-CellPlane gathered(CellPlane plane, const PixelTaps& taps);
+/// \param plane  S × S cells to a pixel and taps.reach more all around. \param wanted  rows of pixels; others
+/// are dark. \returns the plane of pixels.
+CellPlane gathered(CellPlane plane, const PixelTaps& taps, RowRange wanted = {});
 
 }  // namespace petzval

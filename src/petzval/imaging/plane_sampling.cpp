@@ -25,6 +25,10 @@ std::size_t sample(const PlaneView&, const RowView&, double, std::size_t from, s
   return from;
 }
 
+std::size_t turn(const PlaneTurn&, const RowView&, RowView&) {
+  return 0;
+}
+
 std::size_t width() {
   return 1;
 }
@@ -168,6 +172,40 @@ HWY_ATTR std::size_t sample(const PlaneView& view, const RowView& cells, double 
   return from;
 }
 
+HWY_ATTR std::size_t turn(const PlaneTurn& turn, const RowView& straight, RowView& turned) {
+  const Doubles d;
+  const HalfFloats half;
+  const std::size_t lanes = hn::Lanes(d), count = straight.right.size();
+  const auto set = [&](double value) { return hn::Set(d, value); };
+  const Vector per_sample = set(turn.tangent_per_sample), samples = set(1 / turn.tangent_per_sample);
+  const Vector cos_pan = set(turn.cos_pan), sin_pan = set(turn.sin_pan), cos_pitch = set(turn.cos_pitch),
+               sin_pitch = set(turn.sin_pitch), pan_of_up = set(turn.sin_pitch * turn.cos_pan);
+  std::size_t at = 0;
+  for (; at + lanes <= count; at += lanes) {
+    const Vector right = hn::LoadU(d, straight.right.data() + at),
+                 down = hn::LoadU(d, straight.down.data() + at);
+    const Vector x = hn::Mul(right, per_sample), y = hn::Neg(hn::Mul(down, per_sample));
+    const Vector up = hn::MulAdd(y, cos_pitch, sin_pitch), ahead = hn::NegMulAdd(y, sin_pitch, cos_pitch);
+    const Vector aside = hn::MulAdd(x, cos_pan, hn::Mul(ahead, sin_pan)),
+                 front = hn::NegMulAdd(x, sin_pan, hn::Mul(ahead, cos_pan));
+    const auto seen = hn::Gt(front, hn::Zero(d));
+    const Vector inverse = hn::Div(set(1), front), square = hn::Mul(inverse, inverse);
+    const Vector scale = hn::Mul(inverse, samples);
+    hn::StoreU(hn::IfThenElse(seen, hn::Mul(aside, scale), right), d, turned.right.data() + at);
+    hn::StoreU(hn::IfThenElse(seen, hn::Neg(hn::Mul(up, scale)), down), d, turned.down.data() + at);
+    const auto stretch = [&](const std::vector<float>& side, Vector by, std::vector<float>& to) {
+      const auto factor = hn::DemoteTo(half, hn::IfThenElse(seen, hn::Mul(hn::Abs(by), square), set(1)));
+      hn::StoreU(hn::Mul(hn::LoadU(half, side.data() + at), factor), half, to.data() + at);
+    };
+    stretch(straight.width, hn::MulAdd(cos_pan, front, hn::Mul(aside, sin_pan)), turned.width);
+    stretch(straight.height, hn::MulAdd(cos_pitch, front, hn::Mul(up, pan_of_up)), turned.height);
+    const auto light = hn::DemoteTo(half, hn::IfThenElseZero(seen, set(1)));
+    hn::StoreU(hn::Mul(hn::LoadU(half, straight.g_source_sr.data() + at), light), half,
+               turned.g_source_sr.data() + at);
+  }
+  return at;
+}
+
 HWY_ATTR std::size_t width() {
   return hn::Lanes(Floats());
 }
@@ -183,6 +221,7 @@ namespace petzval {
 
 HWY_EXPORT(look);
 HWY_EXPORT(sample);
+HWY_EXPORT(turn);
 HWY_EXPORT(width);
 
 void RowView::look(const SceneMapSteps& map, const CellRow& cells) {
@@ -206,6 +245,10 @@ void RowView::look(const SceneMapSteps& map, const CellRow& cells) {
 std::size_t sample_row(const PlaneView& view, const RowView& cells, double down, std::size_t from,
                        std::size_t to, float* irradiance) {
   return HWY_DYNAMIC_DISPATCH(sample)(view, cells, down, from, to, irradiance);
+}
+
+std::size_t turn_row(const PlaneTurn& turn, const RowView& straight, RowView& turned) {
+  return HWY_DYNAMIC_DISPATCH(turn)(turn, straight, turned);
 }
 
 std::size_t sampled_at_once() {

@@ -37,6 +37,16 @@ struct RowView {
   void look(const SceneMapSteps& map, const CellRow& cells);
 };
 
+/// A camera that was tilted up, then turned to the right, before a plane.
+struct PlaneTurn {
+  double tangent_per_sample, cos_pan, sin_pan, cos_pitch, sin_pitch;
+};
+
+/// What cells see when the camera is turned, as many from the first on as vectors are filled with. Cells that
+/// do not see the plane are dark. SIMD; scalar code with the same result to rounding is AimedPlane's.
+/// \param turned  as large as `straight`. \return the first cell that is not done.
+std::size_t turn_row(const PlaneTurn& turn, const RowView& straight, RowView& turned);
+
 /// A band of a scene.
 struct PlaneView {
   const float* radiance;

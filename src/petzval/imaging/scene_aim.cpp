@@ -29,44 +29,51 @@ void SceneAim::check(const Scene& scene) const {
 AimedPlane::AimedPlane(const SceneAim& aim, const Scene& scene)
     : straight_(aim.is_straight()),
       turned_(aim.pan_deg != 0 || aim.pitch_deg != 0),
-      tangent_per_sample_(scene.tangent_per_sample()),
+      turn_{scene.tangent_per_sample(), std::cos(radians(aim.pan_deg)), std::sin(radians(aim.pan_deg)),
+            std::cos(radians(aim.pitch_deg)), std::sin(radians(aim.pitch_deg))},
       shift_right_(0),
-      shift_down_(0),
-      cos_pan_(std::cos(radians(aim.pan_deg))),
-      sin_pan_(std::sin(radians(aim.pan_deg))),
-      cos_pitch_(std::cos(radians(aim.pitch_deg))),
-      sin_pitch_(std::sin(radians(aim.pitch_deg))) {
+      shift_down_(0) {
   if (!scene.distance_m()) return;
-  const double sample_m = *scene.distance_m() * tangent_per_sample_;
+  const double sample_m = *scene.distance_m() * turn_.tangent_per_sample;
   shift_right_ = aim.right_m / sample_m;
   shift_down_ = -aim.up_m / sample_m;
 }
 
 AimedPlane::Place AimedPlane::at(double right, double down) const {
   if (!turned_) return {right - shift_right_, down - shift_down_, 1, 1};
-  // The direction as the camera has it, x to the right, y up, 1 ahead; the camera was first tilted up, then
-  // turned to the right.
-  const double x = right * tangent_per_sample_, y = -down * tangent_per_sample_;
-  const double up = y * cos_pitch_ + sin_pitch_, ahead = cos_pitch_ - y * sin_pitch_;
-  const double aside = x * cos_pan_ + ahead * sin_pan_, front = ahead * cos_pan_ - x * sin_pan_;
+  const auto& [tangent_per_sample, cos_pan, sin_pan, cos_pitch, sin_pitch] = turn_;
+  // The direction as the camera has it, x to the right, y up, 1 ahead.
+  const double x = right * tangent_per_sample, y = -down * tangent_per_sample;
+  const double up = y * cos_pitch + sin_pitch, ahead = cos_pitch - y * sin_pitch;
+  const double aside = x * cos_pan + ahead * sin_pan, front = ahead * cos_pan - x * sin_pan;
   if (!(front > 0)) return {NAN, NAN, 0, 0};
-  return {aside / front / tangent_per_sample_, -up / front / tangent_per_sample_,
-          std::abs(cos_pan_ * front + aside * sin_pan_) / (front * front),
-          std::abs(cos_pitch_ * front + up * sin_pitch_ * cos_pan_) / (front * front)};
+  return {aside / front / tangent_per_sample, -up / front / tangent_per_sample,
+          std::abs(cos_pan * front + aside * sin_pan) / (front * front),
+          std::abs(cos_pitch * front + up * sin_pitch * cos_pan) / (front * front)};
 }
 
-void AimedPlane::turn(RowView& cells) const {
-  if (straight_) return;
-  for (std::size_t i = 0; i < cells.right.size(); ++i) {
-    const Place place = at(cells.right[i], cells.down[i]);
-    if (std::isnan(place.right)) {
-      cells.g_source_sr[i] = 0;
-      continue;
-    }
-    cells.right[i] = place.right;
-    cells.down[i] = place.down;
-    cells.width[i] *= static_cast<float>(place.widening);
-    cells.height[i] *= static_cast<float>(place.heightening);
+void AimedPlane::turn(const RowView& straight, RowView& turned) const {
+  if (straight_ || !turned_) {
+    turned = straight;
+    for (double& right : turned.right) right -= shift_right_;
+    for (double& down : turned.down) down -= shift_down_;
+    return;
+  }
+  const std::size_t count = straight.right.size();
+  turned.right.resize(count);
+  turned.down.resize(count);
+  turned.width.resize(count);
+  turned.height.resize(count);
+  turned.g_source_sr.resize(count);
+  turned.dark = straight.dark;
+  for (std::size_t i = turn_row(turn_, straight, turned); i < count; ++i) {
+    const Place place = at(straight.right[i], straight.down[i]);
+    const bool seen = !std::isnan(place.right);
+    turned.right[i] = seen ? place.right : straight.right[i];
+    turned.down[i] = seen ? place.down : straight.down[i];
+    turned.width[i] = straight.width[i] * (seen ? static_cast<float>(place.widening) : 1);
+    turned.height[i] = straight.height[i] * (seen ? static_cast<float>(place.heightening) : 1);
+    turned.g_source_sr[i] = seen ? straight.g_source_sr[i] : 0;
   }
 }
 

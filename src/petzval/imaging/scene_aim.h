@@ -34,13 +34,13 @@ class AimedPlane {
   };
   /// Not a number, for a place beside or behind which the plane is not seen.
   Place at(double right, double down) const;
-  /// What a row of cells sees. Cells that do not see the plane are dark.
-  void turn(RowView& cells) const;
+  /// What a row of cells sees, from what it would see straight. Cells that do not see the plane are dark.
+  void turn(const RowView& straight, RowView& turned) const;
 
  private:
   bool straight_, turned_;
-  double tangent_per_sample_, shift_right_, shift_down_;  ///< shifts in samples
-  double cos_pan_, sin_pan_, cos_pitch_, sin_pitch_;
+  PlaneTurn turn_;
+  double shift_right_, shift_down_;  ///< [samples]
 };
 
 }  // namespace petzval

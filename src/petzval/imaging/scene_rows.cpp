@@ -39,6 +39,10 @@ struct Stretch {
   }
 };
 
+PanoramaView turned(const Scene& scene, const SceneAim& aim) {
+  return {scene.view().yaw_deg + aim.pan_deg, scene.view().pitch_deg + aim.pitch_deg};
+}
+
 }  // namespace
 
 SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
@@ -53,14 +57,27 @@ SceneRows::SceneRows(const Scene& scene, int band, const SceneMap& map, const Se
       radiance_(scene.band(band)) {
   if (const SceneDrawing* drawing = scene.drawing(); drawing != nullptr && aimed_.is_straight())
     drawn_ = DrawnCells::make(*drawing, band, map.look(), grid);
-  if (scene.is_panorama())
-    panorama_ = std::make_unique<PanoramaBand>(
-        scene, band,
-        PanoramaView{scene.view().yaw_deg + aim.pan_deg, scene.view().pitch_deg + aim.pitch_deg});
-  else
-    flat_.emplace(radiance_, static_cast<std::size_t>(scene.columns()),
-                  static_cast<std::size_t>(scene.rows()));
-  if (flat_ && !flat_->any()) flat_.reset();
+  if (scene.is_panorama()) {
+    panorama_ = std::make_unique<PanoramaBand>(scene, band, turned(scene, aim));
+    return;
+  }
+  const auto flat = std::make_shared<FlatBlocks>(radiance_, static_cast<std::size_t>(scene.columns()),
+                                                 static_cast<std::size_t>(scene.rows()));
+  if (flat->any()) flat_ = flat;
+}
+
+SceneRows::SceneRows(const SceneRows& other, const SceneAim& aim)
+    : scene_(other.scene_),
+      band_(other.band_),
+      map_(other.map_),
+      grid_(other.grid_),
+      parts_(other.parts_),
+      surround_(other.surround_),
+      aimed_(aim, other.scene_),
+      radiance_(other.radiance_),
+      flat_(other.flat_) {
+  if (aimed_.is_straight()) drawn_ = other.drawn_;
+  if (other.panorama_) panorama_ = std::make_unique<PanoramaBand>(*other.panorama_, turned(scene_, aim));
 }
 
 SceneRows::~SceneRows() = default;
@@ -159,13 +176,19 @@ bool SceneRows::is_inside(const RowView& cells, std::size_t column) const {
          fits(cells.down[column], cells.height[column], scene_.rows());
 }
 
-void SceneRows::write(std::size_t row, float* irradiance) const {
+void SceneRows::look(std::size_t row, RowView& straight) const {
+  if (!panorama_)
+    map_.look().look(
+        {grid_.pitch_um * mm_per_um, grid_.y_mm(double(row) + 0.5), static_cast<std::size_t>(grid_.columns)},
+        straight);
+}
+
+void SceneRows::write(std::size_t row, const RowView& straight, float* irradiance) const {
   const auto columns = static_cast<std::size_t>(grid_.columns);
-  RowView cells;
-  if (!panorama_) {
-    map_.look().look({grid_.pitch_um * mm_per_um, grid_.y_mm(double(row) + 0.5), columns}, cells);
-    aimed_.turn(cells);
-  }
+  thread_local RowView turned_view;
+  const bool turns = !panorama_ && !aimed_.is_straight();
+  if (turns) aimed_.turn(straight, turned_view);
+  const RowView& cells = turns ? turned_view : straight;
   if (!drawn_) return write_samples(row, cells, radiance_, irradiance);
   const SceneDrawing& drawing = *scene_.drawing();
   const float ground = drawing.ground[band_];

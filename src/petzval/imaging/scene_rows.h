@@ -34,12 +34,22 @@ class SceneRows {
   /// `error` here means zero (form_image() looks before). Everything given must outlive the rows.
   SceneRows(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid, int parts,
             Surround surround, const SceneAim& aim = {});
+  /// The same under another aim.
+  SceneRows(const SceneRows& other, const SceneAim& aim);
   ~SceneRows();
   SceneRows(const SceneRows&) = delete;
   SceneRows& operator=(const SceneRows&) = delete;
 
   /// Writes a row of the grid. From any thread.
-  void write(std::size_t row, float* irradiance) const;
+  void write(std::size_t row, float* irradiance) const {
+    RowView straight;
+    look(row, straight);
+    write(row, straight, irradiance);
+  }
+  /// The same in two steps: what the cells of a row would see of the scene if the camera looked at its
+  /// middle, which rows that differ in their aim alone share.
+  void look(std::size_t row, RowView& straight) const;
+  void write(std::size_t row, const RowView& straight, float* irradiance) const;
   const SensorGeometry& grid() const { return grid_; }
 
  private:
@@ -67,8 +77,8 @@ class SceneRows {
   AimedPlane aimed_;
   std::span<const float> radiance_;
   std::unique_ptr<PanoramaBand> panorama_;
-  std::unique_ptr<DrawnCells> drawn_;
-  std::optional<FlatBlocks> flat_;  ///< of radiance_; nothing where none is
+  std::shared_ptr<const DrawnCells> drawn_;  ///< if the camera looks straight
+  std::shared_ptr<const FlatBlocks> flat_;   ///< of radiance_; null where none is
 };
 
 /// All rows of SceneRows.

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <utility>
 
 namespace petzval {
 
@@ -18,18 +20,24 @@ constexpr int most_points = 64;  ///< of the scene along a part
 /// The rows of parts that a row of cells takes its light from, made once for the rows that share them.
 class PartRows {
  public:
-  PartRows(const SceneRows& rows, const SourceFilter& filter, std::size_t cells)
-      : rows_(rows),
+  /// One of the lights.
+  struct Source {
+    std::vector<std::unique_ptr<SceneRows>> rows;
+    std::vector<float> weights;
+  };
+
+  PartRows(const std::vector<Source>& sources, const SourceFilter& filter, std::size_t cells)
+      : sources_(sources),
         filter_(filter),
         cells_(cells),
-        part_row_(static_cast<std::size_t>(rows.grid().columns)),
-        kept_(filter.weights.size()) {}
+        looks_(filter.weights.size()),
+        kept_(sources.size() * filter.weights.size()) {}
 
   /// Filtered along the row. \param index  of the row of parts; they are asked for in order.
-  const std::vector<float>& at(std::size_t index) {
-    Row& row = kept_[index % kept_.size()];
+  const std::vector<float>& at(std::size_t source, std::size_t index) {
+    Kept& row = kept_[source * looks_.size() + index % looks_.size()];
     if (row.index != index + 1) {
-      rows_.write(index, part_row_.data());
+      write(sources_[source], index);
       filter_along(row.values);
       row.index = index + 1;
     }
@@ -37,10 +45,33 @@ class PartRows {
   }
 
  private:
-  struct Row {
-    std::size_t index = 0;  ///< and one, lest the first be taken for made
-    std::vector<float> values;
+  // Indices are one more, lest the first be taken for made.
+  struct Look {
+    std::size_t index = 0;
+    RowView view = {};
   };
+  struct Kept {
+    std::size_t index = 0;
+    std::vector<float> values = {};
+  };
+
+  void write(const Source& source, std::size_t index) {
+    const SceneRows& first = *source.rows.front();
+    Look& look = looks_[index % looks_.size()];
+    if (look.index != index + 1) {
+      first.look(index, look.view);
+      look.index = index + 1;
+    }
+    part_row_.resize(static_cast<std::size_t>(first.grid().columns));
+    first.write(index, look.view, part_row_.data());
+    if (source.rows.size() == 1 && source.weights.front() == 1) return;
+    for (float& value : part_row_) value *= source.weights.front();
+    of_share_.resize(part_row_.size());
+    for (std::size_t share = 1; share < source.rows.size(); ++share) {
+      source.rows[share]->write(index, look.view, of_share_.data());
+      for (std::size_t i = 0; i < part_row_.size(); ++i) part_row_[i] += source.weights[share] * of_share_[i];
+    }
+  }
 
   void filter_along(std::vector<float>& values) const {
     values.assign(cells_, 0);
@@ -52,11 +83,12 @@ class PartRows {
     }
   }
 
-  const SceneRows& rows_;
+  const std::vector<Source>& sources_;
   const SourceFilter& filter_;
   std::size_t cells_;
-  std::vector<float> part_row_;
-  std::vector<Row> kept_;
+  std::vector<Look> looks_;
+  std::vector<Kept> kept_;  ///< [source][row, by turns]
+  std::vector<float> part_row_, of_share_;
 };
 
 }  // namespace
@@ -80,26 +112,46 @@ double SourceFilter::transform(double frequency) const {
   return sum * sinc(frequency / parts);
 }
 
-CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                       const SourceFilter& filter, Surround surround, const SceneAim& aim) {
+std::vector<CellPlane> source_lights(const Scene& scene, int band, const SceneMap& map,
+                                     const SensorGeometry& grid, const SourceFilter& filter,
+                                     Surround surround, std::span<const AimedLight> lights) {
   const SensorGeometry parts = grown(subdivided(grid, filter.parts), filter.reach());
-  const SceneRows rows(scene, band, map, parts, most_points, surround, aim);
-  CellPlane plane = CellPlane::unset(grid);
-  constexpr std::size_t rows_at_once = 16;
-  parallel_for((plane.rows() + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {
-    PartRows part_rows(rows, filter, plane.columns());
-    const std::size_t end = std::min(plane.rows(), (block + 1) * rows_at_once);
-    for (std::size_t row = block * rows_at_once; row < end; ++row) {
-      float* cells = plane.row(row);
-      std::fill_n(cells, plane.columns(), 0.0F);
-      for (std::size_t k = 0; k < filter.weights.size(); ++k) {
-        const auto weight = static_cast<float>(filter.weights[k]);
-        const std::vector<float>& values = part_rows.at(row * static_cast<std::size_t>(filter.parts) + k);
-        for (std::size_t cell = 0; cell < plane.columns(); ++cell) cells[cell] += weight * values[cell];
-      }
+  const SceneRows straight(scene, band, map, parts, most_points, surround);
+  std::vector<PartRows::Source> sources;
+  std::vector<CellPlane> planes;
+  for (const AimedLight& light : lights) {
+    PartRows::Source& source = sources.emplace_back();
+    for (const auto& [aim, weight] : light.shares) {
+      source.rows.push_back(std::make_unique<SceneRows>(straight, aim));
+      source.weights.push_back(static_cast<float>(weight));
     }
+    planes.push_back(CellPlane::unset(grid));
+  }
+  const auto cells = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
+  constexpr std::size_t rows_at_once = 16;
+  parallel_for((rows + rows_at_once - 1) / rows_at_once, [&](std::size_t block) {
+    PartRows part_rows(sources, filter, cells);
+    const std::size_t end = std::min(rows, (block + 1) * rows_at_once);
+    for (std::size_t row = block * rows_at_once; row < end; ++row)
+      for (std::size_t i = 0; i < lights.size(); ++i) {
+        float* out = planes[i].row(row);
+        std::fill_n(out, cells, 0.0F);
+        if (!lights[i].rows.holds(static_cast<int>(row))) continue;
+        for (std::size_t k = 0; k < filter.weights.size(); ++k) {
+          const auto weight = static_cast<float>(filter.weights[k]);
+          const std::vector<float>& values =
+              part_rows.at(i, row * static_cast<std::size_t>(filter.parts) + k);
+          for (std::size_t cell = 0; cell < cells; ++cell) out[cell] += weight * values[cell];
+        }
+      }
   });
-  return plane;
+  return planes;
+}
+
+CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
+                       const SourceFilter& filter, Surround surround) {
+  const AimedLight straight;
+  return std::move(source_lights(scene, band, map, grid, filter, surround, std::span(&straight, 1)).front());
 }
 
 }  // namespace petzval

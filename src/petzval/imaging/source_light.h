@@ -6,6 +6,7 @@
 #include <petzval/imaging/distortion.h>
 #include <petzval/imaging/scene_aim.h>
 
+#include <span>
 #include <vector>
 
 namespace petzval {
@@ -26,8 +27,22 @@ struct SourceFilter {
   double transform(double frequency) const;
 };
 
-/// The light of source cells: SceneRows on parts of cells, filtered.
+/// Light under several aims of the camera, added up: what arrives while a shutter is open.
+struct AimedLight {
+  struct Share {
+    SceneAim aim = {};
+    double weight = 1;
+  };
+  std::vector<Share> shares{Share{}};
+  RowRange rows = {};  ///< that are wanted; others are dark
+};
+
+/// The light of source cells: SceneRows on parts of cells, filtered. \param lights  rows are those of `grid`.
+std::vector<CellPlane> source_lights(const Scene& scene, int band, const SceneMap& map,
+                                     const SensorGeometry& grid, const SourceFilter& filter,
+                                     Surround surround, std::span<const AimedLight> lights);
+/// The same of a camera that looks straight.
 CellPlane source_light(const Scene& scene, int band, const SceneMap& map, const SensorGeometry& grid,
-                       const SourceFilter& filter, Surround surround, const SceneAim& aim = {});
+                       const SourceFilter& filter, Surround surround);
 
 }  // namespace petzval

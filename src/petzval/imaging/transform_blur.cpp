@@ -80,6 +80,12 @@ class TransformBlur::Light : public TileLight {
         first_row_(tile / blur.tiles_across_ * blur.plan_.tile),
         first_column_(tile % blur.tiles_across_ * blur.plan_.tile) {}
 
+  bool is_dark() const {
+    for (int row = 0; row < std::min(blur_.plan_.tile, blur_.down_.count() - first_row_); ++row)
+      if (!is_dark(row, pair_.real) || (pair_.imaginary && !is_dark(row, *pair_.imaginary))) return false;
+    return true;
+  }
+
   void load_row(int row, float* real, float* imaginary) const override {
     load_row(row, pair_.real, real);
     if (pair_.imaginary)
@@ -89,15 +95,22 @@ class TransformBlur::Light : public TileLight {
   }
 
  private:
+  int columns_from_first() const { return std::min(blur_.plan_.tile, blur_.across_.count() - first_column_); }
+  const float* first_of(int row, const Quadrant& quadrant) const {
+    return source_.row(static_cast<std::size_t>(blur_.down_.cell(first_row_ + row, quadrant.below))) +
+           blur_.across_.cell(first_column_, quadrant.right);
+  }
+  bool is_dark(int row, const Quadrant& quadrant) const {
+    const int count = columns_from_first();
+    const float* in = first_of(row, quadrant) - (quadrant.right ? 0 : count - 1);
+    return std::all_of(in, in + count, [](float value) { return value == 0; });
+  }
   void load_row(int row, const Quadrant& quadrant, float* out) const {
     const int outward_row = first_row_ + row;
-    const int count = outward_row < blur_.down_.count()
-                          ? std::min(blur_.plan_.tile, blur_.across_.count() - first_column_)
-                          : 0;
+    const int count = outward_row < blur_.down_.count() ? columns_from_first() : 0;
     std::fill(out + count, out + blur_.plan_.tile, 0.0F);
     if (count == 0) return;
-    const float* in = source_.row(static_cast<std::size_t>(blur_.down_.cell(outward_row, quadrant.below))) +
-                      blur_.across_.cell(first_column_, quadrant.right);
+    const float* in = first_of(row, quadrant);
     const float share = blur_.down_.share(outward_row);
     if (quadrant.right)
       for (int i = 0; i < count; ++i) out[i] = share * in[i];
@@ -238,8 +251,9 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   InOrder sums(waiting_a_thread * threads, [&](std::size_t ticket, const AlignedVector<float>& blurred) {
     const TileRun& run = all[ticket];
     for (int tile = run.first; tile < run.end; ++tile)
-      add(blurred.data() + floats * static_cast<std::size_t>(tile - run.first), run.pair, tile, margin,
-          result);
+      if (!Light(*this, source, run.pair, tile).is_dark())
+        add(blurred.data() + floats * static_cast<std::size_t>(tile - run.first), run.pair, tile, margin,
+            result);
   });
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
@@ -248,8 +262,9 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
       const TileRun& run = all[ticket];
       blurred.resize(floats * static_cast<std::size_t>(run.end - run.first));
       for (int tile = run.first; tile < run.end; ++tile)
-        blur_tile(transform_, mixture_of(run.set, tile), Light(*this, source, run.pair, tile), workspace,
-                  blurred.data() + floats * static_cast<std::size_t>(tile - run.first));
+        if (const Light light(*this, source, run.pair, tile); !light.is_dark())
+          blur_tile(transform_, mixture_of(run.set, tile), light, workspace,
+                    blurred.data() + floats * static_cast<std::size_t>(tile - run.first));
       blurred = sums.hand_in(ticket, std::move(blurred));
     }
   };

@@ -12,15 +12,23 @@
 namespace petzval {
 
 enum class DisplaySpace {
-  srgb,       ///< IEC 61966-2-1
-  display_p3  ///< SMPTE EG 432-1 primaries, white D65, the transfer curve of sRGB
+  srgb,        ///< IEC 61966-2-1
+  display_p3,  ///< SMPTE EG 432-1 primaries, white D65, the transfer curve of sRGB
+  rec2100_pq  ///< ITU-R BT.2100: primaries of BT.2020, white D65, perceptual quantisation; high dynamic range
 };
 
-/// \throws InputError for another name than "srgb" and "display-p3".
+/// Luminance of white, 1, in rec2100_pq: that of diffuse white in ITU-R BT.2408 [cd/m²].
+constexpr double pq_white_cd_m2 = 203;
+/// The inverse EOTF of SMPTE ST 2084: luminance [cd/m²], held to 0 … 10000, to code value 0 … 1.
+double pq_encoded(double luminance_cd_m2);
+/// Its inverse.
+double pq_decoded(double encoded);
+
+/// \throws InputError for another name than "srgb", "display-p3" and "rec2100-pq".
 DisplaySpace display_space(const std::string& name);
 /// Linear light of the display's primaries from XYZ with its white (D65) at Y = 1.
 ColourMatrix display_from_xyz(DisplaySpace space);
-/// An ICC profile (ICC.1:2010, version 4.2) of the space, its bytes: matrix and parametric curve.
+/// An ICC profile (ICC.1:2010, version 4.2) of the space, its bytes: matrix and curve.
 std::string icc_profile(DisplaySpace space);
 
 /// XYZ of the connection space (D50, white at Y = 1) from white-balanced channels, 3 × channels.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/image/formats/jpeg_output.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/plane_exr.h>
 #include <petzval/image/formats/png.h>
@@ -42,9 +43,8 @@ class CodeTable {
 };
 
 /// Channels interleaved; `Code` holds as many bits or more.
-template <typename Code>
-std::vector<Code> codes(const Planes& planes, int bits) {
-  const CodeTable code(bits);
+template <typename Code, typename ToCode>
+std::vector<Code> codes(const Planes& planes, const ToCode& code) {
   const std::size_t channels = planes.values.size(), columns = static_cast<std::size_t>(planes.columns);
   std::vector<Code> samples(planes.values[0].size() * channels);
   parallel_for(static_cast<std::size_t>(planes.rows), [&](std::size_t row) {
@@ -61,23 +61,31 @@ void write_tiff_picture(const std::string& path, const Planes& planes, int bits,
                         const std::string& provenance) {
   TiffImage image{planes.columns, planes.rows, static_cast<int>(planes.values.size()), {}, icc, provenance};
   if (bits == 8)
-    image.samples = codes<std::uint8_t>(planes, bits);
+    image.samples = codes<std::uint8_t>(planes, CodeTable(bits));
   else
-    image.samples = codes<std::uint16_t>(planes, bits);
+    image.samples = codes<std::uint16_t>(planes, CodeTable(bits));
   write_tiff(path, image);
 }
 
-void write_png_picture(const std::string& path, const Planes& planes, int bits, const std::string& icc,
-                       bool srgb, const std::string& provenance) {
+std::uint16_t pq_code(float linear) {
+  return static_cast<std::uint16_t>(65535 * pq_encoded(pq_white_cd_m2 * double(linear)) + 0.5);
+}
+
+void write_png_picture(const std::string& path, const Planes& planes, DisplaySpace space, int bits,
+                       const std::string& icc, const std::string& provenance, const CameraFacts& facts) {
+  const bool srgb = space == DisplaySpace::srgb, pq = space == DisplaySpace::rec2100_pq;
   PngImage image;
   image.columns = planes.columns;
   image.rows = planes.rows;
   image.channels = static_cast<int>(planes.values.size());
-  image.bits = bits;
-  image.transfer = srgb ? PngTransfer::srgb : PngTransfer::unstated;
+  image.bits = pq ? 16 : bits;
+  image.transfer = srgb ? PngTransfer::srgb : pq ? PngTransfer::rec2100_pq : PngTransfer::unstated;
   if (!srgb) image.icc_profile = icc;
   image.text["Description"] = provenance;
-  image.samples = codes<std::uint16_t>(planes, bits);
+  if (facts.exposure_s > 0)
+    image.exif =
+        exif_of(planes.columns, planes.rows, {.facts = facts, .description = provenance, .srgb = srgb});
+  image.samples = pq ? codes<std::uint16_t>(planes, pq_code) : codes<std::uint16_t>(planes, CodeTable(bits));
   write_png(path, image);
 }
 
@@ -87,7 +95,7 @@ void write_jpeg_picture(const std::string& path, const Planes& planes, int bits,
   if (bits != jpeg_bits)
     throw InputError(path, "a .jpg has 8 bits; `bits` 8, or a .png or .tif, would be right");
   JpegImage image{planes.columns, planes.rows, static_cast<int>(planes.values.size()), {}, icc};
-  image.samples = codes<std::uint8_t>(planes, bits);
+  image.samples = codes<std::uint8_t>(planes, CodeTable(bits));
   write_jpeg(path, image, options);
 }
 
@@ -147,8 +155,9 @@ void write_display_picture(const std::string& path, const Planes& planes, Displa
   if (channels != 1 && channels != 3)
     throw InputError(path, fmt::format("{} planes are written as .exr or .npy", channels));
   const std::string icc = channels == 3 ? icc_profile(space) : std::string();
-  if (extension == ".png")
-    return write_png_picture(path, planes, bits, icc, space == DisplaySpace::srgb, provenance);
+  if (extension == ".png") return write_png_picture(path, planes, space, bits, icc, provenance, facts);
+  if (space == DisplaySpace::rec2100_pq && extension != ".dng")
+    throw InputError(path, "Rec. 2100 PQ is written as .png (16 bits), or linear as .exr, .npy or .dng");
   if (extension == ".jpg" || extension == ".jpeg")
     return write_jpeg_picture(
         path, planes, bits, icc,

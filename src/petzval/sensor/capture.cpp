@@ -28,8 +28,12 @@ enum Purpose : std::uint32_t {
 constexpr int frame_shift = 8;
 constexpr int max_frames = 1 << 16, last_frame = 1 << 24;
 
-std::uint32_t of_frame(Purpose purpose, int frame) {
-  return static_cast<std::uint32_t>(purpose) | static_cast<std::uint32_t>(frame) << frame_shift;
+constexpr int further_reading = 8;  // added to a purpose for each
+constexpr int most_readings = 16;
+
+std::uint32_t of_frame(Purpose purpose, int frame, int reading = 0) {
+  return static_cast<std::uint32_t>(purpose + further_reading * reading) | static_cast<std::uint32_t>(frame)
+                                                                               << frame_shift;
 }
 
 struct Defect {
@@ -171,11 +175,12 @@ class Exposure {
   void expose_row(int row, int frame, std::span<const double> bloomed, std::span<std::uint32_t> sums) const {
     const std::uint64_t first = place_of(row);
     const bool rows_move = options_.has(NoiseSource::row) && electronics_.row_noise_e > 0;
-    const double row_e = rows_move ? electronics_.row_noise_e *
-                                         RandomStream(options_.seed, of_frame(row_offsets, frame),
-                                                      static_cast<std::uint64_t>(row + current_.first_row))
-                                             .normal()
-                                   : 0;
+    const double row_e = rows_move
+                             ? electronics_.row_noise_e *
+                                   RandomStream(options_.seed, of_frame(row_offsets, frame, options_.reading),
+                                                static_cast<std::uint64_t>(row + current_.first_row))
+                                       .normal()
+                             : 0;
     const std::size_t columns = sums.size();
     std::vector<double> electrons(columns), offsets(column_offsets_e_), random(columns);
     for (double& offset : offsets) offset += row_e;
@@ -184,7 +189,7 @@ class Exposure {
       for (std::size_t c = 0; c < columns; ++c)
         electrons[c] = bloomed[c * static_cast<std::size_t>(current_.rows) + static_cast<std::size_t>(row)];
     if (read_e_ > 0) {
-      uniform_numbers(options_.seed, of_frame(read_noise, frame), first, random, {});
+      uniform_numbers(options_.seed, of_frame(read_noise, frame, options_.reading), first, random, {});
       to_normal(random);
     }
     for (std::size_t c = 0; c < columns; ++c) {
@@ -265,6 +270,9 @@ void check(const SensorElectronics& electronics, double exposure_s, const Captur
   if (options.first_frame < 0 || options.first_frame > last_frame - options.frames)
     throw InputError(fmt::format("frame {} of a clip; 0 to {} would be right", options.first_frame,
                                  last_frame - options.frames));
+  if (options.reading < 0 || options.reading >= most_readings)
+    throw InputError(
+        fmt::format("reading {} of an exposure; 0 to {} would be right", options.reading, most_readings - 1));
   constexpr double coldest_c = -273.15, hottest_c = 300;
   if (options.temperature_c && !(*options.temperature_c >= coldest_c && *options.temperature_c <= hottest_c))
     throw InputError(fmt::format("a temperature of {:g} degrees; {} to {} would be right",
@@ -400,6 +408,43 @@ RawImage merge_bracket(const std::vector<RawImage>& frames) {
   for (const RawImage& frame : frames) seconds += frame.exposure_s;
   // Read noise in the dark, where all frames count.
   merged.read_noise_e *= std::sqrt(static_cast<double>(frames.size())) * shortest->exposure_s / seconds;
+  return merged;
+}
+
+RawImage merge_readings(const std::vector<RawImage>& readings) {
+  if (readings.empty()) throw InputError("readings to be merged must be one at least");
+  const auto range_e = [](const RawImage& raw) { return (raw.white_level - raw.black_level) / raw.dn_per_e; };
+  const RawImage& widest = *std::ranges::max_element(readings, {}, range_e);
+  for (const RawImage& reading : readings)
+    if (reading.samples.size() != widest.samples.size() || reading.columns != widest.columns ||
+        reading.exposure_s != widest.exposure_s || !(reading.dn_per_e > 0 && reading.read_noise_e > 0))
+      throw InputError("readings to be merged must be of one exposure, with their gain and their noise");
+  constexpr double trusted = 0.9;       // of saturation
+  constexpr double merged_black = 256;  // keeps the noise below zero
+  RawImage merged = widest;
+  merged.linearization.clear();
+  merged.black_level = merged_black;
+  merged.white_level = 65535;
+  merged.dn_per_e = (merged.white_level - merged_black) / range_e(widest);
+  parallel_for(static_cast<std::size_t>(merged.rows), [&](std::size_t row) {
+    for (int column = 0; column < merged.columns; ++column) {
+      double sum = 0, weights = 0;
+      for (const RawImage& reading : readings) {
+        const double e =
+            (reading.pixel(static_cast<int>(row), column) - reading.black_level) / reading.dn_per_e;
+        if (&reading != &widest && e > trusted * range_e(reading)) continue;
+        const double weight = 1 / (reading.read_noise_e * reading.read_noise_e);
+        sum += weight * e;
+        weights += weight;
+      }
+      merged.samples[row * static_cast<std::size_t>(merged.columns) + static_cast<std::size_t>(column)] =
+          static_cast<std::uint16_t>(
+              std::clamp(std::round(merged_black + merged.dn_per_e * sum / weights), 0.0, 65535.0));
+    }
+  });
+  double weights = 0;
+  for (const RawImage& reading : readings) weights += 1 / (reading.read_noise_e * reading.read_noise_e);
+  merged.read_noise_e = std::sqrt(1 / weights + 1 / (12 * merged.dn_per_e * merged.dn_per_e));
   return merged;
 }
 

@@ -44,6 +44,7 @@ struct CaptureOptions {
   std::set<NoiseSource> without = {};
   int frames = 1;       ///< exposures that are averaged
   int first_frame = 0;  ///< of those: frames of a clip have noise of their own
+  int reading = 0;      ///< of the same electrons: further ones have their own noise of reading and of rows
 
   bool has(NoiseSource source) const { return !without.contains(source); }
 };
@@ -71,5 +72,11 @@ RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double expos
 /// estimate of greatest likelihood under shot noise); pixels that saturate in all frames are white. Levels
 /// are those of the shortest exposure. \throws InputError unless the frames are of one sensor at one gain.
 RawImage merge_bracket(const std::vector<RawImage>& frames);
+
+/// Merges readings of one exposure at several conversion gains: the mean of those below 90 % of their
+/// saturation, weighted by their read noise, and never without the one of the widest range. Below the least
+/// saturation the noise is √(μ + 1/Σ(1/σ²)) electrons, above the greatest that of the widest reading.
+/// \throws InputError for exposures that differ.
+RawImage merge_readings(const std::vector<RawImage>& readings);
 
 }  // namespace petzval

@@ -34,6 +34,12 @@ class TimedExposure {
  public:
   TimedExposure(const FrameTiming& timing, const LampFlicker& flicker) : timing_(timing), flicker_(flicker) {}
 
+  /// How long, in seconds of steady light, a row collects the light of t0 and that of t1.
+  struct Shares {
+    double of_t0 = 0, of_t1 = 0;
+  };
+  Shares shares(int row, double t0_s, double t1_s) const;
+
   /// Light from t0 to t1. \throws InputError unless both are of one frame and t1 is later.
   void add(double t0_s, const PhotoCurrent& at_t0, double t1_s, const PhotoCurrent& at_t1);
   /// Electrons collected over the exposure time.

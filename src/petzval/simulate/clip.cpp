@@ -69,6 +69,7 @@ struct Clip::Impl {
         options(asked),
         seed(context.seed),
         shutter(options.shutter.value_or(sensor.electronics->shutter)),
+        series(series_of(plan)),
         exposure(first_light(context), sensor, options.expose, context) {
     const double readout_s = shutter.row_delay_s(plan.frame.rows);
     if (readout_s > options.frame_s() * (1 + rounding))
@@ -95,21 +96,26 @@ struct Clip::Impl {
   static constexpr double rounding = 1e-9;
 
   SpectralImage first_light(const Context& context) const {
-    const SceneAim aim = options.motion.at(0);
+    const AimedLight first{{{first_aim()}}};
     ImagingReport report;
-    SpectralImage light = std::move(form(std::span(&aim, 1), &report).front());
+    SpectralImage light = std::move(form(std::span(&first, 1), &report).front());
     for (const std::string& line : report.notes) send_note(context, line);
     light.provenance = fmt::format("{} through {}", plan.scene.name, plan.table.lens_name);
     return light;
   }
-  std::vector<SpectralImage> form(std::span<const SceneAim> aims, ImagingReport* report = nullptr) const {
+  static std::unique_ptr<ImageSeries> series_of(const ImagePlan& plan) {
+    if (plan.depth) return nullptr;
+    return std::make_unique<ImageSeries>(plan.scene, plan.table, plan.frame, plan.options.imaging);
+  }
+  SceneAim first_aim() const { return options.motion.at(0); }
+  std::vector<SpectralImage> form(std::span<const AimedLight> lights, ImagingReport* report = nullptr) const {
     if (plan.depth) {  // which is at rest
       ImageReport whole;
       SpectralImage light = image(plan, {}, &whole);
       if (report) *report = std::move(whole.imaging);
       return std::vector<SpectralImage>(1, std::move(light));
     }
-    return form_aimed_images(plan.scene, plan.table, plan.frame, plan.options.imaging, aims, report);
+    return series->form(lights, report);
   }
 
   double exposed_s(std::size_t index) const {
@@ -145,28 +151,33 @@ struct Clip::Impl {
     return at;
   }
 
-  /// Walks through instants with the light at each; light is formed for many instants at once, which share
-  /// their kernels.
-  template <typename See>
-  void walk(const std::vector<double>& instants, const See& see) const {
+  /// Walks through instants with the light at each. \param rows_of  that are wanted of an instant.
+  template <typename RowsOf, typename See>
+  void walk(const std::vector<double>& instants, const RowsOf& rows_of, const See& see) const {
     constexpr double most_bytes = 5e8;
     constexpr std::size_t most = 64;
     const double bytes =
         double(plan.frame.columns) * double(plan.frame.rows) * plan.scene.bands() * sizeof(float);
     const auto at_once = static_cast<std::size_t>(std::clamp(most_bytes / bytes, 1.0, double(most)));
-    std::shared_ptr<const PhotoCurrent> current;
-    std::optional<SceneAim> current_aim;
+    std::shared_ptr<const PhotoCurrent> current = first_current();
+    SceneAim current_aim = first_aim();
     for (std::size_t from = 0; from < instants.size();) {
       // Instants of one aim share one light.
-      std::vector<SceneAim> aims;
+      std::vector<AimedLight> lights;
       std::size_t to = from;
       for (; to < instants.size(); ++to) {
         const SceneAim aim = options.motion.at(instants[to]);
-        if (aims.empty() ? current_aim == aim : aims.back() == aim) continue;
-        if (aims.size() == at_once) break;
-        aims.push_back(aim);
+        const SceneAim& last = lights.empty() ? current_aim : lights.back().shares.front().aim;
+        const RowRange rows = rows_of(to);
+        if (last != aim) {
+          if (lights.size() == at_once) break;
+          lights.push_back({{{aim}}, rows});
+        } else if (!lights.empty()) {
+          RowRange& wanted = lights.back().rows;
+          wanted = {std::min(wanted.first, rows.first), std::max(wanted.end, rows.end)};
+        }
       }
-      const std::vector<SpectralImage> images = aims.empty() ? std::vector<SpectralImage>() : form(aims);
+      const std::vector<SpectralImage> images = lights.empty() ? std::vector<SpectralImage>() : form(lights);
       std::size_t next = 0;
       for (; from < to; ++from) {
         const SceneAim aim = options.motion.at(instants[from]);
@@ -178,11 +189,63 @@ struct Clip::Impl {
       }
     }
   }
+  std::shared_ptr<const PhotoCurrent> first_current() const {
+    return {std::shared_ptr<const PhotoCurrent>(), &exposure.first_current()};
+  }
+
+  /// Mean light of an exposure whose rows are all open at the same time.
+  AimedLight light_of(const TimedExposure& timed, const std::vector<double>& at, double exposure_s) const {
+    AimedLight light{{}, {}};
+    const auto add = [&](double t_s, double seconds) {
+      const SceneAim aim = options.motion.at(t_s);
+      if (light.shares.empty() || light.shares.back().aim != aim) light.shares.push_back({aim, 0});
+      light.shares.back().weight += seconds / exposure_s;
+    };
+    for (std::size_t k = 1; k < at.size(); ++k) {
+      const TimedExposure::Shares shares = timed.shares(0, at[k - 1], at[k]);
+      add(at[k - 1], shares.of_t0);
+      add(at[k], shares.of_t1);
+    }
+    return light;
+  }
+
+  /// Of an exposure, over its time. \param tell  is told how much of it is done.
+  PhotoCurrent mean_current(const FrameTiming& timing, const std::function<void(double)>& tell) const {
+    const int rows = plan.frame.rows;
+    const std::vector<double> at = instants(timing.start_s, timing.end_s(rows));
+    TimedExposure timed(timing, options.flicker);
+    const bool moves = std::ranges::any_of(
+        at, [&](double t_s) { return !(options.motion.at(t_s) == options.motion.at(at.front())); });
+    if (moves && timing.shutter.row_delay_s(rows) == 0) {
+      // All rows are open at the same time: light is added up before it is blurred.
+      const AimedLight sum = light_of(timed, at, timing.exposure_s);
+      return exposure.current(form(std::span(&sum, 1)).front());
+    }
+    // Beside the rows that are open between two instants, those that crosstalk reaches.
+    const auto open_rows = [&](std::size_t k) {
+      const double before_s = at[k > 0 ? k - 1 : k], after_s = at[k + 1 < at.size() ? k + 1 : k];
+      RowRange open{rows, 0};
+      for (int row = 0; row < rows; ++row) {
+        const double from_s = timing.row_start_s(row);
+        if (from_s > after_s || from_s + timing.exposure_s < before_s) continue;
+        open = {std::min(open.first, row), row + 1};
+      }
+      return RowRange{std::max(0, open.first - 1), std::min(rows, open.end + 1)};
+    };
+    std::shared_ptr<const PhotoCurrent> before;
+    walk(at, open_rows, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
+      if (k > 0) timed.add(at[k - 1], *before, at[k], *now);
+      before = now;
+      tell(double(k + 1) / double(at.size()));
+    });
+    return timed.mean_current();
+  }
 
   ImagePlan plan;
   ClipOptions options;
   std::uint64_t seed;
   Shutter shutter;
+  std::unique_ptr<ImageSeries> series;  ///< of the plan's scene; none of one with depth
   PreparedExposure exposure;
 };
 
@@ -254,16 +317,9 @@ RawImage Clip::frame(int index, const Context& context) const {
     std::vector<PhotoCurrent> currents;
     const std::size_t exposures = std::max<std::size_t>(1, impl_->options.expose.bracket_ev.size());
     for (std::size_t i = 0; i < exposures; ++i) {
-      const FrameTiming timing = impl_->timing(index, i);
-      const std::vector<double> at = impl_->instants(timing.start_s, timing.end_s(impl_->plan.frame.rows));
-      TimedExposure exposure(timing, impl_->options.flicker);
-      std::shared_ptr<const PhotoCurrent> before;
-      impl_->walk(at, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
-        if (k > 0) exposure.add(at[k - 1], *before, at[k], *now);
-        before = now;
-        if (progress) progress((double(i) + double(k + 1) / double(at.size())) / double(exposures), "frame");
-      });
-      currents.push_back(exposure.mean_current());
+      currents.push_back(impl_->mean_current(impl_->timing(index, i), [&](double share) {
+        if (progress) progress((double(i) + share) / double(exposures), "frame");
+      }));
     }
     return impl_->exposure.raw(currents, impl_->seed, index);
   });
@@ -276,7 +332,8 @@ void Clip::events(const EventCameraOptions& options, const TakeEvents& take, con
     EventCamera camera(options);
     std::vector<double> at = impl_->instants(0, end_s);
     if (!flicker.is_steady()) at = finer(at, 1 / (flicker.frequency_hz() * flicker_steps));
-    impl_->walk(at, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
+    const auto all_rows = [](std::size_t) { return RowRange(); };
+    impl_->walk(at, all_rows, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {
       PhotoCurrent lit = *now;
       if (!flicker.is_steady())
         for (float& value : lit.e_per_s) value *= static_cast<float>(flicker.at(at[k]));

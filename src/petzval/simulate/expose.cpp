@@ -102,10 +102,39 @@ PhotoCurrentOptions current_options(const ExposeOptions& options) {
           !options.without.contains(NoiseSource::microlens), options.exit_pupil_mm};
 }
 
+constexpr std::string_view all_gains = "dual";
+
+/// The mode that a merged exposure saturates in; else the one asked for.
+std::string widest_mode(const SensorElectronics& electronics, const ExposeOptions& options) {
+  if (options.gain_mode != all_gains) return options.gain_mode;
+  const std::vector<GainMode>& modes = electronics.gain_modes;
+  if (modes.size() < 2)
+    throw InputError(
+        "`gain_mode` dual is for a sensor with several conversion gains; this one has one, and no "
+        "`gain_mode` "
+        "would be right");
+  if (!options.bracket_ev.empty())
+    throw InputError("exposures of a bracket are read once; `bracket_ev` or `gain_mode` dual would be right");
+  return std::ranges::max_element(
+             modes, {},
+             [&](const GainMode& mode) { return electronics.saturation_e(mode, options.analog_gain); })
+      ->name;
+}
+
 RawImage captured(const ExposeOptions& options, const Sensor& sensor, std::span<const PhotoCurrent> currents,
                   double seconds, std::uint64_t seed, int first_frame) {
-  CaptureOptions capturing{options.gain_mode, options.analog_gain, options.temperature_c, seed,
-                           options.serial,    options.without,     options.frames,        first_frame};
+  CaptureOptions capturing{
+      options.gain_mode, options.analog_gain, options.temperature_c, seed, options.serial,
+      options.without,   options.frames,      first_frame,           0};
+  if (options.gain_mode == all_gains) {
+    std::vector<RawImage> readings;
+    for (const GainMode& mode : sensor.electronics->gain_modes) {
+      capturing.gain_mode = mode.name;
+      readings.push_back(capture(currents.front(), sensor, seconds, capturing));
+      ++capturing.reading;
+    }
+    return merge_readings(readings);
+  }
   if (options.bracket_ev.empty()) return capture(currents.front(), sensor, seconds, capturing);
   std::vector<RawImage> exposures;
   for (std::size_t i = 0; i < options.bracket_ev.size(); ++i) {
@@ -123,7 +152,7 @@ PreparedExposure::PreparedExposure(const SpectralImage& light, Sensor sensor, co
     : sensor_(altered(std::move(sensor), options)), options_(options) {
   const SensorElectronics& electronics = *sensor_.electronics;
   note_unmeasured_light(light, sensor_, context);
-  const GainMode& mode = electronics.gain_mode(options.gain_mode);
+  const GainMode& mode = electronics.gain_mode(widest_mode(electronics, options));
   current_ = current(light);
   seconds_ = exposure_s(options, light, current_, electronics.saturation_e(mode, options.analog_gain));
 

@@ -37,7 +37,9 @@ struct ExposeOptions {
   Exposure exposure = {};
   Metering::Rule metering = Metering::Rule::highlights;  ///< of automatic exposure
   double compensation_ev = 0;                            ///< +1 doubles the exposure
-  std::string gain_mode = {};  ///< of a sensor with several conversion gains; empty: the first
+  /// Of a sensor with several conversion gains; empty: the first; "dual": one exposure is read at all of
+  /// them, and the readings are merged.
+  std::string gain_mode = {};
   double analog_gain = 1;
   std::optional<double> temperature_c = {};  ///< absent: the one that the dark current is stated for
   std::optional<std::uint64_t> serial = {};  ///< another copy of the sensor, with other fixed patterns

@@ -90,7 +90,7 @@ class ExifDirectory {
 
 }  // namespace
 
-std::string exif_of(const JpegImage& image, const JpegOptions& options) {
+std::string exif_of(int columns, int rows, const JpegOptions& options) {
   const CameraFacts& facts = options.facts;
   const auto main_directory = [&](std::uint32_t exif_at) {
     ExifDirectory directory;
@@ -120,14 +120,13 @@ std::string exif_of(const JpegImage& image, const JpegOptions& options) {
   exif.bytes(0xa000, "0100");
   constexpr std::uint32_t is_srgb = 1, uncalibrated = 0xffff;
   exif.number(0xa001, exif_short, options.srgb ? is_srgb : uncalibrated);
-  exif.number(0xa002, exif_long, static_cast<std::uint32_t>(image.columns));
-  exif.number(0xa003, exif_long, static_cast<std::uint32_t>(image.rows));
+  exif.number(0xa002, exif_long, static_cast<std::uint32_t>(columns));
+  exif.number(0xa003, exif_long, static_cast<std::uint32_t>(rows));
   exif.text(0xa434, facts.lens);
-  std::string segment("Exif\0\0", 6);
-  segment += "II";
-  put(segment, 42, 2);
-  put(segment, header_bytes, 4);
-  return segment + main_directory(exif_at).placed(header_bytes) + exif.placed(exif_at);
+  std::string header("II");
+  put(header, 42, 2);
+  put(header, header_bytes, 4);
+  return header + main_directory(exif_at).placed(header_bytes) + exif.placed(exif_at);
 }
 
 }  // namespace petzval

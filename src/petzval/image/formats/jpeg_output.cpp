@@ -80,7 +80,7 @@ void write_jpeg(const std::string& path, const JpegImage& image, const JpegOptio
     throw InputError(path, "the samples are not as many as the picture's sizes say");
   if (options.quality < 1 || options.quality > 100)
     throw InputError(fmt::format("a JPEG quality of {}; 1 to 100 would be right", options.quality));
-  const std::string exif = exif_of(image, options);
+  const std::string exif = std::string("Exif\0\0", 6) + exif_of(image.columns, image.rows, options);
   JpegOutputError error{};
   unsigned char* bytes = nullptr;
   unsigned long size = 0;

@@ -21,9 +21,9 @@ struct JpegOptions {
   bool srgb = true;  ///< whether the colour space of EXIF is sRGB; else that of the profile
 };
 
-/// EXIF 2.32, little-endian, as the body of an APP1 segment: description, camera, exposure time, f-number,
+/// EXIF 2.32, little-endian, from the TIFF header on: description, camera, exposure time, f-number,
 /// ISO speed, focal length, lens, colour space, size. Text is cut to 1,000 bytes. No time stamp is written.
-std::string exif_of(const JpegImage& image, const JpegOptions& options);
+std::string exif_of(int columns, int rows, const JpegOptions& options);
 
 /// Writes a picture, baseline, colours at full resolution (4:4:4), with its ICC profile if it has one.
 /// \throws InputError for a quality out of range, sizes above 65,500 pixels, and as WholeFile; Failure.

@@ -72,6 +72,14 @@ class Writer {
     write_text();
     png_write_info(png_, info_);
   }
+  /// What libpng 1.6 does not know.
+  void write_further_chunks() {
+    // Primaries of BT.2020, perceptual quantisation, RGB, full range (ITU-T H.273).
+    constexpr unsigned char rec2100_pq[] = {9, 16, 0, 1};
+    if (layout_.transfer == PngTransfer::rec2100_pq) write_chunk("cICP", rec2100_pq);
+    if (!layout_.exif.empty())
+      write_chunk("eXIf", {reinterpret_cast<const unsigned char*>(layout_.exif.data()), layout_.exif.size()});
+  }
   void write_pixels(std::span<const unsigned char> compressed) { write_chunk("IDAT", compressed); }
   void finish() { write_chunk("IEND", {}); }
 
@@ -285,6 +293,7 @@ void write_png(const std::string& path, const PngLayout& layout, const PngRowSou
   OutputFile file(path);
   Writer writer(file, layout);
   writer.write_header();
+  writer.write_further_chunks();
   std::vector<std::uint16_t> samples(layout.row_samples());
   const auto sample_bytes = static_cast<std::size_t>(layout.bits / 8);
   compress_png_rows(

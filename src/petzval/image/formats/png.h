@@ -13,7 +13,7 @@
 namespace petzval {
 
 /// What the sample values mean, as far as the file says.
-enum class PngTransfer { unstated, srgb, linear };
+enum class PngTransfer { unstated, srgb, linear, rec2100_pq };
 
 /// Everything of a PNG picture but its samples.
 struct PngLayout {
@@ -22,6 +22,7 @@ struct PngLayout {
   int bits = 8;      ///< 8 or 16
   PngTransfer transfer = PngTransfer::srgb;
   std::string icc_profile{};                ///< written in place of `transfer` if it is there
+  std::string exif{};                       ///< from its TIFF header on; written, not read
   std::map<std::string, std::string> text;  ///< Latin-1 keyword of 1 to 79 characters → UTF-8 text
 
   std::size_t row_samples() const {
