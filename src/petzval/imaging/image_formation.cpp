@@ -67,7 +67,7 @@ class BandByBand {
   BandByBand(const Scene& scene, const LensDataTable& table, const SensorGeometry& frame,
              const ImagingOptions& options, const std::vector<BandPlan>& plans, const LightPath& path,
              const ProgressCallback& progress, ImagingReport& report, std::span<const SceneAim> aims,
-             const TakeBand& take)
+             const TakeBand& take, const SensorGeometry& sensor, const BandShare& share)
       : scene_(scene),
         table_(table),
         centres_(table),
@@ -79,7 +79,9 @@ class BandByBand {
         progress_(scene.bands(), progress),
         report_(report),
         aims_(aims),
-        take_(take) {}
+        take_(take),
+        sensor_(sensor),
+        share_(share) {}
 
   void form() {
     const auto start = std::chrono::steady_clock::now();
@@ -126,6 +128,7 @@ class BandByBand {
   }
 
   void work(std::size_t band, Place& place) {
+    if (!share_.has(band)) return;
     const BandPlan& plan = plans_[band];
     const auto start = std::chrono::steady_clock::now();
     place.blur.make_kernels();
@@ -147,6 +150,11 @@ class BandByBand {
 
   void end(std::size_t band, Place& place) {
     const auto start = std::chrono::steady_clock::now();
+    if (!share_.has(band) && share_.known) {
+      CellPlane pixels = CellPlane::unset(sensor_);
+      share_.known(static_cast<int>(band), pixels.values);
+      place.pixels.push_back(std::move(pixels));
+    }
     for (const CellPlane& pixels : place.pixels) {
       note_extremes(pixels, static_cast<int>(band), report_);
       take_(pixels.values);
@@ -178,6 +186,8 @@ class BandByBand {
   ImagingReport& report_;
   std::span<const SceneAim> aims_;
   const TakeBand& take_;
+  const SensorGeometry& sensor_;
+  const BandShare& share_;
   std::deque<Place> places_;
   std::optional<ProductPlan> last_plan_;
   double seconds_ = 0;  ///< of all bands
@@ -214,7 +224,7 @@ namespace {
 /// \param take  is handed each band of every aim, then the next band.
 void form_aimed_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                       const ImagingOptions& asked, std::span<const SceneAim> aims, const TakeBand& take,
-                      const ProgressCallback& progress, ImagingReport* report) {
+                      const ProgressCallback& progress, ImagingReport* report, const BandShare& share) {
   ImagingReport own;
   ImagingReport& says = report != nullptr ? *report : own;
   says = {};
@@ -239,7 +249,7 @@ void form_aimed_bands(const Scene& scene, const LensDataTable& table, const Sens
 
   says.cells_per_pixel = options.cells_per_pixel();
   const LightPath path = options.light_path(says.scene_points_per_cell);
-  BandByBand(scene, table, frame, options, plans, path, progress, says, aims, take).form();
+  BandByBand(scene, table, frame, options, plans, path, progress, says, aims, take, sensor, share).form();
   note_result(says);
   const ProductPlan& product = says.product;
   if ((asked.product.nodes != 0 || asked.product.tile != 0) && product.tile != 0 && !product.direct &&
@@ -255,9 +265,9 @@ void form_aimed_bands(const Scene& scene, const LensDataTable& table, const Sens
 
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
-                ImagingReport* report) {
+                ImagingReport* report, const BandShare& share) {
   const SceneAim straight;
-  form_aimed_bands(scene, table, sensor, options, std::span(&straight, 1), take, progress, report);
+  form_aimed_bands(scene, table, sensor, options, std::span(&straight, 1), take, progress, report, share);
 }
 
 std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataTable& table,
@@ -270,7 +280,7 @@ std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataT
     images[planes % aims.size()].store_band(static_cast<int>(planes / aims.size()), pixels);
     ++planes;
   };
-  form_aimed_bands(scene, table, sensor, options, aims, put, {}, report);
+  form_aimed_bands(scene, table, sensor, options, aims, put, {}, report, {});
   for (SpectralImage& image : images) {
     image.lens = lens_facts(table.lens_name, table.first_order);
     add_corrections(*image.lens, table, sensor);
@@ -280,7 +290,7 @@ std::vector<SpectralImage> form_aimed_images(const Scene& scene, const LensDataT
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress,
-                         ImagingReport* report) {
+                         ImagingReport* report, const BandShare& share) {
   // What does not fit is refused before there is room for an image.
   std::optional<SpectralImage> image;
   int bands = 0;
@@ -289,7 +299,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     image->store_band(bands++, pixels);
     image->release_memory();
   };
-  form_bands(scene, table, sensor, options, put, progress, report);
+  form_bands(scene, table, sensor, options, put, progress, report, share);
   image->lens = lens_facts(table.lens_name, table.first_order);
   add_corrections(*image->lens, table, sensor);
   return std::move(*image);
