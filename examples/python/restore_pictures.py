@@ -9,8 +9,8 @@
 # A small network learns to undo the blur of ten lenses from pairs of a data set: the picture that a camera takes, and the
 # same without blur and noise. It is held against Wiener's filter with the mean PSF. Needs PyTorch and Pillow.
 #
-# As it stands this takes a minute. `PAIRS=500 STEPS=3000` in the environment is the experiment whose figures are in
-# docs/ACCURACY.md; `FOLDER` keeps the data set.
+# As it stands this takes a minute, in which the network learns less than the filter knows. `PAIRS=500 STEPS=2200` in the
+# environment is the experiment whose figures are in docs/ACCURACY.md; `FOLDER` keeps the data set.
 
 # %%
 import os
