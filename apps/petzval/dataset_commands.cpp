@@ -144,12 +144,14 @@ void estimate(const EstimateChoice& choice, const Shared& shared) {
                        {"cpu_error_s", each.cpu_error_s},
                        {"cpu_hours", each.cpu_s * items / seconds_an_hour},
                        {"bytes", each.bytes * items},
+                       {"threads", each.threads},
                        {"memory_bytes", each.memory_bytes}});
   fmt::print("{} items, by {} that were made and thrown away\n", recipe.items, each.probed);
   fmt::print("  time     {:.3g} CPU s an item ({:.2g} of standard error), {:.3g} CPU hours in all\n",
              each.cpu_s, each.cpu_error_s, each.cpu_s * items / seconds_an_hour);
   fmt::print("  bytes    {} an item, {} in all\n", size_text(each.bytes), size_text(each.bytes * items));
-  fmt::print("  memory   {} a process of one thread\n", size_text(each.memory_bytes));
+  fmt::print("  memory   {} a process of {} thread{}\n", size_text(each.memory_bytes), each.threads,
+             each.threads == 1 ? "" : "s");
   if (each.failed) note(shared, fmt::format("{} of {} items could not be made", each.failed, each.probed));
 }
 

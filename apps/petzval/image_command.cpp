@@ -2,6 +2,7 @@
 // petzval image: a planar scene through a lens, onto a sensor.
 #include <fmt/format.h>
 #include <petzval/scene/scene_file.h>
+#include <petzval/simulate/image_pieces.h>
 
 #include <memory>
 #include <span>
@@ -15,6 +16,20 @@ namespace petzval::app {
 
 namespace {
 
+/// Some bands of the image, into their checkpoint: what the command would write waits for all of them.
+void form_piece(const ImagePlan& plan, const Context& context, const Shared& shared) {
+  const auto [first, end] = *plan.options.bands;
+  image_piece(plan, context);
+  if (shared.json)
+    return print_json({{"columns", plan.frame.columns},
+                       {"rows", plan.frame.rows},
+                       {"bands", {first, end}},
+                       {"checkpoint", plan.options.checkpoint}});
+  if (!shared.quiet)
+    fmt::print("{}: {} of {} bands of {} x {} pixels\n", plan.options.checkpoint, end - first,
+               plan.scene.bands(), plan.frame.columns, plan.frame.rows);
+}
+
 void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& shared) {
   const Context context = context_of(shared);
   Optics optics = choice.read_optics(shared);
@@ -23,6 +38,7 @@ void run_image(const ImageChoice& choice, const CLI::App& app, const Shared& sha
 
   FormedImage formed;
   formed.plan = plan_image(choice.scene.request(), std::move(optics), choice.image_options(), context);
+  if (choice.image.bands) return form_piece(formed.plan, context, shared);
   formed.file = large_file(choice.outputs, formed.plan);
   if (formed.file)
     image_bands(

@@ -145,6 +145,23 @@ void ImageChoice::add_to(CLI::App& command) {
   add_light_to(command);
   flare.add_to(command, true);
   command
+      .add_option_function<std::vector<int>>(
+          "--bands",
+          [this](const std::vector<int>& at) {
+            image.bands = {at[0], at[1]};
+          },
+          "Only bands from FIRST up to LAST, counted from 0: a piece, which goes into --checkpoint alone; "
+          "petzval merge puts pieces together")
+      ->delimiter(':')
+      ->expected(2)
+      ->check(CLI::Range(0, 1 << 24))
+      ->type_name("FIRST:LAST");
+  command
+      .add_option(
+          "--checkpoint", image.checkpoint,
+          "With --bands the file that these go into; without, the merged file: no band is formed again")
+      ->check(output_file());
+  command
       .add_option(
           "-o,--output", outputs,
           "Irradiance as .exr or .npy, what --sensor makes of it as .dng, a picture as .png, .jpg or .tif; "

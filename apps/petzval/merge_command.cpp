@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// petzval merge: the pieces of a picture that several processes have rendered.
+// petzval merge: the pieces of a picture that several processes have made.
 #include <fmt/format.h>
+#include <petzval/simulate/image_pieces.h>
 #include <petzval/simulate/render.h>
 
 #include <memory>
@@ -20,26 +21,28 @@ struct MergeCommand {
 };
 
 void merge(const MergeCommand& options, const Shared& shared) {
-  merge_renderings(options.pieces, options.output, context_of(shared));
+  const bool bands = is_image_piece(options.pieces.front());
+  (bands ? merge_images : merge_renderings)(options.pieces, options.output, context_of(shared));
   if (!shared.quiet)
-    fmt::print("{}: {} pieces; petzval render with --checkpoint {} writes the picture\n", options.output,
-               options.pieces.size(), options.output);
+    fmt::print("{}: {} pieces; petzval {} with --checkpoint {} writes the picture\n", options.output,
+               options.pieces.size(), bands ? "image" : "render", options.output);
 }
 
 }  // namespace
 
 void add_merge_command(CLI::App& app, Shared& shared) {
   auto options = std::make_shared<MergeCommand>();
-  CLI::App* command = add_command(app, shared, "merge", "Put the pieces of a rendered picture together",
+  CLI::App* command = add_command(app, shared, "merge", "Put the pieces of a picture together",
                                   "petzval merge left.sums right.sums -o whole.sums", false,
                                   [=, &shared] { merge(*options, shared); });
   command
       ->add_option("pieces", options->pieces,
-                   "Checkpoints of petzval render with --region or --sample-range, in any order")
+                   "Checkpoints of petzval render with --region or --sample-range, or of petzval image with "
+                   "--bands, in any order")
       ->required();
   command
       ->add_option("-o,--output", options->output,
-                   "The checkpoint that one process would have left, the same bytes: the same petzval render "
+                   "The checkpoint that one process would have left, the same bytes: the same command "
                    "without a piece goes on from there")
       ->required()
       ->check(output_file());

@@ -40,15 +40,16 @@ std::vector<std::string> faults(const std::string& folder, int threads, const nb
 }
 
 nb::dict estimated(const std::string& recipe_text, const std::string& name, const std::string& recipe_folder,
-                   std::size_t probes, const nb::object& progress) {
+                   std::size_t probes, int threads, const nb::object& progress) {
   const Recipe recipe = parse_recipe(recipe_text, name, recipe_folder);
-  Call call({0, recipe.seed, progress});
+  Call call({threads, recipe.seed, progress});
   const DatasetEstimate estimate =
       call([&](const Context& context) { return estimate_dataset(recipe, probes, context); });
   nb::dict result;
   result["items"] = recipe.items, result["probed"] = estimate.probed, result["failed"] = estimate.failed;
   result["cpu_s_an_item"] = estimate.cpu_s, result["cpu_error_s"] = estimate.cpu_error_s;
-  result["bytes_an_item"] = estimate.bytes, result["memory_bytes"] = estimate.memory_bytes;
+  result["bytes_an_item"] = estimate.bytes, result["threads"] = estimate.threads;
+  result["memory_bytes"] = estimate.memory_bytes;
   return result;
 }
 
@@ -66,7 +67,7 @@ void bind_dataset(nb::module_& module) {
   module.def("_dataset_state", state_of);
   module.def("_verify_dataset", faults, nb::arg("folder"), nb::arg("threads"), nb::arg("progress").none());
   module.def("_estimate_dataset", estimated, nb::arg("recipe"), nb::arg("name"), nb::arg("recipe_folder"),
-             nb::arg("probes"), nb::arg("progress").none());
+             nb::arg("probes"), nb::arg("threads"), nb::arg("progress").none());
   module.def("_dataset_parts", parts_of);
 }
 

@@ -3,6 +3,7 @@
 #include "image.h"
 
 #include <fmt/format.h>
+#include <petzval/simulate/image_pieces.h>
 #include <petzval/simulate/imaging_session.h>
 
 #include "constructor.h"
@@ -13,7 +14,8 @@ namespace petzval::python {
 ImageOptions image_options(const std::string& method, Maybe<double> tolerance, int supersample,
                            const std::string& surround, const std::string& interpolate,
                            const std::string& fit, Maybe<int> section, Maybe<int> transform, Maybe<int> nodes,
-                           Maybe<int> tile, int layers, Maybe<double> least_scene_angle_deg) {
+                           Maybe<int> tile, int layers, Maybe<double> least_scene_angle_deg,
+                           Maybe<std::array<int, 2>> bands, const std::string& checkpoint) {
   ImageOptions options;
   ImagingOptions& imaging = options.imaging;
   imaging.method = choice<BlurMethod>("method", method,
@@ -36,6 +38,7 @@ ImageOptions image_options(const std::string& method, Maybe<double> tolerance, i
   imaging.fit = RadialFit::parse(fit);
   options.depth.layers = layers;
   options.least_scene_angle_deg = least_scene_angle_deg;
+  options.bands = bands, options.checkpoint = checkpoint;
   return options;
 }
 
@@ -97,6 +100,12 @@ ImagePlan plan_of(Optics optics, const nb::object& scene, const ImageOptions& op
   });
 }
 
+void piece_of(Optics optics, const nb::object& scene, const ImageOptions& options, const CallOptions& how) {
+  const ImagePlan plan = plan_of(std::move(optics), scene, options, how);
+  Call call(how);
+  call([&](const Context& context) { image_piece(plan, context); });
+}
+
 /// `make` as a function with the keywords of images and of light that goes astray.
 template <typename Self, auto make, typename... OfImage, typename... OfFlare>
 auto function_of(ImageOptions (*)(OfImage...), FlareOptions (*)(OfFlare...)) {
@@ -145,11 +154,17 @@ constexpr const char* image_text =
     "the ghosts' light, of `ghost_reflections` 2 or 4; `scatter` of the lens's surfaces, as "
     "roughness=1.5,dust=0.02, or lens for what its "
     "file "
-    "says (docs/FLARE.md); `scatter_surround` beyond the frame: dark or mean. `progress(fraction, what)` may "
+    "says (docs/FLARE.md); `scatter_surround` beyond the frame: dark or mean. `checkpoint`: the file that "
+    "merge_images() made, whose "
+    "bands are not formed again. `progress(fraction, what)` may "
     "return False to stop. Raises InputError; Cancelled.";
 constexpr const char* image_and_flare_text =
     "As `image`, and takes the same keywords: the light with all that goes astray, and a Flare with each "
     "layer by itself.";
+constexpr const char* piece_text =
+    "Forms some bands of what `image` with the same keywords would give, those from `bands[0]` up to "
+    "`bands[1]`, into the file `checkpoint`; merge_images() puts them together with those of other "
+    "processes.";
 constexpr const char* plan_text =
     "What `image` does before it computes light: scene, table of the lens, frame. Takes the same keywords.";
 
@@ -197,11 +212,23 @@ void bind_image(nb::class_<CameraInPython>& camera, nb::class_<TableCamera>& tab
              image_text)
         .def("image_and_flare", function_of<Self, image_and_flare_of>(image_options, flare_options),
              PETZVAL_IMAGE_ARGUMENTS, image_and_flare_text)
+        .def("image_piece", function_of<Self, piece_of>(image_options, flare_options),
+             PETZVAL_IMAGE_ARGUMENTS, piece_text)
         .def("plan", function_of<Self, plan_of>(image_options, flare_options), PETZVAL_IMAGE_ARGUMENTS,
              plan_text);
   };
   add(camera);
   add(table_camera);
+  module.def(
+      "merge_images",
+      [](const std::vector<std::string>& pieces, const std::string& checkpoint, const nb::object& progress) {
+        Call call({0, 1, progress});
+        call([&](const Context& context) { merge_images(pieces, checkpoint, context); });
+      },
+      nb::arg("pieces"), nb::arg("checkpoint"), nb::kw_only(), nb::arg("progress").none() = nb::none(),
+      "Puts the pieces of an image together, the checkpoints of Camera.image_piece(), in any order: "
+      "Camera.image() with `checkpoint` is the image that one process would have formed, the same bytes. "
+      "Raises InputError; Cancelled.");
 }
 
 }  // namespace petzval::python

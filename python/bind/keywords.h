@@ -5,6 +5,7 @@
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,13 +25,15 @@ using SunChoice = std::variant<Sun, std::string>;
 ImageOptions image_options(const std::string& method, Maybe<double> tolerance, int supersample,
                            const std::string& surround, const std::string& interpolate,
                            const std::string& fit, Maybe<int> section, Maybe<int> transform, Maybe<int> nodes,
-                           Maybe<int> tile, int layers, Maybe<double> least_scene_angle_deg);
+                           Maybe<int> tile, int layers, Maybe<double> least_scene_angle_deg,
+                           Maybe<std::array<int, 2>> bands, const std::string& checkpoint);
 #define PETZVAL_IMAGE_KEYWORDS                                                                         \
   nb::arg("method") = "product", nb::arg("tolerance").none() = nb::none(), nb::arg("supersample") = 0, \
   nb::arg("surround") = "error", nb::arg("interpolate") = "psf", nb::arg("fit") = "monotone",          \
   nb::arg("section").none() = nb::none(), nb::arg("transform").none() = nb::none(),                    \
   nb::arg("nodes").none() = nb::none(), nb::arg("tile").none() = nb::none(), nb::arg("layers") = 0,    \
-  nb::arg("least_scene_angle_deg").none() = nb::none()
+  nb::arg("least_scene_angle_deg").none() = nb::none(), nb::arg("bands").none() = nb::none(),          \
+  nb::arg("checkpoint") = ""
 
 /// Light that goes astray.
 FlareOptions flare_options(const std::vector<SunChoice>& suns, bool ghosts, bool starburst,

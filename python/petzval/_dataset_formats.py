@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What other programs read of a data set: COCO, BOP and Zarr."""
+"""What other programs read of a data set: COCO, BOP, Zarr and Parquet."""
 
 import itertools
 import json
@@ -170,3 +170,22 @@ def to_zarr(items, folder, only=None):
             (out / name / ".zarray").write_text(json.dumps(described))
         (out / ".zgroup").write_text(json.dumps({"zarr_format": 2}))
         (out / ".zattrs").write_text(json.dumps({"facts": lines}))
+
+
+def to_parquet(items, path):
+    """The manifest of a Dataset as one Parquet file, a row an item: the lines of facts as columns (item, key, parameters,
+    lens, picture, files with sizes and sums, ...) and `archive`, the file of the folder that has it. Needs pyarrow.
+    """
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError:
+        raise ImportError("Parquet needs pyarrow: pip install pyarrow") from None
+    rows = [{**items.facts(index), "archive": items.archive(index).name} for index in range(len(items))]
+    path = pathlib.Path(path)
+    making = path.with_name(f".{path.name}.making")
+    try:
+        parquet.write_table(pyarrow.Table.from_pylist(rows), making)
+        os.replace(making, path)
+    finally:
+        making.unlink(missing_ok=True)

@@ -15,11 +15,12 @@ import pathlib
 
 import numpy as np
 
-from ._dataset_formats import to_bop, to_coco, to_zarr
+from ._dataset_formats import to_bop, to_coco, to_parquet, to_zarr
 from ._errors import InputError
 from ._petzval import _dataset_parts, _dataset_state, _estimate_dataset, _make_dataset, _verify_dataset
 
-__all__ = ["Dataset", "compute", "estimate", "info", "make", "to_bop", "to_coco", "to_zarr", "verify"]
+__all__ = ["Dataset", "compute", "estimate", "info", "make", "to_bop", "to_coco", "to_parquet", "to_zarr",
+           "verify"]
 
 
 def _recipe(recipe):
@@ -55,9 +56,11 @@ def verify(folder, *, threads=0, progress=None):
     return _verify_dataset(os.fspath(folder), threads, progress)
 
 
-def estimate(recipe, probes=8, *, progress=None):
-    """CPU seconds and bytes an item, and memory a process, from items that are made and thrown away."""
-    return _estimate_dataset(*_recipe(recipe), probes, progress)
+def estimate(recipe, probes=8, *, threads=0, progress=None):
+    """CPU seconds and bytes an item, and memory of a process with so many threads (of this one, with all that it
+    holds already), from items that are made and thrown away.
+    """
+    return _estimate_dataset(*_recipe(recipe), probes, threads, progress)
 
 
 def compute(client, recipe, folder, *, threads=1):
@@ -105,12 +108,16 @@ class Dataset:
         """What is known of an item, without reading its files."""
         return self._places[index]
 
+    def archive(self, index):
+        """The .tar that holds an item."""
+        return self._archives[bisect.bisect_right(self._starts, index % len(self)) - 1]
+
     def __getitem__(self, index):
         if not -len(self) <= index < len(self):
             raise IndexError(index)
         index %= len(self)
         facts = self._places[index]
-        archive = self._archives[bisect.bisect_right(self._starts, index) - 1]
+        archive = self.archive(index)
         item = {"facts": facts}
         with open(archive, "rb") as file:
             for extension, (start, size) in self._files(archive, file)[facts["key"]].items():

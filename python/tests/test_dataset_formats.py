@@ -142,3 +142,27 @@ def test_pieces_of_a_picture_are_one_process(tmp_path):
     assert np.array_equal(np.asarray(again.light), np.asarray(whole.light))
     with pytest.raises(pz.InputError, match="no piece has pixel 17,0"):
         pz.merge_renderings([str(tmp_path / "a")], str(tmp_path / "none"))
+
+
+def test_bands_of_an_image_are_one_process(tmp_path):
+    camera = pz.Camera("edmund-54852", sensor="40x30@15")
+    shared = dict(scene=pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]), tolerance=1e-2)
+    whole = camera.image(**shared)
+    for name, bands in (("a", (0, 2)), ("b", (2, 3))):
+        camera.image_piece(**shared, bands=bands, checkpoint=str(tmp_path / name))
+    pz.merge_images([str(tmp_path / name) for name in "ba"], str(tmp_path / "merged"))
+    again = camera.image(**shared, checkpoint=str(tmp_path / "merged"))
+    assert np.array_equal(np.asarray(again), np.asarray(whole))
+    with pytest.raises(pz.InputError, match="has bands 0 to 1 of 3"):
+        camera.image(**shared, checkpoint=str(tmp_path / "a"))
+
+
+def test_parquet_has_the_lines_of_facts(items, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    dataset.to_parquet(items, tmp_path / "set.parquet")
+    rows = parquet.read_table(tmp_path / "set.parquet").to_pylist()
+    assert [row["key"] for row in rows] == [items.facts(index)["key"] for index in range(3)]
+    for index, row in enumerate(rows):
+        assert row["parameters"]["camera_x"] == items.facts(index)["parameters"]["camera_x"]
+        assert row["files"]["png"] == items.facts(index)["files"]["png"]
+        assert row["archive"] == items.archive(index).name

@@ -8,9 +8,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "scratch.h"
 
@@ -150,6 +153,42 @@ TEST(Dataset, AnItemThatCannotBeMadeIsRecordedAndTheRestGoesOn) {
   ASSERT_FALSE(state.errors.empty());
   EXPECT_NE(state.errors.front().find("opens to"), std::string::npos) << state.errors.front();
   EXPECT_TRUE(verify_dataset(scratch.path("set")).empty());
+}
+
+// The patent's focal lengths at its states, 14.42 mm and 23.29 mm (docs/STATES.md).
+TEST(Dataset, ItemsAreZoomedAsTheyWereDrawn) {
+  const Scratch scratch;
+  std::string text = recipe_text;
+  text.replace(text.find("{\"choose\": [\"dgauss-50mm\", \"edmund-54852\"]}"), 43,
+               "\"zoom-14-24mm\", \"state\": {\"choose\": [\"wide\", \"tele\"]}");
+  text.replace(text.find("\"items\": 7"), 10, "\"items\": 6");
+  text.replace(text.find("\"truth\": [\"raw\", \"sharp\", \"rays\"]"), 33, "\"truth\": []");
+  const Recipe zoomed = parse_recipe(text, "recipe");
+  make_dataset(zoomed, scratch.path("set"), {0, 1}, {.threads = 2});
+  std::map<std::string, int> seen;
+  for (int part = 0; part < 3; ++part) {
+    std::istringstream lines(read_whole_file(fmt::format("{}/part-{:05}.jsonl", scratch.path("set"), part)));
+    for (std::string line; std::getline(lines, line);) {
+      const nlohmann::json facts = nlohmann::json::parse(line);
+      const std::string state = facts.at("parameters").at("state");
+      EXPECT_NEAR(facts.at("lens").at("focal_length_mm").get<double>(), state == "wide" ? 14.42 : 23.29,
+                  0.01);
+      ++seen[state];
+    }
+  }
+  EXPECT_EQ(seen.size(), 2u);
+}
+
+// Memory of two threads is that of two items at once.
+TEST(Dataset, EstimateMakesAsManyItemsAtOnceAsMakeDoes) {
+  const DatasetEstimate one = estimate_dataset(recipe(), 1, {.threads = 1}),
+                        two = estimate_dataset(recipe(), 1, {.threads = 2});
+  EXPECT_EQ(one.threads, 1);
+  EXPECT_EQ(one.probed, 2u);
+  EXPECT_EQ(two.threads, 2);
+  EXPECT_EQ(two.probed, 4u);
+  EXPECT_GT(two.cpu_s, 0);
+  EXPECT_GE(two.memory_bytes, one.memory_bytes);
 }
 
 TEST(Dataset, ALensThatIsNotThereIsToldAtOnce) {

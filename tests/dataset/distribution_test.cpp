@@ -106,6 +106,8 @@ TEST(Recipe, SaysWhatIsWrongAndWhere) {
            {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"stop_down_ev\": 1",
             "both f_number and stop_down_ev"},
            {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"grade\": \"high\"", "a grade without a build"},
+           {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"state\": \"tele\", \"state_number\": 1",
+            "both state and state_number"},
            {"\"scene\": \"studio\"", "\"scene\": \"studio\", \"camera_x\": 1", "camera_x"},
            {"\"items\": 10", "\"items\": 10, \"truth\": [\"normals\"]", "needs a world"},
            {"\"items\": 10", "\"items\": 10, \"truth\": [\"masks\"]", "needs a world"},

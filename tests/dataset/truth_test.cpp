@@ -3,6 +3,7 @@
 #include <petzval/analysis/field_tables.h>
 #include <petzval/base/units.h>
 #include <petzval/dataset/flat_truth.h>
+#include <petzval/dataset/pixel_psfs.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/simulate/image.h>
 #include <petzval/tolerance/tolerancing.h>

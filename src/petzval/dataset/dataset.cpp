@@ -180,34 +180,44 @@ std::vector<std::string> verify_dataset(const std::string& folder, const Context
 
 DatasetEstimate estimate_dataset(const Recipe& recipe, std::size_t probes, const Context& context) {
   check_names(recipe);
-  probes = std::clamp<std::size_t>(probes, 1, recipe.items);
   ItemMaker maker(recipe);
   DatasetEstimate estimate;
-  double sum = 0, squares = 0;
   std::string reason;
-  run_within(context, [&](const ProgressCallback& progress) {
-    for (std::size_t i = 0; i < probes; ++i) {
-      const double before = process_cpu_s();
-      try {
-        const Item item = maker.make((2 * i + 1) * recipe.items / (2 * probes));
-        for (const ItemFile& file : item.files) estimate.bytes += static_cast<double>(file.bytes.size());
-      } catch (const InputError& error) {
-        ++estimate.failed;
-        reason = error.what();
-      }
-      const double took = process_cpu_s() - before;
-      sum += took, squares += took * took, ++estimate.probed;
-      if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(probes), "items");
+  std::mutex mutex;
+  const auto probe = [&](std::size_t number) {
+    double bytes = 0;
+    std::string problem;
+    try {
+      for (const ItemFile& file : maker.make(number).files) bytes += static_cast<double>(file.bytes.size());
+    } catch (const InputError& error) {
+      problem = error.what();
     }
+    const std::lock_guard lock(mutex);
+    ++estimate.probed, estimate.bytes += bytes;
+    if (!problem.empty()) ++estimate.failed, reason = problem;
+  };
+  double sum = 0, squares = 0, rounds = 0;
+  run_within(context, [&](const ProgressCallback& progress) {
+    const std::size_t at_once = items_at_once(recipe.items);
+    probes = std::min(std::max(probes, 2 * at_once), recipe.items);
+    for (std::size_t first = 0; first < probes; first += at_once, ++rounds) {
+      const std::size_t count = std::min(at_once, probes - first);
+      const double before = process_cpu_s();
+      parallel_tasks(count,
+                     [&](std::size_t i) { probe((2 * (first + i) + 1) * recipe.items / (2 * probes)); });
+      const double took = (process_cpu_s() - before) / static_cast<double>(count);
+      sum += took, squares += took * took;
+      if (progress) progress(static_cast<double>(first + count) / static_cast<double>(probes), "items");
+    }
+    estimate.threads = thread_count();
   });
   if (estimate.failed == estimate.probed)
     throw InputError(fmt::format("none of {} items could be made: {}", estimate.probed, reason));
-  const auto count = static_cast<double>(estimate.probed);
-  estimate.cpu_s = sum / count;
+  estimate.cpu_s = sum / rounds;
   estimate.cpu_error_s =
-      count > 1 ? std::sqrt(std::max(0.0, squares / count - estimate.cpu_s * estimate.cpu_s) / (count - 1))
-                : 0;
-  estimate.bytes /= count;
+      rounds > 1 ? std::sqrt(std::max(0.0, squares / rounds - estimate.cpu_s * estimate.cpu_s) / (rounds - 1))
+                 : 0;
+  estimate.bytes /= static_cast<double>(estimate.probed);
   estimate.memory_bytes = peak_memory_bytes();
   return estimate;
 }

@@ -61,9 +61,11 @@ struct DatasetEstimate {
   std::size_t probed = 0, failed = 0;  ///< items that were made for it
   double cpu_s = 0, cpu_error_s = 0;   ///< of one core an item, and the standard error
   double bytes = 0;                    ///< an item, in the archives
-  double memory_bytes = 0;             ///< of a process, the most
+  int threads = 0;                     ///< of the process
+  double memory_bytes = 0;             ///< of that process, the most
 };
-/// What a data set will take, from items spread over it, which are made and thrown away.
+/// What a data set will take, from items spread over it, which are made and thrown away: as many at once as
+/// make_dataset() makes with these threads, for memory goes by that, and twice as many at least.
 /// \throws InputError as make_dataset(), and where all of the items fail; Cancelled.
 DatasetEstimate estimate_dataset(const Recipe& recipe, std::size_t probes = 8, const Context& context = {});
 

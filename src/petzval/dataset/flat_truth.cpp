@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/base/units.h>
 #include <petzval/dataset/flat_truth.h>
 #include <petzval/imaging/depth_layers.h>
-#include <petzval/lens/lens_file.h>
 #include <petzval/numeric/lattice_spline.h>
-#include <petzval/optics/frame_build.h>
 #include <petzval/optics/table_interpolation.h>
-#include <petzval/simulate/psf_stack.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -21,14 +16,6 @@ namespace petzval {
 namespace {
 
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t reference_band(const LensDataTable& table) {
-  const double wanted = table.first_order.wavelength_nm;
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < table.wavelengths_nm.size(); ++i)
-    if (std::abs(table.wavelengths_nm[i] - wanted) < std::abs(table.wavelengths_nm[best] - wanted)) best = i;
-  return best;
-}
 
 struct Direction {
   double along_x, along_y;  ///< tangents, turned as FramePlaces has it
@@ -75,6 +62,14 @@ std::function<Direction(double, double)> directions_over_frame(const LensDataTab
 }
 
 }  // namespace
+
+std::size_t reference_band(const LensDataTable& table) {
+  const double wanted = table.first_order.wavelength_nm;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < table.wavelengths_nm.size(); ++i)
+    if (std::abs(table.wavelengths_nm[i] - wanted) < std::abs(table.wavelengths_nm[best] - wanted)) best = i;
+  return best;
+}
 
 std::vector<float> pixel_rays(const LensDataTable& table, const SensorGeometry& frame) {
   const std::size_t band = reference_band(table);
@@ -158,130 +153,6 @@ std::optional<Intrinsics> fit_intrinsics(const std::vector<float>& rays, const S
   if (all.size() < 10) return {};
   const Intrinsics pinhole = fit_model(all, frame, false), fisheye = fit_model(all, frame, true);
   return fisheye.worst_px < pinhole.worst_px / 2 ? fisheye : pinhole;
-}
-
-namespace {
-
-/// A PSF of a stack in image space.
-struct TurnedPsf {
-  const float* values;
-  int cells;
-  double spacing_um;
-  double e_x, e_y;  ///< where its t points
-  double weight;
-};
-
-/// Adds it to size × size pixels about its centre of light.
-void add_to_pixels(const TurnedPsf& psf, double pitch_um, int size, float* pixels) {
-  const auto offset = [&](int cell) { return (cell - psf.cells / 2) * psf.spacing_um; };
-  double sum = 0, middle_t = 0, middle_s = 0;
-  for (int i = 0; i < psf.cells; ++i)
-    for (int j = 0; j < psf.cells; ++j) {
-      const double light = static_cast<double>(psf.values[i * psf.cells + j]);
-      sum += light, middle_t += light * offset(i), middle_s += light * offset(j);
-    }
-  if (!(sum > 0)) return;
-  middle_t /= sum, middle_s /= sum;
-  // A sample is a square of its spacing: in parts no wider than a sixteenth of a pixel, which fall into the
-  // pixels that hold their middles.
-  const int parts = std::max(1, static_cast<int>(std::ceil(16 * psf.spacing_um / pitch_um)));
-  for (int i = 0; i < psf.cells; ++i)
-    for (int j = 0; j < psf.cells; ++j) {
-      const double light = psf.weight * static_cast<double>(psf.values[i * psf.cells + j]) / (parts * parts);
-      if (light == 0) continue;
-      for (int a = 0; a < parts; ++a)
-        for (int b = 0; b < parts; ++b) {
-          const double t = offset(i) - middle_t + ((a + 0.5) / parts - 0.5) * psf.spacing_um;
-          const double s = offset(j) - middle_s + ((b + 0.5) / parts - 0.5) * psf.spacing_um;
-          const double x = s * psf.e_y + t * psf.e_x, y = -s * psf.e_x + t * psf.e_y;
-          const auto column = static_cast<int>(std::floor(-x / pitch_um + size / 2.0));
-          const auto row = static_cast<int>(std::floor(y / pitch_um + size / 2.0));
-          if (column < 0 || row < 0 || column >= size || row >= size) continue;
-          pixels[row * size + column] += static_cast<float>(light);
-        }
-    }
-}
-
-/// Asks a lens for the PSFs of places on its image surface.
-class PlacePsfs {
- public:
-  PlacePsfs(const LensDataTable& table, const std::vector<double>& wavelengths_nm, const Context& context)
-      : lens_(lens_from_json(table.lens_json, "the table's lens")),
-        wavelengths_nm_(wavelengths_nm),
-        context_(context) {
-    if (!table.frame) return;
-    const FramePlaces& frame = *table.frame;
-    const std::size_t band = reference_band(table);
-    std::vector<double> x, y;
-    for (std::size_t place = 0; place < frame.count(); ++place) {
-      x.push_back(frame.object_x[table.index(place, band)]);
-      y.push_back(frame.object_y[table.index(place, band)]);
-    }
-    object_x_ = LatticeSpline(frame.x_mm, frame.y_mm, std::move(x));
-    object_y_ = LatticeSpline(frame.x_mm, frame.y_mm, std::move(y));
-    over_frame_ = true;
-  }
-
-  /// \throws InputError where no light arrives. \param e_x, e_y  become the direction of the PSFs' t.
-  PsfStack at(double x_mm, double y_mm, double& e_x, double& e_y) const {
-    FieldTableRequest at{.wavelengths_nm = wavelengths_nm_};
-    if (over_frame_) {
-      // As FramePlaces has it: what is seen lies along the image; a field tracer counts from the object.
-      const double seen_x = object_x_(x_mm, y_mm), seen_y = object_y_(x_mm, y_mm),
-                   sign = towards_positive_image(lens_);
-      at.field_kind = lens_.object_distance_mm ? Fields::Kind::object_height_mm : Fields::Kind::angle_deg;
-      at.fields = {std::hypot(seen_x, seen_y)};
-      at.azimuth_deg = degrees(std::atan2(-sign * seen_x, sign * seen_y));
-      const PsfStack stack = psf_stack(lens_, at, {}, context_);
-      const double turned = stack.image_height_mm.front() < 0 ? -sign : sign, field = at.fields.front();
-      e_x = field > 0 ? turned * seen_x / field : 0, e_y = field > 0 ? turned * seen_y / field : turned;
-      return stack;
-    }
-    const double r = std::hypot(x_mm, y_mm);
-    e_x = r > 0 ? x_mm / r : 0, e_y = r > 0 ? y_mm / r : 1;
-    at.field_kind = Fields::Kind::real_image_height_mm;
-    at.fields = {r};
-    return psf_stack(lens_, at, {}, context_);
-  }
-
- private:
-  Lens lens_;
-  const std::vector<double>& wavelengths_nm_;
-  const Context& context_;
-  bool over_frame_ = false;
-  LatticeSpline object_x_, object_y_;  ///< as FramePlaces has them
-};
-
-}  // namespace
-
-PixelPsfs pixel_psfs(const LensDataTable& table, const SensorGeometry& frame,
-                     const std::vector<double>& wavelengths_nm, int grid_rows, int grid_columns, int size,
-                     const Context& context) {
-  PixelPsfs grid;
-  for (int i = 0; i < grid_rows; ++i) grid.rows.push_back((i + 0.5) * frame.rows / grid_rows);
-  for (int i = 0; i < grid_columns; ++i) grid.columns.push_back((i + 0.5) * frame.columns / grid_columns);
-  const std::size_t pixels = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
-  const double pitch_mm = frame.pitch_um / 1000;
-  grid.values.assign(grid.rows.size() * grid.columns.size() * wavelengths_nm.size() * pixels, 0.0f);
-  const PlacePsfs lens(table, wavelengths_nm, context);
-  float* values = grid.values.data();
-  for (const double row : grid.rows)
-    for (const double column : grid.columns) {
-      double e_x = 0, e_y = 1;
-      std::optional<PsfStack> stack;
-      try {
-        stack = lens.at(-(column - frame.columns / 2.0) * pitch_mm, (row - frame.rows / 2.0) * pitch_mm, e_x,
-                        e_y);
-      } catch (const InputError&) {
-        values += wavelengths_nm.size() * pixels;  // no light there
-        continue;
-      }
-      for (std::size_t band = 0; band < wavelengths_nm.size(); ++band, values += pixels)
-        add_to_pixels({stack->values.data() + band * stack->psf_cells(), stack->size, stack->spacing_um, e_x,
-                       e_y, stack->captured[band]},
-                      frame.pitch_um, size, values);
-    }
-  return grid;
 }
 
 std::vector<float> pixel_depths(const Scene& scene, const std::vector<float>& rays,

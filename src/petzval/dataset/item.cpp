@@ -6,9 +6,11 @@
 #include <petzval/dataset/flat_truth.h>
 #include <petzval/dataset/item.h>
 #include <petzval/dataset/object_masks.h>
+#include <petzval/dataset/pixel_psfs.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/lens/lens_states.h>
 #include <petzval/numeric/random.h>
 #include <petzval/sensor/formats/dng.h>
 #include <petzval/simulate/develop.h>
@@ -88,6 +90,9 @@ ItemFile npy_of(const ScratchFolder& scratch, const std::string& extension, std:
 Camera camera_of(const Draw& draw, const Recipe& recipe) {
   Camera camera;
   camera.lens = read_lens(draw.file("lens")).lens;
+  if (const std::string state = draw.text("state"); !state.empty())
+    camera.lens = in_state(camera.lens, state);
+  if (const auto state = draw.number("state_number")) camera.lens = in_state(camera.lens, *state);
   if (const auto build = draw.number("build")) {
     ToleranceRequest tolerances;
     if (const std::string grade = draw.text("grade"); !grade.empty()) tolerances.grade = grade;
@@ -165,7 +170,11 @@ class ItemInMaking {
     if (plan.depth && (recipe_.has(Truth::psf) || recipe_.has(Truth::rays) || recipe_.has(Truth::depth)))
       plan.table = build_lens_data_table(plan.depth->lens, plan.depth->table);
     add_rays_and_depths(plan, report);
-    if (recipe_.has(Truth::psf)) add_psfs(plan);
+    const std::vector<double>& wavelengths_nm = plan.scene.wavelengths_nm();
+    if (recipe_.has(Truth::psf))
+      add_psfs(pixel_psfs(plan.table, plan.frame, wavelengths_nm, recipe_.psf_rows, recipe_.psf_columns,
+                          recipe_.psf_size, context_),
+               wavelengths_nm.size());
     if (recipe_.has(Truth::sharp)) {
       plan.options.imaging.method = BlurMethod::none;
       add_sharp(image(plan, context_), *camera.sensor, exposure_s);
@@ -203,6 +212,9 @@ class ItemInMaking {
     if (recipe_.has(Truth::flow))
       add(npy_of(scratch_, "flow.npy", {film_rows, film_columns, 2}, flow_seen(scene, context_)));
     if (recipe_.has(Truth::masks)) add_masks(object_masks(segments_seen(scene, context_)));
+    if (recipe_.has(Truth::psf))
+      add_psfs(pixel_psfs(scene, recipe_.psf_rows, recipe_.psf_columns, recipe_.psf_size, context_),
+               rendering.irradiance.wavelengths_nm().size());
     if (!rendering.first_surfaces) return;
     const render::FirstSurfaces& first = *rendering.first_surfaces;
     const std::size_t rows = rows_of(rendering.irradiance), columns = columns_of(rendering.irradiance),
@@ -287,13 +299,9 @@ class ItemInMaking {
     add(picture_of("sharp.png", expose(light, sensor, options, context_)));
   }
 
-  void add_psfs(const ImagePlan& plan) {
-    const PixelPsfs grid = pixel_psfs(plan.table, plan.frame, plan.scene.wavelengths_nm(), recipe_.psf_rows,
-                                      recipe_.psf_columns, recipe_.psf_size, context_);
+  void add_psfs(const PixelPsfs& grid, std::size_t bands) {
     const auto size = static_cast<std::size_t>(recipe_.psf_size);
-    add(npy_of(scratch_, "psf.npy",
-               {grid.rows.size(), grid.columns.size(), plan.scene.wavelengths_nm().size(), size, size},
-               grid.values));
+    add(npy_of(scratch_, "psf.npy", {grid.rows.size(), grid.columns.size(), bands, size, size}, grid.values));
     item_.facts["psf"] = {{"columns_px", grid.columns}, {"rows_px", grid.rows}};
   }
 

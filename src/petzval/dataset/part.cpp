@@ -19,9 +19,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Items in the making at once: their files wait in memory for their turn.
-constexpr std::size_t most_at_once = 8;
-
 /// Held by one process as long as it lives, on whatever machine. The file goes with it.
 class PartLock {
  public:
@@ -118,6 +115,11 @@ void store(MadeItem& item, TarWriter& archive, std::string& lines) {
 
 }  // namespace
 
+std::size_t items_at_once(std::size_t items) {
+  constexpr std::size_t most = 8;
+  return std::min({most, static_cast<std::size_t>(thread_count()), items});
+}
+
 std::string PartSums::text() const {
   return json{{"part", part},
               {"items", items},
@@ -158,7 +160,7 @@ std::optional<PartSums> DatasetPart::make(const Recipe& recipe, ItemMaker& maker
   TarWriter archive(archive_file.making());
   PartSums sums{.part = number_, .items = last - first};
   std::string lines;
-  const std::size_t slots = std::min({most_at_once, static_cast<std::size_t>(thread_count()), sums.items});
+  const std::size_t slots = items_at_once(sums.items);
   std::vector<MadeItem> waiting(slots);
   parallel_stages(sums.items, slots,
                   {[](std::size_t, std::size_t) {},

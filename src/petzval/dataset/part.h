@@ -24,6 +24,10 @@ struct PartSums {
   static PartSums parse(const std::string& text, const std::string& file);
 };
 
+/// How many items a process makes at once: as many as it has threads, up to eight, for their files wait in
+/// memory for their turn.
+std::size_t items_at_once(std::size_t items);
+
 class DatasetPart {
  public:
   DatasetPart(std::string folder, std::size_t number) : folder_(std::move(folder)), number_(number) {}

@@ -64,6 +64,8 @@ const std::vector<RecipeParameter>& recipe_parameters() {
       {"look_move_z", "as look_move_x", false, -any, any},
       {"rolling_shutter", "share of that time by which the last row begins after the first", false, 0,
        0.999999},
+      {"state", "zoom or focus position of the lens by its name; absent: as the file stands", true, 0, 0},
+      {"state_number", "the same by number, counted from 0; 0.5 lies half-way to the next", false, 0, 1e6},
   };
   return all;
 }

@@ -195,6 +195,7 @@ void check(const JsonEntry& root, const Recipe& recipe) {
   both("f_number", "stop_down_ev");
   both("focus", "focus_distance_m");
   both("exposure_s", "exposure_compensation_ev");
+  both("state", "state_number");
   if (has("grade") && !has("build"))
     entry.fail("has a grade without a build; \"build\": {\"integer\": [0, 999]} would be right");
   for (const char* name : {"scene_distance_m", "scene_angle_deg", "luminance_cd_m2", "illuminant"})
@@ -222,7 +223,6 @@ void check(const JsonEntry& root, const Recipe& recipe) {
     needs(Truth::masks, "needs a world");
     needs(Truth::flow, "needs a world");
   } else {
-    needs(Truth::psf, "is made of flat scenes only");
     if (!has("camera_move_x") && !has("look_move_x")) {
       needs(Truth::flow, "needs a camera that moves: camera_move_x or look_move_x");
       if (has("rolling_shutter")) entry.fail("has rolling_shutter and a camera that stands still");

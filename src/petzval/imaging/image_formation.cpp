@@ -120,7 +120,7 @@ struct ImageSeries::Impl {
 
   /// \param take  is handed each band of every light, then the next band.
   void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
-            ImagingReport& report) {
+            ImagingReport& report, const BandShare& share = {}) {
     report = of_all;
     check_aims(lights, report.notes);
     note_dark_corners(plans, sensor, report.notes);
@@ -137,10 +137,19 @@ struct ImageSeries::Impl {
       if (!place.chosen || places.size() < plans.size()) choose(band, place);
     };
     const auto end = [&](std::size_t band, std::size_t) {
+      if (!share.has(band) && share.known) {
+        CellPlane pixels = CellPlane::unset(sensor);
+        share.known(static_cast<int>(band), pixels.values);
+        place_of(band).pixels.push_back(std::move(pixels));
+      }
       seconds += hand_over(band, take, progress, report);
     };
     parallel_stages(plans.size(), std::min(places.size(), static_cast<std::size_t>(thread_count())),
-                    {begin, [&](std::size_t band, std::size_t) { work(band, lights, progress); }, end});
+                    {begin,
+                     [&](std::size_t band, std::size_t) {
+                       if (share.has(band)) work(band, lights, progress);
+                     },
+                     end});
     share_time(seconds_since(start), seconds, report);
     note_result(report);
     note_unused_layout(report);
@@ -316,16 +325,16 @@ void ImagingOptions::validate() const {
 
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress,
-                ImagingReport* report) {
+                ImagingReport* report, const BandShare& share) {
   ImagingReport unwanted;
   const AimedLight straight;
   ImageSeries::Impl(scene, table, sensor, options, false)
-      .form(std::span(&straight, 1), take, progress, report != nullptr ? *report : unwanted);
+      .form(std::span(&straight, 1), take, progress, report != nullptr ? *report : unwanted, share);
 }
 
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress,
-                         ImagingReport* report) {
+                         ImagingReport* report, const BandShare& share) {
   // What does not fit is refused before there is room for an image.
   std::optional<SpectralImage> image;
   int bands = 0;
@@ -334,7 +343,7 @@ SpectralImage form_image(const Scene& scene, const LensDataTable& table, const S
     image->store_band(bands++, pixels);
     image->release_memory();
   };
-  form_bands(scene, table, sensor, options, put, progress, report);
+  form_bands(scene, table, sensor, options, put, progress, report, share);
   image->lens = lens_facts(table.lens_name, table.first_order);
   add_corrections(*image->lens, table, sensor);
   return std::move(*image);

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -90,6 +91,16 @@ struct ImagingReport {
   double kernel_seconds = 0;  ///< of `blur_seconds`, what `product` took to plan and to make its kernels
 };
 
+/// The bands that this process forms, where several share an image. All of them are planned by each, for a
+/// band's plan follows that of the one before.
+struct BandShare {
+  int first = 0, end = std::numeric_limits<int>::max();
+  /// Puts the pixels of a band that another has formed into a plane; absent: such bands are left out.
+  std::function<void(int band, std::span<float> pixels)> known = {};
+
+  bool has(std::size_t band) const { return static_cast<int>(band) >= first && static_cast<int>(band) < end; }
+};
+
 /// Forms the image, band by band, or several bands side by side if there are threads and memory for them
 /// (Maeda, Catrysse & Wandell 2005; order: radiance, distortion, g_source, blur):
 ///
@@ -111,9 +122,11 @@ struct ImagingReport {
 /// \throws InputError for anything that does not fit, with what would help; in the case of a scene that is
 /// too small,
 ///   by how many degrees. The bytes do not depend on the number of threads.
+///
+/// \param share  of the bands, when several processes form one image: it knows those of others.
 SpectralImage form_image(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options, const ProgressCallback& progress = {},
-                         ImagingReport* report = nullptr);
+                         ImagingReport* report = nullptr, const BandShare& share = {});
 
 /// What is done with the pixels of a band, row by row.
 using TakeBand = std::function<void(std::span<const float> pixels)>;
@@ -121,7 +134,7 @@ using TakeBand = std::function<void(std::span<const float> pixels)>;
 /// The same without keeping the bands: each is handed over as it is ready, in order.
 void form_bands(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                 const ImagingOptions& options, const TakeBand& take, const ProgressCallback& progress = {},
-                ImagingReport* report = nullptr);
+                ImagingReport* report = nullptr, const BandShare& share = {});
 
 /// Several images of one scene, the camera turned or the scene moved: what they share is made once, the
 /// kernels of each band too where there is memory for them. Everything given must outlive it.

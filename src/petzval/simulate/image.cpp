@@ -5,6 +5,7 @@
 #include <petzval/base/version.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/image.h>
+#include <petzval/simulate/image_pieces.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +68,16 @@ FlareLayers flare_of(const ImagePlan& plan, const Context& context, SpectralImag
 }  // namespace
 
 SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* report) {
+  if (plan.options.bands) throw InputError("`bands` are a piece of an image, which image_piece() forms");
+  if (plan.depth && !plan.options.checkpoint.empty())
+    throw InputError("the layers of a scene with depth are added up, so that its image has no `checkpoint`");
+  const BandShare share = known_bands(plan);
   ImageReport unwanted;
   ImageReport& says = report ? *report : unwanted;
   SpectralImage light = result_within(context, [&](const ProgressCallback& progress) {
     if (!plan.depth)
-      return form_image(plan.scene, plan.table, plan.frame, plan.options.imaging, progress, &says.imaging);
+      return form_image(plan.scene, plan.table, plan.frame, plan.options.imaging, progress, &says.imaging,
+                        share);
     DepthReport deep;
     SpectralImage formed = form_depth_image(plan.scene, *plan.depth, plan.frame, plan.options.imaging,
                                             plan.options.depth, progress, &deep);
@@ -100,10 +106,12 @@ void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& con
     throw InputError("light that goes astray is added to an image, not handed over band by band");
   if (plan.depth)
     throw InputError("the layers of a scene with depth are added up, not handed over band by band");
+  const BandShare share = known_bands(plan);
   ImageReport unwanted;
   ImageReport& says = report ? *report : unwanted;
   run_within(context, [&](const ProgressCallback& progress) {
-    form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging);
+    form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging,
+               share);
   });
   finish(plan, context, says);
 }

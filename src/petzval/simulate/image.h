@@ -11,6 +11,7 @@
 #include <petzval/simulate/camera.h>
 #include <petzval/simulate/flare.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -40,6 +41,11 @@ struct ImageOptions {
   /// The least width of a chart or a photograph that fills the frame: the same scale in several images.
   std::optional<double> least_scene_angle_deg = {};
   FlareOptions flare = {};  ///< of scenes on a plane or all around, through a lens
+  /// A piece of the image for one of several processes (simulate/image_pieces.h): its bands from the first
+  /// up to the second, which go into `checkpoint` alone. Absent: all.
+  std::optional<std::array<int, 2>> bands = {};
+  /// A file of bands; without `bands` it holds all of them, and none is formed again. Empty: none.
+  std::string checkpoint = {};
 };
 
 /// What is known before light is computed: the scene where it stands, the table of the lens focused on it,
