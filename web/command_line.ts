@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What to type to get what is on the screen.
 import {Incoming} from "./link";
-import {Session, settingsBetween} from "./model";
+import {commonCoating, Lens, Session, settingsBetween, uncoated, usualStray} from "./model";
 
 function quoted(text: string): string {
   return /^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replace(/'/g, `'\\''`)}'`;
@@ -11,11 +11,17 @@ export function focusText(session: Session): string {
   return session.focus === "distance" ? `${session.focus_m}m` : session.focus;
 }
 
+/** As --coating takes them. */
+function coatingText(lens: Lens): string {
+  return commonCoating(lens) ?? lens.surfaces.map((each, i) => each.coating ? `surfaces[${i}]=${each.coating}` : "").filter(each => each).join(",");
+}
+
 /** `petzval image …` for the full picture; `settings`: of the sensor, as the server made it. */
 export function commandLine(session: Session, picture: Incoming | null): string {
-  const settings = settingsBetween(session.base, session.lens);
+  const settings = settingsBetween(session.base, uncoated(session.lens)), coatings = coatingText(session.lens);
   const words = ["petzval", "image", session.scene, "--lens", settings === null ? "lens.json" : session.lensName];
   for (const setting of settings ?? []) words.push("--set", setting);
+  if (coatings) words.push("--coating", coatings);
   if (session.f_number !== null) words.push("--f-number", String(session.f_number));
   words.push("--focus", focusText(session));
   if (session.defocus_mm !== 0) words.push("--defocus", String(session.defocus_mm));
@@ -28,12 +34,11 @@ export function commandLine(session: Session, picture: Incoming | null): string 
   for (const setting of picture?.sensor_settings ?? []) words.push("--sensor-set", setting);
   if (picture?.tolerance) words.push("--tolerance", String(picture.tolerance));
   const stray = session.stray;
-  if (stray.sun_deg) {
-    words.push("--sun", stray.sun_deg.join(","));
-    // Of the sun alone: charts have sources of their own.
-    if (stray.ghosts) words.push("--ghosts", "--ghost-threshold", "1e9");
-    if (stray.starburst) words.push("--starburst");
-  }
+  if (stray.sun_deg) words.push("--sun", stray.sun_deg.join(",") + (stray.sun_lx === usualStray.sun_lx ? "" : `:${stray.sun_lx}`));
+  if (stray.ghosts) words.push("--ghosts");
+  if (stray.ghosts && picture?.neglected_ghosts) words.push("--ghost-neglect", String(picture.neglected_ghosts));
+  if (stray.starburst) words.push("--starburst");
+  if (stray.threshold !== usualStray.threshold && (stray.ghosts || stray.starburst || stray.roughness_nm > 0)) words.push("--ghost-threshold", String(stray.threshold));
   if (stray.roughness_nm > 0) words.push("--scatter", `roughness=${stray.roughness_nm}`);
   const shot = session.shot;
   if (shot.compensation_ev !== 0) words.push("--exposure-compensation", String(shot.compensation_ev));

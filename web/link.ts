@@ -18,6 +18,7 @@ const protocol = "petzval-live.1";
 export class Link {
   private socket: WebSocket | null = null;
   private wait_ms = 250;
+  private closed = false;
 
   constructor(private readonly token: string, private readonly listener: LinkListener) { this.open(); }
 
@@ -25,6 +26,12 @@ export class Link {
 
   send(message: object): void {
     if (this.isOpen) this.socket!.send(JSON.stringify(message));
+  }
+
+  /** For good. */
+  close(): void {
+    this.closed = true;
+    this.socket?.close();
   }
 
   /** A file, behind a header that says what it is. */
@@ -47,8 +54,9 @@ export class Link {
     socket.onmessage = event => this.take(event.data);
     socket.onclose = () => {
       this.socket = null;
+      if (this.closed) return;
       this.listener.lost();
-      setTimeout(() => this.open(), this.wait_ms);
+      setTimeout(() => { if (!this.closed) this.open(); }, this.wait_ms);
       const longest_ms = 3000;
       this.wait_ms = Math.min(longest_ms, this.wait_ms * 1.5);
     };

@@ -4,9 +4,10 @@ import {commandLine, focusText} from "./command_line";
 import {choice, Slider} from "./controls";
 import {h, icon, icons, shown} from "./dom";
 import {LayoutView} from "./layout_view";
+import {CompareView} from "./compare_view";
 import {Incoming, Link, takeToken} from "./link";
 import {Ghost, ghostTable} from "./ghost_view";
-import {copied, History, Lens, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, unpacked, usualStray, valueAt} from "./model";
+import {coat, copied, History, isCoatable, Lens, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, uncoated, unpacked, usualStray, valueAt} from "./model";
 import {PictureView} from "./picture_view";
 import {drawPlots, PlotData} from "./plot_view";
 import {PsfView} from "./psf_view";
@@ -36,6 +37,7 @@ class Page {
   private plots = new Map<string, Incoming>();
   private sliders = new Map<string, Slider>();
   private readonly link: Link;
+  private readonly compare: CompareView;
 
   private readonly table = new TableView({
     changed: (alter, gesture) => this.alterLens(alter, gesture),
@@ -47,6 +49,7 @@ class Page {
       this.link.send({kind: "glasses", id, text});
     },
     refused: text => this.tell(text),
+    coatings: () => this.welcome?.coatings ?? [],
   });
   private readonly layout = new LayoutView({
     moved: (first, last, shift, done) => this.moveGroup(first, last, shift, done),
@@ -56,6 +59,7 @@ class Page {
   private readonly picture = new PictureView({
     placed: (x, y, done) => this.change(() => { this.session.cursor_mm = [x, y]; }, done ? "" : "cursor"),
     sunMoved: (x, y, done) => this.change(() => { this.session.stray.sun_deg = sunAt(this.sky, x, y); }, "sun", done),
+    focused: (x, y) => this.focusAt(x, y),
   });
   private sky: Sky = [];
   private ghosts: Ghost[] = [];
@@ -74,12 +78,22 @@ class Page {
   private readonly redoButton = this.button("Redo", "redo", () => this.step(this.history.redo()), "Ctrl+Shift+Z");
   private readonly beforeButton = h("button", {type: "button", class: "text-button", id: "before", title: "keep this picture to compare with (B)", "aria-pressed": "false",
     onclick: () => this.toggleBefore()}, "Before / after");
+  private readonly compareButton = h("button", {type: "button", class: "text-button", id: "compare", title: "another lens beside this one (C)", "aria-pressed": "false",
+    onclick: () => this.toggleCompare()}, "Compare");
+  private readonly focusButton = h("button", {type: "button", class: "small-button", id: "focus-here", title: "make the place of the ring sharp (F)", "data-term": "defocus",
+    onclick: () => this.focusAt(...this.session.cursor_mm)}, "Focus here");
   private times = new Map<string, number>();
   private readonly tour = new Tour(exercise => this.startExercise(exercise));
 
   constructor() {
+    const token = takeToken();
+    this.compare = new CompareView(token, {
+      chosen: name => this.change(() => { this.session.compared = {name, lens: null}; }),
+      read: (name, lens) => this.takeCompared(name, lens),
+      plotted: () => this.drawPlot(),
+    });
     this.build();
-    this.link = new Link(takeToken(), {
+    this.link = new Link(token, {
       opened: () => {
         this.pending = false;
         this.unanswered_since = 0;
@@ -106,7 +120,7 @@ class Page {
         h("header", {}, h("h2", {"data-term": term, class: "term-mark"}, title), ...extra), ...content);
     document.body.append(
         h("header", {class: "bar"}, h("div", {class: "brand"}, h("img", {src: "/icon.svg", alt: "", width: 22, height: 22}), h("b", {}, "Petzval"), h("span", {}, "live")),
-            this.choices, h("div", {class: "spring"}), this.undoButton, this.redoButton, this.beforeButton, this.saveMenu(),
+            this.choices, h("div", {class: "spring"}), this.undoButton, this.redoButton, this.beforeButton, this.compareButton, this.saveMenu(),
             h("button", {type: "button", class: "text-button", id: "tour", onclick: () => this.tour.toggle()}, "Tour"),
             h("button", {type: "button", class: "text-button", id: "theme", title: "dark or light (D)", "aria-label": "dark or light", onclick: () => this.toggleTheme()}, "◐")),
         this.banner,
@@ -116,7 +130,7 @@ class Page {
                 card("Controls", "f-number", [], this.controls)),
             h("div", {class: "column middle"},
                 card("Layout", "stop", [this.facts], this.layout.element),
-                card("Picture", "preview", [this.picture.badge], this.picture.element)),
+                card("Picture", "preview", [h("small", {class: "hint"}, "double-click to focus"), this.focusButton, this.picture.badge], h("div", {class: "pictures"}, this.picture.element, this.compare.element))),
             h("div", {class: "column right"},
                 card("Point spread", "psf", [], this.psf.element),
                 h("section", {class: "card analysis-card"}, this.tabs, this.plotBox))),
@@ -219,9 +233,15 @@ class Page {
     const stray = session.stray;
     const check = (label: string, name: string, term: string, checked: boolean, act: (on: boolean) => void) => h("label", {class: "check", "data-term": term},
         h("input", {type: "checkbox", checked, "data-check": name, onchange: (event: Event) => this.change(() => { act((event.target as HTMLInputElement).checked); this.buildControls(); })}), label);
-    list.push(h("div", {class: "checks"}, check("sun", "sun", "sun", stray.sun_deg !== null, on => { stray.sun_deg = on ? this.firstSun() : null; }),
-        stray.sun_deg && check("ghosts", "ghosts", "ghosts", stray.ghosts, on => { stray.ghosts = on; }),
-        stray.sun_deg && check("star", "starburst", "starburst", stray.starburst, on => { stray.starburst = on; })));
+    list.push(h("div", {class: "checks"}, check("sun", "sun", "sun", stray.sun_deg !== null, on => { stray.sun_deg = on ? this.firstSun() : null; stray.ghosts ||= on; }),
+        check("ghosts", "ghosts", "ghosts", stray.ghosts, on => { stray.ghosts = on; }),
+        check("stars", "starburst", "starburst", stray.starburst, on => { stray.starburst = on; }), this.sourceCount));
+    if (stray.ghosts || stray.starburst || stray.roughness_nm > 0)
+      slider({label: "sources from", name: "threshold", term: "threshold", unit: "×", from: 1, to: 10000, log: true, value: stray.threshold, usual: usualStray.threshold, digits: 3,
+        changed: (value, done) => this.change(() => { stray.threshold = value ?? usualStray.threshold; }, "threshold", done)});
+    if (stray.sun_deg)
+      slider({label: "sun's light", name: "sun_lx", term: "sun", unit: "lx", from: 0.1, to: 100000, log: true, value: stray.sun_lx, usual: usualStray.sun_lx, digits: 3,
+        changed: (value, done) => this.change(() => { stray.sun_lx = value ?? usualStray.sun_lx; }, "sun light", done)});
     if (stray.sun_deg)
       for (const [i, label] of [[0, "sun right"], [1, "sun up"]] as [0 | 1, string][])
         slider({label, name: `sun_deg[${i}]`, term: "sun", unit: "°", from: -60, to: 60, value: stray.sun_deg[i], usual: 0, digits: 4,
@@ -238,6 +258,7 @@ class Page {
     return [angle(width), angle(height)];
   }
 
+  private readonly sourceCount = h("small", {class: "source-count", "data-term": "threshold"});
   private widestOpen = 2;
   private widest(): number { return this.widestOpen; }
 
@@ -253,7 +274,11 @@ class Page {
   }
 
   private alterLens(alter: (lens: Lens) => void, gesture: string, done = true): void {
-    this.change(() => alter(this.session.lens), gesture, done);
+    this.change(() => {
+      alter(this.session.lens);
+      // Where there is no glass any more, or glass on both sides, nothing is coated.
+      this.session.lens.surfaces.forEach((surface, i) => { if (surface.coating && !isCoatable(this.session.lens, i)) coat(this.session.lens, i, null); });
+    }, gesture, done);
   }
 
   private moveGroup(first: number, last: number, shift: number, done: boolean): void {
@@ -320,6 +345,7 @@ class Page {
     this.showSun();
     this.layout.showWay(session.stray.ghost ? this.way : []);
     this.sliders.get("roughness_nm")?.show(session.stray.roughness_nm);
+    for (const name of ["threshold", "sun_lx"] as const) this.sliders.get(name)?.show(session.stray[name]);
     for (const i of [0, 1]) this.sliders.get(`sun_deg[${i}]`)?.show(session.stray.sun_deg?.[i] ?? 0);
     for (const pin of session.pins) this.sliders.get(pin.path)?.show(valueAt(session.lens, pin.path));
     this.sliders.get("f_number")?.show(session.f_number ?? this.widest());
@@ -328,6 +354,8 @@ class Page {
     this.undoButton.disabled = !this.history.canUndo;
     this.redoButton.disabled = !this.history.canRedo;
     this.tabs.querySelectorAll("button").forEach(tab => tab.setAttribute("aria-selected", String(tab.id === `tab-${session.plot}`)));
+    this.compareButton.setAttribute("aria-pressed", String(session.compared !== null));
+    this.compare.open(session.compared, (this.welcome?.lenses ?? []).map((lens: any) => lens.name));
     this.drawPlot();
     this.command.textContent = commandLine(session, this.lastPicture);
     this.command.title = this.command.textContent;
@@ -387,10 +415,12 @@ class Page {
     if (!this.link?.isOpen || !this.welcome) return;
     this.unanswered_since = performance.now();
     const session = this.session;
-    this.link.send({kind: "state", id: ++this.id, lens: session.lens,
+    const state = {kind: "state", id: ++this.id, lens: uncoated(session.lens), coatings: session.lens.surfaces.map(each => each.coating ?? null),
       camera: {f_number: session.f_number, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
       scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot, stray: session.stray,
-      cursor_mm: session.cursor_mm, plots: [session.plot], picture: true});
+      cursor_mm: session.cursor_mm, plots: [session.plot], picture: true};
+    this.link.send(state);
+    this.compare.show(state);
     document.body.dataset.busy = "1";
   }
 
@@ -417,6 +447,7 @@ class Page {
       case "psf": return this.psf.show(message, bytes!, this.session.cursor_mm);
       case "picture":
         this.picture.show(message, bytes!);
+        this.sourceCount.textContent = this.session.stray.ghosts || this.session.stray.starburst || this.session.stray.roughness_nm > 0 ? `${message.sources.length || "no"} source${message.sources.length === 1 ? "" : "s"} in the scene` : "";
         if (message.quality === "full") this.lastPicture = message;
         this.command.textContent = commandLine(this.session, this.lastPicture);
         document.body.dataset[message.quality] = String(message.id);
@@ -425,6 +456,7 @@ class Page {
         this.glassWaiting.get(message.id!)?.(message.glasses);
         this.glassWaiting.delete(message.id!);
         return;
+      case "focused": return this.takeFocus(message.shift_mm);
       case "file": return this.takeFile(message, bytes!);
       case "stage": return this.took(message);
       case "problem": return this.takeProblem(message);
@@ -482,7 +514,7 @@ class Page {
     for (const note of message.notes ?? []) this.tell(note);
     const session = newSession(message.name, message.lens as Lens, this.session.scene, message.sensor);
     const {illuminant, shot, stray, plot} = this.session;
-    const next = {...session, illuminant, shot: copied(shot), stray: {...copied(stray), ghost: null}, plot};
+    const next = {...session, compared: this.session.compared, illuminant, shot: copied(shot), stray: {...copied(stray), ghost: null}, plot};
     this.knowsWidest = false;
     this.session = next;
     this.history.record(JSON.stringify(next));
@@ -520,7 +552,7 @@ class Page {
   private problems = new Map<string, string>();
 
   private takeProblem(message: Incoming): void {
-    if (message.stage === "upload" || message.stage === "save") return this.tell(message.text, true);
+    if (["upload", "save", "focus"].includes(message.stage)) return this.tell(message.text, true);
     this.showProblem(message.stage, message.text);
     if (["lens", "camera", "layout"].includes(message.stage)) {
       this.layout.stale();
@@ -559,6 +591,8 @@ class Page {
     this.saving.delete(message.id!);
     const name = this.session.lensName.replace(/[^\w.-]+/g, "-") || "lens";
     this.download(new Blob([bytes.slice()]), `${name}${message.extension}`);
+    if ([".json", ".zmx", ".seq"].includes(message.extension) && this.session.lens.surfaces.some(each => each.coating))
+      this.tell("a lens file does not hold coatings; the session does");
   }
 
   // ---- files, keys, messages -------------------------------------------------------------------------------------
@@ -602,6 +636,30 @@ class Page {
     localStorage.setItem("petzval-theme", root.dataset.theme);
   }
 
+  /** The sensor to where this place of the picture is sharpest. */
+  private focusAt(x_mm: number, y_mm: number): void {
+    this.link.send({kind: "focus", id: ++this.id, place_mm: [x_mm, y_mm]});
+  }
+
+  private takeFocus(shift_mm: number): void {
+    const most_mm = 100, there = Number((this.session.defocus_mm + shift_mm).toFixed(4));
+    if (Math.abs(there) > most_mm) return this.tell("nothing is sharp there within reach of the sensor", true);
+    this.change(() => { this.session.defocus_mm = there; });
+  }
+
+  /** Beside the lens as it was read, to begin with. */
+  private toggleCompare(): void {
+    this.change(() => { this.session.compared = this.session.compared ? null : {name: this.session.lensName, lens: uncoated(this.session.base)}; });
+  }
+
+  private takeCompared(name: string, lens: Lens): void {
+    if (this.session.compared?.name !== name || this.session.compared.lens) return;
+    this.session.compared.lens = lens;
+    this.history.complete(JSON.stringify(this.session));
+    this.refresh();
+    this.ask();
+  }
+
   private toggleBefore(): void {
     const kept = this.picture.toggleBefore(this.session.lensName);
     this.beforeButton.setAttribute("aria-pressed", String(kept));
@@ -615,6 +673,8 @@ class Page {
     }
     if (field || event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "b") this.toggleBefore();
+    if (event.key === "c") this.toggleCompare();
+    if (event.key === "f") this.focusAt(...this.session.cursor_mm);
     if (event.key === "d") this.toggleTheme();
     const tab = shownPlots[Number(event.key) - 1];
     if (tab) this.change(() => { this.session.plot = tab[0]; }, "plot");
@@ -623,12 +683,23 @@ class Page {
   private drawPlot(problem = ""): void {
     const plots = this.plots.get(this.session?.plot);
     const ofGhosts = this.session?.plot === "ghosts" ? [this.ghosts, JSON.stringify(this.session.stray.ghost)] : [];
-    const drawn = [plots, this.plotBox.clientWidth, this.plotBox.clientHeight, ...ofGhosts];
+    const other = this.session?.compared && this.compare.plots?.analysis === this.session.plot ? this.compare.plots : null;
+    const drawn = [plots, other, this.plotBox.clientWidth, this.plotBox.clientHeight, ...ofGhosts];
     if (plots && drawn.length === this.drawnPlot.length && drawn.every((each, i) => each === this.drawnPlot[i])) return;
     this.drawnPlot = drawn;
     if (plots && ofGhosts.length > 0) return this.drawGhosts(plots);
+    if (plots && other) return this.drawBoth(plots, other);
     if (plots) return drawPlots(this.plotBox, plots.plots as PlotData[], plots.across);
     this.plotBox.replaceChildren(h("p", {class: "nothing"}, problem || "…"));
+  }
+
+  /** One below the other, for the same analysis of both lenses. */
+  private drawBoth(plots: Incoming, other: Incoming): void {
+    const half = (caption: string) => h("div", {class: "half"}, h("h3", {}, caption), h("div", {class: "half-plot"}));
+    const [here, there] = [half(this.session.lensName), half(this.session.compared!.name)];
+    this.plotBox.replaceChildren(here, there);
+    for (const [box, drawn] of [[here, plots], [there, other]] as [HTMLElement, Incoming][])
+      drawPlots(box.querySelector<HTMLElement>(".half-plot")!, drawn.plots as PlotData[], drawn.across);
   }
 
   private drawGhosts(plots: Incoming): void {

@@ -10,6 +10,7 @@ export interface Surface {
   glass?: Glass;
   stop?: boolean;
   semi_diameter_mm?: number;
+  coating?: string;  ///< a bundled one; of the page alone, not of the lens file
   conic?: number;
   asphere?: Record<string, number>;
   [key: string]: unknown;
@@ -25,6 +26,29 @@ export interface Lens {
   reference_wavelength_nm: number;
   surfaces: Surface[];
   [key: string]: unknown;
+}
+
+/** Whether light passes between air and glass there, which is where films lie. */
+export function isCoatable(lens: Lens, i: number): boolean {
+  const surface = lens.surfaces[i];
+  return !surface.mirror && (surface.glass === undefined) !== (i === 0 || lens.surfaces[i - 1].glass === undefined);
+}
+
+/** Coats a surface; null: bare. */
+export function coat(lens: Lens, i: number, coating: string | null): void {
+  if (coating === null) delete lens.surfaces[i].coating;
+  else lens.surfaces[i].coating = coating;
+}
+
+/** The lens as its file has it, without the coatings that the page keeps at its surfaces. */
+export function uncoated(lens: Lens): Lens {
+  return {...lens, surfaces: lens.surfaces.map(({coating, ...surface}) => surface as Surface)};
+}
+
+/** The bundled coating that all surfaces between air and glass have; null: they are bare, or not alike. */
+export function commonCoating(lens: Lens): string | null {
+  const coats = lens.surfaces.filter((each, i) => isCoatable(lens, i) || each.coating !== undefined).map(each => each.coating);
+  return coats[0] !== undefined && coats.every(each => each === coats[0]) ? coats[0] : null;
 }
 
 /** A number of the lens that has a slider: its path in the file, and its range. */
@@ -46,13 +70,15 @@ export interface Shot {
 /** Light that goes astray: as the server is told. */
 export interface Stray {
   sun_deg: [number, number] | null;  ///< to the right and up
-  ghosts: boolean;
+  sun_lx: number;
+  ghosts: boolean;  ///< of the sun and of what the scene holds
   starburst: boolean;
+  threshold: number;  ///< times the mean of the scene, above which it holds a source
   roughness_nm: number;  ///< 0: nothing scatters
   ghost: [number, number] | null;  ///< whose way the layout shows
 }
 
-export const usualStray: Stray = {sun_deg: null, ghosts: true, starburst: false, roughness_nm: 0, ghost: null};
+export const usualStray: Stray = {sun_deg: null, sun_lx: 100000, ghosts: false, starburst: false, threshold: 100, roughness_nm: 0, ghost: null};
 
 /** Where on the sensor light from infinity lands: pairs of the tangent of its angle from the axis and its height [mm]. */
 export type Sky = [number, number][];
@@ -98,6 +124,7 @@ export interface Session {
   sensor: string;
   shot: Shot;
   stray: Stray;
+  compared: {name: string; lens: Lens | null} | null;  ///< what is beside it; a lens of null is not read yet
   cursor_mm: [number, number];
   plot: string;
   pins: Pin[];
@@ -108,7 +135,7 @@ export function newSession(lensName: string, lens: Lens, scene: string, sensor: 
     lensName, base: lens, lens: copied(lens), f_number: null, focus: "design", focus_m: 2, distance_m: null,
     defocus_mm: 0, scene, illuminant: "", sensor,
     shot: {exposure: "auto", compensation_ev: 0, noise: true, denoise: 0, sharpen: 0, tone: "none"},
-    stray: copied(usualStray), cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),
+    stray: copied(usualStray), compared: null, cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),
   };
 }
 
@@ -193,6 +220,8 @@ export class History {
     this.future = [];
     this.now = state;
   }
+  /** The state is as it was meant now: no step of its own. */
+  complete(state: string): void { this.now = state; }
   endGesture(): void { this.gesture = ""; }
   get canUndo(): boolean { return this.past.length > 0; }
   get canRedo(): boolean { return this.future.length > 0; }

@@ -6,6 +6,7 @@ import {Incoming} from "./link";
 export interface PictureListener {
   placed(x_mm: number, y_mm: number, done: boolean): void;
   sunMoved(x_mm: number, y_mm: number, done: boolean): void;
+  focused(x_mm: number, y_mm: number): void;
 }
 
 interface Kept {
@@ -20,6 +21,7 @@ export class PictureView {
   private readonly now = h("canvas", {class: "picture", role: "img", "aria-label": "the picture"});
   private readonly mark = h("div", {class: "cursor-mark"});
   private readonly sun = h("button", {type: "button", class: "sun-mark", "data-term": "sun", "aria-label": "the sun; drag it, or move it by arrow keys"}, "☀");
+  private readonly sources = h("div", {class: "sources"});
   private sunPlace: [number, number] | null = null;
   private readonly divider = h("div", {class: "divider", role: "slider", tabindex: "0", "aria-label": "before and after",
     "aria-valuemin": "0", "aria-valuemax": "100"});
@@ -30,7 +32,7 @@ export class PictureView {
   private cursor: [number, number] = [0, 0];
 
   constructor(private readonly listener: PictureListener) {
-    this.stage.append(this.now, this.mark, this.divider, this.captions);
+    this.stage.append(this.now, this.sources, this.mark, this.divider, this.captions);
     this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage, this.sun);
     this.divider.hidden = this.sun.hidden = true;
     this.sun.addEventListener("pointerdown", event => this.dragSun(event));
@@ -43,6 +45,7 @@ export class PictureView {
     });
     new ResizeObserver(() => this.fit()).observe(this.element);
     this.stage.addEventListener("pointerdown", event => this.down(event));
+    this.stage.addEventListener("dblclick", () => this.listener.focused(...this.cursor));
     this.divider.addEventListener("pointerdown", event => this.dragDivider(event));
     this.divider.addEventListener("keydown", event => {
       const step = event.key === "ArrowLeft" ? -0.02 : event.key === "ArrowRight" ? 0.02 : 0;
@@ -63,6 +66,12 @@ export class PictureView {
     const preview = message.quality === "preview";
     this.badge.textContent = preview ? "preview" : "full";
     this.badge.classList.toggle("is-preview", preview);
+    this.sources.replaceChildren(...message.sources.map((source: {name: string; x_mm: number; y_mm: number}) => {
+      const mark = h("div", {class: "source-mark", title: source.name});
+      mark.style.left = `${50 + 100 * source.x_mm / this.frame_mm[0]}%`;
+      mark.style.top = `${50 - 100 * source.y_mm / this.frame_mm[1]}%`;
+      return mark;
+    }));
     this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, blur to ${100 * message.tolerance} %`;
     this.element.dataset.quality = message.quality;
     this.element.classList.remove("stale");

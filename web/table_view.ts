@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The prescription, every number of which can be altered, and pinned to have a slider.
 import {h, shown, typed} from "./dom";
-import {Glass, Lens, Surface} from "./model";
+import {coat, commonCoating, Glass, isCoatable, Lens, Surface} from "./model";
 
 export interface TableListener {
   changed(alter: (lens: Lens) => void, gesture: string): void;
@@ -9,6 +9,8 @@ export interface TableListener {
   isPinned(path: string): boolean;
   searchGlass(text: string, show: (glasses: FoundGlass[]) => void): void;
   refused(text: string): void;
+  /** What can be chosen. */
+  coatings(): {name: string; title: string}[];
 }
 
 export interface FoundGlass {
@@ -44,6 +46,9 @@ interface Column {
   empty: string;
 }
 
+/** Stands for coatings that differ. */
+const keptCoating = "\u0000";
+
 const columns: Column[] = [
   {key: "radius_mm", title: "radius", term: "radius", empty: "∞"},
   {key: "thickness_mm", title: "thickness", term: "thickness", empty: ""},
@@ -62,7 +67,7 @@ export class TableView {
 
   show(lens: Lens): void {
     this.lens = lens;
-    const shape = JSON.stringify(lens.surfaces.map(each => [each.stop ?? false, each.asphere ? Object.keys(each.asphere) : 0]));
+    const shape = JSON.stringify(lens.surfaces.map(each => [each.stop ?? false, each.asphere ? Object.keys(each.asphere) : 0, each.glass === undefined, each.coating === undefined]));
     if (shape !== this.shape) {
       this.shape = shape;
       this.build();
@@ -85,7 +90,7 @@ export class TableView {
 
   private build(): void {
     const head = h("tr", {}, h("th", {}, ""), ...columns.slice(0, 2).map(c => h("th", {"data-term": c.term}, c.title)),
-        h("th", {"data-term": "glass", class: "left"}, "glass"), ...columns.slice(2).map(c => h("th", {"data-term": c.term}, c.title)), h("th", {}, ""));
+        h("th", {"data-term": "glass", class: "left"}, "glass"), h("th", {"data-term": "coating", class: "left"}, this.coatingChoice(-1)), ...columns.slice(2).map(c => h("th", {"data-term": c.term}, c.title)), h("th", {}, ""));
     const body = h("tbody");
     this.lens!.surfaces.forEach((surface, i) => {
       body.append(this.row(surface, i));
@@ -101,8 +106,35 @@ export class TableView {
     const mark = h("button", {class: "stop-mark", type: "button", title: surface.stop ? "the aperture stop" : "make this the aperture stop",
       "aria-label": `surface ${i}: stop`, "aria-pressed": surface.stop ? "true" : "false", onclick: () => this.makeStop(i)}, String(i));
     row.append(h("td", {class: "number"}, mark), this.cell(i, columns[0]), this.cell(i, columns[1]), this.glassCell(i),
-        this.cell(i, columns[2]), this.cell(i, columns[3]), h("td", {class: "row-menu"}, this.menu(i)));
+        h("td", {}, isCoatable(this.lens!, i) || surface.coating !== undefined ? this.coatingChoice(i) : null), this.cell(i, columns[2]), this.cell(i, columns[3]), h("td", {class: "row-menu"}, this.menu(i)));
     return row;
+  }
+
+  /** Of one surface; −1: of all between air and glass at once. */
+  private coatingChoice(i: number): HTMLSelectElement {
+    const all = i < 0;
+    const choose = (event: Event) => {
+      const name = (event.target as HTMLSelectElement).value;
+      if (name === keptCoating) return this.refresh();
+      this.listener.changed(lens => lens.surfaces.forEach((_, k) => {
+        if (all ? isCoatable(lens, k) : k === i) coat(lens, k, name === "" ? null : name);
+      }), "");
+    };
+    return h("select", {class: "coating", "data-coating": all ? "all" : i, "aria-label": all ? "coating of all surfaces" : `surface ${i}, coating`,
+      title: all ? "coat all surfaces at once" : null, onchange: choose});
+  }
+
+  /** As it is now, among what there is. */
+  private showCoating(select: HTMLSelectElement): void {
+    const lens = this.lens!, all = select.dataset.coating === "all";
+    const own = all ? commonCoating(lens) : lens.surfaces[Number(select.dataset.coating)]?.coating ?? null;
+    const mixed = all && own === null && lens.surfaces.some(each => each.coating !== undefined);
+    const options: [string, string, string][] = [...(mixed ? [[keptCoating, "…", ""] as [string, string, string]] : []), ["", all ? "bare" : "–", "bare glass"],
+      ...this.listener.coatings().map((each): [string, string, string] => [each.name, each.name, each.title])];
+    select.replaceChildren(...(all ? [h("option", {disabled: true}, "coating of all")] : []), ...options.map(([value, text, title]) => h("option", {value, title}, text)));
+    select.value = mixed ? keptCoating : own ?? "";
+    select.classList.toggle("is-bare", select.value === "");
+    if (!all) select.title = this.listener.coatings().find(each => each.name === own)?.title ?? "bare glass";
   }
 
   private cell(i: number, column: Column): HTMLElement {
@@ -112,7 +144,7 @@ export class TableView {
 
   private asphereRow(i: number, power: string): HTMLElement {
     return h("tr", {class: "asphere", "data-of": i}, h("td"), h("td", {class: "left", colspan: "2"}, h("span", {}, "r", h("sup", {}, power))),
-        h("td", {colspan: "3"}, this.input(`surfaces[${i}].asphere.${power}`, "0", `surface ${i}, coefficient of r^${power}`, 0)), h("td"));
+        h("td", {colspan: "4"}, this.input(`surfaces[${i}].asphere.${power}`, "0", `surface ${i}, coefficient of r^${power}`, 0)), h("td"));
   }
 
   private input(path: string, empty: string, label: string, whenEmpty: number | null | undefined): HTMLElement {
@@ -240,7 +272,7 @@ export class TableView {
         }));
   }
 
-  /** Numbers as they are now; a field that is being typed into stays. */
+  /** Numbers and choices as they are now; a field that is being typed into stays. */
   private refresh(all = false): void {
     const lens = this.lens!;
     this.element.querySelectorAll<HTMLInputElement>("input[data-path]").forEach(field => {
@@ -259,5 +291,6 @@ export class TableView {
       field.value = field.dataset.shown = glassText(lens.surfaces[Number(field.dataset.glass)]?.glass);
       field.title = field.value;
     });
+    this.element.querySelectorAll<HTMLSelectElement>("select.coating").forEach(select => this.showCoating(select));
   }
 }

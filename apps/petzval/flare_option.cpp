@@ -89,10 +89,10 @@ FlareOptions FlareChoice::options() const {
   }
   const FlareOptions usual;
   if (!options.ghosts &&
-      (flare.search.threshold != usual.search.threshold || flare.neglected_share != usual.neglected_share ||
-       flare.ghost_reflections != usual.ghost_reflections))
-    throw InputError(
-        "--ghost-threshold, --ghost-neglect and --ghost-reflections have no effect without --ghosts");
+      (flare.neglected_share != usual.neglected_share || flare.ghost_reflections != usual.ghost_reflections))
+    throw InputError("--ghost-neglect and --ghost-reflections have no effect without --ghosts");
+  if (!options.seeks() && flare.search.threshold != usual.search.threshold)
+    throw InputError("--ghost-threshold has no effect without --ghosts, --starburst or --scatter");
   if (suns.empty() && (sun_diameter_deg != Sun().diameter_deg || sun_light != Sun().light))
     throw InputError("--sun-diameter and --sun-light have no effect without --sun");
   if (!ghost_layer.empty()) require_extension(ghost_layer, {".exr", ".npy"}, "a layer of ghosts");

@@ -30,15 +30,20 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
+/// Of "surfaces[3]".
+std::optional<std::size_t> surface_of(const std::string& name) {
+  constexpr std::string_view begin = "surfaces[";
+  if (!name.starts_with(begin) || !name.ends_with("]")) return {};
+  std::size_t surface = 0;
+  const char* const last = name.data() + name.size() - 1;
+  const auto [end, error] = std::from_chars(name.data() + begin.size(), last, surface);
+  return error == std::errc() && end == last ? std::optional(surface) : std::nullopt;
+}
+
 /// The coating that a column of the table fills.
 Coating& column(Losses& losses, const std::string& name, const std::string& file, int line) {
   if (name == "air_glass") return losses.air_glass ? *losses.air_glass : losses.air_glass.emplace();
-  std::size_t surface = 0;
-  const char* const digits = name.data() + std::string_view("surfaces[").size();
-  if (name.starts_with("surfaces[") && name.ends_with("]")) {
-    const auto [end, error] = std::from_chars(digits, name.data() + name.size() - 1, surface);
-    if (error == std::errc() && end == name.data() + name.size() - 1) return losses.surfaces[surface];
-  }
+  if (const std::optional<std::size_t> surface = surface_of(name)) return losses.surfaces[*surface];
   throw InputError(file, line, fmt::format("a column '{}'; the header must be {}", name, table_form));
 }
 
@@ -79,6 +84,30 @@ void read_reflectances(const std::string& file, Losses& losses) {
                      fmt::format("holds no reflectances; {} and rows of numbers would be right", table_form));
 }
 
+/// A share, or films by name or file.
+Coating read_one(const std::string& text) {
+  const std::optional<double> reflectance = parse_number(text);
+  return reflectance ? Coating::constant(*reflectance) : petzval::read_coating(text);
+}
+
+/// "mgf2,surfaces[3]=0.005": of all surfaces between air and glass, and of single ones.
+void read_coatings(const std::string& text, Losses& losses) {
+  for (const std::string& part : cells_of(text)) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos && !losses.air_glass) {
+      losses.air_glass = read_one(part);
+      continue;
+    }
+    const std::optional<std::size_t> surface = surface_of(part.substr(0, equals));
+    if (equals == std::string::npos || !surface ||
+        !losses.surfaces.emplace(*surface, read_one(part.substr(equals + 1))).second)
+      throw InputError(
+          fmt::format("'{}' is no coating of one surface; surfaces[3]=mgf2, each surface once, would be "
+                      "right (--coating)",
+                      part));
+  }
+}
+
 }  // namespace
 
 void LossChoice::add_to(CLI::App& command) {
@@ -87,7 +116,7 @@ void LossChoice::add_to(CLI::App& command) {
                      "Coating of the surfaces between air and glass: a name or file of thin films (mgf2, "
                      "quarter-half-quarter), their "
                      "reflectance as a number, or a CSV file with columns wavelength_nm and air_glass or "
-                     "surfaces[0], surfaces[3]…");
+                     "surfaces[0], surfaces[3]…; of single surfaces: surfaces[0]=mgf2,surfaces[3]=0.005");
   command.add_flag("--absorption", absorption, "Count absorption in the glass, by the catalogue's k");
 }
 
@@ -95,12 +124,12 @@ Losses LossChoice::read() const {
   Losses losses;
   losses.fresnel = fresnel;
   losses.absorption = absorption;
-  if (const std::optional<double> reflectance = parse_number(coating))
-    losses.air_glass = Coating::constant(*reflectance);
+  if (coating.find("surfaces[") != std::string::npos)
+    read_coatings(coating, losses);
   else if (coating.ends_with(".csv") || (std::filesystem::exists(coating) && !coating.ends_with(".json")))
     read_reflectances(coating, losses);
   else if (!coating.empty())
-    losses.air_glass = petzval::read_coating(coating);
+    losses.air_glass = read_one(coating);
   return losses;
 }
 

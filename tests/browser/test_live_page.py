@@ -147,6 +147,86 @@ class LivePage(unittest.TestCase):
         browser.settle()
         self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".ghost-way .ray")), 0)
 
+    def test_surfaces_are_coated(self):
+        browser = self.browser
+        choose = """const select = document.querySelector(`[data-coating="${arguments[0]}"]`);
+            select.value = arguments[1]; select.dispatchEvent(new Event("change"));"""
+        coatings = lambda: [surface.get("coating") for surface in browser.session()["lens"]["surfaces"]]
+        light = lambda: browser.run("return Number(document.querySelector('tr[data-ghost=\"2,0\"] td:last-child').textContent.replace('−', '-'))")
+        self.change_shows("document.getElementById('tab-ghosts').click()")
+        bare = light()
+        self.change_shows(choose, "all", "mgf2")
+        self.assertEqual(coatings(), ["mgf2", None, "mgf2"], "not between the cemented glasses")
+        self.assertIn(f"--lens {LENS} --coating mgf2 ", browser.text(".command"))
+        self.assertLess(light(), bare / 3)
+        self.change_shows(choose, "0", "quarter-half-quarter")
+        self.assertEqual(coatings(), ["quarter-half-quarter", None, "mgf2"])
+        self.assertIn("--coating 'surfaces[0]=quarter-half-quarter,surfaces[2]=mgf2' ", browser.text(".command"))
+        expected = browser.session()
+        browser.driver.refresh()
+        browser.settle()
+        self.assertEqual(browser.session(), expected)
+        self.change_shows(choose, "0", "")
+        self.assertEqual(coatings(), [None, None, "mgf2"])
+        self.change_shows("document.getElementById('undo').click()")
+        self.assertEqual(coatings(), ["quarter-half-quarter", None, "mgf2"])
+        browser.run("const field = document.querySelector('[data-glass=\"1\"]'); field.value = ''; field.dispatchEvent(new Event('change'));")
+        browser.settle()
+        self.assertEqual(coatings(), ["quarter-half-quarter", None, None], "there is no glass any more")
+
+    def test_sources_of_the_scene_make_ghosts_and_stars(self):
+        browser = self.browser
+        rings = lambda: len(browser.driver.find_elements(By.CSS_SELECTOR, ".source-mark"))
+        self.change_shows(CHOOSE, "scene", "points")
+        self.assertEqual(rings(), 0)
+        self.change_shows("document.querySelector('[data-check=ghosts]').click()")
+        self.assertEqual(rings(), 16)
+        self.assertIn("16 sources", browser.text(".source-count"))
+        self.assertIn("--ghosts --ghost-neglect 0.001", browser.text(".command"))
+        self.change_shows("document.querySelector('[data-check=starburst]').click()")
+        self.change_shows("document.querySelector('[data-check=ghosts]').click()")
+        self.change_shows(SLIDE, "threshold", 1000)
+        self.assertIn("--starburst --ghost-threshold 10000 ", browser.text(".command"))
+        self.assertEqual(rings(), 0)
+        self.assertIn("no sources", browser.text(".source-count"))
+
+    def test_focuses_where_the_picture_is_clicked(self):
+        browser = self.browser
+        self.change_shows(SLIDE, "defocus_mm", 900)
+        blurred = browser.session()["defocus_mm"]
+        picture = browser.driver.find_element(By.CSS_SELECTOR, ".picture-stage")
+        ActionChains(browser.driver).move_to_element_with_offset(picture, 40, -30).double_click().perform()
+        browser.until("it is focused", lambda: browser.session()["defocus_mm"] != blurred)
+        browser.settle()
+        sharp = browser.session()["defocus_mm"]
+        self.assertLess(abs(sharp), 0.2, "the achromat is focused as it was designed, but for its curved field")
+        self.assertIn(f"--defocus {sharp:g} ", browser.text(".command"))
+        browser.run("document.getElementById('undo').click()")
+        browser.settle()
+        browser.run("document.getElementById('focus-here').click()")
+        browser.until("it is focused again", lambda: abs(browser.session()["defocus_mm"] - sharp) < 2e-4)
+
+    def test_two_lenses_side_by_side(self):
+        browser = self.browser
+        shown = lambda: browser.run("const c = document.querySelector('.compare canvas.picture'); return [c.width, document.querySelector('.compare .badge').textContent]")
+        browser.run("document.getElementById('compare').click()")
+        browser.until("the other picture", lambda: shown()[0] > 0 and shown()[1] == "full")
+        browser.until("both plots", lambda: browser.run("return document.querySelectorAll('.half svg.plot').length") == 2)
+        browser.run(CHOOSE, "compare", "plano-convex")
+        browser.until("its lens", lambda: (browser.session()["compared"] or {}).get("lens") and browser.session()["compared"]["name"] == "plano-convex")
+        browser.until("its picture", lambda: shown()[0] > 0 and shown()[1] == "full")
+        expected = browser.session()
+        browser.driver.refresh()
+        browser.settle()
+        self.assertEqual(browser.session(), expected)
+        # The camera is that of both.
+        browser.run(SLIDE, "defocus_mm", 700)
+        browser.until("both follow", lambda: browser.run("return document.querySelector('.compare').dataset.idle === document.body.dataset.idle && document.body.dataset.idle === String(window.petzvalPage.id)"))
+        browser.run("document.getElementById('compare').click()")
+        browser.settle()
+        self.assertTrue(browser.run("return document.querySelector('.compare').hidden"))
+        self.assertEqual(browser.run("return document.querySelectorAll('.half').length"), 0)
+
     def test_table_undo_and_redo(self):
         path = "surfaces[1].thickness_mm"
         self.change_shows(TYPE, path, "4")

@@ -65,7 +65,7 @@ class Flare(ProgramTest):
     def test_refuses_what_makes_no_sense(self):
         for options, words in ((["--sun", "8"], "20,15"), (["--sun", "95,0"], "80"), (["--sun", "3,4:0"], "more than 0"),
                                (["--sun", "3,4", "--sun-light", "850nm"], "no eye sees"), (["--sun-diameter", "1"], "--sun"),
-                               (["--ghost-neglect", "0.5"], "--ghosts"), (["--ghosts", "--ghost-neglect", "2"], "0 to less than 1"),
+                               (["--ghost-neglect", "0.5"], "--ghosts"), (["--ghost-threshold", "5"], "--starburst"), (["--ghosts", "--ghost-neglect", "2"], "0 to less than 1"),
                                (["--ghost-reflections", "4"], "--ghosts"), (["--ghosts", "--ghost-reflections", "3"], "2,4"),
                                (["--ghost-layer", "ghosts.png"], ".exr")):
             self.assert_refused(*SHOT, *options, "-o", "light.npy", words=(words,))

@@ -46,6 +46,16 @@ class Losses(ProgramTest):
         self.assertAlmostEqual(self.column("--coating", table)[1], 0.85, 14)
         self.assertTrue(math.isnan(self.column("--coating", table)[2]))
 
+    def test_coatings_of_single_surfaces(self):
+        self.assertAlmostEqual(self.column("--coating", "surfaces[1]=0.2")[0], 0.8, 14)
+        self.assertAlmostEqual(self.column("--coating", "0.01,surfaces[0]=0.2")[0], 0.8 * 0.99, 14)
+        both, all_at_once = (self.column("--coating", text)[0] for text in ("surfaces[0]=mgf2,surfaces[1]=mgf2", "mgf2"))
+        self.assertEqual(both, all_at_once)
+        for wrong, words in [("surfaces[0]=0.1,surfaces[0]=0.2", "each surface once"), ("mgf2,0.1,surfaces[0]=0.2", "'0.1'"), ("surfaces[7]=0.1", "surfaces[7]"),
+                             ("surfaces[x]=0.1", "surfaces[x]"), ("surfaces[0]=mgf3", "mgf2"), ("surfaces[0]=1.5", "0 to 1")]:
+            with self.subTest(wrong):
+                self.assert_error(self.petzval("lens", "trace", self.folder / "plate.json", "--rays", self.folder / "rays.csv", "--coating", wrong), 2, words)
+
     def test_thin_films_on_the_axis(self):
         c = [1.72448482, 0.0134871947, 0.390104889, 0.0569318095, 1.04572858, 118.557185]  # Schott's SF6
         n = math.sqrt(1 + sum(c[i] * 0.16 / (0.16 - c[i + 1]) for i in (0, 2, 4)))

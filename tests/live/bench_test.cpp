@@ -103,6 +103,119 @@ TEST(Bench, PutsTheSunWhereItsAnglesSayAndFollowsOneGhost) {
   EXPECT_LT(level(-x_mm, y_mm), 255);
 }
 
+TEST(Bench, FocusesOnAPlaceOfThePicture) {
+  RunningServer server;
+  LivePage page(*server);
+  const json state = bench_state(1);
+  page.send(state);
+  page.next("idle");
+  const double x_mm = 1.5, y_mm = 1, height_mm = std::hypot(x_mm, y_mm);
+  page.send(json{{"kind", "focus"}, {"id", 2}, {"place_mm", {x_mm, y_mm}}});
+  const double shift_mm = page.next("focused")["shift_mm"];
+  // Spots of a sensor that is moved by hand are larger on both sides.
+  const Lens lens = read_lens("achromat-50mm").lens;
+  const auto spot_um = [&](double at_mm) {
+    Lens moved = lens;
+    moved.surfaces.back().thickness_mm += at_mm;
+    const FieldTableRequest at{.field_kind = Fields::Kind::real_image_height_mm,
+                               .fields = {height_mm},
+                               .wavelengths_nm = {lens.reference_wavelength_nm}};
+    const SpotDiagram spot = spot_diagrams(moved, at, 24).front();
+    const auto count = static_cast<double>(spot.y_um.size());
+    double x = 0, y = 0, square = 0;
+    for (std::size_t i = 0; i < spot.y_um.size(); ++i) x += spot.x_um[i] / count, y += spot.y_um[i] / count;
+    for (std::size_t i = 0; i < spot.y_um.size(); ++i)
+      square += std::pow(spot.x_um[i] - x, 2) + std::pow(spot.y_um[i] - y, 2);
+    return std::sqrt(square / count);
+  };
+  const double best = spot_um(shift_mm);
+  for (const double step_mm : {0.1, 0.2}) {
+    EXPECT_GT(spot_um(shift_mm + step_mm), best);
+    EXPECT_GT(spot_um(shift_mm - step_mm), best);
+  }
+}
+
+/// What a quarter wave of 1.38 at 550 nm on glass leaves, by the sum of its two waves (Airy).
+double reflected_by_film(double index, double wavelength_nm) {
+  const double film = 1.38, phase = std::numbers::pi * 550 / wavelength_nm;
+  const double r1 = (1 - film) / (1 + film), r2 = (film - index) / (film + index);
+  const double cross = 2 * r1 * r2 * std::cos(phase);
+  return (r1 * r1 + r2 * r2 + cross) / (1 + r1 * r1 * r2 * r2 + cross);
+}
+
+double reflected_by_glass(double index) {
+  return std::pow((index - 1) / (index + 1), 2);
+}
+
+TEST(Bench, GhostsOfACoatedLensAreThoseOfItsFilms) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(1);
+  state["stray"]["ghost"] = {2, 0};
+  const auto light_of_2_0 = [&] {
+    page.send(state);
+    const json stray = page.next("stray");
+    for (const json& ghost : stray["ghosts"])
+      if (ghost["first"] == 2 && ghost["second"] == 0) return ghost["relative_irradiance"].get<double>();
+    return 0.0;
+  };
+  const double bare = light_of_2_0();
+  state["coatings"] = {"mgf2", nullptr, "mgf2"};
+  const double coated = light_of_2_0();
+  const Lens lens = read_lens("achromat-50mm").lens;
+  const double nm = lens.reference_wavelength_nm, front = lens.surfaces[0].material.index(nm),
+               back = lens.surfaces[1].material.index(nm);
+  EXPECT_NEAR(coated / bare,
+              reflected_by_film(front, nm) * reflected_by_film(back, nm) /
+                  (reflected_by_glass(front) * reflected_by_glass(back)),
+              1e-9);
+}
+
+/// The mean level of a picture.
+double mean_level(const std::string& rgba) {
+  double sum = 0;
+  for (std::size_t i = 0; i < rgba.size(); i += 4) sum += static_cast<unsigned char>(rgba[i + 1]);
+  return 4 * sum / static_cast<double>(rgba.size());
+}
+
+TEST(Bench, FindsTheSourcesOfAScene) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(1);
+  state["scene"] = "points";  // 9 x 9 white samples on black
+  state["picture"] = true;
+  state["shot"]["noise"] = false;
+  state["shot"]["exposure"] = "1";
+  state["shot"]["compensation_ev"] = 4;
+  const auto preview = [&] {
+    page.send(state);
+    return page.next("picture");
+  };
+  EXPECT_TRUE(preview()["sources"].empty()) << "they make nothing";
+  const double without = mean_level(page.bytes);
+  state["stray"]["ghosts"] = true;
+  const json picture = preview();
+  EXPECT_GT(mean_level(page.bytes), without);
+  ASSERT_EQ(picture["sources"].size(), 16u) << "the brightest are taken";
+  // On a lattice of 9 across a chart that is at least as wide as the frame; an achromat does not distort.
+  const double width_mm = picture["columns"].get<double>() * picture["pitch_um"].get<double>() / 1000;
+  double step_mm = INFINITY;
+  for (const json& source : picture["sources"])
+    if (const double x_mm = std::abs(source["x_mm"].get<double>()); x_mm > width_mm / 18)
+      step_mm = std::min(step_mm, x_mm);
+  EXPECT_GE(step_mm, width_mm / 9);
+  EXPECT_LT(step_mm, 2 * width_mm / 9);
+  for (const json& source : picture["sources"]) {
+    const double steps = source["x_mm"].get<double>() / step_mm;
+    // Samples are whole: half of one is this part of a step, of the source and for each step.
+    const double half_sample = 0.5 * 9 / picture["scene_columns"].get<double>();
+    EXPECT_NEAR(steps, std::round(steps), half_sample * (1 + std::abs(steps)) + 1e-3);
+  }
+  state["stray"]["threshold"] = 1e6;
+  EXPECT_TRUE(preview()["sources"].empty()) << "no sample is a million times the mean of 320 x 240";
+  EXPECT_NEAR(mean_level(page.bytes), without, 1e-9);
+}
+
 TEST(Bench, GivesUpAnOlderPictureForANewerState) {
   RunningServer server;
   LivePage page(*server);
@@ -228,7 +341,7 @@ TEST(BenchPsf, PointsItsComaAwayFromTheAxisOrToIt) {
   Lens single = lens;
   single.wavelengths_nm = {lens.reference_wavelength_nm};
   const double height_mm = std::abs(spot.height_um) / 1000;
-  const BenchPsf psf = bench_psf(single, {0, height_mm}, {});
+  const BenchPsf psf = bench_psf({single, {}}, {0, height_mm}, {});
   double rows = 0, light = 0;
   for (int row = 0; row < psf.size; ++row)
     for (int column = 0; column < psf.size; ++column) {

@@ -20,11 +20,9 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   json message = bench_state(9, "tessar");
   message["camera"] = {{"f_number", 5.6}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
   message["cursor_mm"] = {1.5, -2};
-  message["stray"] = {{"sun_deg", {20, -15.5}},
-                      {"ghosts", true},
-                      {"starburst", true},
-                      {"roughness_nm", 2},
-                      {"ghost", {5, 0}}};
+  message["coatings"] = {"mgf2", nullptr, "quarter-half-quarter"};
+  message["stray"] = {{"sun_deg", {20, -15.5}}, {"sun_lx", 5000},    {"threshold", 12.5}, {"ghosts", true},
+                      {"starburst", true},      {"roughness_nm", 2}, {"ghost", {5, 0}}};
   const auto state = std::get<BenchState>(parsed(message));
   EXPECT_EQ(state.id, 9);
   EXPECT_EQ(state.f_number, 5.6);
@@ -32,9 +30,12 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   EXPECT_EQ(state.distance_m, 3);
   EXPECT_EQ(state.defocus_mm, -0.25);
   EXPECT_EQ(state.cursor_mm[1], -2);
+  EXPECT_EQ(state.coating_text(), "surfaces[0]=mgf2,surfaces[2]=quarter-half-quarter");
   ASSERT_TRUE(state.sun && state.ghost);
   EXPECT_EQ(state.sun->right_deg, 20);
   EXPECT_EQ(state.sun->up_deg, -15.5);
+  EXPECT_EQ(state.sun->illuminance_lx, 5000);
+  EXPECT_EQ(state.threshold, 12.5);
   EXPECT_TRUE(state.ghosts && state.starburst);
   EXPECT_EQ(state.roughness_nm, 2);
   EXPECT_EQ(*state.ghost, (GhostPair{5, 0}));
@@ -90,14 +91,25 @@ TEST(LiveMessage, RefusesNumbersOutOfRange) {
   EXPECT_THROW(parsed(with("/shot/exposure", "long")), InputError);
   EXPECT_THROW(parsed(with("/shot/noise", 1)), InputError);
   EXPECT_THROW(parsed(with("/cursor_mm", json::array({1}))), InputError);
+  EXPECT_THROW(parsed(with("/coatings", json::array({"/etc/passwd"}))), InputError);
+  EXPECT_THROW(parsed(with("/coatings", "mgf2")), InputError);
   EXPECT_THROW(parsed(with("/cursor_mm/0", 1e300)), InputError);
   EXPECT_THROW(parsed(with("/stray/sun_deg", {80, 0})), InputError);
   EXPECT_THROW(parsed(with("/stray/sun_deg", {1, 2, 3})), InputError);
+  EXPECT_THROW(parsed(with("/stray/sun_lx", 0)), InputError);
+  EXPECT_THROW(parsed(with("/stray/threshold", 0.5)), InputError);
   EXPECT_THROW(parsed(with("/stray/roughness_nm", -1)), InputError);
   EXPECT_THROW(parsed(with("/stray/ghost", {0, 5})), InputError);
   EXPECT_THROW(parsed(with("/stray/ghost", {1.5, 0})), InputError);
   EXPECT_THROW(parsed(with("/stray/ghost", {1, -1})), InputError);
   EXPECT_THROW(parsed(with("/plots", json(std::vector<std::string>(17, "mtf")))), InputError);
+}
+
+TEST(LiveMessage, FocusesOnAPlace) {
+  const auto wish = std::get<FocusWish>(parsed({{"kind", "focus"}, {"id", 4}, {"place_mm", {1.5, -2}}}));
+  EXPECT_EQ(wish.place_mm, (std::array<double, 2>{1.5, -2}));
+  EXPECT_THROW(parsed({{"kind", "focus"}, {"id", 4}, {"place_mm", {1.5}}}), InputError);
+  EXPECT_THROW(parsed({{"kind", "focus"}, {"id", 4}, {"place_mm", {1.5, 2}}, {"zone", 1}}), InputError);
 }
 
 TEST(LiveUpload, IsAHeaderAndBytes) {

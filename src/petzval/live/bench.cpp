@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/best_focus.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
@@ -11,6 +12,7 @@
 #include <petzval/live/bench.h>
 #include <petzval/live/bench_json.h>
 #include <petzval/live/bench_picture.h>
+#include <petzval/live/bench_plots.h>
 #include <petzval/live/bench_psf.h>
 #include <petzval/live/bench_sensor.h>
 #include <petzval/simulate/analysis.h>
@@ -19,6 +21,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 namespace petzval {
@@ -39,15 +42,16 @@ struct LensInUse {
 };
 
 std::string optics_key(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}", state.lens_json, state.f_number.value_or(0), state.focus.text(),
-                     state.distance_m.value_or(0), state.defocus_mm);
+  return fmt::format("{}|{}|{}|{}|{}|{}", state.lens_json, state.coating_text(), state.f_number.value_or(0),
+                     state.focus.text(), state.distance_m.value_or(0), state.defocus_mm);
 }
 
 std::string stray_key_of(const BenchState& state) {
   const Sun sun = state.sun.value_or(Sun{});
   const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
-                     state.ghosts, state.starburst, state.roughness_nm, ghost.first, ghost.second);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
+                     sun.illuminance_lx, state.ghosts, state.starburst, state.threshold, state.roughness_nm,
+                     ghost.first, ghost.second);
 }
 
 /// As the picture uses it: focused, and the object where the scene stands.
@@ -70,6 +74,13 @@ json list_of_lenses() {
     return list;
   }();
   return all;
+}
+
+json list_of_coatings() {
+  json list = json::array();
+  for (const std::string& name : bundled_names("coatings", ".json"))
+    list.push_back({{"name", name}, {"title", read_coating(name).name}});
+  return list;
 }
 
 double image_height_of(const Lens& lens) {
@@ -104,6 +115,7 @@ struct Bench::Impl {
   const BenchQuestions* ask = nullptr;  ///< while show() is under way
   int threads = 0;
   BenchPicture pictures = {};
+  std::optional<BenchPlots> plots = {};
   int uploads = 0;
 
   void tell(const json& message) const {
@@ -118,7 +130,7 @@ struct Bench::Impl {
   /// the longer it may.
   bool is_fresh(const std::string& name) const {
     using std::chrono::milliseconds;
-    const milliseconds moment(name.starts_with("plot:") ? 1000 : name == "preview" ? 300 : 150);
+    const milliseconds moment(name == "preview" ? 300 : 150);
     const auto found = shown_at.find(name);
     return found != shown_at.end() && Clock::now() - found->second < moment;
   }
@@ -158,7 +170,6 @@ struct Bench::Impl {
 
   void show(const BenchState& state);
   void show_layout(const BenchState& state) const;
-  void show_plots(const BenchState& state);
   void show_psf(const BenchState& state, const Context& context) const;
   void show_stray(const BenchState& state) const;
   std::string sensor_path(const BenchState& state) const {
@@ -175,7 +186,7 @@ void Bench::Impl::show_layout(const BenchState& state) const {
 }
 
 void Bench::Impl::show_psf(const BenchState& state, const Context& context) const {
-  const BenchPsf psf = bench_psf(use.lens, state.cursor_mm, context);
+  const BenchPsf psf = bench_psf({use.lens, use.camera.losses}, state.cursor_mm, context);
   send({json{{"kind", "psf"},
              {"id", state.id},
              {"size", psf.size},
@@ -189,30 +200,10 @@ void Bench::Impl::show_psf(const BenchState& state, const Context& context) cons
 
 void Bench::Impl::show_stray(const BenchState& state) const {
   const double sensor_reflectance = read_sensor(sensor_path(state)).reflectance.value_or(0.0);
-  json message = stray_json(use.lens, state.sun, state.ghost, sensor_reflectance);
+  json message = stray_json({use.lens, use.camera.losses}, state.sun, state.ghost, sensor_reflectance);
   message["kind"] = "stray";
   message["id"] = state.id;
   tell(message);
-}
-
-void Bench::Impl::show_plots(const BenchState& state) {
-  AnalysisRequest request;
-  request.plots = true;
-  request.polychromatic_mtf = true;
-  request.mtf.frequencies_cpmm = {0, 10, 20, 40, 60, 80, 100};
-  for (const std::string& name : state.plots) {
-    stage(state.id, "plot:" + name, use.key, [&](const Context& context) {
-      const AnalysisResult result = analyse(name, use.lens, request, context);
-      json plots = json::array();
-      for (const Plot& plot : result.plots) plots.push_back(plot_json(plot));
-      tell({{"kind", "plots"},
-            {"id", state.id},
-            {"analysis", name},
-            {"across", result.plots_across},
-            {"title", result.plots_title},
-            {"plots", std::move(plots)}});
-    });
-  }
 }
 
 void Bench::Impl::show(const BenchState& state) {
@@ -226,6 +217,9 @@ void Bench::Impl::show(const BenchState& state) {
       use.camera.f_number = state.f_number;
       use.camera.focus = state.focus;
       use.camera.defocus_mm = state.defocus_mm;
+      for (const auto& [surface, name] : state.coatings)
+        use.camera.losses.surfaces[surface] = read_coating(name);
+      use.camera.losses.validate(use.camera.lens);
       failed_at = "camera";
       use.lens = used_for_scene(use.camera, state.distance_m, {});
     } catch (const Error& error) {
@@ -239,8 +233,9 @@ void Bench::Impl::show(const BenchState& state) {
     const auto scene = scene_paths.find(state.scene);
     // The picture knows itself whether it is new.
     const auto work = [&](const Context& context) {
-      pictures.show(state, use.lens, scene == scene_paths.end() ? state.scene : scene->second,
-                    sensor_path(state), quality, context, send);
+      pictures.show(state, {use.lens, use.camera.losses},
+                    scene == scene_paths.end() ? state.scene : scene->second, sensor_path(state), quality,
+                    context, send);
     };
     return stage(
         state.id, name,
@@ -254,17 +249,18 @@ void Bench::Impl::show(const BenchState& state) {
   if (state.sun || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
     stage(state.id, "stray", fmt::format("{}|{}|{}", key, stray_key, state.sensor),
           [&](const Context&) { show_stray(state); });
-  const bool previewed = state.picture && picture("preview", PictureQuality::preview);
-  show_plots(state);
-  if (previewed) {
+  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
+  if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);
   }
+  if (!plots->wait([this] { return ask->newer() || ask->ended(); })) throw Cancelled();
 }
 
 Bench::Bench(const LiveStart& start, SendReply send) : impl_(std::make_unique<Impl>()) {
   impl_->start = start;
   impl_->send = std::move(send);
+  impl_->plots.emplace(impl_->send);
   impl_->names = bundled_live_names();
   impl_->scene_paths = start.scene_files;
   impl_->sensor_paths = start.sensor_files;
@@ -294,6 +290,7 @@ void Bench::greet() {
                {"sensors", impl_->names.sensors},
                {"illuminants", impl_->names.illuminants},
                {"tones", impl_->names.tones},
+               {"coatings", list_of_coatings()},
                {"analyses", std::move(analyses_list)}});
 }
 
@@ -315,6 +312,18 @@ void Bench::send_lens(const LensWish& wish) {
 
 void Bench::send_glasses(const GlassWish& wish) {
   impl_->tell({{"kind", "glasses"}, {"id", wish.id}, {"glasses", glasses_json(wish.text)}});
+}
+
+void Bench::focus(const FocusWish& wish) {
+  try {
+    if (impl_->use.key.empty()) throw InputError("there is no lens that could be focused");
+    const CoatedLens lens{impl_->use.lens, impl_->use.camera.losses};
+    impl_->tell({{"kind", "focused"},
+                 {"id", wish.id},
+                 {"shift_mm", best_spot_focus(lens.lens, field_at(lens, wish.place_mm)).shift_mm}});
+  } catch (const Error& error) {
+    impl_->problem(wish.id, "focus", error.what());
+  }
 }
 
 void Bench::save(const SaveWish& wish, const Context& context) {

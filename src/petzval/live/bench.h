@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/live/message.h>
+#include <petzval/trace/losses.h>
 
 #include <cstdint>
 #include <functional>
@@ -14,12 +15,19 @@
 
 namespace petzval {
 
+/// The lens as it is used, and what its coatings take.
+struct CoatedLens {
+  Lens lens = Lens();
+  Losses losses = {};
+};
+
 /// What is sent to the page: JSON alone, or with bytes behind it (pixels, a file).
 struct LiveReply {
   std::string json;
   std::vector<std::uint8_t> bytes = {};
   bool with_bytes = false;
 };
+/// May be called from any thread.
 using SendReply = std::function<void(LiveReply reply)>;
 
 /// What the server was started with.
@@ -40,10 +48,10 @@ struct BenchQuestions {
   std::function<bool()> rests;  ///< waits until the hand has rested; false if something came first
 };
 
-/// Stages: layout → psf → preview (few pixels, three bands) → plots → picture. What has been shown already
-/// and has not changed is left out. While a hand moves, a stage that was shown a moment ago gives way to what
-/// is newer; one that was not is finished first, so that all of them follow the hand. A Bench is for one
-/// thread at a time.
+/// Stages: layout → psf → preview (few pixels, three bands) → picture, and plots beside them. What has been
+/// shown already and has not changed is left out. While a hand moves, a stage that was shown a moment ago
+/// gives way to what is newer; one that was not is finished first, so that all of them follow the hand. A
+/// Bench is for one thread at a time.
 ///
 /// All of its numbers come from `simulate` and below; what fails is told to the page ("problem") and ends
 /// the stage, not the bench.
@@ -58,6 +66,8 @@ class Bench {
   void show(const BenchState& state, int threads, const BenchQuestions& ask);
   void send_lens(const LensWish& wish);
   void send_glasses(const GlassWish& wish);
+  /// How far the sensor of the lens that was shown last must move for this place to be sharp.
+  void focus(const FocusWish& wish);
   /// The lens or the picture that was shown last, as a file. \throws Cancelled.
   void save(const SaveWish& wish, const Context& context);
   /// Reads a lens, or keeps a photograph as a scene.

@@ -105,12 +105,13 @@ LayoutRays layout_rays(const Lens& lens) {
 }
 
 /// Rays of the sun, as far from the axis as it stands, or else along it.
-json ghost_way(const Lens& lens, const std::optional<Sun>& sun, const GhostPair& pair,
+json ghost_way(const CoatedLens& coated, const std::optional<Sun>& sun, const GhostPair& pair,
                double sensor_reflectance) {
+  const Lens& lens = coated.lens;
   if (pair.first > lens.surfaces.size()) return json::array();
   constexpr int rays_a_source = 7;
   constexpr double lead = 0.25;  // of the length of the lens
-  const GhostTracer tracer(lens, lens.reference_wavelength_nm, {}, sensor_reflectance);
+  const GhostTracer tracer(lens, lens.reference_wavelength_nm, coated.losses, sensor_reflectance);
   BrightSource source;
   if (sun) {
     const double up = std::tan(radians(sun->up_deg));
@@ -235,18 +236,35 @@ json layout_json(const Lens& lens) {
           {"first_order", first_order_json(lens)}};
 }
 
-json stray_json(const Lens& lens, const std::optional<Sun>& sun, const std::optional<GhostPair>& ghost,
-                double sensor_reflectance) {
+json stray_json(const CoatedLens& coated, const std::optional<Sun>& sun,
+                const std::optional<GhostPair>& ghost, double sensor_reflectance) {
   json rows = json::array();
-  for (const Ghost& each : ghosts(lens, {.sensor_reflectance = sensor_reflectance}))
+  for (const Ghost& each :
+       ghosts(coated.lens, {.losses = coated.losses, .sensor_reflectance = sensor_reflectance}))
     rows.push_back({{"first", each.first},
                     {"second", each.second},
                     {"focus_mm", finite_or_null(each.focus_mm)},
                     {"diameter_mm", finite_or_null(each.diameter_mm)},
                     {"relative_irradiance", finite_or_null(each.relative_irradiance)}});
   return {{"ghosts", std::move(rows)},
-          {"way", ghost ? ghost_way(lens, sun, *ghost, sensor_reflectance) : json::array()},
-          {"sky", sky_heights(lens)}};
+          {"way", ghost ? ghost_way(coated, sun, *ghost, sensor_reflectance) : json::array()},
+          {"sky", sky_heights(coated.lens)}};
+}
+
+json sources_json(const Lens& lens, const SourcesFound& found) {
+  json list = json::array();
+  for (const BrightSource& source : found.sources) {
+    Lens facing = lens;
+    facing.object_distance_mm = source.distance_mm;
+    FieldTracer tracer(facing, lens.reference_wavelength_nm, Tracer::Clip::stop_only);
+    const double tangent = std::hypot(source.right, source.up);
+    const std::optional<ChiefRay> chief =
+        tracer.chief_ray(source.distance_mm ? tangent * *source.distance_mm : degrees(std::atan(tangent)));
+    if (!chief) continue;
+    const double scale = tangent > 0 ? std::abs(chief->image_height_mm) / tangent : 0;
+    list.push_back({{"name", source.name}, {"x_mm", source.right * scale}, {"y_mm", source.up * scale}});
+  }
+  return list;
 }
 
 std::string blocking_surface(const Tracer& tracer, const Lens& lens, double object_field, int& surface) {

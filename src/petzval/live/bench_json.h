@@ -2,6 +2,8 @@
 // What the bench shows, as JSON for the page.
 #pragma once
 
+#include <petzval/flare/scene_sources.h>
+#include <petzval/live/bench.h>
 #include <petzval/live/message.h>
 #include <petzval/report/svg_plot.h>
 #include <petzval/trace/tracer.h>
@@ -22,8 +24,12 @@ nlohmann::json layout_json(const Lens& lens);
 /// Ghosts of the lens, the brightest first; the way of one of them through it, of the sun's light or
 /// else of light along the axis; and where on the sensor light from infinity lands: pairs of the tangent of
 /// its angle from the axis and its height [mm]. \throws InputError for lenses that have no ghosts to follow.
-nlohmann::json stray_json(const Lens& lens, const std::optional<Sun>& sun,
+nlohmann::json stray_json(const CoatedLens& coated, const std::optional<Sun>& sun,
                           const std::optional<GhostPair>& ghost, double sensor_reflectance);
+
+/// Where on the sensor bright sources of a scene are imaged [mm], as the upright picture shows it; those
+/// whose chief ray does not arrive are left out.
+nlohmann::json sources_json(const Lens& lens, const SourcesFound& found);
 
 /// What keeps the light of an object field from the sensor, in a line: "rays miss surface 3". Told by the
 /// rays of a fan that get farthest. \param surface  its number; -1: none is to blame.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/imaging/image_table.h>
+#include <petzval/live/bench_json.h>
 #include <petzval/live/bench_picture.h>
 #include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/flare.h>
@@ -12,6 +13,8 @@
 #include <utility>
 
 namespace petzval {
+
+using nlohmann::json;
 
 /// What a quality costs. The bands of a preview lie where the three channels of a camera are most sensitive.
 struct QualityCost {
@@ -32,17 +35,17 @@ QualityCost preview_cost(int most_columns, int scene_columns) {
 
 /// All that the light on the sensor depends on.
 std::string light_key_of(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", state.lens_json, state.f_number.value_or(0),
-                     state.focus.text(), state.distance_m.value_or(0), state.defocus_mm, state.scene,
-                     state.illuminant, state.sensor);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", state.lens_json, state.coating_text(),
+                     state.f_number.value_or(0), state.focus.text(), state.distance_m.value_or(0),
+                     state.defocus_mm, state.scene, state.illuminant, state.sensor);
 }
 
 /// All that stray light depends on besides the light of the picture.
 std::string stray_light_key(const BenchState& state) {
-  if (!state.sun && state.roughness_nm == 0) return {};
+  if (!state.has_stray_light()) return {};
   const Sun sun = state.sun.value_or(Sun{});
-  return fmt::format("{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg, state.ghosts,
-                     state.starburst, state.roughness_nm);
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
+                     sun.illuminance_lx, state.ghosts, state.starburst, state.threshold, state.roughness_nm);
 }
 
 /// And what its picture does, besides.
@@ -84,7 +87,7 @@ int columns_for(double spread_um, double frame_width_mm, int least, int most) {
 
 /// A table of fewer fields than a single picture takes, and PSFs where a picture of this tolerance needs
 /// them: real rays all the same, with more between them.
-TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCost& cost,
+TableCamera bench_optics(const CoatedLens& used, const Sensor& sensor, const QualityCost& cost,
                          const Context& context) {
   TableOptions options;
   options.wavelengths_nm = cost.wavelengths_nm;
@@ -92,16 +95,17 @@ TableCamera bench_optics(const Lens& used, const Sensor& sensor, const QualityCo
   options.max_image_height_mm = rim * sensor.geometry.half_diagonal_mm();
   options.field_count = cost.fields;
   options.largest_psf_size = cost.largest_psf_size;
+  options.losses = used.losses;
   const SpreadWanted wanted{sensor.geometry.pitch_um / 2, cost.tolerance};
   return TableCamera{result_within(context,
                                    [&](const ProgressCallback& progress) {
-                                     return build_image_table(used, options, wanted, progress);
+                                     return build_image_table(used.lens, options, wanted, progress);
                                    }),
                      sensor};
 }
 
-ImagingSession session_of(const std::string& scene_path, const std::string& illuminant,
-                          const QualityCost& cost) {
+/// The scene as a quality asks for it.
+SceneRequest scene_of(const std::string& scene_path, const std::string& illuminant, const QualityCost& cost) {
   SceneRequest request;
   request.name = scene_path;
   request.options.wavelengths_nm = cost.wavelengths_nm;
@@ -110,9 +114,13 @@ ImagingSession session_of(const std::string& scene_path, const std::string& illu
     request.options.columns = cost.scene_columns;
     request.options.rows = cost.scene_columns * 3 / 4;
   }
+  return request;
+}
+
+ImageOptions image_options(const QualityCost& cost) {
   ImageOptions options;
   options.imaging.product.tolerance = cost.tolerance;
-  return ImagingSession(std::move(request), std::move(options));
+  return options;
 }
 
 /// Levels of a display by their linear light, which is asked for every pixel.
@@ -155,20 +163,21 @@ std::vector<std::uint8_t> pixels_of(const PngImage& picture) {
   return pixels;
 }
 
-/// The picture with a sun, its ghosts and its star, and with what surfaces scatter.
-SpectralImage with_stray_light(const BenchState& state, const Lens& used, const Sensor& sensor, double psf_mm,
-                               const QualityCost& cost, const SpectralImage& light, const Context& context) {
+/// The picture with a sun, ghosts and stars of all bright sources, and with what surfaces scatter.
+SpectralImage with_stray_light(const BenchState& state, const CoatedLens& used, const Sensor& sensor,
+                               double psf_mm, const SourcesFound& found, const QualityCost& cost,
+                               const SpectralImage& light, const Context& context) {
   FlareOptions options;
   if (state.sun) options.suns = {*state.sun};
-  options.ghosts = state.sun && state.ghosts;
-  options.starburst = state.sun && state.starburst;
+  options.ghosts = state.ghosts;
+  options.starburst = state.starburst;
+  options.scatter = state.roughness_nm > 0;
   options.neglected_share = cost.neglected_ghosts;
-  const LitLens lens{used, {}, Tracer::Clip::apertures, sensor.reflectance.value_or(0.0), psf_mm};
+  const LitLens lens{used.lens, used.losses, Tracer::Clip::apertures, reflection_of(sensor), psf_mm};
   SpectralImage stray = light;
-  FlareLayers layers =
-      flare_layers(lens, sensor.geometry, light.wavelengths_nm(), SourcesFound{}, options, context);
+  FlareLayers layers = flare_layers(lens, sensor.geometry, light.wavelengths_nm(), found, options, context);
   add_layers(layers, stray);
-  if (state.roughness_nm > 0) {
+  if (options.scatter) {
     options.surfaces_scatter = Scatter{.roughness_nm = state.roughness_nm};
     add_scatter(lens, options, layers, stray, context);
   }
@@ -183,7 +192,7 @@ const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), p
 
 }  // namespace
 
-bool BenchPicture::form_light(Shot& shot, const BenchState& state, const Lens& used,
+bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedLens& used,
                               const std::string& scene_path, const std::string& sensor_path,
                               const QualityCost& cost, const Context& context) {
   const std::string light_key = light_key_of(state);
@@ -208,9 +217,10 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const Lens& u
     ImageReport report;
     const std::string scene_key = scene_path + '|' + state.illuminant;
     in_stride = shot.scene_key == scene_key && shot.session;
-    if (!in_stride) shot.session = session_of(scene_path, state.illuminant, cost);
+    if (!in_stride) shot.session.emplace(scene_of(scene_path, state.illuminant, cost), image_options(cost));
     shot.scene_key = scene_key;
-    shot.light = shot.session->image(std::move(optics), context, &report);
+    shot.light = shot.session->image(optics, context, &report);
+    shot.optics = std::move(optics);
     shot.method = report.method;
     shot.light_key = light_key;
   }
@@ -218,10 +228,16 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const Lens& u
   if (shot.stray_key != stray_key || stray_key.empty()) {
     shot.stray_key.clear();
     shot.stray.reset();
+    shot.sources = {};
     constexpr double mm_per_um = 1e-3;
-    if (!stray_key.empty())
-      shot.stray = with_stray_light(state, used, shot.sensor.sensor, shot.spread_um * mm_per_um, cost,
-                                    *shot.light, context);
+    if (!stray_key.empty()) {
+      const ImagePlan plan = plan_image(scene_of(scene_path, state.illuminant, cost), *shot.optics,
+                                        image_options(cost), context);
+      shot.sources =
+          find_sources(plan.scene, used.lens.total_track_mm(), SourceSearch{.threshold = state.threshold});
+      shot.stray = with_stray_light(state, used, shot.sensor.sensor, shot.spread_um * mm_per_um, shot.sources,
+                                    cost, *shot.light, context);
+    }
     shot.stray_key = stray_key;
   }
   return in_stride;
@@ -236,7 +252,7 @@ void BenchPicture::choose_preview(double seconds) {
     ++preview_size_;
 }
 
-void BenchPicture::show(const BenchState& state, const Lens& used, const std::string& scene_path,
+void BenchPicture::show(const BenchState& state, const CoatedLens& used, const std::string& scene_path,
                         const std::string& sensor_path, PictureQuality quality, const Context& context,
                         const SendReply& send) {
   const bool full = quality == PictureQuality::full;
@@ -265,20 +281,22 @@ void BenchPicture::show(const BenchState& state, const Lens& used, const std::st
     exposure = "light on the sensor";
   }
   const SensorGeometry& frame = sensor.geometry;
-  send({nlohmann::json{{"kind", "picture"},
-                       {"id", state.id},
-                       {"quality", cost.name},
-                       {"columns", frame.columns},
-                       {"rows", frame.rows},
-                       {"pitch_um", frame.pitch_um},
-                       {"pixels_added", shot.sensor.pixels_added},
-                       {"bands", shot.light->bands()},
-                       {"wavelengths", cost.wavelengths},
-                       {"tolerance", cost.tolerance},
-                       {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
-                       {"sensor_settings", shot.sensor.settings},
-                       {"exposure", exposure},
-                       {"method", shot.method}}
+  send({json{{"kind", "picture"},
+             {"id", state.id},
+             {"quality", cost.name},
+             {"columns", frame.columns},
+             {"rows", frame.rows},
+             {"pitch_um", frame.pitch_um},
+             {"pixels_added", shot.sensor.pixels_added},
+             {"bands", shot.light->bands()},
+             {"wavelengths", cost.wavelengths},
+             {"tolerance", cost.tolerance},
+             {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
+             {"sensor_settings", shot.sensor.settings},
+             {"exposure", exposure},
+             {"sources", state.has_stray_light() ? sources_json(used.lens, shot.sources) : json::array()},
+             {"neglected_ghosts", cost.neglected_ghosts},
+             {"method", shot.method}}
             .dump(),
         std::move(pixels), true});
   shot.shown_key = shown_key;

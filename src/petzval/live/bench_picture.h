@@ -24,9 +24,9 @@ enum class PictureQuality {
 /// The pictures of one bench.
 class BenchPicture {
  public:
-  /// \param used  the lens, stopped down and focused, before the scene. \param scene_path  what read_scene()
+  /// \param used  stopped down and focused, before the scene. \param scene_path  what read_scene()
   /// takes. \param sensor_path  what read_sensor() takes. \returns whether there was anything new to send.
-  void show(const BenchState& state, const Lens& used, const std::string& scene_path,
+  void show(const BenchState& state, const CoatedLens& used, const std::string& scene_path,
             const std::string& sensor_path, PictureQuality quality, const Context& context,
             const SendReply& send);
 
@@ -38,7 +38,9 @@ class BenchPicture {
     std::string light_key = {}, stray_key = {}, shown_key = {};
     std::string scene_key = {}, sensor_key = {};
     std::optional<ImagingSession> session = {};  ///< of the scene
+    std::optional<TableCamera> optics = {};      ///< of the light
     std::optional<SpectralImage> light = {};     ///< without what goes astray
+    SourcesFound sources = {};                   ///< that the scene holds, for stray light
     std::optional<SpectralImage> stray = {};     ///< with it; absent: nothing does
     BinnedSensor sensor = {};
     std::vector<ColourCalibration> calibrations = {};  ///< of the sensor
@@ -49,7 +51,7 @@ class BenchPicture {
     const SpectralImage& lit() const { return stray ? *stray : *light; }
   };
   /// Forms the light unless it holds. \returns whether a scene was there already and light was formed anew.
-  bool form_light(Shot& shot, const BenchState& state, const Lens& used, const std::string& scene_path,
+  bool form_light(Shot& shot, const BenchState& state, const CoatedLens& used, const std::string& scene_path,
                   const std::string& sensor_path, const struct QualityCost& cost, const Context& context);
   /// How many pixels a preview has from now on, by how long the last one took.
   void choose_preview(double seconds);

@@ -41,17 +41,23 @@ void add_shifted(const PsfStack& stack, std::size_t wavelength, double shift_cel
 
 }  // namespace
 
-BenchPsf bench_psf(const Lens& lens, const std::array<double, 2>& place_mm, const Context& context) {
-  BenchPsf result;
-  result.height_mm = std::hypot(place_mm[0], place_mm[1]);
-  // The real image is the upright picture turned by half a turn; its azimuth counts from +y anticlockwise.
-  result.azimuth_deg =
-      result.height_mm > 0 ? std::atan2(place_mm[0], -place_mm[1]) * 180 / std::numbers::pi : 0;
+FieldTableRequest field_at(const CoatedLens& coated, const std::array<double, 2>& place_mm) {
   FieldTableRequest at;
   at.field_kind = Fields::Kind::real_image_height_mm;
-  at.fields = {result.height_mm};
-  at.wavelengths_nm = lens.wavelengths_nm;
-  at.azimuth_deg = result.azimuth_deg;
+  at.fields = {std::hypot(place_mm[0], place_mm[1])};
+  at.wavelengths_nm = coated.lens.wavelengths_nm;
+  at.losses = coated.losses;
+  // The real image is the upright picture turned by half a turn; its azimuth counts from +y anticlockwise.
+  at.azimuth_deg = at.fields[0] > 0 ? std::atan2(place_mm[0], -place_mm[1]) * 180 / std::numbers::pi : 0;
+  return at;
+}
+
+BenchPsf bench_psf(const CoatedLens& coated, const std::array<double, 2>& place_mm, const Context& context) {
+  const Lens& lens = coated.lens;
+  const FieldTableRequest at = field_at(coated, place_mm);
+  BenchPsf result;
+  result.height_mm = at.fields[0];
+  result.azimuth_deg = at.azimuth_deg;
   PsfOptions options;
   options.largest_size = 96;
   const PsfStack stack = psf_stack(lens, at, options, context);

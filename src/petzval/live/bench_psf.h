@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/context.h>
+#include <petzval/live/bench.h>
 #include <petzval/simulate/psf_stack.h>
 
 #include <array>
@@ -24,7 +25,10 @@ struct BenchPsf {
 /// The wavelengths of the lens stand for its colours: those above 590 nm are shown as red, those below 500 nm
 /// as blue, those between as green; a lens of fewer shows what it has. \param place_mm  x, y of the upright
 /// picture. \throws InputError where no ray arrives; Cancelled.
-BenchPsf bench_psf(const Lens& lens, const std::array<double, 2>& place_mm, const Context& context);
+BenchPsf bench_psf(const CoatedLens& coated, const std::array<double, 2>& place_mm, const Context& context);
+
+/// A place of the upright picture as a field of the lens, at the lens's wavelengths.
+FieldTableRequest field_at(const CoatedLens& coated, const std::array<double, 2>& place_mm);
 
 /// The floats as bytes, lowest first.
 std::vector<std::uint8_t> float_bytes(const std::vector<float>& values);

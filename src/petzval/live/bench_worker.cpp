@@ -72,6 +72,8 @@ void BenchWorker::do_raw(const Raw& raw, Bench& bench) {
     bench.send_lens(*lens);
   } else if (const auto* glass = std::get_if<GlassWish>(&message)) {
     bench.send_glasses(*glass);
+  } else if (const auto* focus = std::get_if<FocusWish>(&message)) {
+    bench.focus(*focus);
   } else {
     bench.save(std::get<SaveWish>(message), context());
   }

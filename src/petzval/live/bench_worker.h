@@ -16,7 +16,7 @@
 namespace petzval {
 
 /// Takes messages from the server's thread, works on its own, and sends replies through `send`, which is
-/// called from that thread.
+/// called from that thread and from that of the plots.
 class BenchWorker {
  public:
   BenchWorker(const LiveStart& start, int threads, SendReply send);

@@ -16,7 +16,7 @@ namespace petzval {
 namespace {
 
 /// More than any message has, so that what is refused is refused soon.
-constexpr std::size_t most_header_bytes = 4096, most_name_bytes = 200, most_plots = 16;
+constexpr std::size_t most_upload_header_bytes = 4096, most_name_bytes = 200, most_plots = 16;
 
 double number_within(const JsonEntry& entry, double least, double most) {
   const double value = entry.number("a number");
@@ -59,6 +59,13 @@ std::string one_of(const JsonEntry& entry, const std::vector<std::string>& names
   return text;
 }
 
+/// On the sensor.
+std::array<double, 2> place_of(const JsonEntry& entry) {
+  const std::vector<JsonEntry> place = entry.items("two numbers");
+  if (place.size() != 2) entry.fail("must be two numbers");
+  return {number_within(place[0], -1e4, 1e4), number_within(place[1], -1e4, 1e4)};
+}
+
 void read_camera(const JsonEntry& camera, BenchState& state) {
   camera.allow_only({"f_number", "focus", "distance_m", "defocus_mm"});
   state.f_number = optional_within(camera.at("f_number"), 0.1, 1000);
@@ -78,7 +85,7 @@ void read_shot(const JsonEntry& shot, BenchState& state) {
 
 /// Angles of a sun reach as far as Sun::at() takes them.
 void read_stray(const JsonEntry& stray, BenchState& state) {
-  stray.allow_only({"sun_deg", "ghosts", "starburst", "roughness_nm", "ghost"});
+  stray.allow_only({"sun_deg", "sun_lx", "ghosts", "starburst", "threshold", "roughness_nm", "ghost"});
   if (const JsonEntry sun = stray.at("sun_deg"); !sun.is_null()) {
     constexpr double most_deg = 79;
     const std::vector<JsonEntry> angles = sun.items("two numbers");
@@ -87,6 +94,9 @@ void read_stray(const JsonEntry& stray, BenchState& state) {
     state.sun->right_deg = number_within(angles[0], -most_deg, most_deg);
     state.sun->up_deg = number_within(angles[1], -most_deg, most_deg);
   }
+  const double illuminance_lx = number_within(stray.at("sun_lx"), 1e-3, 1e7);
+  if (state.sun) state.sun->illuminance_lx = illuminance_lx;
+  state.threshold = number_within(stray.at("threshold"), 1, 1e6);
   state.ghosts = stray.at("ghosts").truth();
   state.starburst = stray.at("starburst").truth();
   state.roughness_nm = number_within(stray.at("roughness_nm"), 0, 100);
@@ -100,12 +110,15 @@ void read_stray(const JsonEntry& stray, BenchState& state) {
 }
 
 BenchState read_state(const JsonEntry& message, const JsonDocument& document, const LiveNames& names) {
-  message.allow_only({"kind", "id", "lens", "camera", "scene", "illuminant", "sensor", "shot", "stray",
-                      "cursor_mm", "plots", "picture"});
+  message.allow_only({"kind", "id", "lens", "coatings", "camera", "scene", "illuminant", "sensor", "shot",
+                      "stray", "cursor_mm", "plots", "picture"});
   BenchState state;
   state.id = id_of(message);
   if (!message.at("lens").is_object()) message.at("lens").fail("must be a lens");
   state.lens_json = document.root().at("lens").dump();
+  const std::vector<JsonEntry> coatings = message.at("coatings").items("a coating or null for each surface");
+  for (std::size_t i = 0; i < coatings.size(); ++i)
+    if (!coatings[i].is_null()) state.coatings[i] = one_of(coatings[i], names.coatings);
   read_camera(message.at("camera"), state);
   state.scene = one_of(message.at("scene"), names.scenes);
   state.illuminant = one_of(message.at("illuminant"), names.illuminants);
@@ -113,9 +126,7 @@ BenchState read_state(const JsonEntry& message, const JsonDocument& document, co
   read_shot(message.at("shot"), state);
   state.tone = one_of(message.at("shot").at("tone"), names.tones);
   read_stray(message.at("stray"), state);
-  const std::vector<JsonEntry> cursor = message.at("cursor_mm").items("two numbers");
-  if (cursor.size() != 2) message.at("cursor_mm").fail("must be two numbers");
-  for (std::size_t i = 0; i < 2; ++i) state.cursor_mm[i] = number_within(cursor[i], -1e4, 1e4);
+  state.cursor_mm = place_of(message.at("cursor_mm"));
   for (const JsonEntry& plot : message.at("plots").items("names of analyses"))
     state.plots.push_back(one_of(plot, names.analyses));
   if (state.plots.size() > most_plots) message.at("plots").fail("must be fewer");
@@ -131,6 +142,13 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
+std::string BenchState::coating_text() const {
+  std::string text;
+  for (const auto& [surface, name] : coatings)
+    text += fmt::format("{}surfaces[{}]={}", text.empty() ? "" : ",", surface, name);
+  return text;
+}
+
 LiveNames bundled_live_names() {
   LiveNames names;
   names.lenses = all_bundled_names("lenses", ".json");
@@ -142,6 +160,7 @@ LiveNames bundled_live_names() {
   names.illuminants = {"", "D65", "D50", "A", "F11", "2856K", "4000K", "6500K", "9000K"};
   for (const Analysis& analysis : analyses()) names.analyses.push_back(analysis.name);
   names.tones = {"none", "soft"};
+  names.coatings = bundled_names("coatings", ".json");
   return names;
 }
 
@@ -164,12 +183,16 @@ LiveMessage parse_live_message(std::string_view text, const LiveNames& names) {
     message.allow_only({"kind", "id", "text"});
     return GlassWish{id_of(message), short_text(message.at("text"))};
   }
+  if (kind == "focus") {
+    message.allow_only({"kind", "id", "place_mm"});
+    return FocusWish{id_of(message), place_of(message.at("place_mm"))};
+  }
   if (kind == "save") {
     message.allow_only({"kind", "id", "extension"});
     return SaveWish{id_of(message), one_of(message.at("extension"),
                                            {".json", ".zmx", ".seq", ".png", ".tif", ".dng", ".exr"})};
   }
-  message.at("kind").fail("must be hello, state, lens, glasses or save");
+  message.at("kind").fail("must be hello, state, lens, glasses, focus or save");
 }
 
 Upload parse_live_upload(std::string_view bytes) {
@@ -178,8 +201,8 @@ Upload parse_live_upload(std::string_view bytes) {
   std::size_t length = 0;
   for (std::size_t i = 0; i < length_bytes; ++i)
     length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-  if (length > most_header_bytes || length > bytes.size() - length_bytes)
-    throw InputError(fmt::format("the header of an upload has at most {} bytes", most_header_bytes));
+  if (length > most_upload_header_bytes || length > bytes.size() - length_bytes)
+    throw InputError(fmt::format("the header of an upload has at most {} bytes", most_upload_header_bytes));
   const JsonDocument document(std::string(bytes.substr(length_bytes, length)), "upload");
   const JsonEntry header(document);
   header.allow_only({"kind", "id", "name"});

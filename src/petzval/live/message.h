@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +20,7 @@ namespace petzval {
 
 /// The names that a page may choose from; nothing else is looked up, so that no message is a path.
 struct LiveNames {
-  std::vector<std::string> lenses, scenes, sensors, illuminants, analyses, tones;
+  std::vector<std::string> lenses, scenes, sensors, illuminants, analyses, tones, coatings;
 };
 /// Those of the bundled data.
 LiveNames bundled_live_names();
@@ -29,6 +30,7 @@ LiveNames bundled_live_names();
 struct BenchState {
   std::int64_t id = 0;
   std::string lens_json = {};
+  std::map<std::size_t, std::string> coatings = {};  ///< surface → a bundled coating
   std::optional<double> f_number = {};
   Focus focus = {};
   std::optional<double> distance_m = {};  ///< of the scene from the sensor; absent: infinity
@@ -42,10 +44,14 @@ struct BenchState {
   std::array<double, 2> cursor_mm =
       {};                       ///< a place on the sensor, as the upright picture shows it: x right, y up
   std::optional<Sun> sun = {};  ///< added to the scene
-  bool ghosts = false;          ///< of the sun
-  bool starburst = false;       ///< of the sun
-  double roughness_nm = 0;      ///< of surfaces that do not say how they scatter; 0: nothing scatters
+  /// Of the sun, and of what the scene itself holds that is brighter than `threshold` times its mean.
+  bool ghosts = false, starburst = false;
+  double threshold = SourceSearch().threshold;
+  double roughness_nm = 0;              ///< of surfaces that do not say how they scatter; 0: nothing scatters
   std::optional<GhostPair> ghost = {};  ///< whose way the layout shows
+  /// "surfaces[0]=mgf2,surfaces[2]=mgf2"; empty: none.
+  std::string coating_text() const;
+  bool has_stray_light() const { return sun || ghosts || starburst || roughness_nm > 0; }
   std::vector<std::string> plots = {};  ///< analyses that are shown
   bool picture = true;
 };
@@ -61,6 +67,11 @@ struct GlassWish {
   std::int64_t id = 0;
   std::string text = {};
 };
+/// Focus on what the picture shows at a place (x right, y up, on the sensor [mm]).
+struct FocusWish {
+  std::int64_t id = 0;
+  std::array<double, 2> place_mm = {};
+};
 /// A file of what was shown last: a lens as ".json", ".zmx" or ".seq", a picture as ".png", ".tif", ".dng" or
 /// ".exr".
 struct SaveWish {
@@ -75,7 +86,7 @@ struct Upload {
   std::string bytes = {};
 };
 
-using LiveMessage = std::variant<LiveGreeting, BenchState, LensWish, GlassWish, SaveWish>;
+using LiveMessage = std::variant<LiveGreeting, BenchState, LensWish, GlassWish, FocusWish, SaveWish>;
 
 constexpr std::size_t most_message_bytes = std::size_t{1} << 20;
 constexpr std::size_t most_upload_bytes = std::size_t{24} << 20;
