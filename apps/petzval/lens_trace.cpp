@@ -176,7 +176,7 @@ nlohmann::ordered_json json_row(const TracedRay& traced, bool with_losses) {
 void trace(const TraceCommand& options, const Shared& shared) {
   const Lens lens = options.lens.read(shared);
   const Tracer::Clip clip = options.ignore_apertures ? Tracer::Clip::none : Tracer::Clip::apertures;
-  const Losses losses = options.losses.losses(lens, shared);
+  const Losses losses = options.losses.losses(lens, shared).of(lens);
   std::map<double, Prepared> prepared;
   std::string csv = "status,x_mm,y_mm,z_mm,L,M,N,opl_mm";
   csv += losses.any() ? ",transmittance" : "";

@@ -39,6 +39,50 @@ std::string native_complaint(const std::string& text) {
   return error_of([&] { lens_from_json(text, "file.json"); });
 }
 
+TEST(NativeReader, KeepsCoatingsOfEveryKind) {
+  const std::string bare = R"("semi_diameter_mm": 12.6,)";
+  for (const char* text :
+       {R"("mgf2")", "0.005", "[[400, 0.03], [600, 0.01]]",
+        R"({"name": "two films", "source": "this test", "layers": [{"index": 1.38, "thickness_nm": 99.5},
+            {"material": "SCHOTT:N-SF66", "thickness_nm": 30.25}]})",
+        R"({"name": "measured", "wavelengths_nm": [500, 600], "angles_deg": [0, 30, 60],
+            "reflectance": [[0.01, 0.012, 0.05], [0.02, 0.022, 0.06]]})"}) {
+    const Lens lens = lens_from_json(native_changed(bare, bare + " \"coating\": " + text + ","), "file.json");
+    const Lens again = lens_from_json(lens_to_json(lens), "again.json");
+    ASSERT_TRUE(lens.surfaces[0].coating && again.surfaces[0].coating) << text;
+    const Coating &a = *lens.surfaces[0].coating, &b = *again.surfaces[0].coating;
+    EXPECT_EQ(a.table, b.table);
+    EXPECT_EQ(a.by_angle, b.by_angle);
+    EXPECT_EQ(a.angles_deg, b.angles_deg);
+    EXPECT_EQ(a.bundled, b.bundled);
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.reflectance(587.56, 1, 1.67), b.reflectance(587.56, 1, 1.67)) << text;
+    EXPECT_FALSE(again.surfaces[1].coating);
+  }
+  // A quarter wave on glass of index n reflects ((n − 1.38²)/(n + 1.38²))² at its wavelength.
+  const Coating film =
+      *lens_from_json(native_changed(bare, bare + R"( "coating": "mgf2",)"), "file.json").surfaces[0].coating;
+  const double square = 1.38 * 1.38;
+  EXPECT_NEAR(film.reflectance(550, 1, 1.67), std::pow((1.67 - square) / (1.67 + square), 2), 1e-12);
+}
+
+TEST(NativeReader, RefusesCoatingsThatCannotBe) {
+  const auto complaint = [](const std::string& coating) {
+    const std::string bare = R"("semi_diameter_mm": 12.6,)";
+    return native_complaint(native_changed(bare, bare + " \"coating\": " + coating + ","));
+  };
+  EXPECT_NE(complaint(R"("/etc/passwd")").find("is no bundled coating; these are: mgf2"), std::string::npos);
+  EXPECT_NE(complaint("1.5").find("surfaces[0].coating"), std::string::npos);
+  EXPECT_NE(complaint("[[500, 0.1], [400, 0.1]]").find("must increase"), std::string::npos);
+  EXPECT_NE(complaint("[]").find("no reflectance"), std::string::npos);
+  EXPECT_NE(complaint("true").find("surfaces[0].coating"), std::string::npos);
+  // Films between two glasses: surface 3 of the example.
+  EXPECT_NE(
+      native_complaint(native_changed(R"("radius_mm": -30,)", R"("radius_mm": -30, "coating": "mgf2",)"))
+          .find("lie between air and glass"),
+      std::string::npos);
+}
+
 TEST(NativeReader, ReadsEveryEntry) {
   const Lens lens = lens_from_json(native_example, "file.json");
   EXPECT_EQ(lens.name, "example");

@@ -122,6 +122,17 @@ TEST(Losses, AirGlassCoatingLeavesCementedSurfacesBare) {
   EXPECT_NEAR(transmittance(lens, losses, tilted(0)), 1 - std::pow(0.2 / 3.2, 2), 1e-15);
 }
 
+TEST(Losses, OwnCoatingsStandBeforeThoseOfAllAndBehindThoseGiven) {
+  Lens lens = plate(Material(Material::Constant{1.6}), 5);
+  lens.surfaces[0].coating = Coating::constant(0.2);
+  EXPECT_NEAR(transmittance(lens, {}, tilted(0.3)), 0.8, 1e-14) << "without being asked for";
+  Losses losses;
+  losses.air_glass = Coating::constant(0.05);
+  EXPECT_NEAR(transmittance(lens, losses, tilted(0.3)), 0.8 * 0.95, 1e-14);
+  losses.surfaces[0] = Coating::constant(0.5);
+  EXPECT_NEAR(transmittance(lens, losses, tilted(0.3)), 0.5 * 0.95, 1e-14);
+}
+
 /// Reciprocity: a skew ray through a real lens and the same ray back lose the same. \returns what passes.
 double passing_both_ways(const Losses& losses) {
   const Lens lens = read_lens("dgauss-50mm").lens;

@@ -171,7 +171,7 @@ double FieldTracer::g_source_sr(const ChiefRay& chief) {
 void FieldTracer::set_losses(const Losses& losses) {
   transmittance_.reset();
   const bool obscured = clip_ == Tracer::Clip::apertures && has_obscurations(lens_);
-  if (!losses.any() && !obscured) return;
+  if (!losses.of(lens_).any() && !obscured) return;
   transmittance_.emplace(lens_, tracer_.wavelength_nm(), losses);
   if (obscured) transmittance_->heed_obscurations(tracer_);
 }

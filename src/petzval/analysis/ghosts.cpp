@@ -215,9 +215,11 @@ void check(const Lens& lens, const GhostOptions& options) {
 
 }  // namespace
 
-std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& options) {
+std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& given) {
   require_glass(lens, "ghosts need");
   lens.validate();
+  GhostOptions options = given;
+  options.losses = given.losses.of(lens);
   check(lens, options);
   std::vector<Ghost> all;
   const std::vector<double> wavelengths = options.wavelengths_nm.empty()

@@ -91,7 +91,7 @@ std::optional<PolarisationRow> polarisation(const FieldTracer& tracer, const Chi
 
 std::vector<PolarisationRow> polarisation_table(const Lens& lens, const FieldTableRequest& request) {
   Losses losses = request.losses;
-  if (!losses.any()) losses.fresnel = true;
+  if (!losses.of(lens).any()) losses.fresnel = true;
   return field_rows<PolarisationRow>(lens, request, [&](const FieldTracer& tracer, const ChiefRay& chief) {
     return polarisation(tracer, chief, LensTransmittance(lens, tracer.tracer().wavelength_nm(), losses));
   });

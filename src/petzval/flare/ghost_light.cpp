@@ -189,7 +189,7 @@ SpectralImage ghost_light(const Lens& lens, const SensorGeometry& frame,
 }
 
 Losses losses_of_picture(const Lens& lens, double wavelength_nm, const Losses& given) {
-  Losses losses = given;
+  Losses losses = given.of(lens);
   if (losses.fresnel) return losses;
   double before = 1;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

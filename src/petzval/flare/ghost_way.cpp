@@ -47,11 +47,12 @@ bool diffract(double l, double m, SurfaceRay& ray) {
 
 }  // namespace
 
-GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses,
+GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& given,
                          const SensorReflection& sensor, Tracer::Clip clip)
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "ghosts need");
   require_centred(lens, "ghosts are those of centred lenses");
+  const Losses losses = given.of(lens);
   losses.validate(lens);
   sensor.validate();
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

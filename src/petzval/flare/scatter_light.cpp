@@ -265,7 +265,7 @@ bool is_in_frame(const SourceImage& image, const SensorGeometry& frame) {
 }
 
 double axial_transmittance(const Lens& lens, double wavelength_nm, const Losses& losses) {
-  if (!losses.any()) return 1;
+  if (!losses.of(lens).any()) return 1;
   const Tracer tracer(lens, wavelength_nm);
   std::vector<Intersection> path;
   const Ray axis{{0, 0, 0}, {0, 0, 1}, 0, RayStatus::ok, -1};

@@ -70,7 +70,7 @@ ScatterTracer::ScatterTracer(const Lens& lens, double wavelength_nm, const Losse
     else
       bsdfs_.emplace_back();
   }
-  if (losses.any()) transmittance_.emplace(lens, wavelength_nm, losses);
+  if (losses.of(lens).any()) transmittance_.emplace(lens, wavelength_nm, losses);
 }
 
 bool ScatterTracer::scatters() const {

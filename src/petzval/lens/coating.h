@@ -38,6 +38,7 @@ struct Coating {
   /// From the air to the glass; with layers there is no table.
   std::vector<CoatingLayer> layers = {};
   std::string name = {}, source = {};
+  std::string bundled = {};  ///< the name of the bundled one that it is, as lens files have it; may be empty
 
   static Coating constant(double reflectance) {
     Coating coating;

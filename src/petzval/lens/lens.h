@@ -4,6 +4,7 @@
 
 #include <petzval/glass/material.h>
 #include <petzval/lens/aperture_figure.h>
+#include <petzval/lens/coating.h>
 #include <petzval/lens/pose.h>
 #include <petzval/lens/scatter.h>
 #include <petzval/lens/stop_blades.h>
@@ -45,6 +46,7 @@ struct Surface {
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
   Pose pose = {};                               ///< where it stands, if not on its place
   std::optional<Scatter> scatter = {};          ///< of its own, before that of the lens
+  std::optional<Coating> coating = {};          ///< what it reflects counts wherever light passes
   /// Carries rays from this plane to the next surface, in place of refraction (lens/ray_transfer.h).
   std::shared_ptr<const RayTransfer> transfer = {};
 

@@ -30,6 +30,20 @@ Fault scatter_fault(const Scatter& scatter, const std::string& path) {
   return {};
 }
 
+Fault coating_fault(const Lens& lens, std::size_t i) {
+  const Surface& surface = lens.surfaces[i];
+  const std::string path = fmt::format("surfaces[{}].coating", i);
+  try {
+    surface.coating->validate();
+  } catch (const InputError& error) {
+    return LensFault{path, fmt::format("cannot be: {}", error.what())};
+  }
+  const bool from_air = i == 0 || lens.medium_behind(i - 1).is_air();
+  if (surface.coating->has_films() && (surface.mirror || from_air == surface.material.is_air()))
+    return LensFault{path, "has films, which lie between air and glass; a reflectance would be right here"};
+  return {};
+}
+
 Fault shape_fault(const Surface& surface, const std::string& path) {
   const AddedShape& shape = *surface.shape;
   const SurfaceKind* kind = find_surface_kind(shape.kind);
@@ -217,6 +231,8 @@ Fault surfaces_fault(const Lens& lens) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     if (Fault fault = surface_fault(lens.surfaces[i], fmt::format("surfaces[{}]", i))) return fault;
     if (Fault fault = transfer_fault(lens, i)) return fault;
+    if (lens.surfaces[i].coating)
+      if (Fault fault = coating_fault(lens, i)) return fault;
     if (!lens.surfaces[i].stop) continue;
     if (stop)
       return LensFault{

@@ -43,7 +43,7 @@ json& follow(json& root, const std::vector<JsonStep>& steps) {
 bool removes(const std::string& key, const json& value) {
   static const std::set<std::string> optional{
       "glass", "mirror", "semi_diameter_mm", "apertures", "conic", "asphere", "shape", "stop",
-      "pose",  "melt",   "scatter"};
+      "pose",  "melt",   "scatter",          "coating"};
   const bool air = key == "glass" && value.is_string() && (value == "air" || value == "AIR");
   return (value.is_null() && optional.count(key)) || air;
 }

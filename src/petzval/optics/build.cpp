@@ -241,7 +241,7 @@ LensDataTable blank_table(const Lens& lens, const TableOptions& options) {
   table.lens_json = lens_to_json(lens);
   table.provenance =
       fmt::format("petzval {} lens data table from the prescription{}", version(),
-                  options.losses.any() ? ", losses in the glass and at its surfaces counted" : "");
+                  options.losses.of(lens).any() ? ", losses in the glass and at its surfaces counted" : "");
   table.object_distance_mm = lens.object_distance_mm;
   table.vertex_to_sensor_mm = lens.total_track_mm();
   table.first_order = first_order(lens);

@@ -146,7 +146,8 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
               "a `sun` would be");
   if (options.starburst) layers.stars = stars_of(lens, frame, wavelengths_nm, layers, how, context);
   if (!options.ghosts) return layers;
-  if (!lens.losses.fresnel && !lens.losses.air_glass && lens.losses.surfaces.empty())
+  if (const Losses losses = lens.losses.of(lens.lens);
+      !losses.fresnel && !losses.air_glass && losses.surfaces.empty())
     send_note(context,
               "ghosts are those of bare glass, which takes nothing from the picture itself unless "
               "`fresnel` counts it");

@@ -80,7 +80,8 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
       fmt::format("scene-unit {}\nabsolute-spectra {}\n", request.scene_unit_mm, request.absolute_spectra);
   text += fmt::format("light-scale {} sky {} skip-unsupported {}\n", request.light_scale,
                       request.sky_cd_m2.value_or(0), request.skip_unsupported);
-  text += lens_line(camera, nm) + losses_line(camera.options.losses);
+  text += lens_line(camera, nm) +
+          losses_line(camera.lens ? camera.options.losses.of(*camera.lens) : camera.options.losses);
   return text + render::scene_files_fingerprint(*scene.world->description);
 }
 

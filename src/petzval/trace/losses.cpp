@@ -108,6 +108,13 @@ const Coating* Losses::coating(std::size_t surface, double index_before, double 
   return air_glass && is_air_to_glass(index_before, index_after) ? &*air_glass : nullptr;
 }
 
+Losses Losses::of(const Lens& lens) const {
+  Losses all = *this;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (const std::optional<Coating>& own = lens.surfaces[i].coating) all.surfaces.emplace(i, *own);
+  return all;
+}
+
 void Losses::validate(const Lens& lens) const {
   if (air_glass) air_glass->validate();
   for (const auto& [surface, coating] : surfaces) {
@@ -126,8 +133,9 @@ void Losses::validate(const Lens& lens) const {
   }
 }
 
-LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, const Losses& losses)
-    : fresnel_(losses.fresnel), wavelength_nm_(wavelength_nm) {
+LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, const Losses& given)
+    : fresnel_(given.fresnel), wavelength_nm_(wavelength_nm) {
+  const Losses losses = given.of(lens);
   losses.validate(lens);
   double before = 1;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

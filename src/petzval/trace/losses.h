@@ -27,6 +27,8 @@ struct Losses {
   std::map<std::size_t, Coating> surfaces = {};  ///< coatings of single surfaces, before `air_glass`
 
   bool any() const { return fresnel || absorption || air_glass || !surfaces.empty(); }
+  /// As this lens has them: what its surfaces say themselves stands before `air_glass` and behind `surfaces`.
+  Losses of(const Lens& lens) const;
   /// Of a surface between media of these indices; null: none.
   const Coating* coating(std::size_t surface, double index_before, double index_after) const;
   /// \throws InputError for a surface that the lens does not have, films between two glasses,

@@ -44,6 +44,7 @@ class JsonEntry {
   const std::string& path() const { return path_; }
   bool is_null() const { return value_->is_null(); }
   bool is_text() const { return value_->is_string(); }
+  bool is_number() const { return value_->is_number(); }
   bool is_list() const { return value_->is_array(); }
   bool is_object() const { return value_->is_object(); }
 

@@ -18,6 +18,9 @@ inline constexpr const char* aperture_keys[] = {
 inline constexpr const char* field_types[] = {"angle_deg", "object_height_mm", "paraxial_image_height_mm",
                                               "real_image_height_mm"};
 
+/// As JSON has it. Bytes that are not UTF-8 cannot stand there; they become the replacement character.
+std::string quoted(const std::string& text);
+
 /// \throws InputError for whatever is not exactly in the format, or not a valid lens.
 Lens read_native(const JsonDocument& document, const LensReadOptions& options);
 
@@ -28,5 +31,12 @@ std::string transfer_text(const RayTransfer& transfer);
 /// How a surface, or the lens, scatters.
 Scatter read_scatter(const JsonEntry& entry);
 std::string scatter_text(const Scatter& scatter);
+
+/// The coating of a surface: the name of a bundled one, a reflectance, pairs of wavelength [nm] and
+/// reflectance, or a stack of films.
+Coating read_surface_coating(const JsonEntry& entry);
+std::string coating_text(const Coating& coating);
+/// The entries of a stack of films, which may be more than these.
+Coating read_coating_stack(const JsonEntry& entry);
 
 }  // namespace petzval

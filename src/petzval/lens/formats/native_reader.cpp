@@ -213,7 +213,7 @@ LensStates read_states(const JsonEntry& entry) {
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "mirror", "semi_diameter_mm", "apertures", "conic",
-                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer", "scatter"});
+                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer", "scatter", "coating"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
@@ -239,6 +239,8 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
     surface.transfer = read_transfer(*transfer);
   if (const auto scatter = entry.find("scatter"); scatter && !scatter->is_null())
     surface.scatter = read_scatter(*scatter);
+  if (const auto coating = entry.find("coating"); coating && !coating->is_null())
+    surface.coating = read_surface_coating(*coating);
   return surface;
 }
 

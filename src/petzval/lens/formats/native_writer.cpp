@@ -6,12 +6,11 @@
 
 namespace petzval {
 
-namespace {
-
 std::string quoted(const std::string& text) {
-  // Bytes that are not UTF-8 cannot stand in JSON; they become the replacement character.
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
+
+namespace {
 
 std::string list(const std::vector<double>& numbers) {
   std::vector<std::string> texts;
@@ -105,6 +104,7 @@ std::string surface_text(const Surface& surface) {
   if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
   if (!surface.pose.is_none()) text += ", \"pose\": " + pose_text(surface.pose);
   if (surface.scatter) text += ", \"scatter\": " + scatter_text(*surface.scatter);
+  if (surface.coating) text += ", \"coating\": " + coating_text(*surface.coating);
   if (surface.transfer) text += ", \"transfer\": " + transfer_text(*surface.transfer);
   return text + "}";
 }

@@ -64,9 +64,10 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
         lens, film, nm, WaveImage::Options{options.scene_units_per_mm, origin_z_mm, options.losses});
     options_.margin_pixels += waves_->margin_pixels();
   }
-  if (options.sampling == LensCameraOptions::Sampling::exit_pupil || options.losses.any()) {
+  const bool loses = options.losses.of(lens).any();
+  if (options.sampling == LensCameraOptions::Sampling::exit_pupil || loses) {
     ExitPupilRegions regions = find_regions(lens);
-    if (options.losses.any()) {
+    if (loses) {
       require_centred(lens, "losses are rendered through centred lenses");
       transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
     }

@@ -220,7 +220,7 @@ WaveImage::Node WaveImage::make_psf(std::size_t band, std::size_t radius, std::s
   const double vergence = std::clamp(focus.vergence(waves), 0.0, most_vergence);
   FieldTracer tracer(focused_at(optics, vergence), wavelengths_nm_[band], Tracer::Clip::apertures,
                      360.0 * static_cast<double>(azimuth) / static_cast<double>(azimuths_));
-  if (options_.losses.any()) tracer.set_losses(options_.losses);
+  tracer.set_losses(options_.losses);
   const auto ray = tracer.chief_ray(field_of(optics, chief.angle_at(height_mm(radius)), vergence));
   if (!ray) return {};
   PsfOptions options;
