@@ -415,7 +415,7 @@ class Page {
     if (!this.link?.isOpen || !this.welcome) return;
     this.unanswered_since = performance.now();
     const session = this.session;
-    const state = {kind: "state", id: ++this.id, lens: uncoated(session.lens), coatings: session.lens.surfaces.map(each => each.coating ?? null),
+    const state = {kind: "state", id: ++this.id, lens: uncoated(session.lens), coatings: session.lens.surfaces.map(each => typeof each.coating === "string" ? each.coating : null),
       camera: {f_number: session.f_number, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
       scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot, stray: session.stray,
       cursor_mm: session.cursor_mm, plots: [session.plot], picture: true};
@@ -591,8 +591,8 @@ class Page {
     this.saving.delete(message.id!);
     const name = this.session.lensName.replace(/[^\w.-]+/g, "-") || "lens";
     this.download(new Blob([bytes.slice()]), `${name}${message.extension}`);
-    if ([".json", ".zmx", ".seq"].includes(message.extension) && this.session.lens.surfaces.some(each => each.coating))
-      this.tell("a lens file does not hold coatings; the session does");
+    if ([".zmx", ".seq"].includes(message.extension) && this.session.lens.surfaces.some(each => each.coating))
+      this.tell(`a ${message.extension} file does not hold coatings; .json does`);
   }
 
   // ---- files, keys, messages -------------------------------------------------------------------------------------

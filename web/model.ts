@@ -10,7 +10,7 @@ export interface Surface {
   glass?: Glass;
   stop?: boolean;
   semi_diameter_mm?: number;
-  coating?: string;  ///< a bundled one; of the page alone, not of the lens file
+  coating?: string;  ///< a bundled one; what else a lens file may say of a surface stays as it is
   conic?: number;
   asphere?: Record<string, number>;
   [key: string]: unknown;
@@ -42,7 +42,7 @@ export function coat(lens: Lens, i: number, coating: string | null): void {
 
 /** The lens as its file has it, without the coatings that the page keeps at its surfaces. */
 export function uncoated(lens: Lens): Lens {
-  return {...lens, surfaces: lens.surfaces.map(({coating, ...surface}) => surface as Surface)};
+  return {...lens, surfaces: lens.surfaces.map(({coating, ...surface}) => (typeof coating === "string" || coating === undefined ? surface : {...surface, coating}) as Surface)};
 }
 
 /** The bundled coating that all surfaces between air and glass have; null: they are bare, or not alike. */

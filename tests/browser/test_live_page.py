@@ -344,12 +344,16 @@ class LivePage(unittest.TestCase):
             self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 3.25)
 
     def test_lens_and_picture_are_saved(self):
+        self.change_shows("""const select = document.querySelector('[data-coating="all"]');
+            select.value = "mgf2"; select.dispatchEvent(new Event("change"));""")
         for entry, name in [("save-json", LENS + ".json"), ("save-zmx", LENS + ".zmx"), ("save-png", LENS + ".png"), ("save-dng", LENS + ".dng"), ("save-session", "session.petzval.json")]:
             with self.subTest(entry):
                 path = pathlib.Path(self.downloads.name) / name
                 path.unlink(missing_ok=True)
                 self.browser.run("document.getElementById(arguments[0]).click()", entry)
                 self.browser.until(name, lambda path=path: path.exists() and path.stat().st_size > 100)
+        saved = json.loads((pathlib.Path(self.downloads.name) / (LENS + ".json")).read_text())
+        self.assertEqual([surface.get("coating") for surface in saved["surfaces"]], ["mgf2", None, "mgf2"])
 
     def test_before_and_after_theme_and_tour(self):
         self.browser.run("document.getElementById('before').click()")

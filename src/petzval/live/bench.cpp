@@ -217,9 +217,13 @@ void Bench::Impl::show(const BenchState& state) {
       use.camera.f_number = state.f_number;
       use.camera.focus = state.focus;
       use.camera.defocus_mm = state.defocus_mm;
-      for (const auto& [surface, name] : state.coatings)
-        use.camera.losses.surfaces[surface] = read_coating(name);
-      use.camera.losses.validate(use.camera.lens);
+      for (const auto& [surface, name] : state.coatings) {
+        std::vector<Surface>& surfaces = use.camera.lens.surfaces;
+        if (surface >= surfaces.size()) throw InputError("there are more coatings than surfaces");
+        surfaces[surface].coating = read_coating(name);
+        surfaces[surface].coating->bundled = name;
+      }
+      use.camera.lens.validate();
       failed_at = "camera";
       use.lens = used_for_scene(use.camera, state.distance_m, {});
     } catch (const Error& error) {
