@@ -273,7 +273,8 @@ bool is_optical_bench(const std::string& text) {
 
 LensFile read_optical_bench(const std::string& text, const std::string& file,
                             const LensReadOptions& options) {
-  return BenchReader(file, options).read(text);
+  BenchReader reader(file, options);
+  return reader.read(text);
 }
 
 }  // namespace petzval
