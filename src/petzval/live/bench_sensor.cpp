@@ -50,7 +50,8 @@ BinnedSensor binned_sensor(const std::string& name, int most_columns) {
 
 std::string usual_sensor(double image_height_mm) {
   std::string best;
-  double best_misfit = INFINITY;
+  double best_misfit = INFINITY, best_pixels = 0;
+  constexpr double alike = 0.03;  // then fewer pixels will do
   for (const std::string& name : bundled_names("sensors", ".json")) {
     const Sensor sensor = read_sensor(name);
     if (!sensor.electronics || sensor.electronics->channels.size() != 3) continue;
@@ -58,7 +59,10 @@ std::string usual_sensor(double image_height_mm) {
     constexpr double rim = 1.1;      // fields are often given a little short of the corner
     constexpr double penalty = 3.0;  // a dark corner is worse than a small picture
     const double misfit = ratio > rim ? penalty * std::log(ratio) : std::abs(std::log(ratio));
-    if (misfit < best_misfit) best_misfit = misfit, best = name;
+    const double pixels = double(sensor.geometry.columns) * double(sensor.geometry.rows);
+    const bool better =
+        misfit < best_misfit - alike || (misfit < best_misfit + alike && pixels < best_pixels);
+    if (better) best_misfit = misfit, best_pixels = pixels, best = name;
   }
   return best;
 }

@@ -254,7 +254,7 @@ class BenchReader {
   }
 
   std::string file_;
-  LensFile made_;
+  LensFile made_ = {Lens(), {}};
   GlassLookup glasses_;
   const LensReadOptions& options_;
   std::string section_, patent_;
