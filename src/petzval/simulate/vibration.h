@@ -13,7 +13,8 @@ namespace petzval {
 /// One-sided power spectral densities of the angles of a camera, straight between frequencies, 0 outside.
 ///
 ///     const VibrationSpectrum hand = VibrationSpectrum::parse("0.02@1-20");  // degrees rms, Hz
-///     options.motion = hand.shaken(options.motion, options.duration_s(), seed);
+///     ClipOptions options;
+///     options.motion = hand.shaken(options.motion, options.duration_s(), 1);
 class VibrationSpectrum {
  public:
   struct Line {
