@@ -13,8 +13,8 @@ namespace petzval::fuzz {
 namespace {
 
 const LiveNames& offered() {
-  static const LiveNames names{{"tessar"},  {"studio", "grid"}, {"third-inch-vga"},
-                               {"", "D65"}, {"mtf", "spots"},   {"none"}};
+  static const LiveNames names{
+      {"tessar"}, {"studio", "grid"}, {"third-inch-vga"}, {"", "D65"}, {"mtf", "spots"}, {"none"}, {"mgf2"}};
   return names;
 }
 
@@ -36,6 +36,8 @@ void check_state(const BenchState& state) {
           "a sun behind the camera");
   require(std::isfinite(state.roughness_nm) && state.roughness_nm >= 0, "a roughness below 0");
   require(!state.ghost || state.ghost->first > state.ghost->second, "a ghost that nothing reflects");
+  for (const auto& [surface, coating] : state.coatings)
+    require(is_offered(offered().coatings, coating), "another coating");
   for (const std::string& plot : state.plots)
     require(is_offered(offered().analyses, plot), "another analysis");
 }
