@@ -161,8 +161,7 @@ struct ImageSeries::Impl {
         share.aim.check(scene);
         check_coverage(scene, plans, frame, options.surround, notes, share.aim);
       }
-    const auto repeated = std::ranges::unique(notes);
-    notes.erase(repeated.begin(), repeated.end());
+    notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
   }
 
   Place& place_of(std::size_t band) { return places[band % places.size()]; }

@@ -156,8 +156,7 @@ MotionPath VibrationSpectrum::shaken(const MotionPath& path, double duration_s, 
   for (const MotionPath::Key& key : path.keys())
     if (key.t_s > 0 && key.t_s < duration_s) at.push_back(key.t_s);
   std::ranges::sort(at);
-  const auto repeated = std::ranges::unique(at);
-  at.erase(repeated.begin(), repeated.end());
+  at.erase(std::unique(at.begin(), at.end()), at.end());
 
   enum Purpose : std::uint32_t { of_pan = 128, of_pitch = 129 };  // beyond those of capture()
   const std::vector<Wave> pan = waves_of(lines_, &Line::pan_deg2_per_hz, RandomStream(seed, of_pan, 0)),
