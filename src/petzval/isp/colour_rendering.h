@@ -18,7 +18,7 @@ enum class DisplaySpace {
 };
 
 /// Luminance of white, 1, in rec2100_pq: that of diffuse white in ITU-R BT.2408 [cd/m²].
-constexpr double pq_white_cd_m2 = 203;
+inline constexpr double pq_white_cd_m2 = 203;
 /// The inverse EOTF of SMPTE ST 2084: luminance [cd/m²], held to 0 … 10000, to code value 0 … 1.
 double pq_encoded(double luminance_cd_m2);
 /// Its inverse.
