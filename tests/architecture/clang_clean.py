@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compiles with clang, warnings as errors and without making anything: every public header alone, and the sources that
-changed within the last hours before the newest commit, or that are not committed yet. Sources of one folder are compiled
-several at once, as the build does it; those that complain together again one by one.
+"""Compiles with clang, warnings as errors and without making anything, what changed within the last hours before the newest
+commit or is not committed yet: public headers, each alone, with those that include them, and sources. Sources of one folder
+are compiled several at once, as the build does it; those that complain together again by halves.
 
-    clang_clean.py headers|sources PROJECT_FOLDER BUILD_FOLDER CLANG
+    clang_clean.py headers|sources PROJECT_FOLDER BUILD_FOLDER CLANG [--all]
+
+--all: whatever changed, everything.
 """
 
 import concurrent.futures
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
 
 HOURS = 2
-AT_ONCE = 8
+AT_ONCE = 16
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unknown-warning-option"]
 
 
@@ -32,17 +35,27 @@ def include_flags(build):
     return list(flags)
 
 
-def changed_sources(project):
+def changed_files(project, everything):
     def git(*words):
         return subprocess.run(["git", "-C", project, *words], capture_output=True, text=True, check=True).stdout.split()
 
     newest = int(git("log", "-1", "--format=%ct")[0])
-    base = git("rev-list", "-1", f"--before={newest - HOURS * 3600}", "HEAD")
+    base = [] if everything else git("rev-list", "-1", f"--before={newest - HOURS * 3600}", "HEAD")
     empty_tree = "4b825dc642cb6eb9a060e54bf8d69288fbee4904"
-    names = set(git("diff", "--name-only", "--diff-filter=d", base[0] if base else empty_tree))
-    return [project / name for name in sorted(names)
-            if name.endswith(".cpp") and name.split("/")[0] in ("src", "apps", "tests")
+    return sorted(set(git("diff", "--name-only", "--diff-filter=d", base[0] if base else empty_tree)))
+
+
+def sources_of(project, changed):
+    return [project / name for name in changed if name.endswith(".cpp") and name.split("/")[0] in ("src", "apps", "tests")
             and not name.startswith("tests/consumer")]
+
+
+def headers_of(project, build, changed):
+    """Public headers that changed, and those that include one that did."""
+    touched = {name.removeprefix("src/") for name in changed if name.startswith("src/") and name.endswith(".h")}
+    public = [project / "src/petzval" / name for name in (build / "public_headers.txt").read_text().split()]
+    return [header for header in public if str(header.relative_to(project / "src")) in touched
+            or touched.intersection(re.findall(r"#include <(petzval/[^>]+)>", header.read_text()))]
 
 
 def complaint(clang, flags, words, text=None):
@@ -50,12 +63,18 @@ def complaint(clang, flags, words, text=None):
     return done.stderr if done.returncode else ""
 
 
+def complaints_of_header(clang, flags, header):
+    text = complaint(clang, flags, ["-x", "c++", str(header), "-Wno-pragma-once-outside-header"])
+    return [text] if text else []
+
+
 def complaints_of_sources(clang, flags, sources):
-    quote = ["-iquote", str(sources[0].parent)]
     together = "".join(f'#include "{source}"\n' for source in sources)
-    if len(sources) > 1 and not complaint(clang, flags, ["-x", "c++", "-", *quote], together):
-        return []
-    return list(filter(None, (complaint(clang, flags, [str(source), *quote]) for source in sources)))
+    text = complaint(clang, flags, ["-x", "c++", "-", "-iquote", str(sources[0].parent)], together)
+    if len(sources) == 1 or not text:
+        return [text] if text else []
+    half = len(sources) // 2
+    return [each for part in (sources[:half], sources[half:]) for each in complaints_of_sources(clang, flags, part)]
 
 
 def in_groups(sources):
@@ -68,23 +87,23 @@ def in_groups(sources):
 def main():
     what, project, build, clang = sys.argv[1], *map(pathlib.Path, sys.argv[2:4]), sys.argv[4]
     flags = include_flags(build)
+    try:
+        changed = changed_files(project, "--all" in sys.argv[5:])
+    except (subprocess.CalledProcessError, FileNotFoundError, IndexError):
+        print("no history to tell what changed")
+        return 77
     if what == "headers":
-        names = (build / "public_headers.txt").read_text().split()
-        checks = [(complaint, ["-x", "c++", str(project / "src/petzval" / name), "-Wno-pragma-once-outside-header"]) for name in names]
+        names = parts = headers_of(project, build, changed)
+        check = complaints_of_header
     else:
-        try:
-            sources = changed_sources(project)
-        except (subprocess.CalledProcessError, FileNotFoundError, IndexError):
-            print("no history to tell what changed")
-            return 77
-        names = sources
-        checks = [(complaints_of_sources, group) for group in in_groups(sources)]
+        names = sources_of(project, changed)
+        parts = in_groups(names)
+        check = complaints_of_sources
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda check: check[0](clang, flags, check[1]), checks))
-    complaints = [text for each in found for text in ([each] if isinstance(each, str) else each) if text]
+        complaints = [text for each in pool.map(lambda part: check(clang, flags, part), parts) for text in each]
     print("\n".join(complaints))
     print(f"{len(names)} files, {len(complaints)} with complaints")
-    return 1 if complaints or (what == "headers" and not names) else 0
+    return 1 if complaints else 0
 
 
 sys.exit(main())
