@@ -114,8 +114,8 @@ void LossChoice::add_to(CLI::App& command) {
   command.add_flag("--fresnel", fresnel, "Count reflection at bare glass surfaces (Fresnel)");
   command.add_option("--coating", coating,
                      "Coating of the surfaces between air and glass: a name or file of thin films (mgf2, "
-                     "quarter-half-quarter), their "
-                     "reflectance as a number, or a CSV file with columns wavelength_nm and air_glass or "
+                     "quarter-half-quarter, broadband-8, v-550), their reflectance as a number, or a CSV "
+                     "file with columns wavelength_nm and air_glass or "
                      "surfaces[0], surfaces[3]…; of single surfaces: surfaces[0]=mgf2,surfaces[3]=0.005");
   command.add_flag("--absorption", absorption, "Count absorption in the glass, by the catalogue's k");
 }

@@ -195,6 +195,43 @@ TEST(Losses, BundledFilmsReflectLittle) {
   }
 }
 
+// The design of Furman and Tikhonravov 1992, fig. 2.5: optical thicknesses are published beside the geometric
+// ones, each rounded to 0.1 nm, and the figure's reflectance ends at 0.4 %. Between three zeros that are not
+// quite reached stand two humps. Numbers of s and p by the program tmm 0.2.0 by S. Byrnes (coh_tmm).
+TEST(Losses, APublishedBroadbandCoatingHasItsCurve) {
+  const Coating coating = read_coating("broadband-8");
+  const std::vector<double> optical_nm{131.5, 38.9, 13.4, 239.4, 9.3, 18.6, 36.4, 32.4};
+  const std::vector<ThinFilm> films = coating.films(550, 1);
+  ASSERT_EQ(films.size(), optical_nm.size());
+  for (std::size_t i = 0; i < films.size(); ++i) {
+    const double index = films[i].index.real();
+    EXPECT_NEAR(index * films[i].thickness_nm, optical_nm[i], 0.05 * index + 0.05) << i;
+  }
+  int minima = 0, maxima = 0;
+  const auto reflectance = [&](double nm) { return coating.reflectance(nm, 1, 1.52); };
+  for (double nm = 420; nm <= 760; nm += 5) {
+    const double here = reflectance(nm), before = reflectance(nm - 5), after = reflectance(nm + 5);
+    EXPECT_LT(here, 0.004) << nm;
+    minima += here < before && here < after;
+    maxima += here > before && here > after;
+  }
+  EXPECT_EQ(minima, 3);
+  EXPECT_EQ(maxima, 2);
+  struct {
+    double degrees, nm, s, p;
+  } const rows[] = {
+      {0, 400, 0.017933214182341, 0.017933214182341},  {0, 480, 0.001846976669569, 0.001846976669569},
+      {0, 700, 0.000618526881088, 0.000618526881088},  {0, 800, 0.010329530709692, 0.010329530709692},
+      {30, 440, 0.002029970397474, 0.000205461144479}, {30, 620, 0.006164201931476, 0.001848034427903},
+      {45, 480, 0.008452165164024, 0.005053247354603}, {45, 760, 0.026544408778337, 0.016493074538990}};
+  for (const auto& row : rows) {
+    const double cosine = std::cos(row.degrees * M_PI / 180);
+    const auto of = [&](Polarisation which) { return film_power(1, films, 1.52, cosine, row.nm, which); };
+    EXPECT_NEAR(of(Polarisation::s).reflectance, row.s, 1e-12);
+    EXPECT_NEAR(of(Polarisation::p).reflectance, row.p, 1e-12);
+  }
+}
+
 TEST(Losses, RefusesFilmsBetweenGlasses) {
   Lens lens;
   lens.surfaces = {sample::surface(0, 2, 1.5), sample::surface(0, 2, 1.7), sample::surface(0, 10, 1)};
