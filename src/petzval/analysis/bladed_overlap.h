@@ -19,8 +19,4 @@ std::complex<double> bladed_overlap(const std::vector<std::array<double, 2>>& ou
                                     const OverlapAlong& along, MtfDirection direction, double shift,
                                     const QuadratureRule& rule, int panels);
 
-/// The x between `inside`, where f is above 0, and `outside` at which f comes down to 0, if it does so but
-/// once on the way; else `outside`.
-double last_above_zero(double inside, double outside, const std::function<double(double)>& f);
-
 }  // namespace petzval

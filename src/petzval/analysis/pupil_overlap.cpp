@@ -3,6 +3,7 @@
 #include <petzval/analysis/pupil_mask.h>
 #include <petzval/analysis/pupil_overlap.h>
 #include <petzval/base/units.h>
+#include <petzval/numeric/root.h>
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,7 @@
 #include <petzval/report/colours.h>
 #include <petzval/report/pupil_plots.h>
 #include <petzval/simulate/analysis.h>
+#include <petzval/simulate/analysis_result.h>
 #include <petzval/simulate/flare.h>
 #include <petzval/simulate/glare_analysis.h>
 

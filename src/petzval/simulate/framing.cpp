@@ -7,24 +7,9 @@
 #include <petzval/trace/tracer.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace petzval {
-
-namespace {
-
-/// Up to the corner of the film, at the reference wavelength, to one part in a hundred.
-double lit_circle_mm(const Lens& lens, double corner_mm) {
-  constexpr int places = 100;
-  const std::array<Tracer, 1> tracers{Tracer(lens, lens.reference_wavelength_nm).with_blades({})};
-  const ExitPupilRegions regions(tracers, corner_mm);
-  for (int i = places; i > 0; --i)
-    if (regions.area_sr(0, corner_mm * i / places) > 0) return 2 * corner_mm * i / places;
-  return 0;
-}
-
-}  // namespace
 
 Framing framing(const PreparedScene& scene) {
   if (!scene.lens)
@@ -41,7 +26,8 @@ Framing framing(const PreparedScene& scene) {
   result.efl_mm = first.efl_mm, result.f_number = first.f_number;
   result.working_f_number = first.working_f_number;
   result.sharp = geometric_depth_of_field(lens, scene.film.pitch_um * mm_per_um);
-  result.lit_circle_mm = lit_circle_mm(*scene.lens, scene.film.half_diagonal_mm());
+  const Tracer tracer = Tracer(*scene.lens, scene.lens->reference_wavelength_nm).with_blades({});
+  result.lit_circle_mm = 2 * lit_radius_mm(tracer, scene.film.half_diagonal_mm());
   return result;
 }
 

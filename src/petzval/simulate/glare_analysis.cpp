@@ -3,6 +3,7 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/flare/veiling_glare.h>
+#include <petzval/simulate/analysis_result.h>
 #include <petzval/simulate/flare.h>
 #include <petzval/simulate/glare_analysis.h>
 

@@ -249,4 +249,15 @@ double ExitPupilRegions::density_per_sr(double x_mm, double y_mm, double alpha, 
   return std::hypot(x, y) <= zone.radius[sector] ? 1 / zone.area_sr : 0;
 }
 
+double lit_radius_mm(const Tracer& tracer, double film_radius_mm) {
+  constexpr int places = 100;
+  const std::vector<Tracer> views = views_of({&tracer, 1});
+  for (int i = places; i > 0; --i) {
+    const double radius = film_radius_mm * i / places;
+    for (const Tracer& view : views)
+      if (find_passing_region(view, Pencil::from_image(view, radius))) return radius;
+  }
+  return 0;
+}
+
 }  // namespace petzval
