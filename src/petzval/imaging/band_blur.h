@@ -25,9 +25,10 @@ class BandBlur {
       : table_(table), options_(options), centres_(centres), report_(report) {}
 
   /// Makes the kernels of a wavelength for planes on a grid. \param margin  by which their images are smaller
-  /// on every side.
-  void prepare(double wavelength_nm, const SensorGeometry& grid, int margin) {
-    choose(wavelength_nm, grid, margin, plan_);
+  /// on every side. \param first_hint  for the first band: the plan of another table's.
+  void prepare(double wavelength_nm, const SensorGeometry& grid, int margin,
+               const std::optional<ProductPlan>& first_hint = {}) {
+    choose(wavelength_nm, grid, margin, plan_ ? plan_ : first_hint);
     make_kernels();
   }
   /// The first half of prepare(). \param hint  the plan() of a neighbouring band.

@@ -122,7 +122,9 @@ class DepthImaging {
     const double wavelength_nm = scene_.wavelengths_nm()[static_cast<std::size_t>(band)];
     const SensorGeometry grid = grown(frame_, plan.margin);
     const auto start = std::chrono::steady_clock::now();
-    blur.prepare(wavelength_nm, grid, plan.margin);
+    blur.prepare(wavelength_nm, grid, plan.margin,
+                 band == 0 ? hint_of_last_layer(plan.margin) : std::nullopt);
+    if (band == 0) keep_plan(blur.plan(), plan.margin);
     const auto imaged = [&](const Scene& scene, Surround surround) {
       const auto start_of_ideal = std::chrono::steady_clock::now();
       CellPlane ideal = source_light(scene, 0, plan.map, grid, path_.source, surround);
@@ -141,6 +143,20 @@ class DepthImaging {
     says().blur_seconds += seconds_since(start);
   }
 
+  /// Blur changes little from a layer to the next. Where it is another by half than where a plan was made, a
+  /// better one may be had.
+  std::optional<ProductPlan> hint_of_last_layer(int margin) const {
+    constexpr double alike = 1.5;
+    const double change = double(margin) / double(planned_margin_);
+    return kept_ && change < alike && change > 1 / alike ? kept_ : std::nullopt;
+  }
+  void keep_plan(std::optional<ProductPlan> plan, int margin) {
+    const bool is_kept = kept_ && plan && plan->tile == kept_->tile && plan->nodes == kept_->nodes;
+    if (!is_kept) planned_margin_ = std::max(1, margin);
+    if (plan) plan->transform = 0;
+    kept_ = std::move(plan);
+  }
+
   void tell(double fraction, const std::string& what) const {
     if (progress_) progress_((double(layer_) + fraction) / double(layers_.layers.size()), what);
   }
@@ -154,6 +170,8 @@ class DepthImaging {
   const DepthLayers layers_;
   std::map<std::size_t, LensDataTable> ends_;  ///< tables of the farthest, the nearest and the largest layer
   std::size_t layer_ = 0;                      ///< at work
+  std::optional<ProductPlan> kept_;            ///< of the last layer's first band
+  int planned_margin_ = 1;                     ///< of the layer where its tiles were chosen
   const ImagingOptions options_;
   const SensorGeometry frame_;
   LightPath path_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -169,7 +170,7 @@ KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile,
     parallel_for(at_once,
                  [&](std::size_t i) { squares[i] = square_at(errors, first + static_cast<int>(i)); });
     for (const double square : squares) total += square;
-    if (first == 1) error.of_first = std::sqrt(total / at_once);
+    if (first == 1) error.first_squares = squares;
     if (total > limit * limit * KernelError::places) break;
   }
   error.rms = std::sqrt(total / KernelError::places);
@@ -177,15 +178,19 @@ KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile,
 }
 
 KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
-                              int tile, int nodes) {
+                              int tile, int nodes, int few) {
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  std::array<double, KernelError::first_places> squares{};
-  parallel_for(squares.size(),
+  KernelError error;
+  std::array<double, KernelError::first_places>& squares = error.first_squares;
+  parallel_for(static_cast<std::size_t>(few),
                [&](std::size_t i) { squares[i] = square_at(errors, static_cast<int>(i) + 1); });
-  double total = 0;
-  for (const double square : squares) total += square;
-  const double of_first = std::sqrt(total / double(squares.size()));
-  return {known.of_first > 0 ? known.rms * (of_first / known.of_first) : of_first, of_first};
+  const double now = std::accumulate(squares.begin(), squares.begin() + few, 0.0),
+               before = std::accumulate(known.first_squares.begin(), known.first_squares.begin() + few, 0.0);
+  const double change = before > 0 ? now / before : 1;
+  std::transform(known.first_squares.begin() + few, known.first_squares.end(), squares.begin() + few,
+                 [&](double square) { return square * change; });
+  error.rms = before > 0 ? known.rms * std::sqrt(change) : std::sqrt(now / few);
+  return error;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <petzval/imaging/psf_kernel.h>
 #include <petzval/sensor/sensor.h>
 
+#include <array>
 #include <limits>
 
 namespace petzval {
@@ -23,8 +24,8 @@ struct SourceGrid {
 /// kernels differs from it.
 struct KernelError {
   static constexpr int places = 64, first_places = 8;
-  double rms = 0;       ///< over all places looked at
-  double of_first = 0;  ///< over the first few of them
+  double rms = 0;                                    ///< over all places looked at
+  std::array<double, first_places> first_squares{};  ///< at the first few of them
 };
 
 /// \param limit  no more is added up once the error is sure to be above it: then what is returned is above
@@ -33,9 +34,9 @@ KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile,
                          double limit = std::numeric_limits<double>::infinity());
 
 /// The same for PSFs that differ little from others of which it is known: places are alike, so a few tell by
-/// how much all have changed.
+/// how much all have changed. \param few  at how many it is looked, 1 to first_places.
 KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, const SourceGrid& grid,
-                              int tile, int nodes);
+                              int tile, int nodes, int few = KernelError::first_places);
 
 /// Cells whose distance from the axis lies between two radii [cells].
 struct CellRing {

@@ -141,13 +141,22 @@ bool mend_rim(const PsfField& psfs, const SourceGrid& grid, const RimError& rim,
   return rim.within;
 }
 
-/// The plan of a neighbouring band, if it serves.
+/// The plan of a neighbouring band or layer, if it serves.
 std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& psfs, const SourceGrid& grid,
                                      const ProductOptions& options) {
-  if (!hint.direct && hint.tile + 2 * psfs.radius() > hint.transform) return {};
+  const int needed = hint.tile + 2 * psfs.radius();
+  const auto smallest = std::ranges::find_if(TileTransform::sizes, [&](int size) { return size >= needed; });
+  const int transform = hint.transform != 0                      ? hint.transform
+                        : smallest != TileTransform::sizes.end() ? *smallest
+                                                                 : 0;
+  if (!hint.direct && needed > transform) return {};
   ProductPlan plan = hint.direct ? direct_candidate(psfs, grid, hint.tile, hint.nodes)
-                                 : candidate(psfs, grid, hint.transform, hint.tile, hint.nodes);
-  plan.error_at_places = kernel_error_like(hint.error_at_places, psfs, grid, plan.tile, plan.nodes);
+                                 : candidate(psfs, grid, transform, hint.tile, hint.nodes);
+  // To look at a place takes as many kernels as there are nodes around it, and one; that should not cost more
+  // than half of what the picture needs.
+  const double worth = kernel_count(psfs, grid, plan) / (2 * (2.0 * plan.nodes + 1));
+  const int places = static_cast<int>(std::clamp(worth, 2.0, double(KernelError::first_places)));
+  plan.error_at_places = kernel_error_like(hint.error_at_places, psfs, grid, plan.tile, plan.nodes, places);
   plan.estimated_error = plan.error_at_places.rms;
   if (options.layout_given()) return plan;
   const double limit = caution_of_hint * options.tolerance;

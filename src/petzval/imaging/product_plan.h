@@ -47,7 +47,8 @@ struct ProductOptions {
 
 /// The cheapest plan by the cost model whose estimated error is within the tolerance; nothing if PSFs are too
 /// large for the transforms of lanes, or change so fast that no tile is small enough. \param grid  of the
-/// source. \param hint  what served a neighbouring band: it is kept if, by a few places, it still serves.
+/// source. \param hint  what served a neighbouring band or layer: it is kept if, by a few places, it still
+/// serves; a `transform` of 0 there stands for the smallest that takes its tiles.
 std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& grid,
                                         const ProductOptions& options,
                                         const std::optional<ProductPlan>& hint = {});
