@@ -202,10 +202,13 @@ void bind_sfr(nb::module_& module) {
           "The maps drawn, as `petzval sfr --map` does: SVG text that notebooks show.")
       .def(
           "over_height_svg",
-          [](const Edges& e) {
-            return shown(sharpness_profile_svg({"", e.columns, e.rows, {}, e.all, ""}));
+          [](const Edges& e, Maybe<double> pitch_um) {
+            return shown(sharpness_profile_svg({"", e.columns, e.rows, pitch_um, e.all, ""}));
           },
-          "MTF50 over the image height, as `petzval sfr --over-height` draws it.")
+          nb::kw_only(), nb::arg("pitch_um").none() = nb::none(),
+          "MTF50 over the image height, as `petzval sfr --over-height` draws it; with `pitch_um` of the "
+          "pixels "
+          "in mm.")
       .def(
           "annotated_svg",
           [](const Edges& e, const nb::object& picture, const std::string& transfer) {

@@ -119,12 +119,12 @@ def test_psf(program, tmp_path):
 
 
 def test_psf_by_fft(program, tmp_path):
-    stack = pz.Lens("double-gauss").psf([0, 10], wavelengths_nm=[550], size=64, spacing_um=2, method="fft", pupil_samples=128)
+    stack = pz.Lens("double-gauss").psf([0, 10], wavelengths_nm=[550], size=64, spacing_um=1, method="fft", pupil_samples=128)
     for f, field in enumerate([0, 10]):
-        program.run("lens", "psf", "double-gauss", "--fields", field, "--wavelengths", 550, "--size", 64, "--spacing", 2,
+        program.run("lens", "psf", "double-gauss", "--fields", field, "--wavelengths", 550, "--size", 64, "--spacing", 1,
                     "--method", "fft", "--pupil-samples", 128, "-o", "psf.npy")
         assert np.array_equal(np.load(tmp_path / "psf.npy"), stack.values[f, 0])
-    program.run("lens", "psf", "double-gauss", "--fields", "0,10", "--wavelengths", 550, "--size", 64, "--spacing", 2,
+    program.run("lens", "psf", "double-gauss", "--fields", "0,10", "--wavelengths", 550, "--size", 64, "--spacing", 1,
                 "--method", "fft", "--pupil-samples", 128, "-o", "psf.npz")
     assert np.array_equal(np.load(tmp_path / "psf.npz")["psf"], stack.values)
     with pytest.raises(pz.InputError, match="samples of the FFT span"):
@@ -224,11 +224,11 @@ def test_drawings_of_edges(program, tmp_path):
     edges = pz.sfr(str(tmp_path / "photo.npy"))
     picture = np.load(tmp_path / "photo.npy")
     assert edges.annotated_svg(picture) == (tmp_path / "edges.svg").read_text()
-    assert edges.over_height_svg() == (tmp_path / "height.svg").read_text()
+    assert edges.over_height_svg(pitch_um=4.73) == (tmp_path / "height.svg").read_text()
     report = edges.report_html(picture, title="photo.npy", pitch_um=4.73)
     assert report == (tmp_path / "report.html").read_text()
-    assert "data:image/png" in report and "data:image/png" not in edges.report_html()
-    with pytest.raises(pz.InputError, match="180 x 10|10 x 10"):
+    assert "The edges and their MTF50" in report and "The edges and their MTF50" not in edges.report_html()
+    with pytest.raises(pz.InputError, match="10 x 10"):
         edges.annotated_svg(picture[:10, :10])
 
 
@@ -275,6 +275,6 @@ def test_measured_tables(program, tmp_path):
                             ({"source": "oslo"}, "`source` oslo"), ({"psf_centre": (0, 1)}, "counted from 1")):
         with pytest.raises(pz.InputError, match=words):
             pz.LensDataTable.import_from(str(tmp_path / "mtf.csv"), **keywords)
-    for keywords, words in (({"psf_size": 1}, "`psf_size` 1"), ({"psf_light": 2}, "`psf_light` 2"), ({"psf_size": 4096}, "GiB")):
+    for keywords, words in (({"psf_size": 1}, "`psf_size` 1"), ({"psf_light": 2}, "`psf_light` 2"), ({"psf_spacing_um": 1e-6}, "GiB")):
         with pytest.raises(pz.InputError, match=words):
             table.export(str(tmp_path / "t.mat"), to="iset", **keywords)
