@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times of the Python package: what docs/PYTHON.md tells under "Speed". Best of several runs, one thread."""
+"""Times of the Python package: what docs/ACCURACY.md tells under "Python". Best of several runs, one thread."""
 
 import timeit
 import warnings

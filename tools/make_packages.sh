@@ -69,6 +69,7 @@ try_deb() { # the program, then the library by the project of docs/HOWTO_CPP.md
   cp "$folder"/petzval{,-dev}_"$version"_*.deb "$root/opt"
   in_bare deb apt-get update --quiet
   in_bare deb bash -c 'apt-get install --quiet --yes --no-install-recommends /opt/petzval_*.deb'
+  diff <(ls "$here/data") <(ls "$root/usr/share/petzval")
   in_bare deb bash -c 'cd /opt && petzval image colorchecker --lens edmund-54852 --sensor third-inch-1280x960 \
     --wavelengths 450,550,650 --quiet -o shot.dng -o shot.png && petzval measure colour shot.png | tail -1 && petzval --version'
   in_bare deb bash -c 'apt-get install --quiet --yes --no-install-recommends g++ cmake make /opt/petzval-dev_*.deb'
@@ -100,6 +101,7 @@ try_wheel() { # without any of the libraries, with Python 3.11 and 3.13
     "$folder/tools/bin/pip" download --quiet --only-binary :all: --python-version "$python" --dest "$root/opt" numpy nanobind-backend
     cp "$folder"/petzval-"$version"-*.whl "$root/opt"
     in_bare $name bash -c 'cd /opt && rm -rf v && python3 -m venv v && v/bin/pip install --quiet --no-index --find-links . petzval'
+    diff <(ls "$here/data") <(ls "$root"/opt/v/lib/python3.*/site-packages/petzval/share/petzval)
     in_bare $name /opt/v/bin/python -W ignore -c '
 import sys
 import petzval as pz

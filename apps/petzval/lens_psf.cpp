@@ -145,9 +145,8 @@ void write_psfs(const std::string& path, const std::vector<PsfRow>& rows, Fields
 /// All fields and wavelengths on one grid, as arrays with their axes.
 void write_stack(const PsfCommand& options, const Lens& lens, const FieldTableRequest& request,
                  const Context& context) {
-  if (options.method == "fft")
-    throw InputError("--method fft: an .npz holds PSFs of real rays; --method rays would be right");
-  const PsfStack stack = psf_stack(lens, request, options.psf, context);
+  const PsfStack stack =
+      psf_stack(lens, request, options.psf, context, options.method == "fft" ? options.pupil_samples : 0);
   const std::size_t fields = stack.fields.size(), wavelengths = stack.wavelengths_nm.size(),
                     size = static_cast<std::size_t>(stack.size);
   std::vector<double> places(size);

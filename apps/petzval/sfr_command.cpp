@@ -117,7 +117,7 @@ void write_frame(const SfrCommand& command, const SfrReport& report, const Plane
                      report.rows,
                      report.pitch_um,
                      report.edges,
-                     command.report.empty() ? std::string() : annotated_svg(report, seen)};
+                     command.report.empty() ? std::string() : annotated_edges_svg(report.edges, seen)};
   if (!command.map.empty()) write_drawing(files.stage(command.map), sharpness_map_svg(page), command.map);
   if (!command.over_height.empty())
     write_drawing(files.stage(command.over_height), sharpness_profile_svg(page), command.over_height);
@@ -161,7 +161,8 @@ void run(const SfrCommand& command, const Shared& shared) {
     write_drawing(files.stage(command.profile), profile_plot_svg(reports), command.profile);
   if (command.profile.ends_with(".csv")) write_profile_csv(files.stage(command.profile), reports);
   if (!command.annotate.empty())
-    write_whole_file(files.stage(command.annotate), annotated_svg(reports.pictures.front(), seen));
+    write_whole_file(files.stage(command.annotate),
+                     annotated_edges_svg(reports.pictures.front().edges, seen));
   write_frame(command, reports.pictures.front(), seen, files);
   files.commit();
   print_sfr(reports, shared);

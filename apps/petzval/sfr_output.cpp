@@ -6,12 +6,8 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
-#include <petzval/colour/display.h>
 #include <petzval/measure/sfr/sharpest_place.h>
-#include <petzval/report/data_uri.h>
-#include <petzval/report/heat_map.h>
 #include <petzval/report/svg_plot.h>
-#include <petzval/report/xml.h>
 
 #include <algorithm>
 #include <charconv>
@@ -310,36 +306,6 @@ std::string profile_plot_svg(const SfrReports& reports) {
     plot.line(curve_file(reports, report) + name_of(report.edges[i], i), x, y);
   });
   return plot.svg();
-}
-
-std::string annotated_svg(const SfrReport& report, const Plane& plane) {
-  std::vector<float> levels;
-  for (const double value : plane.values) levels.push_back(static_cast<float>(srgb_encoded(value)));
-  const std::string png = heat_map_png(levels, plane.columns, plane.rows, {});
-  XmlWriter xml;
-  open_svg(xml, plane.columns, plane.rows, "The picture with its edges and their MTF50 in cycles/pixel");
-  xml.leaf("image", {{"width", static_cast<double>(plane.columns)},
-                     {"height", static_cast<double>(plane.rows)},
-                     {"href", data_uri("image/png", png)}});
-  for (const MeasuredEdge& edge : report.edges) {
-    const EdgeLine& line = edge.exact.line;
-    const double ux = -std::sin(line.normal_rad) * line.half_length,
-                 uy = std::cos(line.normal_rad) * line.half_length;
-    xml.leaf("line", {{"x1", line.centre_x - ux},
-                      {"y1", line.centre_y - uy},
-                      {"x2", line.centre_x + ux},
-                      {"y2", line.centre_y + uy},
-                      {"stroke", "#e6550d"},
-                      {"stroke-width", 1.5}});
-    xml.text("text",
-             {{"x", line.centre_x + 4},
-              {"y", line.centre_y},
-              {"fill", "#e6550d"},
-              {"font-size", 12.0},
-              {"font-family", "sans-serif"}},
-             fmt::format("{:.3f}", edge.mtf50()));
-  }
-  return std::move(xml).finish();
 }
 
 }  // namespace petzval::app

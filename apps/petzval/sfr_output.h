@@ -55,7 +55,5 @@ NamedCurve read_sfr_table(const std::string& path);
 /// The measured edges, and beside them, broken, what others say.
 std::string sfr_plot_svg(const SfrReports& reports, const std::vector<NamedCurve>& others);
 std::string profile_plot_svg(const SfrReports& reports);
-/// The picture with its edges and their MTF50.
-std::string annotated_svg(const SfrReport& report, const Plane& plane);
 
 }  // namespace petzval::app

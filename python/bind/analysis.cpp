@@ -133,8 +133,12 @@ nb::object run_analysis(const nb::object& self, const std::string& name, const N
 // ---- PSFs
 
 PsfStack psfs(const nb::object& self, const Numbers& fields, const Maybe<std::string>& field_type,
-              const Numbers& wavelengths_nm, int size, double spacing_um, bool ignore_apertures,
-              double azimuth_deg, int threads, const nb::object& progress) {
+              const Numbers& wavelengths_nm, int size, double spacing_um, const std::string& method,
+              int pupil_samples, bool ignore_apertures, double azimuth_deg, int threads,
+              const nb::object& progress) {
+  const bool fft = choice<bool>("method", method, {{"rays", false}, {"fft", true}});
+  if (pupil_samples < 8 || pupil_samples > 1024)
+    throw InputError(fmt::format("`pupil_samples` {}; 8 to 1024 would be right", pupil_samples));
   const Lens lens = lens_to_look_at(self);
   FieldTableRequest at = request_of(lens, fields, field_type, wavelengths_nm,
                                     ignore_apertures || ignores_apertures(self), losses_of(self));
@@ -142,7 +146,8 @@ PsfStack psfs(const nb::object& self, const Numbers& fields, const Maybe<std::st
   PsfOptions options;
   options.size = size, options.spacing_um = spacing_um;
   Call call({threads, 1, progress});
-  return call([&](const Context& context) { return psf_stack(lens, at, options, context); });
+  return call(
+      [&](const Context& context) { return psf_stack(lens, at, options, context, fft ? pupil_samples : 0); });
 }
 
 template <typename T>
@@ -284,7 +289,9 @@ constexpr const char* analyse_text =
     "`plots`: draws too.";
 constexpr const char* psf_text =
     "Diffraction PSFs by field and wavelength on one grid, as a PsfStack. `size` 0 and `spacing_um` 0: "
-    "chosen so that all fit.";
+    "chosen so that all fit. `method`: rays (plane waves of real rays), or fft, the model of the plain FFT "
+    "with "
+    "`pupil_samples` across the pupil, to compare with other programs (docs/PSF.md).";
 constexpr const char* trace_text =
     "Traces rays in lens space to the image surface. `points_mm`, `directions`: arrays (ray, 3). Gives "
     "TracedRays with `status`, "
@@ -315,8 +322,9 @@ void bind_methods(const nb::handle& type) {
   add("analyse", run_analysis, PETZVAL_ANALYSE_ARGUMENTS, analyse_text);
   add("psf", psfs, nb::arg("fields") = Numbers(), nb::kw_only(), nb::arg("field_type").none() = nb::none(),
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("size") = 0, nb::arg("spacing_um") = 0.0,
-      nb::arg("ignore_apertures") = false, nb::arg("azimuth_deg") = 0.0, nb::arg("threads") = 0,
-      nb::arg("progress").none() = nb::none(), psf_text);
+      nb::arg("method") = "rays", nb::arg("pupil_samples") = 256, nb::arg("ignore_apertures") = false,
+      nb::arg("azimuth_deg") = 0.0, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(),
+      psf_text);
   add("trace", traced, nb::arg("points_mm"), nb::arg("directions"),
       nb::arg("wavelength_nm").none() = nb::none(), nb::kw_only(), nb::arg("ignore_apertures") = false,
       trace_text);

@@ -101,6 +101,20 @@ Edges measured(const nb::object& picture, const nb::object& roi, const std::stri
   });
 }
 
+/// Of the picture whose edges these are.
+Plane luminance_of(const Edges& edges, const nb::object& picture, const std::string& transfer) {
+  const PicturePlanes planes = planes_from(picture, transfer, false);
+  if (planes.columns != edges.columns || planes.rows != edges.rows)
+    throw InputError(fmt::format("`picture` of {} x {} pixels; that of the edges, {} x {}, would be right",
+                                 planes.columns, planes.rows, edges.columns, edges.rows));
+  return planes.luminance();
+}
+
+/// SVG text that notebooks show.
+nb::object shown(const std::string& svg) {
+  return call_python("petzval._display", "Svg", svg);
+}
+
 /// Of all edges, the middle one; an edge whose SFR stays above one half has none.
 double median_mtf50(const Edges& edges) {
   Numbers values;
@@ -183,9 +197,40 @@ void bind_sfr(nb::module_& module) {
       .def(
           "map_svg",
           [](const Edges& e) {
-            return sharpness_map_svg({"", e.columns, e.rows, {}, e.all, ""});
+            return shown(sharpness_map_svg({"", e.columns, e.rows, {}, e.all, ""}));
           },
-          "The maps drawn, as `petzval sfr --map` does.")
+          "The maps drawn, as `petzval sfr --map` does: SVG text that notebooks show.")
+      .def(
+          "over_height_svg",
+          [](const Edges& e, Maybe<double> pitch_um) {
+            return shown(sharpness_profile_svg({"", e.columns, e.rows, pitch_um, e.all, ""}));
+          },
+          nb::kw_only(), nb::arg("pitch_um").none() = nb::none(),
+          "MTF50 over the image height, as `petzval sfr --over-height` draws it; with `pitch_um` of the "
+          "pixels "
+          "in mm.")
+      .def(
+          "annotated_svg",
+          [](const Edges& e, const nb::object& picture, const std::string& transfer) {
+            return shown(annotated_edges_svg(e.all, luminance_of(e, picture, transfer)));
+          },
+          nb::arg("picture"), nb::kw_only(), nb::arg("transfer") = "stated",
+          "The picture with its edges and their MTF50, as `petzval sfr --annotate` draws it. `picture`: what "
+          "was measured, as `sfr` takes it.")
+      .def(
+          "report_html",
+          [](const Edges& e, const nb::object& picture, const std::string& title, Maybe<double> pitch_um,
+             const std::string& transfer) {
+            return sfr_page_html({title, e.columns, e.rows, pitch_um, e.all,
+                                  picture.is_none()
+                                      ? std::string()
+                                      : annotated_edges_svg(e.all, luminance_of(e, picture, transfer))});
+          },
+          nb::arg("picture").none() = nb::none(), nb::kw_only(), nb::arg("title") = "",
+          nb::arg("pitch_um").none() = nb::none(), nb::arg("transfer") = "stated",
+          "The page of `petzval sfr --report`, as HTML text: map, profile, lateral colour, all edges, and "
+          "the "
+          "`picture` with its edges if it is given. `pitch_um` of the pixels: lp/mm too.")
       .def(
           "sharpest_along",
           [](const Edges& e, const std::string& axis) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface.h"
 
+#include <petzval/lens/formats/native.h>
+
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -60,6 +62,33 @@ void set_shape(Surface& surface, const nb::object& shape) {
   surface.shape = std::move(added);
 }
 
+/// What the native file has of a surface, as Python's values; None where there is nothing.
+nb::object native_value(const std::string& json) {
+  return json.empty() ? nb::object(nb::none()) : call_python("json", "loads", json);
+}
+
+nb::object coating_of(const Surface& surface) {
+  return native_value(surface.coating ? coating_text(*surface.coating) : "");
+}
+
+nb::object scatter_of(const Surface& surface) {
+  return native_value(surface.scatter ? scatter_text(*surface.scatter) : "");
+}
+
+void set_coating(Surface& surface, const nb::object& coating) {
+  surface.coating.reset();
+  if (coating.is_none()) return;
+  const JsonDocument document(nb::cast<std::string>(call_python("json", "dumps", coating)), "coating");
+  surface.coating = read_surface_coating(JsonEntry(document));
+}
+
+void set_scatter(Surface& surface, const nb::object& scatter) {
+  surface.scatter.reset();
+  if (scatter.is_none()) return;
+  const JsonDocument document(nb::cast<std::string>(call_python("json", "dumps", scatter)), "scatter");
+  surface.scatter = read_scatter(JsonEntry(document));
+}
+
 std::string repr(SurfaceView& view) {
   const Surface& s = view.get();
   std::string text =
@@ -110,13 +139,14 @@ nb::tuple state_of(SurfaceView& view) {
   return nb::make_tuple(s.curvature_per_mm, s.thickness_mm, s.material, s.stop,
                         std::pair(s.blades.count, s.blades.rotation_deg), s.semi_diameter_mm, s.conic,
                         s.asphere, shape.is_none() ? shape : nb::object(dict_of(shape)), s.mirror, apertures,
-                        dict_of(pose_to(s.pose)));
+                        dict_of(pose_to(s.pose)), coating_of(s), scatter_of(s));
 }
 
 SurfaceView of_state(double curvature_per_mm, double thickness_mm, const Material& glass, bool stop,
                      std::pair<int, double> blades, Maybe<double> semi_diameter_mm, double conic,
                      const std::map<int, double>& asphere, const nb::object& shape, bool mirror,
-                     const nb::iterable& apertures, const nb::dict& pose) {
+                     const nb::iterable& apertures, const nb::dict& pose, const nb::object& coating,
+                     const nb::object& scatter) {
   Surface s;
   s.curvature_per_mm = curvature_per_mm, s.thickness_mm = thickness_mm;
   s.material = glass;
@@ -126,6 +156,7 @@ SurfaceView of_state(double curvature_per_mm, double thickness_mm, const Materia
   s.conic = conic, s.asphere = asphere;
   set_shape(s, shape);
   s.apertures = apertures_from(apertures), s.pose = pose_from(pose);
+  set_coating(s, coating), set_scatter(s, scatter);
   return SurfaceView(std::move(s));
 }
 
@@ -196,12 +227,26 @@ void bind_surface_itself(nb::module_& module) {
           [](View& v, const nb::object& pose) { v.get().pose = pose_from(dict_of(pose)); },
           "How far it stands off its place: any of decentre_x_mm, decentre_y_mm, shift_z_mm, tilt_x_deg, "
           "tilt_y_deg, tilt_z_deg; assign a whole dict.")
+      .def_prop_rw(
+          "coating", [](View& v) { return coating_of(v.get()); },
+          [](View& v, const nb::object& coating) { set_coating(v.get(), coating); },
+          nb::for_setter(nb::arg("value").none()),
+          "As the native file has it: a bundled name, a reflectance, [(wavelength [nm], reflectance), …], a "
+          "dict with \"layers\", or None for bare glass; assign a whole value.")
+      .def_prop_rw(
+          "scatter", [](View& v) { return scatter_of(v.get()); },
+          [](View& v, const nb::object& scatter) { set_scatter(v.get(), scatter); },
+          nb::for_setter(nb::arg("value").none()),
+          "How it scatters, as the native file has it: {\"roughness_nm\": 2, \"dust_percent\": 0.05}, or "
+          "None; "
+          "assign a whole dict.")
       .def("__repr__", repr)
       .def("__reduce__", [](View& view) {
         return nb::make_tuple(nb::module_::import_("petzval._states").attr("surface"), state_of(view));
       });
   module.def("_surface_from_state", of_state, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
-             nb::arg().none(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg());
+             nb::arg().none(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(),
+             nb::arg().none(), nb::arg().none());
 }
 
 }  // namespace

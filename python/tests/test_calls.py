@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -69,6 +70,23 @@ def test_interrupt_without_a_callback():
         stopper.start()
         _, errors = process.communicate()
         assert process.returncode != 0 and "KeyboardInterrupt" in errors
+
+
+@pytest.mark.parametrize("raised, stop", [(pz.Cancelled, lambda: False),
+                                          (KeyboardInterrupt, lambda: os.kill(os.getpid(), signal.SIGINT))])
+def test_stopping_takes_a_moment(raised, stop):
+    """A rendering of hours ends within 0.2 s, in the best of five trials on a machine that may be busy."""
+    camera, taken = pz.Camera("dgauss-50mm", focus="1.2m"), []
+    for _ in range(5):
+        asked = []
+
+        def at_once(*_):
+            asked.append(time.monotonic())
+            return stop()
+        with pytest.raises(raised):
+            camera.render("spheres", size=(320, 240), samples_per_pixel=100_000, progress=at_once)
+        taken.append(time.monotonic() - asked[0])
+    assert min(taken) < 0.2
 
 
 def test_a_handler_that_does_not_raise(camera):

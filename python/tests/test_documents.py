@@ -31,6 +31,21 @@ def test_page(page, least, tmp_path, monkeypatch):
         assert runner.run(examples).failed == 0
 
 
+BLOCKS = re.findall(r"^```py\n(.*?)^```$", (ROOT / "docs" / "PYTHON.md").read_text(), re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
+def test_script_of_the_page(block, tmp_path):
+    """What is no dialogue: a progress bar, a pool of processes."""
+    for package in re.findall(r"^(?:import|from) (\w+)", block, re.MULTILINE):
+        pytest.importorskip(package)
+    given = "" if "import petzval" in block else (
+        "import petzval as pz\ncamera = pz.Camera('edmund-54852', sensor='64x48@50')\n")
+    script = tmp_path / "script.py"
+    script.write_text(given + block)
+    subprocess.run([sys.executable, "-W", "ignore", script], cwd=tmp_path, check=True)
+
+
 def test_readme(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     block = re.search(r"^```python\n(.*?)^```$", (ROOT / "README.md").read_text(), re.MULTILINE | re.DOTALL)

@@ -79,9 +79,8 @@ def test_other_types_are_refused_with_what_would_be_right(tmp_path):
     assert stack.shape == stack.values.shape
 
 
-# Of parts of the library that the package does not have: tables of other programs, and the bench in a browser.
-NOT_IN_PYTHON = {"clip_negative", "curves", "g_axis_sr", "port", "psf_away", "relative_illumination", "resample",
-                 "vertex_to_sensor_mm"}
+# Of the part of the library that the package does not have: the bench in a browser.
+NOT_IN_PYTHON = {"port"}
 
 
 def keywords(scope):

@@ -138,3 +138,24 @@ def test_impossible_apertures_are_refused(lens):
     lens.surfaces[0].apertures = [{"ellipse": (-1, 2)}]
     with pytest.raises(pz.InputError):
         lens.validate()
+
+
+def test_coatings_and_scatter_by_surface():
+    lens = pz.Lens("cooke-triplet")
+    bare, first = lens.polarisation([0], wavelengths_nm=[550])["transmittance_percent"][0], lens.surfaces[0]
+    assert first.coating is None and first.scatter is None
+    first.coating, first.scatter = "mgf2", {"roughness_nm": 2, "dust_percent": 0.05}
+    assert lens.polarisation([0], wavelengths_nm=[550])["transmittance_percent"][0] > bare + 1
+    same = pz.Lens("cooke-triplet").altered("surfaces[0].coating", "mgf2").altered("surfaces[0].scatter.roughness_nm", 2)
+    assert lens.surfaces[0].coating == same.surfaces[0].coating == "mgf2"
+    for again in (pz.Lens.from_json(lens.to_json()).surfaces[0], pickle.loads(pickle.dumps(first))):
+        assert (again.coating, again.scatter) == ("mgf2", {"roughness_nm": 2, "dust_percent": 0.05})
+    for value in (0.005, [[400, 0.03], [600, 0.01]]):
+        first.coating = value
+        assert first.coating == value
+    first.coating = None
+    assert first.coating is None
+    with pytest.raises(pz.InputError, match="coating"):
+        first.coating = "mgf3"
+    with pytest.raises(pz.InputError, match="roughness"):
+        first.scatter = {"roughness": 2}

@@ -247,6 +247,14 @@ def test_optional_packages_are_not_imported():
     subprocess.run([sys.executable, "-c", script], check=True)
 
 
+def test_import_takes_a_moment():
+    """At most 150 ms of processor time, in the best of three new processes."""
+    script = "import time; start = time.process_time(); import petzval; print(time.process_time() - start)"
+    taken = [float(subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout)
+             for _ in range(3)]
+    assert 0 < min(taken) < 0.150
+
+
 def test_imaging_session_has_the_bytes_of_single_images(camera):
     scene = pz.SceneRequest("studio", wavelengths_nm=[500, 600])
     session = pz.ImagingSession(scene, tolerance=1e-2)

@@ -118,6 +118,19 @@ def test_psf(program, tmp_path):
             assert np.array_equal(np.load(tmp_path / "psf.npy"), stack.values[f, w])
 
 
+def test_psf_by_fft(program, tmp_path):
+    stack = pz.Lens("double-gauss").psf([0, 10], wavelengths_nm=[550], size=64, spacing_um=1, method="fft", pupil_samples=128)
+    for f, field in enumerate([0, 10]):
+        program.run("lens", "psf", "double-gauss", "--fields", field, "--wavelengths", 550, "--size", 64, "--spacing", 1,
+                    "--method", "fft", "--pupil-samples", 128, "-o", "psf.npy")
+        assert np.array_equal(np.load(tmp_path / "psf.npy"), stack.values[f, 0])
+    program.run("lens", "psf", "double-gauss", "--fields", "0,10", "--wavelengths", 550, "--size", 64, "--spacing", 1,
+                "--method", "fft", "--pupil-samples", 128, "-o", "psf.npz")
+    assert np.array_equal(np.load(tmp_path / "psf.npz")["psf"], stack.values)
+    with pytest.raises(pz.InputError, match="samples of the FFT span"):
+        pz.Lens("double-gauss").psf([10], wavelengths_nm=[550], size=16, spacing_um=40, method="fft")
+
+
 def test_rays(program, tmp_path):
     rays = np.array([[0, 1, -5, 0, 0.02, 1, 550], [2, -3, -5, 0.01, 0, 1, 550], [50, 0, -5, 0, 0, 1, 550]], float)
     np.savetxt(tmp_path / "rays.csv", rays, "%.17g", ",", header="x_mm,y_mm,z_mm,L,M,N,wavelength_nm", comments="")
@@ -204,6 +217,21 @@ def test_sharpness_over_the_frame(program, tmp_path):
         edges.sharpest_along("x")
 
 
+def test_drawings_of_edges(program, tmp_path):
+    pz.target(rectangle=(100, 100, 5), size=(200, 180)).save(str(tmp_path / "photo.npy"))
+    program.run("sfr", "photo.npy", "--annotate", "edges.svg", "--over-height", "height.svg", "--report", "report.html",
+                "--pixel-pitch", 4.73)
+    edges = pz.sfr(str(tmp_path / "photo.npy"))
+    picture = np.load(tmp_path / "photo.npy")
+    assert edges.annotated_svg(picture) == (tmp_path / "edges.svg").read_text()
+    assert edges.over_height_svg(pitch_um=4.73) == (tmp_path / "height.svg").read_text()
+    report = edges.report_html(picture, title="photo.npy", pitch_um=4.73)
+    assert report == (tmp_path / "report.html").read_text()
+    assert "The edges and their MTF50" in report and "The edges and their MTF50" not in edges.report_html()
+    with pytest.raises(pz.InputError, match="10 x 10"):
+        edges.annotated_svg(picture[:10, :10])
+
+
 def test_table(program, tmp_path):
     program.run("optics", "build", "edmund-54852", "--wavelengths", "450,550,650", *SENSOR[:1], "96x64@40", "-o", "table.h5")
     program.run("image", "studio", "--optics", "table.h5", "--sensor", "96x64@40", "--wavelengths", "450,550,650", "-o",
@@ -211,3 +239,42 @@ def test_table(program, tmp_path):
     camera = pz.TableCamera(pz.LensDataTable.load(str(tmp_path / "table.h5")), "96x64@40")
     light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
     assert np.array_equal(np.load(tmp_path / "light.npy"), light.values)
+
+
+def test_tables_of_other_programs(program, tmp_path):
+    program.run("optics", "build", "edmund-54852", "--wavelengths", "450,650", "--image-height", 2, "--fields", 5, "-o", "lens.h5")
+    table = pz.LensDataTable.load(str(tmp_path / "lens.h5"))
+    program.run("optics", "export", "lens.h5", "--to", "iset", "--psf-size", 64, "--psf-spacing", 1, "--psf-light", 0.5,
+                "-o", "program.mat")
+    program.run("optics", "export", "lens.h5", "--to", "zemax", "--resample", "-o", "texts")
+    with pytest.warns(pz.Note, match="resampled to 64 x 64"):
+        table.export(str(tmp_path / "python.mat"), to="iset", psf_size=64, psf_spacing_um=1, psf_light=0.5)
+    assert (tmp_path / "python.mat").read_bytes() == (tmp_path / "program.mat").read_bytes()
+    table.export(str(tmp_path / "again"), to="zemax", resample=True)
+    texts = sorted(path.name for path in (tmp_path / "texts").iterdir())
+    assert len(texts) > 10 and texts == sorted(path.name for path in (tmp_path / "again").iterdir())
+    assert all((tmp_path / "texts" / name).read_bytes() == (tmp_path / "again" / name).read_bytes() for name in texts)
+    for source, options, keywords in (("program.mat", [], {}), ("texts", [], {}),
+                                      ("program.mat", ["--from", "iset", "--psf-away", "left", "--psf-centre", "30,31"],
+                                       {"source": "iset", "psf_away": "left", "psf_centre": (30, 31)})):
+        program.run("optics", "import", source, *options, "-o", "program.h5")
+        pz.LensDataTable.import_from(str(tmp_path / source), **keywords).save(str(tmp_path / "python.h5"))
+        assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "program.h5").read_bytes()
+
+
+def test_measured_tables(program, tmp_path):
+    rows = [f"{field},550,{f},0.{99 - f},0.{99 - f}" for field in (0, 2, 4) for f in (10, 20, 40, 80)]
+    (tmp_path / "mtf.csv").write_text("# focal_length_mm: 25\nfield_mm,wavelength_nm,frequency_cpmm,tangential,sagittal\n"
+                                      + "\n".join(rows) + "\n")
+    program.run("optics", "import", "mtf.csv", "--g-axis", 0.2, "--vertex-to-sensor", 30, "-o", "program.h5")
+    with pytest.warns(pz.Note, match="no distortion and even illumination"):
+        table = pz.LensDataTable.import_from(str(tmp_path / "mtf.csv"), g_axis_sr=0.2, vertex_to_sensor_mm=30)
+    table.save(str(tmp_path / "python.h5"))
+    assert (tmp_path / "python.h5").read_bytes() == (tmp_path / "program.h5").read_bytes()
+    for keywords, words in (({"psf_away": "up"}, "`psf_away` and `psf_centre`"), ({"g_axis_sr": 4}, "`g_axis_sr` 4"),
+                            ({"source": "oslo"}, "`source` oslo"), ({"psf_centre": (0, 1)}, "counted from 1")):
+        with pytest.raises(pz.InputError, match=words):
+            pz.LensDataTable.import_from(str(tmp_path / "mtf.csv"), **keywords)
+    for keywords, words in (({"psf_size": 1}, "`psf_size` 1"), ({"psf_light": 2}, "`psf_light` 2"), ({"psf_spacing_um": 1e-6}, "GiB")):
+        with pytest.raises(pz.InputError, match=words):
+            table.export(str(tmp_path / "t.mat"), to="iset", **keywords)

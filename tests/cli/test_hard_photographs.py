@@ -16,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 @unittest.skipUnless(numpy, "numpy is not there")
 class HardPhotographs(unittest.TestCase):
     # [% of the true MTF50], written before anything was measured. `worst` where each edge must be right; where light is lost or
-    # noise added, means and medians. Noise at SNR 50 scatters by 1.6 %, docs/SFR.md, over 196 edges of 60 pixels.
+    # noise added, means and medians. Noise at SNR 50 scatters by 1.6 %, docs/ACCURACY.md, over 196 edges of 60 pixels.
     BOUNDS = {
         "nothing, 16 bits": {"worst": 0.1},
         "8 bits": {"mean": 0.5, "rms": 2},

@@ -50,7 +50,7 @@ struct PublishedGradients : LightCurve {
 /// its mean. The toe keeps the slope finite there. Differences are averaged over two pixels, as few as even
 /// out what the two kinds of rows or columns differ by, for in a picture that a lens has blurred they change
 /// as smoothly as all else and a longer mean is biased; weights and the share of the far ones were chosen on
-/// photographs (docs/DEVELOPMENT.md).
+/// photographs (docs/ACCURACY.md).
 class RootGradients {
  public:
   explicit RootGradients(double toe)

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/colour/display.h>
+#include <petzval/report/data_uri.h>
 #include <petzval/report/heat_map.h>
 #include <petzval/report/html.h>
 #include <petzval/report/sfr_page.h>
 #include <petzval/report/svg_plot.h>
 #include <petzval/report/table.h>
+#include <petzval/report/xml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -136,6 +139,37 @@ html::Block summary(const SfrPage& page, const std::vector<EdgeInFrame>& edges) 
 }
 
 }  // namespace
+
+std::string annotated_edges_svg(const std::vector<MeasuredEdge>& edges, const Plane& luminance) {
+  std::vector<float> levels;
+  for (const double value : luminance.values) levels.push_back(static_cast<float>(srgb_encoded(value)));
+  const std::string png = heat_map_png(levels, luminance.columns, luminance.rows, {});
+  XmlWriter xml;
+  open_svg(xml, luminance.columns, luminance.rows,
+           "The picture with its edges and their MTF50 in cycles/pixel");
+  xml.leaf("image", {{"width", static_cast<double>(luminance.columns)},
+                     {"height", static_cast<double>(luminance.rows)},
+                     {"href", data_uri("image/png", png)}});
+  for (const MeasuredEdge& edge : edges) {
+    const EdgeLine& line = edge.exact.line;
+    const double ux = -std::sin(line.normal_rad) * line.half_length,
+                 uy = std::cos(line.normal_rad) * line.half_length;
+    xml.leaf("line", {{"x1", line.centre_x - ux},
+                      {"y1", line.centre_y - uy},
+                      {"x2", line.centre_x + ux},
+                      {"y2", line.centre_y + uy},
+                      {"stroke", "#e6550d"},
+                      {"stroke-width", 1.5}});
+    xml.text("text",
+             {{"x", line.centre_x + 4},
+              {"y", line.centre_y},
+              {"fill", "#e6550d"},
+              {"font-size", 12.0},
+              {"font-family", "sans-serif"}},
+             fmt::format("{:.3f}", edge.mtf50()));
+  }
+  return std::move(xml).finish();
+}
 
 std::string sharpness_map_svg(const SfrPage& page) {
   const std::vector<EdgeInFrame> edges = leading_edges(page);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/measure/sfr/frame_sharpness.h>
+#include <petzval/measure/sfr/picture_planes.h>
 
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ struct SfrPage {
   std::vector<MeasuredEdge> edges;
   std::string annotated_svg;  ///< the picture with its edges; may be empty
 };
+
+/// The picture with its edges and the MTF50 of each [cycles/pixel]. \param luminance  linear, 0 to 1.
+std::string annotated_edges_svg(const std::vector<MeasuredEdge>& edges, const Plane& luminance);
 
 /// MTF50 over the frame: across circles, along them, and of all edges, as pictures with the edges in them.
 std::string sharpness_map_svg(const SfrPage& page);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/fft_point_spread.h>
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
@@ -61,10 +62,21 @@ PsfOptions common_options(const Lens& lens, const FieldTableRequest& at, const P
   return result;
 }
 
+/// By the plain FFT's model. \throws InputError if the samples of the FFT do not span it.
+std::optional<Psf> psf_by_fft(const FieldTracer& tracer, const ChiefRay& chief, const PsfOptions& grid,
+                              int pupil_samples) {
+  if (const auto plan = plan_psf(tracer, chief, grid); plan && plan->samples_per_cell > 1)
+    throw InputError(fmt::format(
+        "`method` fft: a PSF is {:.0f} um wide, more than {} samples of the FFT span; a smaller f-number, "
+        "`size` or `spacing_um` would be right",
+        plan->size * plan->spacing_um, plan->size));
+  return fft_point_spread(tracer, chief, {grid.size, grid.spacing_um}, pupil_samples);
+}
+
 }  // namespace
 
 PsfStack psf_stack(const Lens& lens, const FieldTableRequest& at, const PsfOptions& options,
-                   const Context& context) {
+                   const Context& context, int fft_pupil_samples) {
   lens.validate();
   const FieldTableRequest asked = with_own_lists(at, lens);
   return result_within(context, [&](const ProgressCallback&) {
@@ -75,7 +87,9 @@ PsfStack psf_stack(const Lens& lens, const FieldTableRequest& at, const PsfOptio
     stack.values.resize(count * stack.psf_cells());
     stack.captured.resize(count), stack.image_height_mm.resize(count);
     for_each_point(lens, asked, [&](std::size_t i, const FieldTracer& tracer, const ChiefRay& chief) {
-      const std::optional<Psf> psf = point_spread(tracer, chief, common);
+      const std::optional<Psf> psf = fft_pupil_samples > 0
+                                         ? psf_by_fft(tracer, chief, common, fft_pupil_samples)
+                                         : point_spread(tracer, chief, common);
       if (!psf) refuse(lens, asked, i);
       std::ranges::copy(psf->values,
                         stack.values.begin() + static_cast<std::ptrdiff_t>(i * stack.psf_cells()));

@@ -32,8 +32,10 @@ struct PsfStack {
 ///
 /// \param at  empty lists: the lens's own. \param options  a size or a spacing that is left open holds all:
 /// the finest spacing that any PSF wants and the widest window, in at most `largest_size` cells a side.
-/// \throws InputError naming a field and a wavelength at which no ray passes; Cancelled.
+/// \param fft_pupil_samples  above 0: by the plain FFT's model (fft_point_spread()) with so many samples
+/// across the pupil, to compare with other programs. \throws InputError naming a field and a wavelength at
+/// which no ray passes, or whose PSF is wider than samples of the FFT span; Cancelled.
 PsfStack psf_stack(const Lens& lens, const FieldTableRequest& at = {}, const PsfOptions& options = {},
-                   const Context& context = {});
+                   const Context& context = {}, int fft_pupil_samples = 0);
 
 }  // namespace petzval
