@@ -49,11 +49,13 @@ void write_starter(const std::string& path, const Shared& shared) {
 
 void print_parameters(const Shared& shared) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const RecipeParameter& each : recipe_parameters()) {
+  const auto add = [&](const RecipeParameter& each, const std::string& name) {
     const char* is = each.is_name ? "name" : "number";
-    rows.push_back({{"parameter", each.name}, {"is", is}, {"meaning", each.meaning}});
-    if (!shared.json) fmt::print("{:<26}{:<8}{}\n", each.name, is, each.meaning);
-  }
+    rows.push_back({{"parameter", name}, {"is", is}, {"meaning", each.meaning}});
+    if (!shared.json) fmt::print("{:<26}{:<8}{}\n", name, is, each.meaning);
+  };
+  for (const RecipeParameter& each : recipe_parameters()) add(each, each.name);
+  for (const RecipeParameter& each : light_parameters()) add(each, std::string(each.name) + "0");
   if (shared.json) print_json({{"rows", rows}});
 }
 

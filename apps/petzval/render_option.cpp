@@ -96,6 +96,17 @@ void add_scene_options(RenderChoice& choice, CLI::App& command) {
   command.add_option("--light-scale", request.light_scale, "All lights of the scene this much stronger")
       ->check(positive_number())
       ->capture_default_str();
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--light",
+          [&request](const std::vector<std::string>& changes) {
+            for (const std::string& text : changes)
+              request.light_changes.push_back(render::parse_light_change(text));
+          },
+          "One light stronger, turned [degrees] or coloured [K]: scale@0=2, turn_deg@0=30, kelvin@1=3200; "
+          "sources are counted from 0, then surfaces that shine (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
   command.add_flag("--skip-unsupported", request.skip_unsupported,
                    "Leave out what the scene has and Petzval has not, instead of refusing the scene");
   command.add_flag(

@@ -20,6 +20,7 @@ struct PictureInPython {
   DisplaySpace space = DisplaySpace::srgb;
   DevelopReport report = {};
   std::string provenance = {};
+  CameraFacts facts = {};
 };
 
 }  // namespace petzval::python

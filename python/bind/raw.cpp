@@ -213,7 +213,7 @@ void bind_raw_image(nb::module_& module) {
 }  // namespace
 
 PictureInPython::PictureInPython(Picture picture)
-    : space(picture.space), report(picture.report), provenance(picture.provenance) {
+    : space(picture.space), report(picture.report), provenance(picture.provenance), facts(picture.facts) {
   columns = picture.planes.columns, rows = picture.planes.rows, channels = picture.planes.values.size();
   values.resize(columns * static_cast<std::size_t>(rows) * channels);
   for (std::size_t c = 0; c < channels; ++c)
@@ -227,7 +227,8 @@ Picture PictureInPython::picture() const {
        std::vector(channels, std::vector<float>(values.size() / std::max<std::size_t>(1, channels)))},
       space,
       report,
-      provenance};
+      provenance,
+      facts};
   for (std::size_t i = 0; i < values.size(); ++i)
     result.planes.values[i % channels][i / channels] = values[i];
   return result;

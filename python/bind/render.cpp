@@ -39,8 +39,9 @@ RenderRequest request_of(
     Maybe<double> field_of_view_deg, double light_scale, Maybe<std::array<double, 3>> camera_move,
     Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
     Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
-    Maybe<std::array<int, 2>> sample_range) {
+    Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights) {
   RenderRequest r;
+  for (const std::string& text : lights) r.light_changes.push_back(render::parse_light_change(text));
   r.scene = scene, r.camera = camera.value();
   if (size) r.columns = size->first, r.rows = size->second;
   r.wavelengths_nm = wavelengths_nm;
@@ -80,7 +81,8 @@ RenderRequest request_of(
       nb::arg("camera_move").none() = nb::none(), nb::arg("look_move").none() = nb::none(),                 \
       nb::arg("rolling_shutter") = 0.0, nb::arg("camera_origin") = "film",                                  \
       nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
-      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none()
+      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),                   \
+      nb::arg("lights") = std::vector<std::string>()
 
 std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
   std::vector<std::int32_t> values;

@@ -2,6 +2,7 @@
 """Data sets: the same bytes as the program's, and items as arrays."""
 
 import json
+import pathlib
 
 import numpy as np
 import petzval as pz
@@ -45,6 +46,23 @@ def test_items_are_arrays_that_agree_with_each_other(tmp_path):
     assert mean == pytest.approx(expected, rel=0.01)
     with pytest.raises(IndexError):
         items[3]
+
+
+def test_recipes_fit_the_published_schema():
+    jsonschema = pytest.importorskip("jsonschema")
+    docs = pathlib.Path(__file__).parents[2] / "docs"
+    valid = jsonschema.Draft202012Validator(json.loads((docs / "dataset-recipe.schema.json").read_text())).is_valid
+    assert valid(RECIPE)
+    parameters = {**RECIPE["parameters"], "light_kelvin@1": {"normal": [4000, 500], "within": [2700, 6500]}, "world": "spheres"}
+    del parameters["scene"]
+    assert valid({**RECIPE, "parameters": parameters})
+    for wrong in ({"items": 0}, {"format": "petzval-dataset/2"}, {"truth": ["shape"]}, {"extra": 1}, {"bits": 12},
+                  {"psf_grid": {"size": 4}}, {"parameters": {"lens": "x", "sensor": "y"}},
+                  {"parameters": {**RECIPE["parameters"], "f_number": {"uniform": [1, 2], "choose": [1]}}},
+                  {"parameters": {**RECIPE["parameters"], "f_number": "wide"}}, {"parameters": {**parameters, "scene": "grid"}}):
+        assert not valid({**RECIPE, **wrong}), wrong
+        with pytest.raises(pz.InputError):
+            dataset.estimate({**RECIPE, **wrong}, probes=1)
 
 
 def test_errors_say_what_would_be_right(tmp_path):

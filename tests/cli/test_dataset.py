@@ -2,7 +2,9 @@
 """petzval dataset: processes that share a folder, are killed, or find the disk full; archives that others read."""
 
 import json
+import pathlib
 import random
+import re
 import resource
 import signal
 import subprocess
@@ -12,6 +14,7 @@ import unittest
 
 from petzval_cli import PROGRAM, ProgramTest
 
+DOCS = pathlib.Path(__file__).parents[2] / "docs"
 RECIPE = {
     "format": "petzval-dataset/1", "items": 12, "items_per_part": 2, "seed": 9,
     "parameters": {"lens": {"choose": ["edmund-54852", "dgauss-50mm"]}, "stop_down_ev": {"uniform": [0, 2]},
@@ -57,8 +60,29 @@ class Dataset(ProgramTest):
         self.assert_succeeds("dataset", "make", "recipe.json", "-o", "set")
         self.assertEqual(self.files("set"), self.files("alone"))
 
+    def test_a_disk_of_four_megabytes_is_filled_and_made_larger(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", str(disk)], capture_output=True).returncode != 0:
+            self.skipTest("only root mounts a disk")
+        self.addCleanup(subprocess.run, ["umount", "-l", str(disk)], check=True)
+        # Each part takes 1.2 MB.
+        large = {**RECIPE, "truth": ["rays"], "sensor_set": ["columns=320", "rows=240"]}
+        (self.folder / "recipe.json").write_text(json.dumps({**large, "items": 8}))
+        done = self.petzval("dataset", "make", "recipe.json", "-o", "disk/set", "--quiet")
+        self.assert_error(done, 1, "is the disk full?")
+        left = self.files("disk/set")
+        self.assertIn("part-00001.json", left)
+        self.assertNotIn("part-00003.json", left)
+        self.assertFalse([name for name in left if name.startswith(".")])
+        self.assertIn("parts are there and whole", self.assert_succeeds("dataset", "verify", "disk/set"))
+        subprocess.run(["mount", "-o", "remount,size=16m", str(disk)], check=True)
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "disk/set")
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
+        self.assertEqual(self.files("disk/set"), self.files("alone"))
+
     def test_a_full_disk_leaves_nothing_half_written(self):
-        # Files that may not grow stand for a disk that is full: here the archive, larger than any file in it.
+        # Where nobody may mount one: files that may not grow, here the archive, larger than any file in it.
         def narrow():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
@@ -81,6 +105,22 @@ class Dataset(ProgramTest):
         keys = [name.partition(".")[0] for name in names]
         self.assertEqual(keys, sorted(keys))
         self.assertEqual(facts["parameters"], lines[0]["parameters"])
+
+    def test_the_published_schema_has_every_parameter_and_truth(self):
+        schema = json.loads((DOCS / "dataset-recipe.schema.json").read_text())
+        parameters = schema["properties"]["parameters"]
+        of_lights = re.compile(next(iter(parameters["patternProperties"])))
+        rows = self.json_of("dataset", "parameters")["rows"]
+        for row in rows:
+            if not of_lights.match(row["parameter"]):
+                self.assertEqual(parameters["properties"][row["parameter"]], {"$ref": f"#/$defs/{row['is']}"})
+        self.assertEqual(len(rows), len(parameters["properties"]) + 3)
+        # What the program says that it would take is what the schema has.
+        for key, entry in (("truth", "truth"), ("nonsense", None)):
+            (self.folder / "bad.json").write_text(json.dumps({**RECIPE, key: ["x"]}))
+            told = self.petzval("dataset", "make", "bad.json", "-o", "set").stderr
+            for name in schema["properties"][entry]["items"]["enum"] if entry else schema["properties"]:
+                self.assertIn(name, told)
 
     def test_bad_input_is_one_line(self):
         for words, message in ((["make", "recipe.json", "-o", "set", "--shard", "5/4"], "1/16 to 16/16"),

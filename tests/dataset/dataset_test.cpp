@@ -5,10 +5,12 @@
 #include <petzval/base/whole_file.h>
 #include <petzval/dataset/dataset.h>
 #include <petzval/dataset/tar_file.h>
+#include <petzval/lens/lens_file.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -180,6 +182,54 @@ TEST(Dataset, ItemsAreZoomedAsTheyWereDrawn) {
 }
 
 // Memory of two threads is that of two items at once.
+TEST(Dataset, BuildsByAListOfTolerancesAreThoseOfTheSameGrade) {
+  const Scratch scratch;
+  const auto part_of = [&](const std::string& name, const std::string& grade, const std::string& list) {
+    const Recipe recipe = parse_recipe(
+        R"({"format": "petzval-dataset/1", "items": 1, "parameters": {"lens": "edmund-54852", "build": 3, )" +
+            grade + R"("scene": "grid", "sensor": "example-vga"}, )" + list +
+            R"("sensor_set": ["columns=48", "rows=32"], "wavelengths_nm": "500", "tolerance": 0.02})",
+        "recipe");
+    make_dataset(recipe, scratch.path(name));
+    TarReader archive(scratch.path(name) + "/part-00000.tar");
+    std::string file, bytes;
+    while (archive.next(file, bytes))
+      if (file == "0000000.png") break;
+    return bytes;
+  };
+  std::string list = "\"build_tolerances\": [";
+  for (const Tolerance& each : graded_tolerances(read_lens("edmund-54852").lens, "commercial"))
+    list += fmt::format("{}\"{}={}\"", list.back() == '[' ? "" : ", ", place_of(each), each.limit);
+  const std::string by_grade = part_of("grade", R"("grade": "commercial", )", ""),
+                    by_list = part_of("list", "", list + "], ");
+  EXPECT_EQ(by_list, by_grade);
+  EXPECT_NE(part_of("other", "", R"("build_tolerances": ["surface_decentre_mm@1=0.5"], )"), by_grade);
+}
+
+TEST(Dataset, LightsOfAWorldAreDrawnOneByOne) {
+  const std::string start =
+      R"({"format": "petzval-dataset/1", "items": 40, "parameters": {"lens": "dgauss-50mm",
+    "world": "spheres", "sensor": "example-vga", "light_scale": {"uniform": [1, 2]})";
+  const Recipe few = parse_recipe(start + "}}", "recipe");
+  const Recipe many =
+      parse_recipe(start + R"(, "light_scale@0": {"uniform": [0, 1]}, "light_turn_deg@0": {"uniform": [0, 1]},
+    "light_scale@1": {"uniform": [0, 1]}}})",
+                   "recipe");
+  double product = 0;
+  for (std::size_t item = 0; item < 40; ++item) {
+    const auto draw = draw_item(many, item);
+    EXPECT_EQ(draw.at("light_scale"), draw_item(few, item).at("light_scale"));
+    const double a = std::get<double>(draw.at("light_scale@0")),
+                 b = std::get<double>(draw.at("light_scale@1"));
+    EXPECT_NE(a, b);
+    EXPECT_NE(a, std::get<double>(draw.at("light_turn_deg@0")));
+    product += 12 * (a - 0.5) * (b - 0.5) / 40;
+  }
+  EXPECT_LT(std::abs(product), 4 / std::sqrt(40.0));  // four standard errors of no correlation
+  EXPECT_THROW(parse_recipe(start + R"(, "light_scale@": 1}})", "recipe"), InputError);
+  EXPECT_THROW(parse_recipe(start + R"(, "light_kelvin@0": 20}})", "recipe"), InputError);
+}
+
 TEST(Dataset, EstimateMakesAsManyItemsAtOnceAsMakeDoes) {
   const DatasetEstimate one = estimate_dataset(recipe(), 1, {.threads = 1}),
                         two = estimate_dataset(recipe(), 1, {.threads = 2});

@@ -48,8 +48,10 @@ void check_names(const Recipe& recipe) {
     std::error_code failed;
     return fs::is_regular_file(file, failed) ? file : name;
   };
-  for (const ParameterValue& name : recipe.parameters.at("lens").values)
-    read_lens(there(std::get<std::string>(name)));
+  for (const ParameterValue& name : recipe.parameters.at("lens").values) {
+    const Lens lens = read_lens(there(std::get<std::string>(name))).lens;
+    for (const Tolerance& tolerance : recipe.build_tolerances) check(lens, tolerance);
+  }
   for (const ParameterValue& name : recipe.parameters.at("sensor").values)
     read_sensor(there(std::get<std::string>(name)), recipe.sensor_settings).require_electronics();
 }

@@ -60,6 +60,14 @@ class Draw {
     if (!x) return {};
     return std::array<double, 3>{*x, *number((name + "_y").c_str()), *number((name + "_z").c_str())};
   }
+  std::vector<render::LightChange> lights() const {
+    std::vector<render::LightChange> changes;
+    for (const auto& [name, value] : values_)
+      if (const auto light = light_parameter(name))
+        changes.push_back(
+            {static_cast<render::LightChange::Kind>(light->kind), light->light, std::get<double>(value)});
+    return changes;
+  }
   json facts() const {
     json all = json::object();
     for (const auto& [name, value] : values_)
@@ -94,7 +102,7 @@ Camera camera_of(const Draw& draw, const Recipe& recipe) {
     camera.lens = in_state(camera.lens, state);
   if (const auto state = draw.number("state_number")) camera.lens = in_state(camera.lens, *state);
   if (const auto build = draw.number("build")) {
-    ToleranceRequest tolerances;
+    ToleranceRequest tolerances{.tolerances = recipe.build_tolerances};
     if (const std::string grade = draw.text("grade"); !grade.empty()) tolerances.grade = grade;
     camera.lens = build_off_the_line(camera.lens, tolerances, recipe.seed, static_cast<std::size_t>(*build));
   }
@@ -192,6 +200,7 @@ class ItemInMaking {
     request.look_move = draw_.place("look_move");
     request.rolling_shutter = draw_.number("rolling_shutter", 0);
     request.light_scale = draw_.number("light_scale", 1);
+    request.light_changes = draw_.lights();
     request.samples_per_pixel = recipe_.samples_per_pixel;
     request.first_surfaces =
         recipe_.has(Truth::depth) || recipe_.has(Truth::normals) || recipe_.has(Truth::albedo);

@@ -3,6 +3,7 @@
 #include <petzval/numeric/random.h>
 
 #include <algorithm>
+#include <charconv>
 #include <iterator>
 #include <limits>
 
@@ -14,6 +15,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double most_whole = 9007199254740992;  // 2^53
 /// Purpose of the random numbers of the first parameter; those of the others follow.
 constexpr std::uint32_t first_purpose = 0x44530000;  // "DS"
+/// Of those of single lights.
+constexpr std::uint32_t first_light_purpose = first_purpose + 0x1000;
+constexpr std::size_t most_lights = 9999;
 
 }  // namespace
 
@@ -70,6 +74,29 @@ const std::vector<RecipeParameter>& recipe_parameters() {
   return all;
 }
 
+const std::vector<RecipeParameter>& light_parameters() {
+  static const std::vector<RecipeParameter> kinds = {
+      {"light_scale@", "one light of a world so many times as strong", false, 0, 1e12},
+      {"light_turn_deg@", "the same turned, as petzval render --light does it", false, -1e6, 1e6},
+      {"light_kelvin@", "with the colour of a black body", false, 100, 1e6},
+  };
+  return kinds;
+}
+
+std::optional<LightParameter> light_parameter(std::string_view name) {
+  const std::vector<RecipeParameter>& kinds = light_parameters();
+  for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+    const std::string_view start = kinds[kind].name;
+    if (!name.starts_with(start)) continue;
+    const std::string_view number = name.substr(start.size());
+    std::size_t light = 0;
+    const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), light);
+    if (problem == std::errc() && end == number.data() + number.size() && light <= most_lights)
+      return LightParameter{kind, light};
+  }
+  return {};
+}
+
 std::string starter_recipe() {
   return R"({
   "format": "petzval-dataset/1",
@@ -106,6 +133,13 @@ std::map<std::string, ParameterValue> draw_item(const Recipe& recipe, std::size_
     if (found == recipe.parameters.end()) continue;
     RandomStream random(recipe.seed, first_purpose + static_cast<std::uint32_t>(i), item);
     values.emplace(all[i].name, found->second.at(random.uniform()));
+  }
+  for (const auto& [name, distribution] : recipe.parameters) {
+    const auto light = light_parameter(name);
+    if (!light) continue;
+    const std::size_t number = light->light * light_parameters().size() + light->kind;
+    RandomStream random(recipe.seed, first_light_purpose + static_cast<std::uint32_t>(number), item);
+    values.emplace(name, distribution.at(random.uniform()));
   }
   return values;
 }

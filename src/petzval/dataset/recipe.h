@@ -4,6 +4,7 @@
 #pragma once
 
 #include <petzval/dataset/distribution.h>
+#include <petzval/lens/tolerance.h>
 
 #include <array>
 #include <cstdint>
@@ -43,17 +44,27 @@ struct RecipeParameter {
 /// All of them. A parameter's place in this list is part of its random numbers: new ones go to the end.
 const std::vector<RecipeParameter>& recipe_parameters();
 
+/// Those of single lights of a world, by render::LightChange::Kind; the light's number is added to the name.
+const std::vector<RecipeParameter>& light_parameters();
+struct LightParameter {
+  std::size_t kind, light;
+};
+/// Of "light_scale@0"; nothing for other names.
+std::optional<LightParameter> light_parameter(std::string_view name);
+
 /// Item i is a function of (recipe, i) alone, whoever makes it, wherever and when.
 struct Recipe {
   std::size_t items = 0;
   std::size_t items_per_part = 50;  ///< in one file, which is what one process makes at a time
   std::uint64_t seed = 1;
-  std::map<std::string, Distribution> parameters = {};  ///< by the names of recipe_parameters()
-  std::vector<std::string> sensor_settings = {};        ///< "columns=640", as read_sensor() takes them
-  std::vector<double> wavelengths_nm = {};              ///< empty: as the scene has them
-  double tolerance = 1e-3;                              ///< of image formation
-  int samples_per_pixel = 64;                           ///< of three-dimensional scenes
-  int bits = 8;                                         ///< of pictures
+  /// By the names of recipe_parameters(), or as light_parameter() takes them.
+  std::map<std::string, Distribution> parameters = {};
+  std::vector<Tolerance> build_tolerances = {};   ///< of builds; none: the lens's own, or a grade's
+  std::vector<std::string> sensor_settings = {};  ///< "columns=640", as read_sensor() takes them
+  std::vector<double> wavelengths_nm = {};        ///< empty: as the scene has them
+  double tolerance = 1e-3;                        ///< of image formation
+  int samples_per_pixel = 64;                     ///< of three-dimensional scenes
+  int bits = 8;                                   ///< of pictures
   std::set<Truth> truth = {};
   int psf_rows = 3, psf_columns = 3, psf_size = 31;  ///< the grid of places, and pixels a side of a PSF
   std::string text = {};    ///< the recipe as JSON, keys in order: what it is told by

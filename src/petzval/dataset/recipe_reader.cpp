@@ -149,12 +149,15 @@ void read_parameters(const JsonEntry& entry, Recipe& recipe) {
   for (const auto& [name, value] : entry.members("the parameters by their names")) {
     const auto found = std::find_if(
         all.begin(), all.end(), [&, &key = name](const RecipeParameter& each) { return key == each.name; });
-    if (found == all.end()) {
+    const auto light = light_parameter(name);
+    if (found == all.end() && !light) {
       std::string known;
-      for (const RecipeParameter& each : all) known += (known.empty() ? "" : ", ") + std::string(each.name);
-      value.fail("is no parameter; there are " + known);
+      for (const RecipeParameter& each : all) known += std::string(each.name) + ", ";
+      value.fail("is no parameter; there are " + known +
+                 "and of single lights light_scale@0, light_turn_deg@0, light_kelvin@0");
     }
-    recipe.parameters.emplace(name, ParameterReader(*found, recipe.folder).read(value));
+    const RecipeParameter& parameter = light ? light_parameters()[light->kind] : *found;
+    recipe.parameters.emplace(name, ParameterReader(parameter, recipe.folder).read(value));
   }
 }
 
@@ -198,6 +201,14 @@ void check(const JsonEntry& root, const Recipe& recipe) {
   both("state", "state_number");
   if (has("grade") && !has("build"))
     entry.fail("has a grade without a build; \"build\": {\"integer\": [0, 999]} would be right");
+  if (!recipe.build_tolerances.empty() && has("grade"))
+    root.at("build_tolerances").fail("stands beside a grade; one of them would be right");
+  if (!recipe.build_tolerances.empty() && !has("build"))
+    root.at("build_tolerances")
+        .fail("is without a build in the parameters; \"build\": {\"integer\": [0, 999]} would be right");
+  for (const auto& [name, unused] : recipe.parameters)
+    if (light_parameter(name) && !has("world"))
+      entry.fail(fmt::format("has {}, which is of a world, and a flat scene", name));
   for (const char* name : {"scene_distance_m", "scene_angle_deg", "luminance_cd_m2", "illuminant"})
     if (has(name) && !has("scene"))
       entry.fail(fmt::format("has {}, which is of flat scenes, and a world", name));
@@ -254,8 +265,9 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   const std::string format = root.at("format").text("a name");
   if (format != format_name)
     root.at("format").fail(fmt::format("is \"{}\"; \"{}\" would be right", quotable(format), format_name));
-  root.allow_only({"format", "about", "items", "items_per_part", "seed", "parameters", "sensor_set",
-                   "wavelengths_nm", "tolerance", "samples_per_pixel", "bits", "truth", "psf_grid"});
+  root.allow_only({"format", "about", "items", "items_per_part", "seed", "parameters", "build_tolerances",
+                   "sensor_set", "wavelengths_nm", "tolerance", "samples_per_pixel", "bits", "truth",
+                   "psf_grid"});
   Recipe recipe;
   recipe.folder = folder;
   recipe.items = static_cast<std::size_t>(whole_in(root.at("items"), 1, most_items));
@@ -264,6 +276,15 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   if (const auto seed = root.find("seed"))
     recipe.seed = static_cast<std::uint64_t>(whole_in(*seed, 0, 9007199254740992));
   read_parameters(root.at("parameters"), recipe);
+  if (const auto tolerances = root.find("build_tolerances"))
+    for (const JsonEntry& item : tolerances->items("a list of tolerances")) {
+      try {
+        recipe.build_tolerances.push_back(
+            parse_tolerance(item.text("a tolerance such as \"element_tilt_deg@2-3=0.05\"")));
+      } catch (const InputError& error) {
+        item.fail(error.what());
+      }
+    }
   if (const auto settings = root.find("sensor_set"))
     for (const JsonEntry& item : settings->items("a list of settings"))
       recipe.sensor_settings.push_back(item.text("a setting such as \"columns=640\""));

@@ -13,7 +13,8 @@ namespace petzval {
 /// Blurs planes of light, band by band; any number of planes of a band share its kernels.
 ///
 ///     BandBlur blur(table, centres, options, report);
-///     blur.prepare(550, source.grid, margin);
+///     blur.choose(550, source.grid, margin, {});
+///     blur.make_kernels();
 ///     CellPlane image = blur(std::move(source));
 ///
 /// What it chose, and the time that kernels took, is added to the report. Everything it is given must outlive
@@ -24,17 +25,11 @@ class BandBlur {
            ImagingReport& report)
       : table_(table), options_(options), centres_(centres), report_(report) {}
 
-  /// Makes the kernels of a wavelength for planes on a grid. \param margin  by which their images are smaller
-  /// on every side. \param first_hint  for the first band: the plan of another table's.
-  void prepare(double wavelength_nm, const SensorGeometry& grid, int margin,
-               const std::optional<ProductPlan>& first_hint = {}) {
-    choose(wavelength_nm, grid, margin, plan_ ? plan_ : first_hint);
-    make_kernels();
-  }
-  /// The first half of prepare(). \param hint  the plan() of a neighbouring band.
+  /// Decides how a wavelength is blurred, on planes of a grid. \param margin  by which their images are
+  /// smaller on every side. \param hint  the plan() of a neighbouring band.
   void choose(double wavelength_nm, const SensorGeometry& grid, int margin,
               const std::optional<ProductPlan>& hint);
-  /// The second half; nothing if they are made.
+  /// Makes its kernels; nothing if they are made.
   void make_kernels();
   /// That the kernels take.
   double bytes() const;

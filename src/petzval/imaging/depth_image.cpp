@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <utility>
 
 namespace petzval {
 
@@ -32,9 +33,10 @@ class DepthImaging {
  public:
   DepthImaging(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
                const ImagingOptions& options, const DepthOptions& depth, const ProgressCallback& progress,
-               DepthReport& report)
+               DepthReport& report, const BandShare& share)
       : scene_(scene),
         camera_(camera),
+        share_(share),
         progress_(progress),
         report_(report),
         law_(camera.lens),
@@ -72,8 +74,8 @@ class DepthImaging {
     taps_ = pixel_taps(options_.photosite, options_.cells_per_pixel(), path_);
   }
 
-  /// The pixels of all bands. Layers hide each other pixel by pixel.
-  std::vector<CellPlane> planes() {
+  /// The pixels of all bands of the share, nothing of others. Layers hide each other pixel by pixel.
+  std::vector<std::optional<CellPlane>> planes() {
     LayerStack stack(sensor_, scene_.bands());
     for (layer_ = 0; layer_ < layers_.layers.size(); ++layer_)
       if (layers_.layers[layer_].share > 0) add_layer(stack);
@@ -113,7 +115,14 @@ class DepthImaging {
       const BandPlan& plan = plans[static_cast<std::size_t>(band)];
       says().margin_cells = std::max(says().margin_cells, plan.margin);
       says().least_captured = std::min(says().least_captured, plan.least_captured);
-      add_band(planar, band, plan, blur, stack);
+      const double wavelength_nm = scene_.wavelengths_nm()[static_cast<std::size_t>(band)];
+      const auto start = std::chrono::steady_clock::now();
+      // All bands are planned, for the plan of one follows that of the one before.
+      blur.choose(wavelength_nm, grown(frame_, plan.margin), plan.margin,
+                  band == 0 ? hint_of_last_layer(plan.margin) : blur.plan());
+      if (band == 0) keep_plan(blur.plan(), plan.margin);
+      if (share_.has(static_cast<std::size_t>(band))) add_band(planar, band, plan, blur, stack);
+      says().blur_seconds += seconds_since(start);
       tell(0.5 + 0.5 * (band + 1.0) / scene_.bands(), "image");
     }
   }
@@ -121,10 +130,7 @@ class DepthImaging {
   void add_band(const LayerScene& planar, int band, const BandPlan& plan, BandBlur& blur, LayerStack& stack) {
     const double wavelength_nm = scene_.wavelengths_nm()[static_cast<std::size_t>(band)];
     const SensorGeometry grid = grown(frame_, plan.margin);
-    const auto start = std::chrono::steady_clock::now();
-    blur.prepare(wavelength_nm, grid, plan.margin,
-                 band == 0 ? hint_of_last_layer(plan.margin) : std::nullopt);
-    if (band == 0) keep_plan(blur.plan(), plan.margin);
+    blur.make_kernels();
     const auto imaged = [&](const Scene& scene, Surround surround) {
       const auto start_of_ideal = std::chrono::steady_clock::now();
       CellPlane ideal = source_light(scene, 0, plan.map, grid, path_.source, surround);
@@ -140,7 +146,6 @@ class DepthImaging {
       if (!stack.is_empty(band)) layer.share = imaged(planar.share(wavelength_nm), options_.surround);
     }
     stack.add(band, std::move(layer));
-    says().blur_seconds += seconds_since(start);
   }
 
   /// Blur changes little from a layer to the next. Where it is another by half than where a plan was made, a
@@ -163,6 +168,7 @@ class DepthImaging {
 
   const Scene& scene_;
   const DepthCamera& camera_;
+  const BandShare& share_;
   const ProgressCallback& progress_;
   DepthReport& report_;
   const DefocusLaw law_;
@@ -180,26 +186,50 @@ class DepthImaging {
 
 }  // namespace
 
-SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
-                               const ImagingOptions& options, const DepthOptions& depth,
-                               const ProgressCallback& progress, DepthReport* report) {
+void form_depth_bands(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
+                      const ImagingOptions& options, const DepthOptions& depth, const TakeBand& take,
+                      const ProgressCallback& progress, DepthReport* report, const BandShare& share) {
   DepthReport own;
   DepthReport& says = report != nullptr ? *report : own;
   says = {};
   options.validate();
   scene.validate();
-  SpectralImage image = blank_image(scene, sensor, options);
-  DepthImaging imaging(scene, camera, sensor, options, depth, progress, says);
+  SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
+  DepthImaging imaging(scene, camera, sensor, options, depth, progress, says, share);
   imaging.look_at_ends();
-  std::vector<CellPlane> planes = imaging.planes();
+  std::vector<std::optional<CellPlane>> planes = imaging.planes();
   for (int band = 0; band < scene.bands(); ++band) {
-    CellPlane& pixels = planes[static_cast<std::size_t>(band)];
-    put_band(without_negative_light(std::move(pixels)), band, image, says.image);
-    pixels = {};
+    CellPlane pixels;
+    if (share.has(static_cast<std::size_t>(band))) {
+      std::optional<CellPlane>& formed = planes[static_cast<std::size_t>(band)];
+      pixels = without_negative_light(formed ? *std::exchange(formed, {}) : CellPlane(sensor));
+    } else if (share.known) {
+      pixels = CellPlane::unset(sensor);
+      share.known(band, pixels.values);
+    } else {
+      continue;
+    }
+    note_extremes(pixels, band, says.image);
+    take(pixels.values);
   }
-  image.lens = lens_facts(camera.lens.name, first_order(camera.lens));
   note_result(says.image);
-  return image;
+}
+
+SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
+                               const ImagingOptions& options, const DepthOptions& depth,
+                               const ProgressCallback& progress, DepthReport* report,
+                               const BandShare& share) {
+  // What does not fit is refused before there is room for an image.
+  std::optional<SpectralImage> image;
+  int bands = 0;
+  const auto put = [&](std::span<const float> pixels) {
+    if (!image) image = blank_image(scene, sensor, options);
+    image->store_band(bands++, pixels);
+    image->release_memory();
+  };
+  form_depth_bands(scene, camera, sensor, options, depth, put, progress, report, share);
+  image->lens = lens_facts(camera.lens.name, first_order(camera.lens));
+  return std::move(*image);
 }
 
 }  // namespace petzval

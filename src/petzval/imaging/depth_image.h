@@ -47,8 +47,16 @@ struct DepthReport {
 /// \param progress  of all layers. \param report  may be null.
 /// \throws InputError as form_image(), for depths inside the lens, or a lens without viewpoint. Memory: the
 /// planes of all bands, in cells. The bytes do not depend on the number of threads.
+/// \param share  of the bands, when several processes form one image: it knows those of others.
 SpectralImage form_depth_image(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
                                const ImagingOptions& options, const DepthOptions& depth,
-                               const ProgressCallback& progress = {}, DepthReport* report = nullptr);
+                               const ProgressCallback& progress = {}, DepthReport* report = nullptr,
+                               const BandShare& share = {});
+
+/// The same without an image: once the layers of all bands are there, each is handed over, in order.
+void form_depth_bands(const Scene& scene, const DepthCamera& camera, const SensorGeometry& sensor,
+                      const ImagingOptions& options, const DepthOptions& depth, const TakeBand& take,
+                      const ProgressCallback& progress = {}, DepthReport* report = nullptr,
+                      const BandShare& share = {});
 
 }  // namespace petzval

@@ -39,12 +39,6 @@ void note_extremes(const CellPlane& pixels, int band, ImagingReport& report) {
   report.brightest = band == 0 ? brightest : std::max(report.brightest, brightest);
 }
 
-void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report) {
-  note_extremes(pixels, band, report);
-  image.store_band(band, pixels.values);
-  image.release_memory();
-}
-
 void note_result(ImagingReport& report) {
   if (report.least_captured < 0.99)
     report.notes.push_back(

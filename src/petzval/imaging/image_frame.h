@@ -13,9 +13,6 @@ SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, cons
 /// Puts into the report how dark and how bright the pixels of a band are. Bands come in order.
 void note_extremes(const CellPlane& pixels, int band, ImagingReport& report);
 
-/// The same, and puts the pixels into the image.
-void put_band(const CellPlane& pixels, int band, SpectralImage& image, ImagingReport& report);
-
 /// Adds to the report what a user should know of the image whose bands were put.
 void note_result(ImagingReport& report);
 

@@ -45,11 +45,4 @@ void LayerStack::add(int band, BlurredLayer layer) {
   image = std::move(layer.light);
 }
 
-std::vector<CellPlane> LayerStack::planes() && {
-  std::vector<CellPlane> planes;
-  for (std::optional<CellPlane>& band : bands_) planes.push_back(band ? std::move(*band) : CellPlane(grid_));
-  bands_.clear();
-  return planes;
-}
-
 }  // namespace petzval

@@ -6,6 +6,7 @@
 #include <petzval/imaging/layer_scene.h>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace petzval {
@@ -26,8 +27,8 @@ class LayerStack {
   bool is_empty(int band) const { return !bands_[static_cast<std::size_t>(band)].has_value(); }
   /// Puts a layer in front. \throws InputError if its grid is another.
   void add(int band, BlurredLayer layer);
-  /// Of all bands; black where there was no layer.
-  std::vector<CellPlane> planes() &&;
+  /// Of all bands; nothing where there was no layer.
+  std::vector<std::optional<CellPlane>> planes() && { return std::move(bands_); }
 
  private:
   SensorGeometry grid_;

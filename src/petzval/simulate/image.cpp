@@ -50,6 +50,12 @@ ImageReport& finish(const ImagePlan& plan, const Context& context, ImageReport& 
   return report;
 }
 
+void tell(DepthReport deep, ImageReport& says) {
+  says.imaging = std::move(deep.image);
+  says.layers = std::move(deep.layers);
+  says.pupil_to_sensor_mm = deep.pupil_to_sensor_mm;
+}
+
 FlareLayers flare_of(const ImagePlan& plan, const Context& context, SpectralImage& light) {
   const FlareOptions& options = plan.options.flare;
   LitLens lens = *plan.lens;
@@ -69,8 +75,6 @@ FlareLayers flare_of(const ImagePlan& plan, const Context& context, SpectralImag
 
 SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* report) {
   if (plan.options.bands) throw InputError("`bands` are a piece of an image, which image_piece() forms");
-  if (plan.depth && !plan.options.checkpoint.empty())
-    throw InputError("the layers of a scene with depth are added up, so that its image has no `checkpoint`");
   const BandShare share = known_bands(plan);
   ImageReport unwanted;
   ImageReport& says = report ? *report : unwanted;
@@ -80,10 +84,8 @@ SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* 
                         share);
     DepthReport deep;
     SpectralImage formed = form_depth_image(plan.scene, *plan.depth, plan.frame, plan.options.imaging,
-                                            plan.options.depth, progress, &deep);
-    says.imaging = std::move(deep.image);
-    says.layers = std::move(deep.layers);
-    says.pupil_to_sensor_mm = deep.pupil_to_sensor_mm;
+                                            plan.options.depth, progress, &deep, share);
+    tell(std::move(deep), says);
     return formed;
   });
   finish(plan, context, says);
@@ -104,12 +106,16 @@ SpectralImage image(const ImagePlan& plan, const Context& context, ImageReport* 
 void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& context, ImageReport* report) {
   if (plan.options.flare.any())
     throw InputError("light that goes astray is added to an image, not handed over band by band");
-  if (plan.depth)
-    throw InputError("the layers of a scene with depth are added up, not handed over band by band");
   const BandShare share = known_bands(plan);
   ImageReport unwanted;
   ImageReport& says = report ? *report : unwanted;
   run_within(context, [&](const ProgressCallback& progress) {
+    if (plan.depth) {
+      DepthReport deep;
+      form_depth_bands(plan.scene, *plan.depth, plan.frame, plan.options.imaging, plan.options.depth, take,
+                       progress, &deep, share);
+      return tell(std::move(deep), says);
+    }
     form_bands(plan.scene, plan.table, plan.frame, plan.options.imaging, take, progress, &says.imaging,
                share);
   });

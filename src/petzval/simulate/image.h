@@ -89,8 +89,8 @@ SpectralImage image(const SceneRequest& scene, Optics optics, const ImageOptions
                     const Context& context = {}, ImageReport* report = nullptr);
 SpectralImage image(Scene scene, Optics optics, const ImageOptions& options = {}, const Context& context = {},
                     ImageReport* report = nullptr);
-/// The same without keeping the bands: each is handed over as it is ready, in order. Not for scenes with
-/// depth.
+/// The same without an image: each band is handed over as it is ready, in order; those of a scene with depth
+/// wait for its nearest layer.
 void image_bands(const ImagePlan& plan, const TakeBand& take, const Context& context = {},
                  ImageReport* report = nullptr);
 

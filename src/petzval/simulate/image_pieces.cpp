@@ -5,9 +5,11 @@
 #include <petzval/base/version.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/simulate/image_pieces.h>
+#include <petzval/simulate/lens_fingerprint.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -60,6 +62,22 @@ std::string lens_table_text(const LensDataTable& table) {
                      sum.value());
 }
 
+/// What the layers of a scene with depth are imaged with.
+std::string depth_text(const ImagePlan& plan) {
+  const DepthCamera& camera = *plan.depth;
+  const TableOptions& table = camera.table;
+  const std::array<double, 2> frame_mm = table.half_frame_mm.value_or(std::array{0.0, 0.0});
+  Checksum depths;
+  depths.add(std::span<const float>(plan.scene.depth_m));
+  return fmt::format("depths {:08x}, reference {}, {} layers\n", depths.value(),
+                     static_cast<int>(plan.scene.depth_from), plan.options.depth.layers) +
+         lens_fingerprint(camera.lens, table.wavelengths_nm) +
+         losses_fingerprint(table.losses.of(camera.lens)) +
+         fmt::format("table {} fields up to {} mm, {} places over {} x {} mm, clip {}\n", table.field_count,
+                     table.max_image_height_mm, table.frame_places, 2 * frame_mm[0], 2 * frame_mm[1],
+                     static_cast<int>(table.clip));
+}
+
 /// What the light of an image depends on, a line each.
 std::string fingerprint_of(const ImagePlan& plan) {
   const Scene& scene = plan.scene;
@@ -76,7 +94,7 @@ std::string fingerprint_of(const ImagePlan& plan) {
                       radiance.value());
   if (scene.is_panorama()) text += fmt::format("view {} {}\n", scene.view().yaw_deg, scene.view().pitch_deg);
   text += fmt::format("wavelengths {}\n", fmt::join(scene.wavelengths_nm(), ","));
-  text += fmt::format("lens {}\n", lens_table_text(plan.table));
+  text += plan.depth ? depth_text(plan) : fmt::format("lens {}\n", lens_table_text(plan.table));
   text += fmt::format("frame {} x {} pixels of {} um\n", plan.frame.columns, plan.frame.rows,
                       plan.frame.pitch_um);
   text += fmt::format("photosite {}\n", options.photosite.text());

@@ -17,8 +17,7 @@ namespace petzval {
 ///     plan.options.checkpoint = "left.bands";
 ///     image_piece(plan);
 ///
-/// \throws InputError for bands that the image has not, for a scene with depth, whose layers are added up,
-/// and as image(); Failure; Cancelled.
+/// \throws InputError for bands that the image has not, and as image(); Failure; Cancelled.
 void image_piece(const ImagePlan& plan, const Context& context = {}, ImageReport* report = nullptr);
 
 /// Whether a file begins as those of image_piece() do.

@@ -5,6 +5,7 @@
 #include <petzval/base/error.h>
 #include <petzval/colour/observer.h>
 #include <petzval/render/gltf/gltf_scene.h>
+#include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/pbrt/scene_files.h>
 #include <petzval/simulate/camera_in_scene.h>
@@ -173,8 +174,8 @@ std::vector<double> wavelengths_of(const RenderRequest& request) {
 /// Whether one world serves both.
 bool same_world(const RenderRequest& a, const RenderRequest& b) {
   return a.scene == b.scene && a.absolute_spectra == b.absolute_spectra && a.light_scale == b.light_scale &&
-         a.sky_cd_m2 == b.sky_cd_m2 && a.skip_unsupported == b.skip_unsupported &&
-         wavelengths_of(a) == wavelengths_of(b);
+         a.light_changes == b.light_changes && a.sky_cd_m2 == b.sky_cd_m2 &&
+         a.skip_unsupported == b.skip_unsupported && wavelengths_of(a) == wavelengths_of(b);
 }
 
 void build(const RenderRequest& request, render::Unsupported& unsupported, PreparedWorld& made) {
@@ -201,6 +202,7 @@ PreparedScene prepare(const RenderRequest& request, const PreparedScene* before,
     *made = *before->world;
   } else {
     render::SceneDescription description = read_description(request.scene, unsupported);
+    render::alter_lights(request.light_changes, description);
     if (request.sky_cd_m2) description.lights.push_back(white_sky(*request.sky_cd_m2, request.light_scale));
     made->description = std::make_shared<const render::SceneDescription>(std::move(description));
   }

@@ -4,6 +4,7 @@
 
 #include <petzval/base/context.h>
 #include <petzval/image/picture.h>
+#include <petzval/render/lights/light_change.h>
 #include <petzval/render/rendering.h>
 #include <petzval/simulate/autofocus.h>
 #include <petzval/simulate/camera.h>
@@ -69,6 +70,7 @@ struct RenderRequest {
   double scene_unit_mm = 1000;              ///< length of the scene's unit
   bool absolute_spectra = false;  ///< spectra of lights are radiances [W·m⁻²·sr⁻¹·nm⁻¹] as they stand
   double light_scale = 1;         ///< all lights of the scene this much stronger
+  std::vector<render::LightChange> light_changes = {};  ///< of single ones, in order (parse_light_change)
   std::optional<double> sky_cd_m2 = {};  ///< white light from all around, added to that of the scene
   bool skip_unsupported = false;  ///< leave out what the scene has and Petzval has not, instead of refusing
 

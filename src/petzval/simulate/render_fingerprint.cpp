@@ -2,41 +2,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <petzval/base/version.h>
-#include <petzval/lens/lens_file.h>
 #include <petzval/render/pbrt/scene_files.h>
+#include <petzval/simulate/lens_fingerprint.h>
 #include <petzval/simulate/prepared_world.h>
 
 namespace petzval {
-
-namespace {
-
-/// Catalogues may change under a lens that names its glasses.
-std::string lens_line(const render::SceneCamera& camera, const std::vector<double>& wavelengths_nm) {
-  if (!camera.lens) return "";
-  std::string indices;
-  for (const Surface& surface : camera.lens->surfaces)
-    for (const double nm : wavelengths_nm) indices += fmt::format("{} ", surface.material.index(nm));
-  return fmt::format("lens {} {} {}\n", camera.lens->name, render::hash_text(lens_to_json(*camera.lens)),
-                     render::hash_text(indices));
-}
-
-std::string table_text(const Coating& coating) {
-  std::string text;
-  for (const auto& [nm, reflectance] : coating.table) text += fmt::format(" {}:{}", nm, reflectance);
-  for (const CoatingLayer& layer : coating.layers)
-    text += fmt::format(" {}/{}", layer.material.description(), layer.thickness_nm);
-  return text;
-}
-
-std::string losses_line(const Losses& losses) {
-  std::string text = fmt::format("losses fresnel {} absorption {}", losses.fresnel, losses.absorption);
-  if (losses.air_glass) text += " air_glass" + table_text(*losses.air_glass);
-  for (const auto& [surface, coating] : losses.surfaces)
-    text += fmt::format(" surfaces[{}]", surface) + table_text(coating);
-  return text + "\n";
-}
-
-}  // namespace
 
 std::string render_fingerprint(const PreparedScene& scene, const render::RenderOptions& options) {
   const RenderRequest& request = scene.request;
@@ -78,10 +48,12 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
                       request.diffraction);
   text +=
       fmt::format("scene-unit {}\nabsolute-spectra {}\n", request.scene_unit_mm, request.absolute_spectra);
+  for (const render::LightChange& change : request.light_changes)
+    text += fmt::format("light {}\n", change.text());
   text += fmt::format("light-scale {} sky {} skip-unsupported {}\n", request.light_scale,
                       request.sky_cd_m2.value_or(0), request.skip_unsupported);
-  text += lens_line(camera, nm) +
-          losses_line(camera.lens ? camera.options.losses.of(*camera.lens) : camera.options.losses);
+  if (camera.lens) text += lens_fingerprint(*camera.lens, nm);
+  text += losses_fingerprint(camera.lens ? camera.options.losses.of(*camera.lens) : camera.options.losses);
   return text + render::scene_files_fingerprint(*scene.world->description);
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/units.h>
+#include <petzval/colour/observer.h>
+#include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/lights/light_reader.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace petzval::render {
 
@@ -12,6 +15,13 @@ namespace {
 
 /// Far above any light, far below what a float holds.
 constexpr double strongest = 1e20;
+
+/// ∫ ȳ dλ of a spectrum.
+double luminous(const SceneSpectrum& spectrum) {
+  std::vector<double> nm, values;
+  for (double at = 360; at <= 830; at += 5) nm.push_back(at), values.push_back(spectrum.at(at));
+  return Observer::cie_1931().xyz(Spectrum(nm, values)).y;
+}
 
 /// The spectrum of a light and the factor that makes it a radiance or intensity: pbrt-v4's "scale", and the
 /// division by ∫ ȳ of its shape.
@@ -46,6 +56,11 @@ Strength read_strength(const Parameters& parameters, const char* name, const Lig
     if (!(strength.spectrum.photometric > 0))
       throw scene_error(parameters.location_of(name), "this light has no visible part to scale it by");
     strength.scale /= strength.spectrum.photometric;
+  }
+  if (const auto colour =
+          spectrum_parameter(parameters, colour_of_light, SpectrumRole::illuminant, unsupported)) {
+    strength.scale *= luminous(strength.spectrum) / luminous(*colour);
+    strength.spectrum = *colour;
   }
   return strength;
 }

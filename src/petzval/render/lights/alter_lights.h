@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Single lights of a scene, altered before its world is built.
+#pragma once
+
+#include <petzval/render/lights/light_change.h>
+#include <petzval/render/pbrt/scene_description.h>
+
+#include <span>
+
+namespace petzval::render {
+
+/// \throws InputError for a light that the scene has not, naming those that it has, and a surface to be
+/// turned.
+void alter_lights(std::span<const LightChange> changes, SceneDescription& scene);
+
+/// The parameter that alter_lights() leaves with a light for its colour.
+inline constexpr const char* colour_of_light = "petzval colour";
+
+}  // namespace petzval::render
