@@ -39,7 +39,7 @@ RenderRequest request_of(
     Maybe<double> field_of_view_deg, double light_scale, Maybe<std::array<double, 3>> camera_move,
     Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
     Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
-    Maybe<std::array<int, 2>> sample_range) {
+    Maybe<std::array<int, 2>> sample_range, double scene_time) {
   RenderRequest r;
   r.scene = scene, r.camera = camera.value();
   if (size) r.columns = size->first, r.rows = size->second;
@@ -61,7 +61,7 @@ RenderRequest request_of(
       "camera_origin", camera_origin,
       {{"film", RenderRequest::Origin::film}, {"front", RenderRequest::Origin::front}});
   r.near_distance = near_distance, r.far_distance = far_distance;
-  r.region = region, r.sample_range = sample_range;
+  r.region = region, r.sample_range = sample_range, r.scene_time = scene_time;
   return r;
 }
 #define PETZVAL_RENDER_ARGUMENTS                                                                            \
@@ -80,7 +80,8 @@ RenderRequest request_of(
       nb::arg("camera_move").none() = nb::none(), nb::arg("look_move").none() = nb::none(),                 \
       nb::arg("rolling_shutter") = 0.0, nb::arg("camera_origin") = "film",                                  \
       nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
-      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none()
+      nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),                   \
+      nb::arg("scene_time") = 0.0
 
 std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
   std::vector<std::int32_t> values;
@@ -191,7 +192,9 @@ constexpr const char* render_text =
     "film "
     "or front, what stands where the scene puts its camera. `near_distance`, `far_distance` [scene units]: "
     "nothing outside is seen. `region` (column, row, columns, rows) and `sample_range` (first, end): a piece "
-    "for `checkpoint`, which merge_renderings() puts together with others. `suns`, `ghosts` and `starburst` "
+    "for `checkpoint`, which merge_renderings() puts together with others. `scene_time`: what moves in the "
+    "scene (ActiveTransform) stands "
+    "where it is then. `suns`, `ghosts` and `starburst` "
     "as "
     "of `image`; the rendering's `flare` has their layers. `first_surfaces`, `segments` and `flow` add what "
     "is "
