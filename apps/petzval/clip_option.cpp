@@ -51,6 +51,11 @@ void ClipChoice::add_to(CLI::App& command) {
                   "Light is worked out anew when the picture has moved by so much [pixels]")
       ->check(positive_number())
       ->capture_default_str();
+  command
+      .add_option("--instants", given.instants,
+                  "At which a scene in three dimensions (.pbrt) is rendered in the time of an exposure")
+      ->check(whole_number())
+      ->capture_default_str();
   const std::string before = command.option_defaults()->get_group();
   command.option_defaults()->group(event_group);
   command.add_flag("--events", events, "Write events.txt too, what an event camera with these pixels tells");

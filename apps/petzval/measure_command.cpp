@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// petzval measure sensor | noise | matrix | shading | colour | scielab
+// petzval measure sensor | noise | oecf | matrix | shading | colour | scielab
 #include "measure_command.h"
 #include "output_option.h"
 #include "plot_output.h"
@@ -32,6 +32,7 @@ void add_measure_command(CLI::App& app, Shared& shared) {
   measure->require_subcommand(1);
   add_measure_sensor(*measure, shared);
   add_measure_noise(*measure, shared);
+  add_measure_oecf(*measure, shared);
   add_measure_matrix(*measure, shared);
   add_measure_shading(*measure, shared);
   add_measure_colour(*measure, shared);

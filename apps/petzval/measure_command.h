@@ -6,6 +6,7 @@
 #include <petzval/report/table.h>
 
 #include <string>
+#include <vector>
 
 #include "command.h"
 
@@ -22,8 +23,12 @@ struct MeasureOutputs {
   void write(const Table& table, const Plot& plot_to_write) const;
 };
 
+/// By its name; without one green, or the first. \throws InputError for a name that there is not.
+int channel_index(const std::vector<std::string>& names, const std::string& wanted);
+
 void add_measure_sensor(CLI::App& measure, Shared& shared);
 void add_measure_noise(CLI::App& measure, Shared& shared);
+void add_measure_oecf(CLI::App& measure, Shared& shared);
 void add_measure_matrix(CLI::App& measure, Shared& shared);
 void add_measure_shading(CLI::App& measure, Shared& shared);
 void add_measure_colour(CLI::App& measure, Shared& shared);

@@ -31,18 +31,6 @@ struct NoiseCommand {
   MeasureOutputs outputs;
 };
 
-int channel_index(const std::vector<std::string>& names, const std::string& wanted) {
-  if (wanted.empty()) {
-    // Green where there is one: it has the most pixels.
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (names[i] == "green") return static_cast<int>(i);
-    return 0;
-  }
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == wanted) return static_cast<int>(i);
-  throw InputError(fmt::format("no channel \"{}\"; there are {}", wanted, fmt::join(names, ", ")));
-}
-
 double snr(const TransferPoint& point, const TransferPoint& dark) {
   return (point.mean_dn - dark.mean_dn) / std::sqrt(point.temporal_variance_dn2);
 }
@@ -144,6 +132,11 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
     json["dsnu_e"] = test.uniformity.dsnu_e;
     json["dsnu_quantisation_limited"] = test.uniformity.dsnu_quantisation_limited;
     json["prnu_percent"] = test.uniformity.prnu_percent;
+    json["grey_signal_e"] = test.grey.signal_e;
+    json["grey_total_snr"] = test.grey.total_snr;
+    json["grey_temporal_snr"] = test.grey.temporal_snr;
+    json["grey_fixed_pattern_snr"] = test.grey.fixed_pattern_snr;
+    json["iso_dynamic_range_db"] = test.grey.dynamic_range_db;
     json["iso_saturation_daylight"] = daylight_speed;
     json["iso_saturation_tungsten"] = tungsten_speed;
     json["iso_noise_40_daylight"] = speed_40 ? ordered_json(*speed_40) : ordered_json(nullptr);
@@ -157,6 +150,11 @@ void measure_sensor(const SensorCommand& command, const Shared& shared) {
   fmt::print("  DSNU            {}\n",
              noise_text(test.uniformity.dsnu_e, test.uniformity.dsnu_quantisation_limited));
   fmt::print("  PRNU            {:.3f} %\n", test.uniformity.prnu_percent);
+  fmt::print(
+      "  ISO 15739       S/N {:.1f} of a grey of {:.0f} e, temporal {:.1f}, fixed pattern {:.1f}; range "
+      "{:.1f} dB\n",
+      test.grey.total_snr, test.grey.signal_e, test.grey.temporal_snr, test.grey.fixed_pattern_snr,
+      test.grey.dynamic_range_db);
   fmt::print("  ISO speed       {:.0f} in daylight (D55), {:.0f} in tungsten light (3200 K), by saturation\n",
              daylight_speed, tungsten_speed);
   const auto said = [](std::optional<double> speed) {
@@ -188,12 +186,25 @@ void measure_noise(const NoiseCommand& command, const Shared& shared) {
 
 }  // namespace
 
+int channel_index(const std::vector<std::string>& names, const std::string& wanted) {
+  if (wanted.empty()) {
+    // Green where there is one: it has the most pixels.
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] == "green") return static_cast<int>(i);
+    return 0;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == wanted) return static_cast<int>(i);
+  throw InputError(fmt::format("no channel \"{}\"; there are {}", wanted, fmt::join(names, ", ")));
+}
+
 void add_measure_sensor(CLI::App& measure, Shared& shared) {
   auto options = std::make_shared<SensorCommand>();
-  CLI::App* command = add_command(measure, shared, "sensor",
-                                  "Test a sensor as EMVA 1288 and ISO 12232 do: gain, noise, range, speed",
-                                  "petzval measure sensor third-inch-1280x960 --plot transfer.svg", true,
-                                  [options, &shared] { measure_sensor(*options, shared); });
+  CLI::App* command =
+      add_command(measure, shared, "sensor",
+                  "Test a sensor as EMVA 1288, ISO 12232 and 15739 do: gain, noise, range, speed",
+                  "petzval measure sensor third-inch-1280x960 --plot transfer.svg", true,
+                  [options, &shared] { measure_sensor(*options, shared); });
   command->add_option("sensor", options->sensor, "A sensor file or the name of a bundled one")->required();
   command->add_option("--conversion-gain", options->conversion_gain,
                       "Of a sensor with several: its name; default: the first");

@@ -93,6 +93,12 @@ void add_scene_options(RenderChoice& choice, CLI::App& command) {
       .add_option("--sky", request.sky_cd_m2,
                   "White light from all around of this luminance, added to that of the scene [cd/m2]")
       ->check(positive_number());
+  command
+      .add_option(
+          "--scene-time", request.scene_time,
+          "What moves in the scene stands where it is at this time, in the unit of its TransformTimes")
+      ->check(finite_number())
+      ->capture_default_str();
   command.add_option("--light-scale", request.light_scale, "All lights of the scene this much stronger")
       ->check(positive_number())
       ->capture_default_str();

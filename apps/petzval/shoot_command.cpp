@@ -2,8 +2,10 @@
 // petzval shoot: a clip of a scene that moves, frame by frame into a folder.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/raw_file.h>
 
 #include <algorithm>
@@ -33,6 +35,7 @@ struct ShootCommand {
   DevelopChoice develop;
   std::vector<std::string> formats{"png"};
   int bits = 8;
+  std::optional<int> samples;
   std::string folder;
 };
 
@@ -66,6 +69,47 @@ void write_frame(const ClipFolder& folder, int frame, const RawImage& raw, const
 }
 
 /// Lines of "t column row polarity", as data sets of event cameras have them.
+/// Whether the scene is one in three dimensions.
+bool has_depth_of_space(const std::string& scene) {
+  const std::string extension = extension_of(scene);
+  return extension == ".pbrt" || extension == ".gltf" || extension == ".glb";
+}
+
+/// Whether an option is one for scenes in three dimensions alone, or for others alone; absent: for both.
+std::optional<bool> effect_in_space(const std::string& option) {
+  if (option == "--instants" || option == "--samples") return true;
+  constexpr const char* of_planes[] = {"--method",   "--tolerance",   "--nodes",       "--tile",
+                                       "--section",  "--transform",   "--supersample", "--fit",
+                                       "--surround", "--interpolate", "--layers",      "--motion-step"};
+  if (option.starts_with("--scene-") || std::ranges::count(of_planes, option) > 0) return false;
+  return {};
+}
+
+std::unique_ptr<Clip> clip_of(const ShootCommand& command, Optics optics, const Sensor& sensor,
+                              const ClipOptions& options, const CLI::App& app, const Context& context) {
+  const bool in_space = has_depth_of_space(command.light.scene.path_or_name);
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || effect_in_space(name).value_or(in_space) == in_space) continue;
+    throw InputError(in_space ? fmt::format("{} has no effect on a scene in three dimensions", name)
+                              : fmt::format("{} is for a scene in three dimensions, a .pbrt file", name));
+  }
+  if (!in_space)
+    return std::make_unique<Clip>(plan_clip(command.light.scene.request(), std::move(optics),
+                                            command.light.image_options(), options.motion, context),
+                                  sensor, options, context);
+  RenderRequest request;
+  request.scene = command.light.scene.path_or_name;
+  if (Camera* camera = std::get_if<Camera>(&optics))
+    request.camera = std::move(*camera);
+  else
+    throw InputError("a scene in three dimensions is seen through a lens; --lens would be right");
+  if (!command.light.scene.wavelengths.empty())
+    request.wavelengths_nm = parse_wavelengths_nm(command.light.scene.wavelengths);
+  request.samples_per_pixel = command.samples;
+  return std::make_unique<Clip>(request, sensor, options, context);
+}
+
 std::size_t write_events(const std::string& path, const Clip& clip, const EventCameraOptions& camera,
                          const Context& context) {
   WholeFile file(path);
@@ -110,9 +154,8 @@ void run_shoot(const ShootCommand& command, const CLI::App& app, const Shared& s
   const EventCameraOptions event_camera = command.clip.event_options(app, sensor, shared.seed);
   const Development development = command.develop.development();
 
-  ImagePlan plan = plan_clip(command.light.scene.request(), std::move(optics), command.light.image_options(),
-                             options.motion, context);
-  const Clip clip(std::move(plan), sensor, options, context);
+  const std::unique_ptr<const Clip> shot = clip_of(command, std::move(optics), sensor, options, app, context);
+  const Clip& clip = *shot;
   const ClipFolder folder(command.folder, command.formats,
                           facts_of(clip, options, sensor, app, command.folder));
 
@@ -170,6 +213,10 @@ void add_shoot_command(CLI::App& app, Shared& shared) {
       true, [options, &shared, &app] { run_shoot(*options, *app.get_subcommand("shoot"), shared); });
   options->light.add_light_to(*command);
   options->clip.add_to(*command);
+  command
+      ->add_option("--samples", options->samples,
+                   "Paths a pixel at each instant of a scene in three dimensions; default: 64")
+      ->check(whole_number());
   command
       ->add_option("-o,--output", options->folder,
                    "Folder of the frames; those that are there already, of the same clip, are kept")

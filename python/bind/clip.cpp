@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Clips: frames of a scene that moves, of rows that begin one after the other, of light that flickers.
 #include <fmt/format.h>
+#include <petzval/base/file_extension.h>
 #include <petzval/simulate/clip.h>
 #include <petzval/simulate/vibration.h>
 
@@ -15,7 +16,8 @@ namespace {
 
 /// A clip, and what it was made with.
 struct ClipInPython {
-  ClipInPython(ImagePlan plan, const Sensor& of_sensor, const ClipOptions& asked, std::uint64_t with_seed,
+  template <typename LightOfClip>
+  ClipInPython(LightOfClip plan, const Sensor& of_sensor, const ClipOptions& asked, std::uint64_t with_seed,
                const Context& context)
       : sensor(of_sensor), options(asked), seed(with_seed), clip(std::move(plan), sensor, asked, context) {}
 
@@ -67,6 +69,7 @@ struct ClipRequest {
   SceneAim per_second;
   nb::object path;
   std::string vibration;
+  Maybe<int> samples_per_pixel = {};
 
   /// All that is known once the sensor is.
   ClipOptions with(const Sensor& sensor, std::uint64_t seed) const {
@@ -90,12 +93,14 @@ struct ClipRequest {
 ClipRequest clip_request(int frames, double fps, double pan_deg_per_s, double pitch_deg_per_s,
                          std::pair<double, double> move_m_per_s, const nb::object& path,
                          const std::string& vibration, const std::string& shutter, Maybe<double> row_time_us,
-                         const std::string& flicker, double motion_step_px) {
-  ClipRequest request{{}, shutter, row_time_us, {pan_deg_per_s, pitch_deg_per_s, 0, 0}, path, vibration};
+                         const std::string& flicker, double motion_step_px, int instants,
+                         Maybe<int> samples_per_pixel) {
+  ClipRequest request{{},   shutter,   row_time_us,      {pan_deg_per_s, pitch_deg_per_s, 0, 0},
+                      path, vibration, samples_per_pixel};
   std::tie(request.per_second.right_m, request.per_second.up_m) = move_m_per_s;
   request.options.frames = frames, request.options.fps = fps;
   request.options.flicker = LampFlicker::parse(flicker);
-  request.options.step_px = motion_step_px;
+  request.options.step_px = motion_step_px, request.options.instants = instants;
   return request;
 }
 #define PETZVAL_CLIP_ARGUMENTS                                                                              \
@@ -103,7 +108,8 @@ ClipRequest clip_request(int frames, double fps, double pan_deg_per_s, double pi
       nb::arg("fps") = 24.0, nb::arg("pan_deg_per_s") = 0.0, nb::arg("pitch_deg_per_s") = 0.0,              \
       nb::arg("move_m_per_s") = std::pair(0.0, 0.0), nb::arg("path").none() = nb::none(),                   \
       nb::arg("vibration") = "", nb::arg("shutter") = "sensor", nb::arg("row_time_us").none() = nb::none(), \
-      nb::arg("flicker") = "none", nb::arg("motion_step_px") = ClipOptions().step_px
+      nb::arg("flicker") = "none", nb::arg("motion_step_px") = ClipOptions().step_px,                       \
+      nb::arg("instants") = ClipOptions().instants, nb::arg("samples_per_pixel").none() = nb::none()
 
 Sensor sensor_of(const Optics& optics) {
   const auto sensor = std::visit([](const auto& each) { return each.sensor; }, optics);
@@ -113,6 +119,29 @@ Sensor sensor_of(const Optics& optics) {
         "be "
         "right");
   return *sensor;
+}
+
+/// A file of a scene in three dimensions.
+bool is_in_space(const nb::object& scene) {
+  if (!nb::isinstance<nb::str>(scene) && !nb::hasattr(scene, "__fspath__")) return false;
+  const std::string extension = extension_of(nb::cast<std::string>(nb::str(scene)));
+  return extension == ".pbrt" || extension == ".gltf" || extension == ".glb";
+}
+
+std::shared_ptr<ClipInPython> shot_in_space(Optics optics, const nb::object& scene, const ClipRequest& clip,
+                                            const ClipOptions& options, const CallOptions& how) {
+  const Sensor sensor = sensor_of(optics);
+  Camera* camera = std::get_if<Camera>(&optics);
+  if (!camera)
+    throw InputError("a scene in three dimensions is seen through a lens; a Camera would be right");
+  RenderRequest request;
+  request.scene = nb::cast<std::string>(nb::str(scene));
+  request.camera = std::move(*camera);
+  request.samples_per_pixel = clip.samples_per_pixel;
+  Call call(how);
+  return call([&](const Context& context) {
+    return std::make_shared<ClipInPython>(request, sensor, options, context.seed, context);
+  });
 }
 
 std::shared_ptr<ClipInPython> shot(Optics optics, const nb::object& scene, const ImageOptions& image,
@@ -139,6 +168,8 @@ auto shoot_function(ClipRequest (*)(OfClip...), ImageOptions (*)(OfImage...),
     ClipRequest request = clip_request(of_clip...);
     request.options.expose = expose_options(of_exposure...);
     const ClipOptions options = request.with(sensor_of(optics), seed);
+    if (is_in_space(scene))
+      return shot_in_space(std::move(optics), scene, request, options, {threads, seed, progress});
     return shot(std::move(optics), scene, image_options(of_image...), options, {threads, seed, progress});
   };
 }
@@ -153,7 +184,10 @@ constexpr const char* shoot_text =
     "spectral densities. `shutter`: global, rolling with `row_time_us`, or as the sensor "
     "says. "
     "`flicker` of all light: none, mains:50:0.4 (Hz of the mains, depth) or pwm:1000:0.25 (Hz, duty), :PHASE "
-    "in periods behind it. Light is worked out anew when the picture has moved by `motion_step_px`. Other "
+    "in periods behind it. Light is worked out anew when the picture has moved by `motion_step_px`. A .pbrt "
+    "file is rendered: what "
+    "moves in it (ActiveTransform, seconds) at `instants` instants an exposure, `samples_per_pixel` each, at "
+    "the wavelengths of 400 to 700 nm. Other "
     "keywords are those of `image` and `expose`; automatic exposure is settled once. Raises InputError; "
     "Cancelled. docs/CLIPS.md.";
 

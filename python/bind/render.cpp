@@ -39,7 +39,7 @@ RenderRequest request_of(
     Maybe<double> field_of_view_deg, double light_scale, Maybe<std::array<double, 3>> camera_move,
     Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
     Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
-    Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights) {
+    Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights, double scene_time) {
   RenderRequest r;
   for (const std::string& text : lights) r.light_changes.push_back(render::parse_light_change(text));
   r.scene = scene, r.camera = camera.value();
@@ -62,7 +62,7 @@ RenderRequest request_of(
       "camera_origin", camera_origin,
       {{"film", RenderRequest::Origin::film}, {"front", RenderRequest::Origin::front}});
   r.near_distance = near_distance, r.far_distance = far_distance;
-  r.region = region, r.sample_range = sample_range;
+  r.region = region, r.sample_range = sample_range, r.scene_time = scene_time;
   return r;
 }
 #define PETZVAL_RENDER_ARGUMENTS                                                                            \
@@ -82,7 +82,7 @@ RenderRequest request_of(
       nb::arg("rolling_shutter") = 0.0, nb::arg("camera_origin") = "film",                                  \
       nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
       nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),                   \
-      nb::arg("lights") = std::vector<std::string>()
+      nb::arg("lights") = std::vector<std::string>(), nb::arg("scene_time") = 0.0
 
 std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
   std::vector<std::int32_t> values;
@@ -193,7 +193,9 @@ constexpr const char* render_text =
     "film "
     "or front, what stands where the scene puts its camera. `near_distance`, `far_distance` [scene units]: "
     "nothing outside is seen. `region` (column, row, columns, rows) and `sample_range` (first, end): a piece "
-    "for `checkpoint`, which merge_renderings() puts together with others. `suns`, `ghosts` and `starburst` "
+    "for `checkpoint`, which merge_renderings() puts together with others. `scene_time`: what moves in the "
+    "scene (ActiveTransform) stands "
+    "where it is then. `suns`, `ghosts` and `starburst` "
     "as "
     "of `image`; the rendering's `flare` has their layers. `first_surfaces`, `segments` and `flow` add what "
     "is "

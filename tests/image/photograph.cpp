@@ -4,6 +4,7 @@
 #include <lcms2.h>
 #include <petzval/base/error.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/colour/rec2100.h>
 #include <petzval/image/formats/jpeg.h>
 #include <petzval/image/formats/png.h>
 #include <petzval/image/formats/tiff.h>
@@ -11,6 +12,7 @@
 #include <tiffio.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 
 #include "hostile.h"
@@ -206,6 +208,34 @@ TEST(PhotographFile, FloatingPointIsLinearAndAlphaIsLeftAside) {
   png.samples = {51, 0, 255, 128};
   write_png(scratch.path("a.png"), png);
   EXPECT_EQ(read_photograph(scratch.path("a.png")).rgb, (std::vector<float>{0.2f, 0.2f, 0.2f, 1, 1, 1}));
+}
+
+// BT.2020's red and white in sRGB's primaries: from the chromaticities of both (ITU-R BT.2087, inverted).
+TEST(PhotographFile, HighDynamicRangeIsReadAsItsChunkSays) {
+  const Scratch scratch;
+  PngImage png;
+  png.columns = 3, png.rows = 1, png.bits = 16, png.transfer = PngTransfer::rec2100_pq;
+  const auto white = static_cast<std::uint16_t>(std::lround(65535 * pq_encoded(203))),
+             light = static_cast<std::uint16_t>(std::lround(65535 * pq_encoded(812)));
+  png.samples = {white, white, white, light, light, light, white, 0, 0};
+  write_png(scratch.path("pq.png"), png);
+  const Photograph pq = read_photograph(scratch.path("pq.png"));
+  const std::vector<double> expected{1, 1, 1, 4, 4, 4, 1.6605, -0.1246, -0.0182};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(pq.rgb[i], expected[i], 1e-3) << i;
+
+  png.transfer = PngTransfer::rec2100_hlg;
+  const auto three_quarters = static_cast<std::uint16_t>(std::lround(65535 * 0.75));
+  png.samples.assign(9, three_quarters);
+  write_png(scratch.path("hlg.png"), png);
+  for (const float value : read_photograph(scratch.path("hlg.png")).rgb) EXPECT_NEAR(value, 1, 0.005);
+
+  // In sRGB if so asked; a picture for measuring is refused, and so is a coding that nobody here knows.
+  EXPECT_NEAR(read_photograph(scratch.path("hlg.png"), PhotographEncoding::srgb).rgb[0], 0.5225, 1e-3);
+  EXPECT_THROW(read_standard_png(scratch.path("hlg.png")), InputError);
+  std::string bytes = read_whole_file(scratch.path("hlg.png"));
+  bytes[bytes.find("cICP") + 4] = 12;  // Display P3
+  std::ofstream(scratch.path("p3.png"), std::ios::binary) << bytes;
+  EXPECT_THROW(read_photograph(scratch.path("p3.png")), InputError);
 }
 
 }  // namespace

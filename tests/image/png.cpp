@@ -31,7 +31,8 @@ TEST(Png, RoundTripsExactlyInEveryLayout) {
   const test::Scratch scratch;
   for (const int channels : {1, 2, 3, 4})
     for (const int bits : {8, 16})
-      for (const PngTransfer transfer : {PngTransfer::unstated, PngTransfer::srgb, PngTransfer::linear}) {
+      for (const PngTransfer transfer : {PngTransfer::unstated, PngTransfer::srgb, PngTransfer::linear,
+                                         PngTransfer::rec2100_pq, PngTransfer::rec2100_hlg}) {
         PngImage image = noise(13, 7, channels, bits);
         image.transfer = transfer;
         image.text = {{"Description", "Grüße vom Petzval"}, {"Exposure", "white is 3 lx"}};

@@ -47,6 +47,18 @@ TEST(PhotonTransfer, RecoversTheSensor) {
   EXPECT_NEAR(test.transfer.snr_max_db, 10 * std::log10(20000), 0.3);
 }
 
+// ISO 15739 at 0.18/√2 of 20,000 e: photons, read noise, steps; PRNU and DSNU. Known as said below.
+TEST(GreyNoise, HasThePartsThatTheSensorHas) {
+  const GreyNoise& grey = tested().grey;
+  const double e = 0.18 / std::sqrt(2.0) * 20000, read2 = 16 + 2.25 + 25 / 12.0;
+  const double temporal = std::sqrt(e + read2), fixed = std::hypot(0.012 * e, 7);
+  EXPECT_NEAR(grey.signal_e / e, 1, 0.01);
+  EXPECT_NEAR(grey.temporal_snr / (e / temporal), 1, 0.01);
+  EXPECT_NEAR(grey.fixed_pattern_snr / (e / fixed), 1, 0.015);
+  EXPECT_NEAR(grey.total_snr / (e / std::hypot(temporal, fixed)), 1, 0.01);
+  EXPECT_NEAR(grey.dynamic_range_db, 20 * std::log10(tested().transfer.saturation_e / std::sqrt(read2)), 0.1);
+}
+
 TEST(NonUniformity, IsRecoveredWithinTwoPercent) {
   // Standard error of a standard deviation of 65,536 values: 0.28 %. Of DSNU, temporal noise (4.5 e) over √40
   // adds little.

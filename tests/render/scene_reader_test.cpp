@@ -205,6 +205,30 @@ TEST(SceneReader, FollowsTransformationsAndBlocks) {
 
 /// Text that is cut off anywhere, or has any one byte replaced, is read or refused with a message; it never
 /// ends the program.
+// Half-way from rest to 2 to the right, a quarter turn about z and twice as large: 1, an eighth turn, 1.5.
+TEST(SceneReader, ShowsWhatMovesAsItIsAtATime) {
+  const std::string text =
+      "TransformTimes 1 3\nWorldBegin\nAttributeBegin\nActiveTransform EndTime Translate 2 0 0 Rotate 90 0 0 "
+      "1\n"
+      "Scale 2 2 2 ActiveTransform All\nShape \"sphere\"\nAttributeEnd\nShape \"sphere\"\n";
+  const auto at = [&](double time) {
+    Unsupported unsupported;
+    return parse_scene_description(text, "s.pbrt", unsupported, time);
+  };
+  EXPECT_TRUE(at(0).moves);
+  const auto seen = [&](double time) { return at(time).shapes[0].world_from_object.point({1, 0, 0}); };
+  const double eighth = 1.5 * std::sqrt(0.5);
+  const std::pair<double, Vector3> expected[] = {
+      {0, {1, 0, 0}}, {1, {1, 0, 0}}, {2, {1 + eighth, eighth, 0}}, {3, {2, 2, 0}}, {9, {2, 2, 0}}};
+  for (const auto& [time, place] : expected) EXPECT_NEAR(length(seen(time) - place), 0, 1e-12) << time;
+  EXPECT_NEAR(length(at(2).shapes[1].world_from_object.point({1, 0, 0}) - Vector3{1, 0, 0}), 0, 0);
+  Unsupported unsupported;
+  EXPECT_FALSE(parse_scene_description("WorldBegin\nShape \"sphere\"", "s.pbrt", unsupported).moves);
+  expect_refused(in_world("ActiveTransform Never"), "s.pbrt:2:1: ", "EndTime");
+  expect_refused(in_world("TransformTimes 0 1"), "s.pbrt:2:1: ", "WorldBegin");
+  expect_refused(complaint("TransformTimes 1 1\nWorldBegin"), "s.pbrt:1:1: ", "increase");
+}
+
 TEST(SceneReader, SurvivesDamagedText) {
   const std::string text =
       "LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\n"

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
 #include <petzval/sensor/capture.h>
+#include <petzval/sensor/merged_exposures.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/poisson.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/colour/display.h>
+#include <petzval/colour/display_primaries.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -29,16 +29,6 @@ Eigen::Vector3d eigen(Xyz c) {
   return {c.x, c.y, c.z};
 }
 
-/// Columns are the primaries, scaled so that (1, 1, 1) is the white.
-Eigen::Matrix3d primaries_matrix() {
-  Eigen::Matrix3d primaries;
-  primaries.col(0) = eigen(xyz_of(Chromaticity{0.64, 0.33}));
-  primaries.col(1) = eigen(xyz_of(Chromaticity{0.30, 0.60}));
-  primaries.col(2) = eigen(xyz_of(Chromaticity{0.15, 0.06}));
-  const Eigen::Vector3d levels = primaries.inverse() * eigen(display_white());
-  return primaries * levels.asDiagonal();
-}
-
 double clipped(double value) {
   return value > 0 ? std::min(value, 1.0) : 0.0;
 }
@@ -62,13 +52,21 @@ Xyz display_white() {
   return xyz_of(Chromaticity{0.3127, 0.3290});
 }
 
+ColourMatrix xyz_from_primaries(const std::array<Chromaticity, 3>& primaries) {
+  // Columns: the primaries, scaled so that together they are white.
+  Eigen::Matrix3d xyz;
+  for (int i = 0; i < 3; ++i) xyz.col(i) = eigen(xyz_of(primaries[static_cast<std::size_t>(i)]));
+  const Eigen::Vector3d levels = xyz.inverse() * eigen(display_white());
+  return plain(xyz * levels.asDiagonal());
+}
+
 const ColourMatrix& xyz_from_srgb() {
-  static const ColourMatrix matrix = plain(primaries_matrix());
+  static const ColourMatrix matrix = xyz_from_primaries({{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}});
   return matrix;
 }
 
 const ColourMatrix& srgb_from_xyz() {
-  static const ColourMatrix matrix = plain(primaries_matrix().inverse());
+  static const ColourMatrix matrix = inverse(xyz_from_srgb());
   return matrix;
 }
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/colour/display.h>
+#include <petzval/colour/rec2100.h>
 #include <petzval/image/colour_profile.h>
 #include <petzval/image/formats/jpeg.h>
 #include <petzval/image/formats/png.h>
@@ -28,6 +28,7 @@ struct StoredPicture {
   std::variant<std::vector<std::uint8_t>, std::vector<std::uint16_t>, std::vector<float>> samples;
   double white = 255;   ///< the sample that is white
   bool linear = false;  ///< the file says so
+  PngTransfer transfer = PngTransfer::unstated;
   std::string icc_profile;
   int orientation = upright_orientation;
 };
@@ -68,6 +69,7 @@ StoredPicture read_stored(const std::string& path) {
     take(png);
     picture.white = png.bits == 8 ? 255 : 65535;
     picture.linear = png.transfer == PngTransfer::linear;
+    picture.transfer = png.transfer;
   } else if (kind == PictureKind::jpeg) {
     JpegImage jpeg = read_jpeg(path);
     take(jpeg);
@@ -91,6 +93,19 @@ class RowToLinear {
   RowToLinear(const StoredPicture& picture, PhotographEncoding encoding, const std::string& path)
       : picture_(picture), colours_(picture.channels <= 2 ? 1 : 3) {
     const bool by_file = encoding == PhotographEncoding::by_file;
+    if (by_file && picture.transfer == PngTransfer::other)
+      throw InputError(
+          path,
+          "is coded in a way that its chunk cICP states and Petzval does not read; sRGB, or ITU-R "
+          "BT.2100 with PQ or HLG in full range, would be right");
+    pq_ = by_file && picture.transfer == PngTransfer::rec2100_pq;
+    hlg_ = by_file && picture.transfer == PngTransfer::rec2100_hlg;
+    if (pq_ || hlg_) {  // comes before a colour profile
+      for (double sample = 0; sample <= picture.white; ++sample)
+        decoded_.push_back(static_cast<float>(pq_ ? pq_decoded(sample / picture.white)
+                                                  : hlg_decoded(sample / picture.white)));
+      return;
+    }
     if (by_file && !picture.icc_profile.empty()) {
       profile_.emplace(picture.icc_profile, path);
       if (profile_->channels() < colours_)
@@ -112,11 +127,25 @@ class RowToLinear {
  private:
   template <typename Sample>
   float value(Sample sample) const {
-    if (!srgb_) return static_cast<float>(sample / picture_.white);
-    if constexpr (std::is_integral_v<Sample>)
-      return decoded_[sample];
-    else
+    if constexpr (std::is_integral_v<Sample>) {
+      if (!decoded_.empty()) return decoded_[sample];
+    } else if (srgb_) {
       return static_cast<float>(srgb_decoded(sample));
+    }
+    return static_cast<float>(sample / picture_.white);
+  }
+
+  /// From decoded values of BT.2100 to linear sRGB, of which 1 is diffuse white.
+  void from_rec2100(std::span<float> rgb) const {
+    static const ColourMatrix srgb_from_rec2020 = srgb_from_xyz() * xyz_from_rec2020();
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
+      LinearRgb light{double(rgb[i]), double(rgb[i + 1]), double(rgb[i + 2])};
+      if (hlg_) light = hlg_displayed(light);
+      const Xyz seen = srgb_from_rec2020 * Xyz{light.r, light.g, light.b};
+      rgb[i] = static_cast<float>(seen.x / hdr_white_cd_m2);
+      rgb[i + 1] = static_cast<float>(seen.y / hdr_white_cd_m2);
+      rgb[i + 2] = static_cast<float>(seen.z / hdr_white_cd_m2);
+    }
   }
 
   template <typename Sample>
@@ -130,12 +159,13 @@ class RowToLinear {
         values[i * wanted + c] = value(from[i * channels + (colours_ == 1 ? 0 : c)]);
     if (profile_) return (*profile_)(values, rgb);
     std::copy(values.begin(), values.end(), rgb.begin());
+    if (pq_ || hlg_) from_rec2100(rgb);
   }
 
   const StoredPicture& picture_;
   std::size_t colours_;
-  bool srgb_ = false;
-  std::vector<float> decoded_;
+  bool srgb_ = false, pq_ = false, hlg_ = false;
+  std::vector<float> decoded_;  ///< by samples of whole numbers; empty: they are as they are
   std::optional<ProfileToLinear> profile_;
 };
 

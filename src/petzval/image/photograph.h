@@ -11,8 +11,8 @@ namespace petzval {
 
 /// How the numbers of a picture become linear light.
 enum class PhotographEncoding {
-  by_file,  ///< its colour profile, if it has one; else as the file says (linear PNG, floating-point TIFF: as
-            ///< they are); else sRGB
+  by_file,  ///< a chunk cICP (ITU-R BT.2100, PQ or HLG: 203 cd/m² are 1), its colour profile, if it has one;
+            ///< else as the file says (linear PNG, floating-point TIFF: as they are); else sRGB
   srgb,     ///< sRGB, whatever the file says
   linear    ///< linear light of sRGB's primaries
 };

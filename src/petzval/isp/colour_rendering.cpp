@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/colour/display_primaries.h>
+#include <petzval/colour/rec2100.h>
 #include <petzval/isp/colour_rendering.h>
 
 #include <Eigen/Dense>
@@ -91,44 +93,10 @@ DisplaySpace display_space(const std::string& name) {
   throw InputError(fmt::format("no display space \"{}\"; srgb, display-p3 and rec2100-pq are known", name));
 }
 
-namespace {
-
-// SMPTE ST 2084:2014.
-constexpr double pq_m1 = 2610.0 / 16384, pq_m2 = 2523.0 / 32, pq_c1 = 3424.0 / 4096, pq_c2 = 2413.0 / 128,
-                 pq_c3 = 2392.0 / 128, pq_peak_cd_m2 = 10000;
-
-}  // namespace
-
-double pq_encoded(double luminance_cd_m2) {
-  const double y = std::pow(std::clamp(luminance_cd_m2 / pq_peak_cd_m2, 0.0, 1.0), pq_m1);
-  return std::pow((pq_c1 + pq_c2 * y) / (1 + pq_c3 * y), pq_m2);
-}
-
-double pq_decoded(double encoded) {
-  const double root = std::pow(std::clamp(encoded, 0.0, 1.0), 1 / pq_m2);
-  return pq_peak_cd_m2 * std::pow(std::max(0.0, root - pq_c1) / (pq_c2 - pq_c3 * root), 1 / pq_m1);
-}
-
 ColourMatrix display_from_xyz(DisplaySpace space) {
   if (space == DisplaySpace::srgb) return srgb_from_xyz();
-  // Columns: the primaries, scaled so that together they are white.
-  using Primaries = std::array<Chromaticity, 3>;
-  const Primaries primaries = space == DisplaySpace::display_p3
-                                  ? Primaries{{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}}}
-                                  : Primaries{{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}}};
-  Matrix3d xyz;
-  for (int i = 0; i < 3; ++i) {
-    const Xyz colour = xyz_of(primaries[static_cast<std::size_t>(i)]);
-    xyz.col(i) << colour.x, colour.y, colour.z;
-  }
-  const Xyz white = display_white();
-  const Vector3d scale = xyz.inverse() * Vector3d(white.x, white.y, white.z);
-  const Matrix3d inverse = (xyz * scale.asDiagonal()).inverse();
-  ColourMatrix result{};
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c)
-      result[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = inverse(r, c);
-  return result;
+  if (space == DisplaySpace::rec2100_pq) return inverse(xyz_from_rec2020());
+  return inverse(xyz_from_primaries({{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}}}));
 }
 
 double correlated_temperature_k(Chromaticity chromaticity) {

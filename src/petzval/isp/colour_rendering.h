@@ -14,15 +14,9 @@ namespace petzval {
 enum class DisplaySpace {
   srgb,        ///< IEC 61966-2-1
   display_p3,  ///< SMPTE EG 432-1 primaries, white D65, the transfer curve of sRGB
-  rec2100_pq  ///< ITU-R BT.2100: primaries of BT.2020, white D65, perceptual quantisation; high dynamic range
+  rec2100_pq   ///< ITU-R BT.2100: primaries of BT.2020, white D65, perceptual quantisation; 1 is
+               ///< hdr_white_cd_m2
 };
-
-/// Luminance of white, 1, in rec2100_pq: that of diffuse white in ITU-R BT.2408 [cd/m²].
-inline constexpr double pq_white_cd_m2 = 203;
-/// The inverse EOTF of SMPTE ST 2084: luminance [cd/m²], held to 0 … 10000, to code value 0 … 1.
-double pq_encoded(double luminance_cd_m2);
-/// Its inverse.
-double pq_decoded(double encoded);
 
 /// \throws InputError for another name than "srgb", "display-p3" and "rec2100-pq".
 DisplaySpace display_space(const std::string& name);

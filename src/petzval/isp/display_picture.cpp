@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
+#include <petzval/colour/rec2100.h>
 #include <petzval/image/formats/jpeg_output.h>
 #include <petzval/image/formats/npy.h>
 #include <petzval/image/formats/plane_exr.h>
@@ -68,7 +69,7 @@ void write_tiff_picture(const std::string& path, const Planes& planes, int bits,
 }
 
 std::uint16_t pq_code(float linear) {
-  return static_cast<std::uint16_t>(65535 * pq_encoded(pq_white_cd_m2 * double(linear)) + 0.5);
+  return static_cast<std::uint16_t>(65535 * pq_encoded(hdr_white_cd_m2 * double(linear)) + 0.5);
 }
 
 void write_png_picture(const std::string& path, const Planes& planes, DisplaySpace space, int bits,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <lcms2.h>
 #include <petzval/base/error.h>
+#include <petzval/colour/rec2100.h>
 #include <petzval/isp/colour_rendering.h>
 
 #include <algorithm>

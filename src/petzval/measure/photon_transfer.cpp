@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace petzval {
 
@@ -168,6 +169,24 @@ NonUniformity non_uniformity(std::span<const RawImage> dark, std::span<const Raw
   return result;
 }
 
+GreyNoise grey_noise(std::span<const RawImage> dark, std::span<const RawImage> grey, int channel,
+                     const PhotonTransfer& transfer) {
+  const auto noise_e = [&](std::span<const RawImage> stack) {
+    std::vector<std::vector<double>> exposures;
+    for (const RawImage& raw : stack) {
+      const double step_e = stored_step(raw) * transfer.dn_per_e;
+      std::vector<double>& values = exposures.emplace_back();
+      for_channel(raw, channel,
+                  [&](int row, int column) { values.push_back(raw.pixel(row, column) / step_e); });
+    }
+    return patch_noise(exposures);
+  };
+  const PatchNoise in_dark = noise_e(dark), noise = noise_e(grey);
+  const double signal_e = noise.mean - in_dark.mean;
+  return {signal_e, signal_e / noise.total(), signal_e / noise.temporal, signal_e / noise.fixed_pattern,
+          20 * std::log10(transfer.saturation_e / in_dark.temporal)};
+}
+
 SensorTest test_sensor(const Sensor& sensor, const CaptureOptions& options, int channel, int side, int levels,
                        int stack) {
   const SensorElectronics& electronics = sensor.require_electronics();
@@ -203,9 +222,12 @@ SensorTest test_sensor(const Sensor& sensor, const CaptureOptions& options, int 
   for (int i = 1; i < levels; ++i)
     points.push_back(
         mean_of_pairs(pairs_at_turn, [&] { return point_at(coarse_e * (turn - 1 + 2.0 * i / levels)); }));
-  SensorTest result{photon_transfer(points), {}};
-  std::vector<RawImage> dark, half;
+  SensorTest result{photon_transfer(points), {}, {}};
+  std::vector<RawImage> dark, half, grey;
   for (int i = 0; i < stack; ++i) dark.push_back(expose(0)), half.push_back(expose(saturation_e / 2));
+  const double grey_e = 0.18 / std::numbers::sqrt2 * saturation_e;
+  for (int i = 0; i < stack; ++i) grey.push_back(expose(grey_e));
+  result.grey = grey_noise(dark, grey, channel, result.transfer);
   result.uniformity = non_uniformity(dark, half, channel, result.transfer.dn_per_e);
   return result;
 }

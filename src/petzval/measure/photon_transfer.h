@@ -2,6 +2,7 @@
 // What noise tells of a sensor: gain, full well, read noise, non-uniformities, by the methods of EMVA 1288.
 #pragma once
 
+#include <petzval/measure/oecf.h>
 #include <petzval/sensor/capture.h>
 #include <petzval/sensor/raw_image.h>
 
@@ -23,7 +24,7 @@ struct TransferPoint {
 /// \throws InputError unless both are of one size, with pixels of the channel.
 TransferPoint transfer_point(const RawImage& first, const RawImage& second, int channel);
 
-/// The photon-transfer curve and what follows from it (EMVA Standard 1288, release 3.1, sections 2 and 6).
+/// The photon-transfer curve and what follows from it (EMVA Standard 1288, release 4.0, of linear cameras).
 struct PhotonTransfer {
   std::vector<TransferPoint> points;  ///< the first is dark
   double dn_per_e = 0;      ///< system gain K: slope of variance over mean, up to 70 % of saturation
@@ -54,10 +55,22 @@ struct NonUniformity {
 NonUniformity non_uniformity(std::span<const RawImage> dark, std::span<const RawImage> half, int channel,
                              double dn_per_e);
 
+/// Signal-to-noise ratios of ISO 15739 where an 18 % grey lies if 141 % of white saturate (12.7 % of
+/// saturation, as in ISO 12232), and its dynamic range.
+struct GreyNoise {
+  double signal_e = 0, total_snr = 0, temporal_snr = 0, fixed_pattern_snr = 0;
+  double dynamic_range_db = 0;  ///< 20 log₁₀ of saturation over the temporal noise in the dark
+};
+
+/// From stacks of exposures: without light, and of the grey. \throws InputError as patch_noise().
+GreyNoise grey_noise(std::span<const RawImage> dark, std::span<const RawImage> grey, int channel,
+                     const PhotonTransfer& transfer);
+
 /// A sensor under test: uniform light on a square of `side` pixels in its middle.
 struct SensorTest {
   PhotonTransfer transfer;
   NonUniformity uniformity;
+  GreyNoise grey;
 };
 
 /// Exposes the sensor as EMVA 1288 wants it and evaluates one channel; every pixel gets the current of that

@@ -60,7 +60,7 @@ ViewedPicture read_viewed_picture(const std::string& path) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (extension == ".tif" || extension == ".tiff") return of_tiff(path);
   if (extension != ".png") throw InputError(path, "a picture to be looked at is .png or .tif");
-  const PngImage image = read_png(path);
+  const PngImage image = read_standard_png(path);
   const std::vector<double> table = decoding(image.bits == 8 ? 256 : 65536);
   return viewed(image.columns, image.rows, image.channels,
                 [&](std::size_t i) { return table[image.samples[i]]; });

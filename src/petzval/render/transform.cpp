@@ -88,6 +88,23 @@ Transform Transform::look_at(Vector3 eye, Vector3 target, Vector3 up) {
   return Transform(world_from_camera).inverse();
 }
 
+Transform Transform::between(const Transform& a, const Transform& b, double share) {
+  if (share <= 0 || a.matrix_ == b.matrix_) return a;
+  if (share >= 1) return b;
+  if (!a.is_affine() || !b.is_affine())
+    throw InputError(
+        "a projection that moves is not known; translations, rotations and scales would be right");
+  const Eigen::Affine3d from(eigen(a.matrix_)), to(eigen(b.matrix_));
+  Eigen::Matrix3d turned_from, turned_to, scaled_from, scaled_to;
+  from.computeRotationScaling(&turned_from, &scaled_from);
+  to.computeRotationScaling(&turned_to, &scaled_to);
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(turned_from).slerp(share, Eigen::Quaterniond(turned_to));
+  Matrix m = Matrix::Identity();
+  m.topLeftCorner<3, 3>() = turn.toRotationMatrix() * ((1 - share) * scaled_from + share * scaled_to);
+  m.topRightCorner<3, 1>() = (1 - share) * from.translation() + share * to.translation();
+  return Transform(plain(m));
+}
+
 Transform Transform::inverse() const {
   return {inverse_, matrix_};
 }

@@ -37,6 +37,11 @@ class Transform {
   Vector3 inverse_point(Vector3 p) const { return mapped_point(inverse_, p); }
   Vector3 inverse_direction(Vector3 v) const { return mapped_direction(inverse_, v); }
 
+  /// On the way from `a` to `b`: translations and scales go straight, rotations on the shortest arc (polar
+  /// decomposition; Shoemake and Duff 1992). \param share  of the way, 0 to 1. \throws InputError (without
+  /// place) for maps that are not affine or become singular on the way.
+  static Transform between(const Transform& a, const Transform& b, double share);
+
   Transform inverse() const;
   /// First `b`, then `a`.
   friend Transform operator*(const Transform& a, const Transform& b);

@@ -67,16 +67,4 @@ struct CaptureOptions {
 RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double exposure_s,
                  const CaptureOptions& options);
 
-/// Several exposures of one scene made into one raw image of 16 bits: each pixel is the sum of the electrons
-/// of all frames in which it stays below 90 % of saturation, over the sum of their exposure times (the
-/// estimate of greatest likelihood under shot noise); pixels that saturate in all frames are white. Levels
-/// are those of the shortest exposure. \throws InputError unless the frames are of one sensor at one gain.
-RawImage merge_bracket(const std::vector<RawImage>& frames);
-
-/// Merges readings of one exposure at several conversion gains: the mean of those below 90 % of their
-/// saturation, weighted by their read noise, and never without the one of the widest range. Below the least
-/// saturation the noise is √(μ + 1/Σ(1/σ²)) electrons, above the greatest that of the widest reading.
-/// \throws InputError for exposures that differ.
-RawImage merge_readings(const std::vector<RawImage>& readings);
-
 }  // namespace petzval

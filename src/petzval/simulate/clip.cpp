@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
-#include <petzval/simulate/clip.h>
+#include <petzval/simulate/clip_light.h>
 #include <petzval/simulate/prepared_exposure.h>
 
 #include <algorithm>
@@ -15,17 +15,6 @@ namespace {
 
 constexpr int most_frames = 1 << 20;
 constexpr double fastest_fps = 1e6;
-
-/// How far the picture moves between two aims, at most [pixels].
-double moved_px(const SceneAim& a, const SceneAim& b, const ImagePlan& plan) {
-  const FirstOrder& lens = plan.table.first_order;
-  const double turn = radians(std::hypot(b.pan_deg - a.pan_deg, b.pitch_deg - a.pitch_deg));
-  // Of a plane that is drawn by central projection, towards the corners more than in the middle.
-  const double corner = plan.frame.half_diagonal_mm() / std::abs(lens.efl_mm);
-  const double way_mm = mm_per_m * std::hypot(b.right_m - a.right_m, b.up_m - a.up_m);
-  return (turn * std::abs(lens.efl_mm) * (1 + corner * corner) + way_mm * std::abs(lens.magnification)) /
-         (plan.frame.pitch_um * mm_per_um);
-}
 
 /// Instants between which no more time passes than this.
 std::vector<double> finer(const std::vector<double>& instants, double step_s) {
@@ -58,26 +47,29 @@ void ClipOptions::validate() const {
   if (!(step_px >= finest_px && step_px <= coarsest_px))
     throw InputError(
         fmt::format("steps of {:g} pixels; {:g} to {:g} would be right", step_px, finest_px, coarsest_px));
+  constexpr int most_instants = 1 << 16;
+  if (instants < 1 || instants > most_instants)
+    throw InputError(fmt::format("{} instants an exposure; 1 to {} would be right", instants, most_instants));
   if (expose.frames != 1)
     throw InputError("frames of a clip are single exposures; averages of them would be made afterwards");
 }
 
-/// What is settled of a clip, and the light that was looked at last.
+/// What is settled of a clip.
 struct Clip::Impl {
-  Impl(ImagePlan planned, const Sensor& sensor, const ClipOptions& asked, const Context& context)
-      : plan(std::move(planned)),
+  Impl(std::unique_ptr<const ClipLight> of_clip, const Sensor& sensor, const ClipOptions& asked,
+       const Context& context)
+      : light(std::move(of_clip)),
         options(asked),
         seed(context.seed),
         shutter(options.shutter.value_or(sensor.electronics->shutter)),
-        series(series_of(plan)),
-        exposure(first_light(context), sensor, options.expose, context) {
-    const double readout_s = shutter.row_delay_s(plan.frame.rows);
+        exposure(light->first(context), sensor, options.expose, context) {
+    const double readout_s = shutter.row_delay_s(light->rows());
     if (readout_s > options.frame_s() * (1 + rounding))
       throw InputError(
           fmt::format("the rolling shutter reads {} rows in {:.4g} s, which is longer than a frame at {:g} "
                       "frames a second; "
                       "a lower `fps`, or fewer rows, would be right",
-                      plan.frame.rows, readout_s, options.fps));
+                      light->rows(), readout_s, options.fps));
     const double whole_s = staggered_s(options.expose.bracket_ev.size());
     if (whole_s <= options.frame_s() * (1 + rounding)) return;
     if (options.expose.exposure.kind != Exposure::Kind::automatic)
@@ -95,29 +87,6 @@ struct Clip::Impl {
 
   static constexpr double rounding = 1e-9;
 
-  SpectralImage first_light(const Context& context) const {
-    const AimedLight first{{{first_aim()}}};
-    ImagingReport report;
-    SpectralImage light = std::move(form(std::span(&first, 1), &report).front());
-    for (const std::string& line : report.notes) send_note(context, line);
-    light.provenance = fmt::format("{} through {}", plan.scene.name, plan.table.lens_name);
-    return light;
-  }
-  static std::unique_ptr<ImageSeries> series_of(const ImagePlan& plan) {
-    if (plan.depth) return nullptr;
-    return std::make_unique<ImageSeries>(plan.scene, plan.table, plan.frame, plan.options.imaging);
-  }
-  SceneAim first_aim() const { return options.motion.at(0); }
-  std::vector<SpectralImage> form(std::span<const AimedLight> lights, ImagingReport* report = nullptr) const {
-    if (plan.depth) {  // which is at rest
-      ImageReport whole;
-      SpectralImage light = image(plan, {}, &whole);
-      if (report) *report = std::move(whole.imaging);
-      return std::vector<SpectralImage>(1, std::move(light));
-    }
-    return series->form(lights, report);
-  }
-
   double exposed_s(std::size_t index) const {
     const std::vector<double>& ev = options.expose.bracket_ev;
     return exposure.seconds() * (ev.empty() ? 1 : std::exp2(ev[index]));
@@ -133,94 +102,42 @@ struct Clip::Impl {
     const double after = options.expose.bracket_ev.empty() ? 0 : staggered_s(index);
     return {frame * options.frame_s() + after, exposed_s(index), shutter};
   }
-
-  /// From one instant to the next the picture moves by no more than a step.
-  std::vector<double> instants(double from_s, double to_s) const {
-    std::vector<double> corners{from_s};
-    for (const MotionPath::Key& key : options.motion.keys())
-      if (key.t_s > from_s && key.t_s < to_s) corners.push_back(key.t_s);
-    corners.push_back(to_s);
-    std::vector<double> at{from_s};
-    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-      const double a = corners[i], b = corners[i + 1];
-      const double steps = std::max(
-          1.0,
-          std::ceil(moved_px(options.motion.at(a), options.motion.at(b), plan) / options.step_px - rounding));
-      for (double k = 1; k <= steps; ++k) at.push_back(k == steps ? b : a + (b - a) * k / steps);
-    }
-    return at;
+  std::vector<double> instants(const FrameTiming& timing) const {
+    return light->instants(timing.start_s, timing.end_s(light->rows()), timing.exposure_s);
   }
 
-  /// Walks through instants with the light at each. \param rows_of  that are wanted of an instant.
-  template <typename RowsOf, typename See>
-  void walk(const std::vector<double>& instants, const RowsOf& rows_of, const See& see) const {
-    constexpr double most_bytes = 5e8;
-    constexpr std::size_t most = 64;
-    const double bytes =
-        double(plan.frame.columns) * double(plan.frame.rows) * plan.scene.bands() * sizeof(float);
-    const auto at_once = static_cast<std::size_t>(std::clamp(most_bytes / bytes, 1.0, double(most)));
-    std::shared_ptr<const PhotoCurrent> current = first_current();
-    SceneAim current_aim = first_aim();
-    for (std::size_t from = 0; from < instants.size();) {
-      // Instants of one aim share one light.
-      std::vector<AimedLight> lights;
-      std::size_t to = from;
-      for (; to < instants.size(); ++to) {
-        const SceneAim aim = options.motion.at(instants[to]);
-        const SceneAim& last = lights.empty() ? current_aim : lights.back().shares.front().aim;
-        const RowRange rows = rows_of(to);
-        if (last != aim) {
-          if (lights.size() == at_once) break;
-          lights.push_back({{{aim}}, rows});
-        } else if (!lights.empty()) {
-          RowRange& wanted = lights.back().rows;
-          wanted = {std::min(wanted.first, rows.first), std::max(wanted.end, rows.end)};
-        }
-      }
-      const std::vector<SpectralImage> images = lights.empty() ? std::vector<SpectralImage>() : form(lights);
-      std::size_t next = 0;
-      for (; from < to; ++from) {
-        const SceneAim aim = options.motion.at(instants[from]);
-        if (current_aim != aim) {
-          current = std::make_shared<const PhotoCurrent>(exposure.current(images[next++]));
-          current_aim = aim;
-        }
-        see(from, current);
-      }
-    }
-  }
-  std::shared_ptr<const PhotoCurrent> first_current() const {
-    return {std::shared_ptr<const PhotoCurrent>(), &exposure.first_current()};
+  /// Walks through instants with the current at each. \param rows_of  that are wanted of an instant.
+  template <typename See>
+  void walk(const std::vector<double>& instants, const ClipLight::RowsOf& rows_of, const See& see) const {
+    std::shared_ptr<const PhotoCurrent> current(std::shared_ptr<const PhotoCurrent>(),
+                                                &exposure.first_current());
+    light->walk(instants, rows_of, [&](std::size_t k, const SpectralImage* image) {
+      if (image) current = std::make_shared<const PhotoCurrent>(exposure.current(*image));
+      see(k, current);
+    });
   }
 
-  /// Mean light of an exposure whose rows are all open at the same time.
-  AimedLight light_of(const TimedExposure& timed, const std::vector<double>& at, double exposure_s) const {
-    AimedLight light{{}, {}};
-    const auto add = [&](double t_s, double seconds) {
-      const SceneAim aim = options.motion.at(t_s);
-      if (light.shares.empty() || light.shares.back().aim != aim) light.shares.push_back({aim, 0});
-      light.shares.back().weight += seconds / exposure_s;
-    };
+  /// What each instant gives to an exposure whose rows are all open at the same time.
+  std::vector<InstantShare> shares_of(const TimedExposure& timed, const std::vector<double>& at,
+                                      double exposure_s) const {
+    std::vector<InstantShare> result;
+    for (const double t_s : at) result.push_back({t_s, 0});
     for (std::size_t k = 1; k < at.size(); ++k) {
       const TimedExposure::Shares shares = timed.shares(0, at[k - 1], at[k]);
-      add(at[k - 1], shares.of_t0);
-      add(at[k], shares.of_t1);
+      result[k - 1].share += shares.of_t0 / exposure_s;
+      result[k].share += shares.of_t1 / exposure_s;
     }
-    return light;
+    return result;
   }
 
   /// Of an exposure, over its time. \param tell  is told how much of it is done.
   PhotoCurrent mean_current(const FrameTiming& timing, const std::function<void(double)>& tell) const {
-    const int rows = plan.frame.rows;
-    const std::vector<double> at = instants(timing.start_s, timing.end_s(rows));
+    const int rows = light->rows();
+    const std::vector<double> at = instants(timing);
     TimedExposure timed(timing, options.flicker);
-    const bool moves = std::ranges::any_of(
-        at, [&](double t_s) { return !(options.motion.at(t_s) == options.motion.at(at.front())); });
-    if (moves && timing.shutter.row_delay_s(rows) == 0) {
-      // All rows are open at the same time: light is added up before it is blurred.
-      const AimedLight sum = light_of(timed, at, timing.exposure_s);
-      return exposure.current(form(std::span(&sum, 1)).front());
-    }
+    if (timing.shutter.row_delay_s(rows) == 0)
+      if (const std::optional<SpectralImage> sum = light->sum(shares_of(timed, at, timing.exposure_s)))
+        return exposure.current(*sum);
     // Beside the rows that are open between two instants, those that crosstalk reaches.
     const auto open_rows = [&](std::size_t k) {
       const double before_s = at[k > 0 ? k - 1 : k], after_s = at[k + 1 < at.size() ? k + 1 : k];
@@ -241,11 +158,10 @@ struct Clip::Impl {
     return timed.mean_current();
   }
 
-  ImagePlan plan;
+  std::unique_ptr<const ClipLight> light;
   ClipOptions options;
   std::uint64_t seed;
   Shutter shutter;
-  std::unique_ptr<ImageSeries> series;  ///< of the plan's scene; none of one with depth
   PreparedExposure exposure;
 };
 
@@ -282,7 +198,20 @@ Clip::Clip(ImagePlan plan, const Sensor& sensor, const ClipOptions& options, con
   sensor.require_electronics();
   for (const MotionPath::Key& key : options.motion.keys()) key.aim.check(plan.scene);
   impl_ = result_within(context, [&](const ProgressCallback&) {
-    return std::make_unique<Impl>(std::move(plan), sensor, options, context);
+    return std::make_unique<Impl>(light_of_plan(std::move(plan), options), sensor, options, context);
+  });
+}
+
+Clip::Clip(const RenderRequest& scene, const Sensor& sensor, const ClipOptions& options,
+           const Context& context) {
+  options.validate();
+  sensor.require_electronics();
+  if (!options.motion.is_rest())
+    throw InputError(
+        "a scene in three dimensions has its motion in its file, and its camera's (ActiveTransform); neither "
+        "turning nor a path would be right");
+  impl_ = result_within(context, [&](const ProgressCallback&) {
+    return std::make_unique<Impl>(rendered_light(scene, options, context), sensor, options, context);
   });
 }
 
@@ -303,8 +232,7 @@ FrameTiming Clip::timing(int frame, std::size_t exposure) const {
 std::size_t Clip::instants(int frame) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < std::max<std::size_t>(1, impl_->options.expose.bracket_ev.size()); ++i) {
-    const FrameTiming timing = impl_->timing(frame, i);
-    count += impl_->instants(timing.start_s, timing.end_s(impl_->plan.frame.rows)).size();
+    count += impl_->instants(impl_->timing(frame, i)).size();
   }
   return count;
 }
@@ -330,7 +258,7 @@ void Clip::events(const EventCameraOptions& options, const TakeEvents& take, con
     const LampFlicker& flicker = impl_->options.flicker;
     const double end_s = impl_->options.duration_s();
     EventCamera camera(options);
-    std::vector<double> at = impl_->instants(0, end_s);
+    std::vector<double> at = impl_->light->instants(0, end_s, impl_->exposure.seconds());
     if (!flicker.is_steady()) at = finer(at, 1 / (flicker.frequency_hz() * flicker_steps));
     const auto all_rows = [](std::size_t) { return RowRange(); };
     impl_->walk(at, all_rows, [&](std::size_t k, const std::shared_ptr<const PhotoCurrent>& now) {

@@ -8,6 +8,7 @@
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/motion_path.h>
+#include <petzval/simulate/render.h>
 
 #include <cstddef>
 #include <functional>
@@ -30,6 +31,8 @@ struct ClipOptions {
   /// Light is worked out anew when the picture has moved by so much [pixels], and changes in straight lines
   /// in between: TimedExposure tells what that costs.
   double step_px = 0.5;
+  /// Of a scene in three dimensions: from one to the next an exposure's length divided by this.
+  int instants = 16;
 
   double frame_s() const { return 1 / fps; }
   double duration_s() const { return frames / fps; }
@@ -57,6 +60,12 @@ class Clip {
  public:
   /// \throws InputError for options that contradict each other or the sensor; Cancelled.
   Clip(ImagePlan plan, const Sensor& sensor, const ClipOptions& options, const Context& context = {});
+  /// Of a scene in three dimensions: what moves in its file (pbrt's ActiveTransform, TransformTimes in
+  /// seconds), the camera too, is rendered at `instants` instants an exposure, each with
+  /// `scene.samples_per_pixel` samples of its own. Its focus is settled at the beginning. The camera's sensor
+  /// is `sensor`. \throws InputError also for a motion in the options.
+  Clip(const RenderRequest& scene, const Sensor& sensor, const ClipOptions& options,
+       const Context& context = {});
   ~Clip();
   Clip(const Clip&) = delete;
   Clip& operator=(const Clip&) = delete;

@@ -7,6 +7,7 @@
 #include <petzval/colour/illuminants.h>
 #include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/colour_calibration.h>
+#include <petzval/sensor/merged_exposures.h>
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/prepared_exposure.h>
 

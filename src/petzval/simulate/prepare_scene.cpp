@@ -45,6 +45,8 @@ void check(const RenderRequest& request) {
                                  request.scene_unit_mm));
   if (request.aperture_diameter_mm && request.camera.f_number)
     throw InputError("`aperture_diameter_mm` and `f_number` both set the stop; one of them would be right");
+  if (!std::isfinite(request.scene_time))
+    throw InputError(fmt::format("`scene_time` {}: a finite number would be right", request.scene_time));
   if (!(request.light_scale > 0 && std::isfinite(request.light_scale)))
     throw InputError(fmt::format("`light_scale` {}: a factor above 0 would be right", request.light_scale));
   if (request.focus_pixel && request.camera.image_distance_mm)
@@ -161,10 +163,11 @@ render::LightDescription white_sky(double cd_m2, double light_scale) {
   return {light.rgb("L", {1, 1, 1}).number("scale", cd_m2 / lumens_per_watt / light_scale).made(), {}};
 }
 
-render::SceneDescription read_description(const std::string& name, render::Unsupported& unsupported) {
+render::SceneDescription read_description(const std::string& name, double time,
+                                          render::Unsupported& unsupported) {
   const std::string path = find_data_file("scenes", ".pbrt", name, "three-dimensional scene");
   return render::has_gltf_name(path) ? render::read_gltf_scene(path, unsupported)
-                                     : render::read_scene_description(path, unsupported);
+                                     : render::read_scene_description(path, unsupported, time);
 }
 
 std::vector<double> wavelengths_of(const RenderRequest& request) {
@@ -173,8 +176,8 @@ std::vector<double> wavelengths_of(const RenderRequest& request) {
 
 /// Whether one world serves both.
 bool same_world(const RenderRequest& a, const RenderRequest& b) {
-  return a.scene == b.scene && a.absolute_spectra == b.absolute_spectra && a.light_scale == b.light_scale &&
-         a.light_changes == b.light_changes && a.sky_cd_m2 == b.sky_cd_m2 &&
+  return a.scene == b.scene && a.scene_time == b.scene_time && a.absolute_spectra == b.absolute_spectra &&
+         a.light_scale == b.light_scale && a.light_changes == b.light_changes && a.sky_cd_m2 == b.sky_cd_m2 &&
          a.skip_unsupported == b.skip_unsupported && wavelengths_of(a) == wavelengths_of(b);
 }
 
@@ -201,7 +204,7 @@ PreparedScene prepare(const RenderRequest& request, const PreparedScene* before,
   if (kept) {
     *made = *before->world;
   } else {
-    render::SceneDescription description = read_description(request.scene, unsupported);
+    render::SceneDescription description = read_description(request.scene, request.scene_time, unsupported);
     render::alter_lights(request.light_changes, description);
     if (request.sky_cd_m2) description.lights.push_back(white_sky(*request.sky_cd_m2, request.light_scale));
     made->description = std::make_shared<const render::SceneDescription>(std::move(description));

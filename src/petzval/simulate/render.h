@@ -41,6 +41,9 @@ struct RenderRequest {
 
   /// A file in the text format of pbrt-v4 or in glTF 2.0 (.gltf, .glb), or the name of a bundled scene.
   std::string scene = {};
+  /// What moves in it (pbrt's ActiveTransform) stands where it is at this time, in the unit of its
+  /// TransformTimes; before and after these it rests. A clip of a scene counts seconds.
+  double scene_time = 0;
   /// Without surfaces, its lens is the one of the scene's camera, if that has one. Without a sensor the film
   /// is the scene's. Automatic focus is autofocus on the zones below; an ideal camera has none.
   Camera camera = Camera();  // "= {}" makes g++ 12 warn of what it does not see through

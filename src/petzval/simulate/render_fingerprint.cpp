@@ -50,6 +50,7 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
       fmt::format("scene-unit {}\nabsolute-spectra {}\n", request.scene_unit_mm, request.absolute_spectra);
   for (const render::LightChange& change : request.light_changes)
     text += fmt::format("light {}\n", change.text());
+  if (request.scene_time != 0) text += fmt::format("scene-time {}\n", request.scene_time);
   text += fmt::format("light-scale {} sky {} skip-unsupported {}\n", request.light_scale,
                       request.sky_cd_m2.value_or(0), request.skip_unsupported);
   if (camera.lens) text += lens_fingerprint(*camera.lens, nm);

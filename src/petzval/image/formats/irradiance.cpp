@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/parallel.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/colour/spectrum_text.h>
 #include <petzval/image/formats/irradiance.h>
@@ -161,6 +162,45 @@ SpectralImage image_of(const NpyArray& array, const std::vector<double>& wavelen
   return image;
 }
 
+/// An image without light of what a file describes. \throws InputError for one of no irradiance.
+SpectralImage image_of(const SpectralExr& exr, const std::string& path) {
+  if (exr.kind != SpectralExr::Kind::emissive || exr.units != spectral_irradiance_units)
+    throw InputError(path, fmt::format("holds {}, not irradiance [{}]",
+                                       exr.kind == SpectralExr::Kind::reflective ? "reflectance"
+                                       : exr.units.empty()                       ? "values without units"
+                                                                                 : "values in " + exr.units,
+                                       spectral_irradiance_units));
+  const auto pitch = exr.numbers.find(pitch_attribute);
+  if (pitch == exr.numbers.end())
+    throw InputError(path, fmt::format("has no pixel pitch; the attribute {} must give it", pitch_attribute));
+  const std::string aperture = aperture_text(exr, path);
+  if (!(pitch->second > 0) || std::isinf(pitch->second))
+    throw InputError(path, fmt::format("{} is {}; it must be positive", pitch_attribute, pitch->second));
+  SpectralImage image(exr.width, exr.height, exr.wavelengths_nm, pitch->second,
+                      aperture == "box"     ? PixelAperture::box
+                      : aperture == "point" ? PixelAperture::point
+                                            : PixelAperture::photosite);
+  if (image.pixel_aperture() == PixelAperture::photosite)
+    image.photosite = aperture.substr(photosite_prefix.size());
+  return image;
+}
+
+/// \throws InputError at a value of rows [first, end) that is NaN or infinite.
+void check_rows(const SpectralImage& image, int first, int end, const std::string& path) {
+  const auto columns = static_cast<std::size_t>(image.columns());
+  parallel_for(static_cast<std::size_t>(image.bands()), [&](std::size_t band) {
+    const std::span<const float> values = image.band(static_cast<int>(band))
+                                              .subspan(static_cast<std::size_t>(first) * columns,
+                                                       static_cast<std::size_t>(end - first) * columns);
+    const auto bad = std::ranges::find_if(values, [](float value) { return !std::isfinite(value); });
+    if (bad == values.end()) return;
+    const auto at = static_cast<std::size_t>(bad - values.begin());
+    throw InputError(path, fmt::format("the value at {} nm, row {}, column {} is {}; it must be finite",
+                                       image.wavelengths_nm()[band],
+                                       static_cast<std::size_t>(first) + at / columns, at % columns, *bad));
+  });
+}
+
 }  // namespace
 
 SpectralImage read_irradiance(const std::string& path, const BareIrradiance& bare) {
@@ -200,32 +240,17 @@ SpectralImage read_irradiance(const std::string& path) {
   if (extension_of(path) == ".npy")
     throw InputError(path,
                      "a .npy file carries neither wavelengths nor pixel pitch; give the irradiance as .exr");
-  SpectralExr exr = read_spectral_exr(path);
-  if (exr.kind != SpectralExr::Kind::emissive || exr.units != spectral_irradiance_units)
-    throw InputError(path, fmt::format("holds {}, not irradiance [{}]",
-                                       exr.kind == SpectralExr::Kind::reflective ? "reflectance"
-                                       : exr.units.empty()                       ? "values without units"
-                                                                                 : "values in " + exr.units,
-                                       spectral_irradiance_units));
-  const auto pitch = exr.numbers.find(pitch_attribute);
-  if (pitch == exr.numbers.end())
-    throw InputError(path, fmt::format("has no pixel pitch; the attribute {} must give it", pitch_attribute));
-  exr.validate(path);
-  const std::string aperture = aperture_text(exr, path);
-  if (!(pitch->second > 0) || std::isinf(pitch->second))
-    throw InputError(path, fmt::format("{} is {}; it must be positive", pitch_attribute, pitch->second));
-  SpectralImage image(exr.width, exr.height, exr.wavelengths_nm, pitch->second,
-                      aperture == "box"     ? PixelAperture::box
-                      : aperture == "point" ? PixelAperture::point
-                                            : PixelAperture::photosite);
-  if (image.pixel_aperture() == PixelAperture::photosite)
-    image.photosite = aperture.substr(photosite_prefix.size());
-  for (int band = 0; band < image.bands(); ++band) {
-    const std::span<const float> plane = exr.plane(static_cast<std::size_t>(band));
-    std::copy(plane.begin(), plane.end(), image.band(band).begin());
-    exr.values.release_memory();
-    image.release_memory();
-  }
+  SpectralImage image;
+  SpectralExr exr = read_spectral_exr_into(path, [&](const SpectralExr& header) {
+    image = image_of(header, path);
+    SpectralPlanes planes;
+    for (int band = 0; band < image.bands(); ++band) planes.bands.push_back(image.band(band));
+    planes.after_rows = [&image, &path](int first, int end) {
+      check_rows(image, first, end, path);
+      image.release_memory();
+    };
+    return planes;
+  });
   image.provenance = exr.strings[provenance_attribute];
   image.lens = lens_of(exr, path);
   image.illuminant = illuminant_of(exr, path);

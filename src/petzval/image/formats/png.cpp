@@ -9,10 +9,12 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -37,6 +39,13 @@ struct PngError {
 }
 
 void on_warning(png_structp, png_const_charp) {}
+
+using CodePoints = std::array<unsigned char, 4>;
+
+/// What a chunk cICP says (ITU-T H.273): primaries, transfer, matrix (0: RGB), full range.
+constexpr std::pair<PngTransfer, CodePoints> code_points_of[] = {{PngTransfer::rec2100_pq, {9, 16, 0, 1}},
+                                                                 {PngTransfer::rec2100_hlg, {9, 18, 0, 1}}};
+constexpr CodePoints srgb_code_points = {1, 13, 0, 1}, linear_code_points = {1, 8, 0, 1};
 
 // ---- writing
 
@@ -74,9 +83,8 @@ class Writer {
   }
   /// What libpng 1.6 does not know.
   void write_further_chunks() {
-    // Primaries of BT.2020, perceptual quantisation, RGB, full range (ITU-T H.273).
-    constexpr unsigned char rec2100_pq[] = {9, 16, 0, 1};
-    if (layout_.transfer == PngTransfer::rec2100_pq) write_chunk("cICP", rec2100_pq);
+    for (const auto& [transfer, code_points] : code_points_of)
+      if (layout_.transfer == transfer) write_chunk("cICP", code_points);
     if (!layout_.exif.empty())
       write_chunk("eXIf", {reinterpret_cast<const unsigned char*>(layout_.exif.data()), layout_.exif.size()});
   }
@@ -235,8 +243,9 @@ class Reader {
     png_read_end(png_, info_);
   }
 
-  /// libpng makes room for a chunk of the length that the file states; hold that against the file first.
-  void check_chunks() const {
+  /// libpng makes room for a chunk of the length that the file states; hold that against the file first. And
+  /// libpng 1.6 does not know cICP.
+  void check_chunks() {
     constexpr std::size_t signature = 8, framing = 12;  // length, name and checksum
     std::size_t left = bytes_.size() > signature ? bytes_.size() - signature : 0;
     while (left >= framing) {
@@ -245,6 +254,11 @@ class Reader {
         length = length << 8 | static_cast<unsigned char>(bytes_[bytes_.size() - left + i]);
       if (length > left - framing)
         throw InputError(path_, "is not a sound PNG: the file ends within a chunk");
+      const std::string_view chunk = rest_.substr(bytes_.size() - left + 4, 4 + length);
+      if (CodePoints points; chunk.starts_with("cICP") && length == points.size()) {
+        std::ranges::copy(chunk.substr(4), points.begin());
+        code_points_ = points;
+      }
       left -= framing + length;
     }
   }
@@ -259,6 +273,13 @@ class Reader {
   }
 
   PngTransfer transfer() const {
+    if (code_points_) {  // it comes before all other chunks
+      for (const auto& [transfer, code_points] : code_points_of)
+        if (*code_points_ == code_points) return transfer;
+      return *code_points_ == srgb_code_points     ? PngTransfer::srgb
+             : *code_points_ == linear_code_points ? PngTransfer::linear
+                                                   : PngTransfer::other;
+    }
     int intent = 0;
     png_fixed_point gamma = 0;
     if (png_get_sRGB(png_, info_, &intent)) return PngTransfer::srgb;
@@ -284,6 +305,7 @@ class Reader {
   png_structp png_ = nullptr;
   png_infop info_ = nullptr;
   int passes_ = 1;  ///< through interlaced rows
+  std::optional<CodePoints> code_points_;
 };
 
 }  // namespace
@@ -322,6 +344,16 @@ void write_png(const std::string& path, const PngImage& image) {
 
 PngImage read_png(const std::string& path) {
   return parse_png(read_whole_file(path), path);
+}
+
+PngImage read_standard_png(const std::string& path) {
+  PngImage image = read_png(path);
+  if (image.transfer == PngTransfer::rec2100_pq || image.transfer == PngTransfer::rec2100_hlg ||
+      image.transfer == PngTransfer::other)
+    throw InputError(path,
+                     "is of high dynamic range or of a wide gamut, by its chunk cICP; one in sRGB or linear "
+                     "light would be right");
+  return image;
 }
 
 PngImage parse_png(std::string bytes_of_file, const std::string& path) {

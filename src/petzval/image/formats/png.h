@@ -13,7 +13,14 @@
 namespace petzval {
 
 /// What the sample values mean, as far as the file says.
-enum class PngTransfer { unstated, srgb, linear, rec2100_pq };
+enum class PngTransfer {
+  unstated,
+  srgb,
+  linear,
+  rec2100_pq,   ///< ITU-R BT.2100, perceptual quantisation, by a chunk cICP
+  rec2100_hlg,  ///< ITU-R BT.2100, hybrid log-gamma, by a chunk cICP
+  other         ///< stated by a chunk cICP; read, not written
+};
 
 /// Everything of a PNG picture but its samples.
 struct PngLayout {
@@ -48,7 +55,9 @@ void write_png(const std::string& path, const PngImage& image);
 /// fewer than 8 bits become 8. Nothing is allocated before the sizes have been checked against the size of
 /// the file. \throws InputError for anything that is not a sound PNG.
 PngImage read_png(const std::string& path);
-/// The same from bytes. \param name  for messages.
+/// The same of standard dynamic range: sRGB, linear light, or not stated. \throws InputError for others.
+PngImage read_standard_png(const std::string& path);
+/// The same as read_png() from bytes. \param name  for messages.
 PngImage parse_png(std::string bytes, const std::string& name);
 
 }  // namespace petzval

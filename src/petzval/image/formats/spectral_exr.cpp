@@ -85,11 +85,12 @@ void take_attributes(const Imf::Header& header, SpectralExr& exr) {
   for (const char* name : {"name", "type", version_attribute}) exr.strings.erase(name);
 }
 
-void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralExr& exr) {
+void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, const SpectralPlanes& planes,
+                 SpectralExr& exr) {
   const ExrWindow window(file.header());
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < bands.size(); ++i)
-    buffer.insert(bands[i].channel, window.plane(exr.plane(i).data()));
+    buffer.insert(bands[i].channel, window.plane(planes.bands[i].data()));
   for (const auto& [name, plane] :
        {std::pair{exr_depth_channel, &exr.depth}, std::pair{exr_lamps_channel, &exr.lamps}})
     if (const Imf::Channel* channel = file.header().channels().findChannel(name);
@@ -99,8 +100,9 @@ void read_pixels(Imf::InputFile& file, const std::vector<Band>& bands, SpectralE
     }
   file.setFrameBuffer(buffer);
   for (int row = window.box.min.y; row <= window.box.max.y; row += rows_at_a_time) {
-    file.readPixels(row, std::min(row + rows_at_a_time - 1, window.box.max.y));
-    exr.values.release_memory();
+    const int last = std::min(row + rows_at_a_time - 1, window.box.max.y);
+    file.readPixels(row, last);
+    if (planes.after_rows) planes.after_rows(row - window.box.min.y, last + 1 - window.box.min.y);
   }
 }
 
@@ -111,7 +113,7 @@ int compression_threads() {
   return threads;
 }
 
-SpectralExr read_spectra(const std::string& path, const std::function<void(const SpectralExr&)>& check) {
+SpectralExr read_spectra(const std::string& path, const std::function<SpectralPlanes(SpectralExr&)>& place) {
   Imf::InputFile file(path.c_str(), compression_threads());
   SpectralExr exr;
   const std::vector<Band> bands = bands_of(file.header().channels(), exr, path);
@@ -123,9 +125,7 @@ SpectralExr read_spectra(const std::string& path, const std::function<void(const
     throw InputError(path, fmt::format("{} x {} pixels in {} bands are more than can be held", exr.width,
                                        exr.height, bands.size()));
   take_attributes(file.header(), exr);
-  if (check) check(exr);
-  exr.values = LargeFloats(exr.band_size() * bands.size());
-  read_pixels(file, bands, exr);
+  read_pixels(file, bands, place(exr), exr);
   return exr;
 }
 
@@ -214,7 +214,21 @@ void SpectralExr::validate(const std::string& file) const {
 }
 
 SpectralExr read_spectral_exr(const std::string& path, const std::function<void(const SpectralExr&)>& check) {
-  return reading_exr(path, [&check](const std::string& file) { return read_spectra(file, check); });
+  return reading_exr(path, [&check](const std::string& file) {
+    return read_spectra(file, [&check](SpectralExr& exr) {
+      if (check) check(exr);
+      exr.values = LargeFloats(exr.band_size() * exr.wavelengths_nm.size());
+      SpectralPlanes planes;
+      for (std::size_t i = 0; i < exr.wavelengths_nm.size(); ++i) planes.bands.push_back(exr.plane(i));
+      planes.after_rows = [&exr](int, int) { exr.values.release_memory(); };
+      return planes;
+    });
+  });
+}
+
+SpectralExr read_spectral_exr_into(const std::string& path,
+                                   const std::function<SpectralPlanes(const SpectralExr&)>& place) {
+  return reading_exr(path, [&place](const std::string& file) { return read_spectra(file, place); });
 }
 
 void write_spectral_exr(const std::string& path, const SpectralExr& exr) {

@@ -65,6 +65,17 @@ struct SpectralExr {
 SpectralExr read_spectral_exr(const std::string& path,
                               const std::function<void(const SpectralExr&)>& check = {});
 
+/// Where the values of a file go: a plane a band, rows from the top.
+struct SpectralPlanes {
+  std::vector<std::span<float>> bands;
+  /// Called when rows [first, end) are there.
+  std::function<void(int first, int end)> after_rows = {};
+};
+/// The same with the values put elsewhere, without a copy: `values` stays empty. \param place  is called
+/// before values are read, and may throw.
+SpectralExr read_spectral_exr_into(const std::string& path,
+                                   const std::function<SpectralPlanes(const SpectralExr&)>& place);
+
 /// Writes 32-bit floats, scan lines, ZIP compression; the same bytes for the same image.
 /// \throws InputError unless the sizes agree and the wavelengths increase, and as WholeFile; Failure.
 void write_spectral_exr(const std::string& path, const SpectralExr& exr);

@@ -62,7 +62,7 @@ void add_codes(PicturePlanes& picture, int bits, const CodeCurve& curve) {
 }
 
 PicturePlanes from_png(const std::string& path, PictureTransfer transfer) {
-  const PngImage png = read_png(path);
+  const PngImage png = read_standard_png(path);
   const CodeCurve curve =
       code_curve(transfer, png.transfer == PngTransfer::linear, png.transfer == PngTransfer::srgb);
   const double full = png.bits == 8 ? 255 : 65535;

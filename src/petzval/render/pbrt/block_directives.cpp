@@ -25,8 +25,9 @@ bool SceneReader::follow_block(const std::string& word, Tokens& tokens, const Lo
   else if (word == "WorldBegin") {
     if (in_world_) throw scene_error(at, "a second WorldBegin");
     in_world_ = true;
-    state_.world_from_object = Transform();
-    coordinate_systems_["world"] = Transform();
+    state_.world_from_object = {};
+    state_.start_active = state_.end_active = true;
+    coordinate_systems_["world"] = {};
   } else
     return false;
   return true;
@@ -70,7 +71,7 @@ void SceneReader::place_object(Tokens& tokens, const Location& at) {
   if (found == objects_.end())
     throw scene_error(at, fmt::format("there is no object \"{}\"; ObjectBegin makes one", name));
   if (open_object_ >= 0) throw scene_error(at, "ObjectInstance inside of an object");
-  scene_.instances.push_back({found->second, state_.world_from_object, at});
+  scene_.instances.push_back({found->second, world_from_object(at), at});
 }
 
 }  // namespace petzval::render

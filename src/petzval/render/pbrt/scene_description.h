@@ -76,6 +76,7 @@ struct SceneDescription {
   std::vector<std::string> notes;  ///< what the reader decided by itself
   Entity film, camera, sampler, integrator, pixel_filter;
   Transform camera_from_world;
+  bool moves = false;                        ///< another time would have shown it otherwise
   bool has_camera = true;                    ///< else whoever renders it stands back until it fits
   std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one
   std::vector<Entity> materials;             ///< the first is pbrt's default, grey diffuse
@@ -89,11 +90,12 @@ struct SceneDescription {
 
 /// Reads a scene with everything that it includes. \throws InputError with file, line and column for text
 /// that is not a pbrt-v4 scene, a missing or cyclic include, a singular transformation; and through
-/// `unsupported`.
-SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported);
+/// `unsupported`. \param time  in the unit of TransformTimes: what moves (ActiveTransform) stands where it is
+/// then.
+SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported, double time = 0);
 /// The same from text. \param file  for messages, and the folder that relative names start from.
 SceneDescription parse_scene_description(const std::string& text, const std::string& file,
-                                         Unsupported& unsupported);
+                                         Unsupported& unsupported, double time = 0);
 
 /// A file named in a scene: relative to the folder of the file that names it.
 std::string resolved_path(const Location& at, const std::string& name);

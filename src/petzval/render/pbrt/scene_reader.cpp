@@ -88,7 +88,7 @@ void SceneReader::refuse_unknown(const std::string& word, const Location& at) {
       "Import", "WorldBegin", "Camera", "Film", "Sampler",
       "Integrator", "PixelFilter", "Accelerator", "ColorSpace", "Option",
       "Shape", "Material", "MakeNamedMaterial", "NamedMaterial", "Texture",
-      "LightSource", "AreaLightSource", "ReverseOrientation", "Attribute", "MakeNamedMedium",
+      "LightSource", "AreaLightSource", "ReverseOrientation", "Attribute", "MakeNamedMedium", "ActiveTransform", "TransformTimes",
       "TransformBegin", "TransformEnd", "MediumInterface"
       // clang-format on
   };
@@ -104,22 +104,22 @@ void SceneReader::finish() {
   if (is_old_) translate_old_scene(scene_);
 }
 
-SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported) {
+SceneDescription read_scene_description(const std::string& path, Unsupported& unsupported, double time) {
   SceneDescription scene;
   scene.file = path;
   scene.materials.push_back({"diffuse", {}});
-  SceneReader reader(scene, unsupported);
+  SceneReader reader(scene, unsupported, time);
   reader.read_file(path, nullptr);
   reader.finish();
   return scene;
 }
 
 SceneDescription parse_scene_description(const std::string& text, const std::string& file,
-                                         Unsupported& unsupported) {
+                                         Unsupported& unsupported, double time) {
   SceneDescription scene;
   scene.file = file;
   scene.materials.push_back({"diffuse", {}});
-  SceneReader reader(scene, unsupported);
+  SceneReader reader(scene, unsupported, time);
   reader.read_text(text, file);
   reader.finish();
   return scene;

@@ -13,9 +13,15 @@
 
 namespace petzval::render {
 
+/// pbrt's current transformation matrix, at the two times of TransformTimes.
+struct MovingTransform {
+  Transform start, end;
+};
+
 /// What AttributeBegin saves and AttributeEnd brings back.
 struct GraphicsState {
-  Transform world_from_object;  ///< pbrt's current transformation matrix
+  MovingTransform world_from_object;
+  bool start_active = true, end_active = true;  ///< ActiveTransform: which of the two directives alter
   bool reverse_orientation = false;
   int material = 0, area_light = -1;
   std::map<std::string, std::vector<Parameter>> defaults;  ///< of Attribute "shape" …, by target
@@ -24,7 +30,8 @@ struct GraphicsState {
 /// Follows the directives of a scene file and writes down what they say.
 class SceneReader {
  public:
-  SceneReader(SceneDescription& scene, Unsupported& unsupported) : scene_(scene), unsupported_(unsupported) {}
+  SceneReader(SceneDescription& scene, Unsupported& unsupported, double time)
+      : scene_(scene), unsupported_(unsupported), time_(time) {}
 
   void read_file(const std::string& path, const Location* included_from);
   void read_text(const std::string& text, const std::string& file);
@@ -38,6 +45,9 @@ class SceneReader {
   };
 
   void follow(Tokens& tokens);
+  void active_transform(Tokens& tokens, const Location& at);
+  /// The transformation at the time of the scene.
+  Transform world_from_object(const Location& at);
   bool follow_transform(const std::string& word, Tokens& tokens, const Location& at);
   bool follow_block(const std::string& word, Tokens& tokens, const Location& at);
   bool follow_option(const std::string& word, Tokens& tokens, const Location& at);
@@ -68,10 +78,11 @@ class SceneReader {
   GraphicsState state_;
   std::vector<Saved> saved_;
   std::vector<std::string> open_files_;
-  std::map<std::string, Transform> coordinate_systems_;  ///< world (or camera) from the named system
+  std::map<std::string, MovingTransform> coordinate_systems_;  ///< world (or camera) from the named system
   std::map<std::string, int> objects_;
   int open_object_ = -1;
   Location object_at_;
+  double time_, start_time_ = 0, end_time_ = 1;
   bool in_world_ = false;
   bool is_old_ = false;  ///< of pbrt before version 4
 };

@@ -22,7 +22,7 @@ bool SceneReader::follow_world(const std::string& word, Tokens& tokens, const Lo
   } else if (word == "Texture")
     texture(tokens, at);
   else if (word == "LightSource")
-    scene_.lights.push_back({entity(tokens, at, "light", "light"), state_.world_from_object});
+    scene_.lights.push_back({entity(tokens, at, "light", "light"), world_from_object(at)});
   else if (word == "AreaLightSource") {
     scene_.area_lights.push_back(entity(tokens, at, "area light", "light"));
     state_.area_light = static_cast<int>(scene_.area_lights.size()) - 1;
@@ -38,12 +38,6 @@ bool SceneReader::follow_world(const std::string& word, Tokens& tokens, const Lo
     std::string inside = quoted(tokens, at, "medium"), outside;
     if (tokens.peek() && tokens.peek()->kind == Token::Kind::quoted) outside = quoted(tokens, at, "medium");
     if (!inside.empty() || !outside.empty()) unsupported_.report(at, "a participating medium");
-  } else if (word == "ActiveTransform" || word == "TransformTimes") {
-    while (tokens.peek() && tokens.peek()->kind == Token::Kind::word &&
-           (parse_scene_number(tokens.peek()->text) || tokens.peek()->text.ends_with("Time") ||
-            tokens.peek()->text == "All"))
-      tokens.next();
-    unsupported_.report(at, "motion");
   } else
     return false;
   return true;
@@ -57,7 +51,7 @@ void SceneReader::texture(Tokens& tokens, const Location& at) {
   if (texture.value_type != "float" && texture.value_type != "spectrum")
     throw scene_error(at, fmt::format("a texture holds float or spectrum, not \"{}\"", texture.value_type));
   texture.entity = entity(tokens, at, "texture's class", "texture");
-  texture.world_from_texture = state_.world_from_object;
+  texture.world_from_texture = world_from_object(at);
   scene_.textures.push_back(std::move(texture));
 }
 
@@ -74,7 +68,7 @@ void SceneReader::named_material(Tokens& tokens, const Location& at) {
 
 void SceneReader::shape(Tokens& tokens, const Location& at) {
   if (!in_world_) throw scene_error(at, "a Shape before WorldBegin");
-  ShapeDescription shape{entity(tokens, at, "shape", "shape"), state_.world_from_object,
+  ShapeDescription shape{entity(tokens, at, "shape", "shape"), world_from_object(at),
                          state_.reverse_orientation, state_.material, state_.area_light};
   if (open_object_ < 0) return scene_.shapes.push_back(std::move(shape));
   if (shape.area_light >= 0) {

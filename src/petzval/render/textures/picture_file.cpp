@@ -28,7 +28,7 @@ constexpr std::size_t pixels_between_questions = 1 << 16;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 30;
 
 PictureFile read_png_picture(const std::string& path, PictureEncoding encoding) {
-  const PngImage png = read_png(path);
+  const PngImage png = read_standard_png(path);
   const int used = png.channels <= 2 ? 1 : 3;  // transparency is not light
   const bool srgb =
       encoding == PictureEncoding::srgb || (encoding == PictureEncoding::by_format && png.bits == 8);
