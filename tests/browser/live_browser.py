@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval live and a browser without a window that looks at it: for tests, screenshots and measurements."""
 
+import json
 import os
+import pathlib
 import subprocess
 
 from selenium import webdriver
@@ -13,6 +15,19 @@ PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id);"""
+
+
+def small_sensor(folder):
+    """A sensor file of 160 x 120 large pixels, so that full pictures are quick; its path."""
+    bundled = pathlib.Path(__file__).resolve().parents[2] / "data" / "sensors" / "third-inch-1280x960.json"
+    sensor = json.loads(bundled.read_text())
+    larger = 8
+    for key in ["columns", "rows"]:
+        sensor[key] //= larger
+    sensor["pitch_um"] *= larger
+    path = pathlib.Path(folder) / "small.json"
+    path.write_text(json.dumps(sensor))
+    return path
 
 
 class Server:

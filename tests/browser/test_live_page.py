@@ -14,11 +14,12 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from live_browser import Browser, Server
+from live_browser import Browser, Server, small_sensor
 
 PROGRAM, CHROMIUM, DRIVER = sys.argv[1:4]
 LENS = "achromat-50mm"
-QUICK = [LENS, "--scene", "slanted-edge", "--sensor", "third-inch-1280x960"]
+FOLDER = tempfile.TemporaryDirectory()
+QUICK = [LENS, "--scene", "slanted-edge", "--sensor", str(small_sensor(FOLDER.name))]
 
 SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
 slider.value = arguments[1]; slider.dispatchEvent(new Event("input")); slider.dispatchEvent(new Event("change"));"""
