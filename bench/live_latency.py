@@ -8,12 +8,13 @@ preview; each move waits for the preview of the one before. A frame counts as pa
 which the page was altered. Then 900 quick moves without waiting, and the server's resident memory after 100 and after 1,000.
 """
 
+import os
 import pathlib
 import statistics
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "browser"))
-from live_browser import Browser, Server  # noqa: E402
+from live_browser import SLIDE, Browser, Server, resident_mb, sweep  # noqa: E402
 
 # One move; resolves with the milliseconds from the event to the paint of each stage.
 MOVE = """
@@ -35,27 +36,28 @@ slider.value = to;
 const began = performance.now();
 slider.dispatchEvent(new Event("input"));
 """
-# Moves that do not wait: a frame apart.
-SWEEP = """
-const [gaps, count, done] = arguments;
-let i = 0;
-const step = () => {
-  if (i === count) return done(count);
-  const slider = document.querySelector(`[data-slider="surfaces[${gaps[i % gaps.length]}].thickness_mm"]`);
-  slider.value = 450 + (i * 37) % 100;
-  slider.dispatchEvent(new Event("input"));
-  ++i;
-  requestAnimationFrame(step);
+# What each stage took of the processor.
+COUNT_CPU = """
+const page = window.petzvalPage, take = page.take.bind(page);
+window.stageCpu = {};
+page.take = (message, bytes) => {
+  if (message.kind === "stage") (window.stageCpu[message.stage] ??= []).push(message.cpu_ms);
+  take(message, bytes);
 };
-step();
 """
 
 
-def resident_mb(process):
-    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
-        if line.startswith("VmRSS"):
-            return int(line.split()[1]) / 1024
-    return float("nan")
+def work_of_stages(browser, gaps, moves=10):
+    """Milliseconds of one core by stage, each stage without another beside it; whatever else the machine does."""
+    browser.run(COUNT_CPU)
+    for i in range(moves):
+        browser.run("document.getElementById('tab-distortion').click()")
+        browser.settle()
+        browser.run(SLIDE, f"surfaces[{gaps[i % len(gaps)]}].thickness_mm", 460 + (i * 29) % 80)
+        browser.settle()
+        browser.run("document.getElementById('tab-mtf').click()")
+        browser.settle()
+    return browser.run("return window.stageCpu")
 
 
 def main():
@@ -69,6 +71,7 @@ def main():
         times = []
         for i in range(moves):
             times.append(browser.driver.execute_async_script(MOVE, gaps[i % len(gaps)], 460 + (i * 29) % 80))
+        print(f"load of the machine {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors")
         print(f"{lens}, air gaps behind surfaces {', '.join(map(str, gaps))}, {moves} moves: from the event to the painted frame")
         for stage in ["rays", "psf", "plot", "preview"]:
             values = sorted(each[stage] for each in times if stage in each)
@@ -77,8 +80,9 @@ def main():
         browser.settle()
         print("the full picture, on the server:", browser.run("return window.petzvalPage.times.get('picture')"), "ms")
         few = resident_mb(server.process)
-        browser.driver.execute_async_script(SWEEP, gaps, 1000 - moves)
-        browser.settle()
+        sweep(browser, gaps, 1000 - moves)
+        for stage, values in work_of_stages(browser, gaps).items():
+            print(f"  {stage:12} {statistics.median(values):7.1f} ms of one core")
         print(f"memory of the server: {few:.0f} MB after {moves} moves, {resident_mb(server.process):.0f} MB after 1,000")
 
 

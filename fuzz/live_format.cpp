@@ -32,8 +32,9 @@ void check_state(const BenchState& state) {
   require(is_offered(offered().scenes, state.scene) && is_offered(offered().sensors, state.sensor) &&
               is_offered(offered().illuminants, state.illuminant),
           "a name that was not offered");
-  require(!state.sun || (std::abs(state.sun->right_deg) < 80 && std::abs(state.sun->up_deg) < 80),
-          "a sun behind the camera");
+  for (const Sun& sun : state.suns)
+    require(std::abs(sun.right_deg) < 80 && std::abs(sun.up_deg) < 80, "a sun behind the camera");
+  require(!state.blades || state.blades->count == 0 || state.blades->count >= 3, "a stop of two corners");
   require(std::isfinite(state.roughness_nm) && state.roughness_nm >= 0, "a roughness below 0");
   require(!state.ghost || state.ghost->first > state.ghost->second, "a ghost that nothing reflects");
   for (const auto& [surface, coating] : state.coatings)

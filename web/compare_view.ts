@@ -99,7 +99,7 @@ export class CompareView {
         this.canvas.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(bytes!), message.columns, message.rows), 0, 0);
         this.aspect = message.columns / message.rows;
         this.badge.textContent = message.quality;
-        this.badge.classList.toggle("is-preview", message.quality === "preview");
+        this.badge.classList.toggle("is-preview", message.quality !== "full");
         this.fit(this.stage.parentElement!);
         return;
       }

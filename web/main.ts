@@ -7,10 +7,11 @@ import {LayoutView} from "./layout_view";
 import {CompareView} from "./compare_view";
 import {Incoming, Link, takeToken} from "./link";
 import {Ghost, ghostTable} from "./ghost_view";
-import {coat, copied, History, isCoatable, Lens, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, uncoated, unpacked, usualStray, valueAt} from "./model";
+import {coat, copied, History, isCoatable, Lens, mostSuns, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, sunlight_lx, uncoated, unpacked, usualStray, valueAt} from "./model";
 import {PictureView} from "./picture_view";
 import {drawPlots, PlotData} from "./plot_view";
 import {PsfView} from "./psf_view";
+import {reportOf} from "./report";
 import {FoundGlass, TableView} from "./table_view";
 import {explainTerms} from "./terms";
 import {exercises, Tour} from "./tour";
@@ -58,7 +59,7 @@ class Page {
   });
   private readonly picture = new PictureView({
     placed: (x, y, done) => this.change(() => { this.session.cursor_mm = [x, y]; }, done ? "" : "cursor"),
-    sunMoved: (x, y, done) => this.change(() => { this.session.stray.sun_deg = sunAt(this.sky, x, y); }, "sun", done),
+    sunMoved: (sun, x, y, done) => this.moveSun(sun, sunAt(this.sky, x, y), done),
     focused: (x, y) => this.focusAt(x, y),
   });
   private sky: Sky = [];
@@ -170,6 +171,7 @@ class Page {
             entry("Open a lens, photograph or session …", "open", () => file.click()), h("hr"),
             entry("Save lens (.json)", "save-json", save(".json")), entry("Save lens (.zmx)", "save-zmx", save(".zmx")), entry("Save lens (.seq)", "save-seq", save(".seq")), h("hr"),
             entry("Save picture (.png)", "save-png", save(".png")), entry("Save raw image (.dng)", "save-dng", save(".dng")), entry("Save light (.exr)", "save-exr", save(".exr")), h("hr"),
+            entry("Save report (.html)", "save-report", () => { this.reporting = true; this.ask(); }),
             entry("Save session (.json)", "save-session", () => this.download(new Blob([JSON.stringify({petzval_session: 1, ...this.session})]), "session.petzval.json")),
             entry("Copy a link to this session", "copy-link", async () => this.copy(`${location.origin}/#session=${await packed(this.session)}`, "link copied; it works while this server runs"))));
     document.addEventListener("pointerdown", event => { if (!menu.contains(event.target as Node)) menu.removeAttribute("open"); });
@@ -188,7 +190,7 @@ class Page {
     if (!lenses.some(([name]) => name === session.lensName)) lenses.unshift([session.lensName, session.lensName]);
     this.choices.replaceChildren(
         choice("Lens", "lens", lenses, session.lensName, name => this.link.send({kind: "lens", id: ++this.id, name})),
-        choice("Scene", "scene", plain(welcome.scenes), session.scene, scene => this.change(() => { session.scene = scene; })),
+        choice("Scene", "scene", plain(welcome.scenes), session.scene, scene => this.chooseScene(scene)),
         choice("Light", "illuminant", welcome.illuminants.map((name: string) => [name, name || "own"]), session.illuminant, name => this.change(() => { session.illuminant = name; })),
         choice("Sensor", "sensor", plain(welcome.sensors), session.sensor, sensor => this.change(() => { session.sensor = sensor; })));
   }
@@ -214,11 +216,13 @@ class Page {
     const widest = this.widest();
     slider({label: "f-number", name: "f_number", term: "f-number", from: widest, to: Math.max(22, 2 * widest), log: true, value: session.f_number ?? widest, usual: widest, digits: 3,
       changed: (value, done) => set("f_number")(value === null || value <= widest * 1.003 ? null : value, done)});
+    list.push(choice("Blades", "blades", [["", "as prescribed"], ["0", "none, round"], ...[3, 5, 6, 7, 8, 9, 11, 15].map((n): [string, string] => [String(n), String(n)])], String(session.blades ?? ""),
+        blades => this.change(() => { session.blades = blades === "" ? null : Number(blades); }), "blades"));
     list.push(choice("Focus", "focus", [["design", "as prescribed"], ["auto", "on the scene"], ["infinity", "infinity"], ["distance", "at a distance"], ["paraxial", "paraxial"], ["best-spot", "least spots"]],
         session.focus, focus => this.change(() => { session.focus = focus; this.buildControls(); }), "focus"));
     if (session.focus === "distance")
       slider({label: "focused at", name: "focus_m", term: "focus", unit: "m", from: 0.2, to: 100, log: true, value: session.focus_m, usual: 2, changed: (value, done) => set("focus_m")(value ?? 2, done)});
-    slider({label: "scene at", name: "distance_m", term: "distance", unit: "m", from: 0.2, to: 100, log: true, end: "∞", value: session.distance_m, usual: null, changed: set("distance_m")});
+    if (!this.isSolid) slider({label: "scene at", name: "distance_m", term: "distance", unit: "m", from: 0.2, to: 100, log: true, end: "∞", value: session.distance_m, usual: null, changed: set("distance_m")});
     slider({label: "sensor shift", name: "defocus_mm", term: "defocus", unit: "mm", from: -0.5, to: 0.5, value: session.defocus_mm, usual: 0, changed: (value, done) => set("defocus_mm")(value ?? 0, done)});
     list.push(h("hr"));
     const shot = (key: "compensation_ev" | "denoise" | "sharpen") => (value: number | null, done: boolean) => this.change(() => { session.shot[key] = value ?? 0; }, key, done);
@@ -233,29 +237,32 @@ class Page {
     const stray = session.stray;
     const check = (label: string, name: string, term: string, checked: boolean, act: (on: boolean) => void) => h("label", {class: "check", "data-term": term},
         h("input", {type: "checkbox", checked, "data-check": name, onchange: (event: Event) => this.change(() => { act((event.target as HTMLInputElement).checked); this.buildControls(); })}), label);
-    list.push(h("div", {class: "checks"}, check("sun", "sun", "sun", stray.sun_deg !== null, on => { stray.sun_deg = on ? this.firstSun() : null; stray.ghosts ||= on; }),
+    list.push(h("div", {class: "checks"}, h("button", {type: "button", class: "small-button", id: "add-sun", "data-term": "sun", onclick: () => this.addSun()}, "+ sun"),
         check("ghosts", "ghosts", "ghosts", stray.ghosts, on => { stray.ghosts = on; }),
         check("stars", "starburst", "starburst", stray.starburst, on => { stray.starburst = on; }), this.sourceCount));
-    if (stray.ghosts || stray.starburst || stray.roughness_nm > 0)
+    list.push(this.sunRows);
+    const sun = stray.suns[stray.sun];
+    if (!this.isSolid && (stray.ghosts || stray.starburst || stray.roughness_nm > 0))
       slider({label: "sources from", name: "threshold", term: "threshold", unit: "×", from: 1, to: 10000, log: true, value: stray.threshold, usual: usualStray.threshold, digits: 3,
         changed: (value, done) => this.change(() => { stray.threshold = value ?? usualStray.threshold; }, "threshold", done)});
-    if (stray.sun_deg)
-      slider({label: "sun's light", name: "sun_lx", term: "sun", unit: "lx", from: 0.1, to: 100000, log: true, value: stray.sun_lx, usual: usualStray.sun_lx, digits: 3,
-        changed: (value, done) => this.change(() => { stray.sun_lx = value ?? usualStray.sun_lx; }, "sun light", done)});
-    if (stray.sun_deg)
+    if (sun)
+      slider({label: "sun's light", name: "sun_lx", term: "sun", unit: "lx", from: 0.1, to: 100000, log: true, value: sun.lx, usual: sunlight_lx, digits: 3,
+        changed: (value, done) => this.change(() => { sun.lx = value ?? sunlight_lx; }, "sun light", done)});
+    if (sun)
       for (const [i, label] of [[0, "sun right"], [1, "sun up"]] as [0 | 1, string][])
-        slider({label, name: `sun_deg[${i}]`, term: "sun", unit: "°", from: -60, to: 60, value: stray.sun_deg[i], usual: 0, digits: 4,
-          changed: (value, done) => this.change(() => { if (stray.sun_deg) stray.sun_deg[i] = value ?? 0; }, `sun ${i}`, done)});
+        slider({label, name: `sun_deg[${i}]`, term: "sun", unit: "°", from: -60, to: 60, value: sun.deg[i], usual: 0, digits: 4,
+          changed: (value, done) => this.change(() => { sun.deg[i] = value ?? 0; }, `sun slider ${i}`, done)});
     slider({label: "roughness", name: "roughness_nm", term: "roughness", unit: "nm", from: 0, to: 10, value: stray.roughness_nm, usual: 0, digits: 3,
       changed: (value, done) => this.change(() => { stray.roughness_nm = Math.max(0, value ?? 0); }, "roughness", done)});
     this.controls.replaceChildren(...list.filter((each): each is Node => each !== null));
   }
 
-  /** Inside the frame, above and to the right. */
+  /** Inside the frame, above: to the right, then to the left, ever nearer to the middle. */
   private firstSun(): [number, number] {
-    const angle = (side: number) => Number((Math.atan(0.3 * side / Math.abs(this.efl_mm)) * 180 / Math.PI).toFixed(1));
+    const n = this.session.stray.suns.length, place = 0.3 * (n % 2 === 0 ? 1 : -1) / (1 + (n >> 1));
+    const angle = (side: number) => Number((Math.atan(side / Math.abs(this.efl_mm)) * 180 / Math.PI).toFixed(1));
     const [width, height] = this.picture.size_mm;
-    return [angle(width), angle(height)];
+    return [angle(place * width), angle(0.3 * height)];
   }
 
   private readonly sourceCount = h("small", {class: "source-count", "data-term": "threshold"});
@@ -342,11 +349,13 @@ class Page {
     const session = this.session;
     this.table.show(session.lens);
     this.picture.setCursor(session.cursor_mm);
-    this.showSun();
+    this.showSuns();
     this.layout.showWay(session.stray.ghost ? this.way : []);
     this.sliders.get("roughness_nm")?.show(session.stray.roughness_nm);
-    for (const name of ["threshold", "sun_lx"] as const) this.sliders.get(name)?.show(session.stray[name]);
-    for (const i of [0, 1]) this.sliders.get(`sun_deg[${i}]`)?.show(session.stray.sun_deg?.[i] ?? 0);
+    this.sliders.get("threshold")?.show(session.stray.threshold);
+    const sun = session.stray.suns[session.stray.sun];
+    this.sliders.get("sun_lx")?.show(sun?.lx ?? sunlight_lx);
+    for (const i of [0, 1]) this.sliders.get(`sun_deg[${i}]`)?.show(sun?.deg[i] ?? 0);
     for (const pin of session.pins) this.sliders.get(pin.path)?.show(valueAt(session.lens, pin.path));
     this.sliders.get("f_number")?.show(session.f_number ?? this.widest());
     for (const name of ["distance_m", "defocus_mm", "focus_m"] as const) this.sliders.get(name)?.show(session[name]);
@@ -357,14 +366,53 @@ class Page {
     this.compareButton.setAttribute("aria-pressed", String(session.compared !== null));
     this.compare.open(session.compared, (this.welcome?.lenses ?? []).map((lens: any) => lens.name));
     this.drawPlot();
-    this.command.textContent = commandLine(session, this.lastPicture);
+    this.command.textContent = commandLine(session, this.lastPicture, this.isSolid);
     this.command.title = this.command.textContent;
     this.keepSoon();
   }
 
-  private showSun(): void {
-    const sun = this.session.stray.sun_deg;
-    this.picture.setSun(sun ? placeOfSun(this.sky, sun) : null);
+  private showSuns(): void {
+    const {suns, sun} = this.session.stray, focused = (document.activeElement as HTMLElement | null)?.dataset.sunRow;
+    this.picture.setSuns(suns.map(each => placeOfSun(this.sky, each.deg)), sun);
+    this.sunRows.replaceChildren(...suns.map((each, i) => h("div", {class: i === sun ? "sun-row chosen" : "sun-row"},
+        h("button", {type: "button", class: "sun-choice", "data-sun-row": String(i), "aria-pressed": String(i === sun), title: "its sliders; the way of a ghost is of its light", onclick: () => this.chooseSun(i)},
+            h("b", {}, `☀ ${i + 1}`), h("span", {}, `${shown(each.deg[0])}°, ${shown(each.deg[1])}°`), h("span", {}, `${shown(each.lx, 3)} lx`)),
+        h("button", {type: "button", class: "unpin", "data-sun-less": String(i), title: "remove it", "aria-label": `remove sun ${i + 1}`, onclick: () => this.removeSun(i)}, "×"))));
+    if (focused !== undefined) this.sunRows.querySelector<HTMLElement>(`[data-sun-row="${focused}"]`)?.focus();
+  }
+  private readonly sunRows = h("div", {class: "sun-rows"});
+
+  private moveSun(i: number, deg: [number, number], done: boolean): void {
+    const stray = this.session.stray, other = stray.sun !== i;
+    this.change(() => {
+      stray.sun = i;
+      stray.suns[i].deg = deg;
+    }, `sun ${i}`, done);
+    if (other) this.buildControls();
+  }
+
+  private chooseSun(i: number): void {
+    this.change(() => { this.session.stray.sun = i; });
+    this.buildControls();
+  }
+
+  private addSun(): void {
+    const stray = this.session.stray;
+    if (stray.suns.length === mostSuns) return this.tell(`there are at most ${mostSuns} suns`, true);
+    this.change(() => {
+      stray.sun = stray.suns.push({deg: this.firstSun(), lx: sunlight_lx}) - 1;
+      stray.ghosts ||= stray.suns.length === 1;
+    });
+    this.buildControls();
+  }
+
+  private removeSun(i: number): void {
+    const stray = this.session.stray;
+    this.change(() => {
+      stray.suns.splice(i, 1);
+      stray.sun = Math.max(0, Math.min(stray.sun > i ? stray.sun - 1 : stray.sun, stray.suns.length - 1));
+    });
+    this.buildControls();
   }
 
   private way: [number, number][][] = [];
@@ -377,7 +425,7 @@ class Page {
     if (ghost && this.way.length === 0 && String(ghost) !== this.toldOfGhost) this.tell(`no light from there comes to the sensor by surfaces ${ghost[0]} and ${ghost[1]}`);
     this.toldOfGhost = ghost && this.way.length === 0 ? String(ghost) : "";
     this.layout.showWay(this.session.stray.ghost ? this.way : []);
-    this.showSun();
+    this.showSuns();
     if (this.session.plot === "ghosts") this.drawPlot();
   }
 
@@ -416,9 +464,9 @@ class Page {
     this.unanswered_since = performance.now();
     const session = this.session;
     const state = {kind: "state", id: ++this.id, lens: uncoated(session.lens), coatings: session.lens.surfaces.map(each => typeof each.coating === "string" ? each.coating : null),
-      camera: {f_number: session.f_number, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
+      camera: {f_number: session.f_number, blades: session.blades, focus: focusText(session), distance_m: session.distance_m, defocus_mm: session.defocus_mm},
       scene: session.scene, illuminant: session.illuminant, sensor: session.sensor, shot: session.shot, stray: session.stray,
-      cursor_mm: session.cursor_mm, plots: [session.plot], picture: true};
+      cursor_mm: session.cursor_mm, plots: this.reporting ? shownPlots.map(([name]) => name) : [session.plot], picture: true};
     this.link.send(state);
     this.compare.show(state);
     document.body.dataset.busy = "1";
@@ -447,22 +495,27 @@ class Page {
       case "psf": return this.psf.show(message, bytes!, this.session.cursor_mm);
       case "picture":
         this.picture.show(message, bytes!);
-        this.sourceCount.textContent = this.session.stray.ghosts || this.session.stray.starburst || this.session.stray.roughness_nm > 0 ? `${message.sources.length || "no"} source${message.sources.length === 1 ? "" : "s"} in the scene` : "";
+        this.sourceCount.textContent = this.isSolid ? "" : this.session.stray.ghosts || this.session.stray.starburst || this.session.stray.roughness_nm > 0 ? `${message.sources.length || "no"} source${message.sources.length === 1 ? "" : "s"} in the scene` : "";
         if (message.quality === "full") this.lastPicture = message;
-        this.command.textContent = commandLine(this.session, this.lastPicture);
+        if (this.focusNext && message.id === this.id) {
+          this.focusNext = false;
+          this.focusAt(0, -this.picture.size_mm[1] / 6);
+        }
+        this.command.textContent = commandLine(this.session, this.lastPicture, this.isSolid);
         document.body.dataset[message.quality] = String(message.id);
         return;
       case "glasses":
         this.glassWaiting.get(message.id!)?.(message.glasses);
         this.glassWaiting.delete(message.id!);
         return;
-      case "focused": return this.takeFocus(message.shift_mm);
+      case "focused": return message.distance_m ? this.takeDistance(message.distance_m) : this.takeFocus(message.shift_mm);
       case "file": return this.takeFile(message, bytes!);
       case "stage": return this.took(message);
       case "problem": return this.takeProblem(message);
       case "refused": return this.tell(message.text, true);
       case "idle":
         if (message.id === this.id || !this.pending) delete document.body.dataset.busy;
+        if (message.id === this.id && this.reporting) this.saveReport();
         document.body.dataset.idle = String(message.id);
         return;
     }
@@ -504,7 +557,8 @@ class Page {
   private checked(session: Session): Session {
     const welcome = this.welcome!;
     const usual = newSession(welcome.lens_name, session.lens, welcome.scene, welcome.sensor);
-    const whole = {...usual, ...session, shot: {...usual.shot, ...session.shot}, stray: {...usualStray, ...session.stray}};
+    const whole = {...usual, ...session, shot: {...usual.shot, ...session.shot}, stray: {...usualStray, ...session.stray}} as Session;
+    for (const key of Object.keys(whole.stray)) if (!(key in usualStray)) delete (whole.stray as unknown as Record<string, unknown>)[key];  // of an older version
     if (!welcome.scenes.includes(whole.scene)) whole.scene = welcome.scene;
     if (!welcome.sensors.includes(whole.sensor)) whole.sensor = welcome.sensor;
     return whole;
@@ -589,13 +643,25 @@ class Page {
 
   private takeFile(message: Incoming, bytes: Uint8Array): void {
     this.saving.delete(message.id!);
-    const name = this.session.lensName.replace(/[^\w.-]+/g, "-") || "lens";
-    this.download(new Blob([bytes.slice()]), `${name}${message.extension}`);
+    this.download(new Blob([bytes.slice()]), `${this.fileName()}${message.extension}`);
     if ([".zmx", ".seq"].includes(message.extension) && this.session.lens.surfaces.some(each => each.coating))
       this.tell(`a ${message.extension} file does not hold coatings; .json does`);
   }
 
+  private reporting = false;  ///< once all is shown
+  private saveReport(): void {
+    this.reporting = false;
+    const layout = this.layout.element.querySelector("svg");
+    if (!layout) return this.tell("there is no lens to be reported", true);
+    const plots = shownPlots.flatMap(([name, title]): [string, Incoming][] => this.plots.has(name) ? [[title, this.plots.get(name)!]] : []);
+    const report = reportOf({title: this.session.lens.name || this.session.lensName, command: this.command.textContent ?? "", lens: this.session.lens, facts: this.facts, layout,
+      picture: this.picture.canvas, pictureCaption: `${this.session.scene} on ${this.session.sensor}: ${this.picture.badge.title}`, psf: this.psf.canvas, psfCaption: this.psf.facts.textContent ?? "", plots});
+    this.download(report, `${this.fileName()}-report.html`);
+  }
+
   // ---- files, keys, messages -------------------------------------------------------------------------------------
+
+  private fileName(): string { return this.session.lensName.replace(/[^\w.-]+/g, "-") || "lens"; }
 
   private download(blob: Blob, name: string): void {
     const url = URL.createObjectURL(blob);
@@ -640,6 +706,27 @@ class Page {
   private focusAt(x_mm: number, y_mm: number): void {
     this.link.send({kind: "focus", id: ++this.id, place_mm: [x_mm, y_mm]});
   }
+
+  private chooseScene(scene: string): void {
+    this.lastPicture = null;
+    this.change(() => { this.session.scene = scene; });
+    // On what stands below the middle of a scene of three dimensions, as soon as it is seen.
+    this.focusNext = this.isSolid && this.session.focus !== "distance";
+    this.buildControls();
+  }
+  private focusNext = false;
+
+  /** As far as what was clicked on, in a scene of three dimensions. */
+  private takeDistance(distance_m: number): void {
+    this.change(() => {
+      this.session.focus = "distance";
+      this.session.focus_m = Number(distance_m.toPrecision(4));
+      this.session.defocus_mm = 0;
+    });
+    this.buildControls();
+  }
+
+  private get isSolid(): boolean { return (this.welcome?.solid_scenes ?? []).includes(this.session.scene); }
 
   private takeFocus(shift_mm: number): void {
     const most_mm = 100, there = Number((this.session.defocus_mm + shift_mm).toFixed(4));

@@ -67,18 +67,26 @@ export interface Shot {
   tone: string;
 }
 
+/** A sun or a lamp, far away. */
+export interface Sun {
+  deg: [number, number];  ///< to the right and up
+  lx: number;  ///< at the lens
+}
+
+export const mostSuns = 16, sunlight_lx = 100000;
+
 /** Light that goes astray: as the server is told. */
 export interface Stray {
-  sun_deg: [number, number] | null;  ///< to the right and up
-  sun_lx: number;
-  ghosts: boolean;  ///< of the sun and of what the scene holds
+  suns: Sun[];
+  sun: number;  ///< which of them is chosen: its light shows the way of a ghost
+  ghosts: boolean;  ///< of suns and of what the scene holds
   starburst: boolean;
   threshold: number;  ///< times the mean of the scene, above which it holds a source
   roughness_nm: number;  ///< 0: nothing scatters
   ghost: [number, number] | null;  ///< whose way the layout shows
 }
 
-export const usualStray: Stray = {sun_deg: null, sun_lx: 100000, ghosts: false, starburst: false, threshold: 100, roughness_nm: 0, ghost: null};
+export const usualStray: Stray = {suns: [], sun: 0, ghosts: false, starburst: false, threshold: 100, roughness_nm: 0, ghost: null};
 
 /** Where on the sensor light from infinity lands: pairs of the tangent of its angle from the axis and its height [mm]. */
 export type Sky = [number, number][];
@@ -115,6 +123,7 @@ export interface Session {
   base: Lens;  ///< as it was read
   lens: Lens;
   f_number: number | null;
+  blades: number | null;  ///< of the stop; 0: it is round; null: as prescribed
   focus: string;  ///< "design", "auto", "infinity", "best-spot", "paraxial", or "distance"
   focus_m: number;
   distance_m: number | null;  ///< null: infinity
@@ -132,7 +141,7 @@ export interface Session {
 
 export function newSession(lensName: string, lens: Lens, scene: string, sensor: string): Session {
   return {
-    lensName, base: lens, lens: copied(lens), f_number: null, focus: "design", focus_m: 2, distance_m: null,
+    lensName, base: lens, lens: copied(lens), f_number: null, blades: null, focus: "design", focus_m: 2, distance_m: null,
     defocus_mm: 0, scene, illuminant: "", sensor,
     shot: {exposure: "auto", compensation_ev: 0, noise: true, denoise: 0, sharpen: 0, tone: "none"},
     stray: copied(usualStray), compared: null, cursor_mm: [0, 0], plot: "mtf", pins: usualPins(lens),

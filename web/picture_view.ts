@@ -5,7 +5,7 @@ import {Incoming} from "./link";
 
 export interface PictureListener {
   placed(x_mm: number, y_mm: number, done: boolean): void;
-  sunMoved(x_mm: number, y_mm: number, done: boolean): void;
+  sunMoved(sun: number, x_mm: number, y_mm: number, done: boolean): void;
   focused(x_mm: number, y_mm: number): void;
 }
 
@@ -20,9 +20,9 @@ export class PictureView {
   private readonly stage = h("div", {class: "picture-stage"});
   private readonly now = h("canvas", {class: "picture", role: "img", "aria-label": "the picture"});
   private readonly mark = h("div", {class: "cursor-mark"});
-  private readonly sun = h("button", {type: "button", class: "sun-mark", "data-term": "sun", "aria-label": "the sun; drag it, or move it by arrow keys"}, "☀");
   private readonly sources = h("div", {class: "sources"});
-  private sunPlace: [number, number] | null = null;
+  private readonly suns: HTMLButtonElement[] = [];
+  private sunPlaces: ([number, number] | null)[] = [];
   private readonly divider = h("div", {class: "divider", role: "slider", tabindex: "0", "aria-label": "before and after",
     "aria-valuemin": "0", "aria-valuemax": "100"});
   private readonly captions = h("div", {class: "captions"});
@@ -33,16 +33,8 @@ export class PictureView {
 
   constructor(private readonly listener: PictureListener) {
     this.stage.append(this.now, this.sources, this.mark, this.divider, this.captions);
-    this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage, this.sun);
-    this.divider.hidden = this.sun.hidden = true;
-    this.sun.addEventListener("pointerdown", event => this.dragSun(event));
-    this.sun.addEventListener("keydown", event => {
-      const move = this.stepOf(event);
-      if (!move || !this.sunPlace) return;
-      event.preventDefault();
-      event.stopPropagation();
-      this.listener.sunMoved(this.sunPlace[0] + move[0] * this.frame_mm[0], this.sunPlace[1] + move[1] * this.frame_mm[1], true);
-    });
+    this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage);
+    this.divider.hidden = true;
     new ResizeObserver(() => this.fit()).observe(this.element);
     this.stage.addEventListener("pointerdown", event => this.down(event));
     this.stage.addEventListener("dblclick", () => this.listener.focused(...this.cursor));
@@ -63,21 +55,22 @@ export class PictureView {
     this.now.height = rows;
     this.now.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(pixels), columns, rows), 0, 0);
     this.frame_mm = [columns * message.pitch_um / 1000, rows * message.pitch_um / 1000];
-    const preview = message.quality === "preview";
-    this.badge.textContent = preview ? "preview" : "full";
-    this.badge.classList.toggle("is-preview", preview);
+    const full = message.quality === "full";
+    this.badge.textContent = message.quality === "refining" ? `${message.samples} of ${message.samples_wanted} rays` : message.quality;
+    this.badge.classList.toggle("is-preview", !full);
     this.sources.replaceChildren(...message.sources.map((source: {name: string; x_mm: number; y_mm: number}) => {
       const mark = h("div", {class: "source-mark", title: source.name});
       mark.style.left = `${50 + 100 * source.x_mm / this.frame_mm[0]}%`;
       mark.style.top = `${50 - 100 * source.y_mm / this.frame_mm[1]}%`;
       return mark;
     }));
-    this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, blur to ${100 * message.tolerance} %`;
+    this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, ${message.samples ? `${message.samples} rays a pixel` : `blur to ${100 * message.tolerance} %`}`;
     this.element.dataset.quality = message.quality;
     this.element.classList.remove("stale");
     this.fit();
   }
 
+  get canvas(): HTMLCanvasElement { return this.now; }
   get caption(): string { return `${this.badge.textContent}`; }
 
   stale(): void { this.element.classList.add("stale"); }
@@ -107,35 +100,58 @@ export class PictureView {
     this.mark.title = `${shown(cursor[0], 3)}, ${shown(cursor[1], 3)} mm`;
   }
 
-  /** Where the sun is imaged, within the frame or beside it; null: there is none. */
-  setSun(place_mm: [number, number] | null): void {
-    this.sunPlace = place_mm;
-    this.sun.hidden = !place_mm;
-    if (!place_mm) return;
-    // Beyond the box it waits at its edge.
+  /** Where suns are imaged, within the frame or beside it; null: that is not known. */
+  setSuns(places_mm: ([number, number] | null)[], chosen: number): void {
+    this.sunPlaces = places_mm;
+    while (this.suns.length < places_mm.length) this.suns.push(this.newSun(this.suns.length));
+    for (const mark of this.suns.splice(places_mm.length)) mark.remove();
+    // Beyond the box they wait at its edge.
     const box = this.element.getBoundingClientRect(), stage = this.stage.getBoundingClientRect(), room = 12;
     const within = (v: number, most: number) => Math.min(most - room, Math.max(room, v));
-    this.sun.style.left = `${within(stage.left - box.left + stage.width * (0.5 + place_mm[0] / this.frame_mm[0]), box.width)}px`;
-    this.sun.style.top = `${within(stage.top - box.top + stage.height * (0.5 - place_mm[1] / this.frame_mm[1]), box.height)}px`;
+    places_mm.forEach((place, i) => {
+      const mark = this.suns[i];
+      mark.hidden = !place;
+      mark.classList.toggle("chosen", i === chosen);
+      if (!place) return;
+      mark.style.left = `${within(stage.left - box.left + stage.width * (0.5 + place[0] / this.frame_mm[0]), box.width)}px`;
+      mark.style.top = `${within(stage.top - box.top + stage.height * (0.5 - place[1] / this.frame_mm[1]), box.height)}px`;
+    });
+    this.chosenSun = chosen;
+  }
+  private chosenSun = 0;
+
+  private newSun(i: number): HTMLButtonElement {
+    const mark = h("button", {type: "button", class: "sun-mark", "data-term": "sun", "data-sun": String(i), "aria-label": `sun ${i + 1}; drag it, or move it by arrow keys`}, "☀");
+    mark.addEventListener("pointerdown", event => this.dragSun(i, event));
+    mark.addEventListener("keydown", event => {
+      const move = this.stepOf(event), place = this.sunPlaces[i];
+      if (!move || !place) return;
+      event.preventDefault();
+      event.stopPropagation();
+      this.listener.sunMoved(i, place[0] + move[0] * this.frame_mm[0], place[1] + move[1] * this.frame_mm[1], true);
+    });
+    this.element.append(mark);
+    return mark;
   }
 
   get size_mm(): [number, number] { return this.frame_mm; }
 
-  private dragSun(event: PointerEvent): void {
+  private dragSun(i: number, event: PointerEvent): void {
+    const mark = this.suns[i];
     if (event.button !== 0) return;
     event.preventDefault();
     event.stopPropagation();
-    this.sun.focus();
-    this.sun.setPointerCapture(event.pointerId);
+    mark.focus();
+    mark.setPointerCapture(event.pointerId);
     const place = (next: PointerEvent, done: boolean) => {
       const stage = this.stage.getBoundingClientRect();
-      this.listener.sunMoved(((next.clientX - stage.left) / stage.width - 0.5) * this.frame_mm[0],
+      this.listener.sunMoved(i, ((next.clientX - stage.left) / stage.width - 0.5) * this.frame_mm[0],
           (0.5 - (next.clientY - stage.top) / stage.height) * this.frame_mm[1], done);
     };
     const move = (next: PointerEvent) => place(next, false);
-    this.sun.addEventListener("pointermove", move);
-    this.sun.addEventListener("pointerup", next => {
-      this.sun.removeEventListener("pointermove", move);
+    mark.addEventListener("pointermove", move);
+    mark.addEventListener("pointerup", next => {
+      mark.removeEventListener("pointermove", move);
       place(next, true);
     }, {once: true});
   }
@@ -147,7 +163,7 @@ export class PictureView {
     this.stage.style.width = `${Math.floor(scale * this.frame_mm[0])}px`;
     this.stage.style.height = `${Math.floor(scale * this.frame_mm[1])}px`;
     this.setCursor(this.cursor);
-    this.setSun(this.sunPlace);
+    this.setSuns(this.sunPlaces, this.chosenSun);
   }
 
   private setSplit(split: number): void {

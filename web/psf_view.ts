@@ -5,8 +5,8 @@ import {Incoming} from "./link";
 
 export class PsfView {
   readonly element: HTMLElement;
-  private readonly canvas = h("canvas", {width: 96, height: 96, class: "psf-canvas", role: "img", "aria-label": "point-spread function"});
-  private readonly facts = h("div", {class: "psf-facts"});
+  readonly canvas = h("canvas", {width: 96, height: 96, class: "psf-canvas", role: "img", "aria-label": "point-spread function"});
+  readonly facts = h("div", {class: "psf-facts"});
 
   constructor() {
     this.element = h("div", {class: "psf"}, h("div", {class: "psf-frame"}, this.canvas), this.facts);

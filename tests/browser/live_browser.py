@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """petzval live and a browser without a window that looks at it: for tests, screenshots and measurements."""
 
+import json
 import os
+import pathlib
 import subprocess
 
 from selenium import webdriver
@@ -13,6 +15,50 @@ PATIENCE_S = 240  # a machine may be busy; nothing is asserted about time
 
 SETTLED = """const page = window.petzvalPage, set = document.body.dataset;
 return Boolean(page && set.ready && !page.pending && page.link.isOpen && Number(set.idle) === page.id);"""
+
+SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
+slider.value = arguments[1]; slider.dispatchEvent(new Event("input")); slider.dispatchEvent(new Event("change"));"""
+# Moves that do not wait: a frame apart.
+SWEEP = """
+const [gaps, count, done] = arguments;
+let i = 0;
+const step = () => {
+  if (i === count) return done(count);
+  const slider = document.querySelector(`[data-slider="surfaces[${gaps[i % gaps.length]}].thickness_mm"]`);
+  slider.value = 450 + (i * 37) % 100;
+  slider.dispatchEvent(new Event("input"));
+  ++i;
+  requestAnimationFrame(step);
+};
+step();
+"""
+
+
+def sweep(browser, gaps, count):
+    """Moves these air gaps of the lens, without waiting for what comes of it, and then waits."""
+    browser.driver.set_script_timeout(600)
+    browser.driver.execute_async_script(SWEEP, gaps, count)
+    browser.settle()
+
+
+def resident_mb(process):
+    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("VmRSS"):
+            return int(line.split()[1]) / 1024
+    return float("nan")
+
+
+def small_sensor(folder):
+    """A sensor file of 160 x 120 large pixels, so that full pictures are quick; its path."""
+    bundled = pathlib.Path(__file__).resolve().parents[2] / "data" / "sensors" / "third-inch-1280x960.json"
+    sensor = json.loads(bundled.read_text())
+    larger = 8
+    for key in ["columns", "rows"]:
+        sensor[key] //= larger
+    sensor["pitch_um"] *= larger
+    path = pathlib.Path(folder) / "small.json"
+    path.write_text(json.dumps(sensor))
+    return path
 
 
 class Server:

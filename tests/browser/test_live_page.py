@@ -14,14 +14,13 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from live_browser import Browser, Server
+from live_browser import SLIDE, Browser, Server, resident_mb, small_sensor, sweep
 
 PROGRAM, CHROMIUM, DRIVER = sys.argv[1:4]
 LENS = "achromat-50mm"
-QUICK = [LENS, "--scene", "slanted-edge", "--sensor", "third-inch-1280x960"]
+FOLDER = tempfile.TemporaryDirectory()
+QUICK = [LENS, "--scene", "slanted-edge", "--sensor", str(small_sensor(FOLDER.name))]
 
-SLIDE = """const slider = document.querySelector(`[data-slider="${arguments[0]}"]`);
-slider.value = arguments[1]; slider.dispatchEvent(new Event("input")); slider.dispatchEvent(new Event("change"));"""
 CHOOSE = """const select = document.querySelector(`[data-choice="${arguments[0]}"]`);
 select.value = arguments[1]; select.dispatchEvent(new Event("change"));"""
 TYPE = """const field = document.querySelector(`[data-path="${arguments[0]}"]`);
@@ -76,10 +75,14 @@ class LivePage(unittest.TestCase):
         self.assertNotIn("token", browser.driver.current_url, "the secret does not stay in the address")
 
     def test_every_slider_and_choice_is_shown(self):
-        for name, step in [("f_number", 500), ("defocus_mm", 700), ("distance_m", 500), ("compensation_ev", 600), ("denoise", 500), ("sharpen", 500)]:
+        steps = {"f_number": 500, "defocus_mm": 700, "distance_m": 500, "compensation_ev": 600, "denoise": 500, "sharpen": 500, "roughness_nm": 300}
+        there = self.browser.run("return [...document.querySelectorAll('[data-slider]')].map(each => each.dataset.slider)")
+        self.assertEqual({name for name in there if not name.startswith("surfaces")}, set(steps), "all of them are tried")
+        for name, step in steps.items():
             with self.subTest(name):
                 self.change_shows(SLIDE, name, step)
-        for name, value in [("focus", "auto"), ("focus", "infinity"), ("focus", "paraxial"), ("focus", "best-spot"), ("focus", "distance"), ("illuminant", "A"),
+        self.change_shows(SLIDE, "roughness_nm", 0)
+        for name, value in [("blades", "7"), ("focus", "auto"), ("focus", "infinity"), ("focus", "paraxial"), ("focus", "best-spot"), ("focus", "distance"), ("illuminant", "A"),
                             ("tone", "soft"), ("scene", "grid"), ("sensor", "third-inch-vga")]:
             with self.subTest(name + " " + value):
                 self.change_shows(CHOOSE, name, value)
@@ -87,7 +90,7 @@ class LivePage(unittest.TestCase):
         self.change_shows("document.querySelector('[data-check=noise]').click()")
         command = self.browser.text(".command")
         for word in ["--f-number", "--defocus", "--scene-distance", "--exposure-compensation", "--denoise", "--sharpen", "--illuminant A", "--tone soft",
-                     "petzval image grid", "--sensor third-inch-vga", "--without shot"]:
+                     "petzval image grid", "--sensor third-inch-vga", "--without shot", "--blades 7"]:
             self.assertIn(word, command)
 
     def test_every_lens_of_the_list_can_be_chosen(self):
@@ -105,36 +108,48 @@ class LivePage(unittest.TestCase):
                 self.browser.settle()
                 self.assertGreater(self.browser.run("return document.querySelectorAll('.plot-box .plot g path').length"), 0)
 
-    def test_a_sun_can_be_dragged_and_its_ghosts_followed(self):
+    def test_suns_can_be_dragged_and_their_ghosts_followed(self):
         browser = self.browser
-        mark = browser.driver.find_element(By.CSS_SELECTOR, ".sun-mark")
-        self.assertFalse(mark.is_displayed())
-        self.change_shows("document.querySelector('[data-check=sun]').click()")
-        self.assertTrue(mark.is_displayed())
-        first = browser.session()["stray"]["sun_deg"]
+        marks = lambda: browser.driver.find_elements(By.CSS_SELECTOR, ".sun-mark")
+        suns = lambda: browser.session()["stray"]["suns"]
+        add = "document.getElementById('add-sun').click()"
+        self.assertEqual(marks(), [])
+        self.change_shows(add)
+        self.assertTrue(marks()[0].is_displayed())
+        first = suns()[0]["deg"]
         self.assertIn(f"--sun {first[0]:g},{first[1]:g} --ghosts", browser.text(".command"))
-        ActionChains(browser.driver).click_and_hold(mark).move_by_offset(-30, 10).move_by_offset(-30, 10).release().perform()
+        ActionChains(browser.driver).click_and_hold(marks()[0]).move_by_offset(-30, 10).move_by_offset(-30, 10).release().perform()
         browser.settle()
-        dragged = browser.session()["stray"]["sun_deg"]
+        dragged = suns()[0]["deg"]
         self.assertLess(dragged[0], first[0])
         self.assertLess(dragged[1], first[1])
-        before = mark.location
-        mark.send_keys(Keys.ARROW_LEFT)
-        browser.settle()
-        self.assertLess(browser.session()["stray"]["sun_deg"][0], dragged[0])
-        self.assertLess(mark.location["x"], before["x"], "the sun stands where it was put")
+        # A second one, which is a lamp.
+        self.change_shows(add)
+        self.change_shows(SLIDE, "sun_lx", 500)
         self.change_shows(SLIDE, "sun_deg[0]", 0)
         self.change_shows(SLIDE, "sun_deg[1]", 400)
-        self.assertIn("--sun -60,-12 ", browser.text(".command"))
-        self.assertTrue(mark.is_displayed(), "at the edge, though it is far outside")
+        lamp = suns()[1]
+        self.assertEqual(lamp["deg"], [-60, -12])
+        self.assertIn(f"--sun {dragged[0]:g},{dragged[1]:g} --sun -60,-12:{lamp['lx']:g} --ghosts", browser.text(".command"))
+        self.assertEqual([mark.is_displayed() for mark in marks()], [True, True], "at the edge, though one is far outside")
+        before = marks()[0].location
+        marks()[0].send_keys(Keys.ARROW_LEFT)
+        browser.settle()
+        self.assertEqual(browser.session()["stray"]["sun"], 0, "the one that is moved is chosen")
+        self.assertLess(suns()[0]["deg"][0], dragged[0])
+        self.assertLess(marks()[0].location["x"], before["x"], "the sun stands where it was put")
+        self.change_shows("document.querySelector('[data-sun-row=\"1\"]').click()")
+        self.assertEqual(browser.session()["stray"]["sun"], 1)
+        self.change_shows("document.querySelector('[data-sun-less=\"0\"]').click()")
+        self.assertEqual(suns(), [lamp])
         self.change_shows("document.querySelector('[data-check=starburst]').click()")
         self.assertIn("--starburst", browser.text(".command"))
         self.change_shows("document.querySelector('[data-check=ghosts]').click()")
         self.assertNotIn("--ghosts", browser.text(".command"))
         self.change_shows(SLIDE, "roughness_nm", 300)
         self.assertIn("--scatter roughness=3 ", browser.text(".command"))
-        self.change_shows("document.querySelector('[data-check=sun]').click()")
-        self.assertFalse(mark.is_displayed())
+        self.change_shows("document.querySelector('[data-sun-less=\"0\"]').click()")
+        self.assertEqual(marks(), [])
         self.assertNotIn("--sun ", browser.text(".command"))
         self.change_shows("document.getElementById('tab-ghosts').click()")
         pairs = browser.run("return [...document.querySelectorAll('tr[data-ghost]')].map(row => row.dataset.ghost)")
@@ -146,6 +161,31 @@ class LivePage(unittest.TestCase):
         browser.run("document.querySelector('tr[data-ghost] button').click()")
         browser.settle()
         self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".ghost-way .ray")), 0)
+
+    def test_a_scene_of_three_dimensions_is_refined_and_focused_by_a_click(self):
+        browser = self.browser
+        browser.run("""const page = window.petzvalPage, take = page.take.bind(page);
+            window.seen = [];
+            page.take = (message, bytes) => { if (message.kind === "picture") window.seen.push([message.quality, message.samples]); take(message, bytes); };""")
+        browser.run(CHOOSE, "scene", "spheres")
+        browser.until("it is focused on what is below its middle", lambda: browser.session()["focus"] == "distance")
+        browser.settle()
+        ball = browser.session()["focus_m"]
+        self.assertLess(abs(ball - 0.87), 0.07, "a ball of 9 cm radius whose middle is 0.93 m from the camera")
+        self.assertIn("petzval render spheres", browser.text(".command"))
+        self.assertIn("--spp 128", browser.text(".command"))
+        seen = browser.run("return window.seen")
+        self.assertIn(["preview", 4], seen)
+        self.assertEqual(seen[-1], ["full", 128])
+        last = seen[len(seen) - 1 - [quality for quality, _ in reversed(seen)].index("preview"):]
+        self.assertEqual([count for _, count in last], sorted(count for _, count in last), "ever more")
+        self.change_shows(CHOOSE, "blades", "5")
+        self.assertIn("--blades 5", browser.text(".command"))
+        picture = browser.driver.find_element(By.CSS_SELECTOR, ".picture-stage")
+        ActionChains(browser.driver).move_to_element_with_offset(picture, 0, -int(picture.size["height"] * 0.42)).double_click().perform()
+        # The floor behind the ball: the ray falls by 0.2 - 0.84 * 1.8 mm / 50 mm a metre from a height of 0.34 m.
+        browser.until("what is behind it is sharp", lambda: browser.session()["focus_m"] > ball)
+        self.assertLess(abs(browser.session()["focus_m"] - 0.34 / (0.2 - 0.84 * 1.8 / 50)), 0.15)
 
     def test_surfaces_are_coated(self):
         browser = self.browser
@@ -328,7 +368,8 @@ class LivePage(unittest.TestCase):
     def test_damaged_files_are_refused_and_good_ones_taken(self):
         with tempfile.TemporaryDirectory() as folder:
             field = self.browser.driver.find_element(By.ID, "file")
-            for name, content in [("bad.zmx", b"SURF 0\n CURV x\n"), ("bad.json", b"{\"format\":"), ("bad.png", b"\x89PNG\r\n\x1a\n"), ("what.exe", b"MZ")]:
+            for name, content in [("bad.zmx", b"SURF 0\n CURV x\n"), ("bad.json", b"{\"format\":"), ("bad.png", b"\x89PNG\r\n\x1a\n"), ("what.exe", b"MZ"),
+                                  ("bad.seq", b"LEN NEW\nRDM Q\n"), ("bad.jpg", b"\xff\xd8\xff\xe0\0\x10JF"), ("bad.tif", b"II*\0\xff\xff\xff\xff"), ("empty.dat", b"")]:
                 path = pathlib.Path(folder) / name
                 path.write_bytes(content)
                 count = self.browser.run("return document.querySelectorAll('.note.bad').length")
@@ -346,7 +387,8 @@ class LivePage(unittest.TestCase):
     def test_lens_and_picture_are_saved(self):
         self.change_shows("""const select = document.querySelector('[data-coating="all"]');
             select.value = "mgf2"; select.dispatchEvent(new Event("change"));""")
-        for entry, name in [("save-json", LENS + ".json"), ("save-zmx", LENS + ".zmx"), ("save-png", LENS + ".png"), ("save-dng", LENS + ".dng"), ("save-session", "session.petzval.json")]:
+        for entry, name in [("save-json", LENS + ".json"), ("save-zmx", LENS + ".zmx"), ("save-png", LENS + ".png"), ("save-dng", LENS + ".dng"),
+                            ("save-exr", LENS + ".exr"), ("save-report", LENS + "-report.html"), ("save-session", "session.petzval.json")]:
             with self.subTest(entry):
                 path = pathlib.Path(self.downloads.name) / name
                 path.unlink(missing_ok=True)
@@ -354,6 +396,11 @@ class LivePage(unittest.TestCase):
                 self.browser.until(name, lambda path=path: path.exists() and path.stat().st_size > 100)
         saved = json.loads((pathlib.Path(self.downloads.name) / (LENS + ".json")).read_text())
         self.assertEqual([surface.get("coating") for surface in saved["surfaces"]], ["mgf2", None, "mgf2"])
+        report = (pathlib.Path(self.downloads.name) / (LENS + "-report.html")).read_text()
+        self.assertNotIn("<script", report)
+        for word in ["SCHOTT:", "mgf2", "data:image/png", "Field curvature", "petzval image slanted-edge"]:
+            self.assertIn(word, report)
+        self.assertGreater(report.count('class="plot"'), 10)
 
     def test_before_and_after_theme_and_tour(self):
         self.browser.run("document.getElementById('before').click()")
@@ -369,6 +416,17 @@ class LivePage(unittest.TestCase):
         self.browser.run("document.getElementById('tour').click()")
         self.browser.until("the lens of the exercise", lambda: self.browser.session()["lensName"] == "dgauss-50mm")
         self.browser.run("document.getElementById('tour').click()")
+
+    def test_moves_take_no_memory_for_ever(self):
+        # bench/live_latency.py makes a thousand of them.
+        self.change_shows(CHOOSE, "lens", "dgauss-50mm")
+        self.browser.until("its sliders", lambda: len(self.browser.session()["pins"]) == 2)
+        self.browser.settle()
+        gaps = [int(pin["path"].split("[")[1].split("]")[0]) for pin in self.browser.session()["pins"]]
+        sweep(self.browser, gaps, 60)
+        few = resident_mb(self.server.process)
+        sweep(self.browser, gaps, 180)
+        self.assertLess(resident_mb(self.server.process), 1.1 * few)
 
     def test_fits_the_screen(self):
         for width, height in [(1280, 720), (1920, 1080)]:

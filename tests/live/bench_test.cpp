@@ -66,7 +66,7 @@ TEST(Bench, PutsTheSunWhereItsAnglesSayAndFollowsOneGhost) {
   const double right_deg = -2.5, up_deg = 1.5, degree = std::numbers::pi / 180;
   json state = bench_state(5);
   state["picture"] = true;
-  state["stray"]["sun_deg"] = {right_deg, up_deg};
+  state["stray"]["suns"] = json::array({{{"deg", {right_deg, up_deg}}, {"lx", 100000}}});
   state["stray"]["ghosts"] = true;
   state["stray"]["ghost"] = {2, 0};
   page.send(state);
@@ -214,6 +214,46 @@ TEST(Bench, FindsTheSourcesOfAScene) {
   state["stray"]["threshold"] = 1e6;
   EXPECT_TRUE(preview()["sources"].empty()) << "no sample is a million times the mean of 320 x 240";
   EXPECT_NEAR(mean_level(page.bytes), without, 1e-9);
+}
+
+TEST(Bench, FocusesOnWhatASceneOfThreeDimensionsShows) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(1);
+  state["scene"] = "spheres";
+  state["camera"]["focus"] = "1m";
+  state["picture"] = true;
+  page.send(state);
+  const json preview = page.next("picture");
+  EXPECT_EQ(preview["quality"], "preview");
+  EXPECT_EQ(preview["samples"], 4);
+  page.send(json{{"kind", "focus"}, {"id", 2}, {"place_mm", {0, 0}}});
+  const double found_m = page.next("focused")["distance_m"];
+  // The camera's axis, from (0, 0.34, -1.2) to (0, 0.1, 0), meets the ball of glass about (0.03, 0.09, -0.3).
+  const double length = std::hypot(0.24, 1.2), up = -0.24 / length, deep = 1.2 / length;
+  const double along = -0.25 * up + 0.9 * deep,
+               square = 0.03 * 0.03 + 0.25 * 0.25 + 0.9 * 0.9 - along * along, radius = 0.09;
+  const double half_chord = std::sqrt(radius * radius - square);
+  // A pixel is this wide there, and the ball slopes so much.
+  const double pixel_m = preview["pitch_um"].get<double>() * 1e-6 / 0.05 * along;
+  EXPECT_NEAR(found_m, along - half_chord, std::numbers::sqrt2 * pixel_m * std::sqrt(square) / half_chord);
+}
+
+TEST(Bench, BladesTakeTheirShareOfTheLight) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(1);
+  state["scene"] = "wall";
+  state["camera"]["f_number"] = 8;
+  state["picture"] = true;
+  const auto exposure_s = [&](const json& blades) {
+    state["camera"]["blades"] = blades;
+    page.send(state);
+    return std::stod(page.next("picture")["exposure"].get<std::string>());
+  };
+  // A triangle in the circle of the stop, by its area.
+  const double triangle = 3 / (2 * std::numbers::pi) * std::sin(2 * std::numbers::pi / 3);
+  EXPECT_NEAR(exposure_s(0) / exposure_s(3), triangle, 0.05 * triangle);
 }
 
 TEST(Bench, GivesUpAnOlderPictureForANewerState) {

@@ -18,11 +18,13 @@ LiveMessage parsed(const json& message) {
 
 TEST(LiveMessage, HoldsWhatThePageSaid) {
   json message = bench_state(9, "tessar");
-  message["camera"] = {{"f_number", 5.6}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
+  message["camera"] = {
+      {"f_number", 5.6}, {"blades", 7}, {"focus", "1.2m"}, {"distance_m", 3}, {"defocus_mm", -0.25}};
   message["cursor_mm"] = {1.5, -2};
   message["coatings"] = {"mgf2", nullptr, "quarter-half-quarter"};
-  message["stray"] = {{"sun_deg", {20, -15.5}}, {"sun_lx", 5000},    {"threshold", 12.5}, {"ghosts", true},
-                      {"starburst", true},      {"roughness_nm", 2}, {"ghost", {5, 0}}};
+  const json suns = {{{"deg", {20, -15.5}}, {"lx", 5000}}, {{"deg", {-3, 0}}, {"lx", 20}}};
+  message["stray"] = {{"suns", suns},      {"sun", 1},          {"threshold", 12.5}, {"ghosts", true},
+                      {"starburst", true}, {"roughness_nm", 2}, {"ghost", {5, 0}}};
   const auto state = std::get<BenchState>(parsed(message));
   EXPECT_EQ(state.id, 9);
   EXPECT_EQ(state.f_number, 5.6);
@@ -31,10 +33,13 @@ TEST(LiveMessage, HoldsWhatThePageSaid) {
   EXPECT_EQ(state.defocus_mm, -0.25);
   EXPECT_EQ(state.cursor_mm[1], -2);
   EXPECT_EQ(state.coating_text(), "surfaces[0]=mgf2,surfaces[2]=quarter-half-quarter");
-  ASSERT_TRUE(state.sun && state.ghost);
-  EXPECT_EQ(state.sun->right_deg, 20);
-  EXPECT_EQ(state.sun->up_deg, -15.5);
-  EXPECT_EQ(state.sun->illuminance_lx, 5000);
+  EXPECT_EQ(state.blades.value_or(StopBlades{}).count, 7);
+  ASSERT_TRUE(state.suns.size() == 2 && state.ghost);
+  EXPECT_EQ(state.suns[0].right_deg, 20);
+  EXPECT_EQ(state.suns[0].up_deg, -15.5);
+  EXPECT_EQ(state.suns[0].illuminance_lx, 5000);
+  EXPECT_EQ(state.suns[1].right_deg, -3);
+  EXPECT_EQ(state.chosen_sun, 1u);
   EXPECT_EQ(state.threshold, 12.5);
   EXPECT_TRUE(state.ghosts && state.starburst);
   EXPECT_EQ(state.roughness_nm, 2);
@@ -94,9 +99,15 @@ TEST(LiveMessage, RefusesNumbersOutOfRange) {
   EXPECT_THROW(parsed(with("/coatings", json::array({"/etc/passwd"}))), InputError);
   EXPECT_THROW(parsed(with("/coatings", "mgf2")), InputError);
   EXPECT_THROW(parsed(with("/cursor_mm/0", 1e300)), InputError);
-  EXPECT_THROW(parsed(with("/stray/sun_deg", {80, 0})), InputError);
-  EXPECT_THROW(parsed(with("/stray/sun_deg", {1, 2, 3})), InputError);
-  EXPECT_THROW(parsed(with("/stray/sun_lx", 0)), InputError);
+  const auto sun = [](const json& deg, double lx) { return json::array({{{"deg", deg}, {"lx", lx}}}); };
+  EXPECT_NO_THROW(parsed(with("/stray/suns", sun({20, 0}, 1))));
+  EXPECT_THROW(parsed(with("/stray/suns", sun({80, 0}, 1))), InputError);
+  EXPECT_THROW(parsed(with("/stray/suns", sun({1, 2, 3}, 1))), InputError);
+  EXPECT_THROW(parsed(with("/stray/suns", sun({20, 0}, 0))), InputError);
+  EXPECT_THROW(parsed(with("/stray/suns", json::array({1}))), InputError);
+  EXPECT_THROW(parsed(with("/stray/suns", json(17, sun({20, 0}, 1)[0]))), InputError) << "too many";
+  EXPECT_THROW(parsed(with("/camera/blades", 2)), InputError);
+  EXPECT_THROW(parsed(with("/camera/blades", 65)), InputError);
   EXPECT_THROW(parsed(with("/stray/threshold", 0.5)), InputError);
   EXPECT_THROW(parsed(with("/stray/roughness_nm", -1)), InputError);
   EXPECT_THROW(parsed(with("/stray/ghost", {0, 5})), InputError);

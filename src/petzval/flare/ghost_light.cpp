@@ -206,14 +206,15 @@ SpectralImage straight_light(const Lens& lens, const SensorGeometry& frame,
   check_light(frame, wavelengths_nm, sources, options);
   const Losses losses = losses_of_picture(lens, wavelengths_nm.front(), options.losses);
   const auto tracers = tracers_of(lens, wavelengths_nm, losses, options);
-  std::vector<std::vector<GhostPair>> ways(wavelengths_nm.size());
-  parallel_tasks(ways.size(), [&](std::size_t band) { ways[band] = ways_of(*tracers[band], options); });
   std::vector<GhostTask> tasks;
   for (std::size_t source = 0; source < sources.size(); ++source)
     for (std::size_t band = 0; band < wavelengths_nm.size(); ++band)
-      tasks.push_back(
-          {source, band, GhostPair::straight(),
-           find_pupil_box(*tracers[band], GhostPair::straight(), SourceBeam(sources[source]), frame)});
+      tasks.push_back({source, band, GhostPair::straight()});
+  parallel_for(tasks.size(), [&](std::size_t i) {
+    GhostTask& task = tasks[i];
+    if (sources[task.source].irradiance[task.band] == 0) return;
+    task.box = find_pupil_box(*tracers[task.band], task.pair, SourceBeam(sources[task.source]), frame);
+  });
   return followed_light(tracers, frame, wavelengths_nm, sources, options, tasks, progress);
 }
 

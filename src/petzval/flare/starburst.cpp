@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace petzval {
 
@@ -123,7 +124,8 @@ double star_irradiance(const StarPupil& pupil, double wavelength_nm, double x_mm
 
 double star_share_beyond(const StarPupil& pupil, double wavelength_nm, double from_mm, double blur_mm) {
   // Over r = from/ρ, ρ from 1 to 0: the light per ρ is even where spikes are narrow, and falls off beyond.
-  constexpr int radii = 64, turns = 1440;
+  constexpr int radii = 64;
+  const int turns = pupil.corners.empty() ? 1 : 1440;  // a circle's star is round
   double share = 0;
   for (int i = 0; i < radii; ++i) {
     const double rho = (i + 0.5) / radii, r = from_mm / rho;
@@ -145,32 +147,50 @@ SpectralImage starburst_light(const Lens& lens, const SensorGeometry& frame,
                               double core_mm) {
   SpectralImage light(frame.columns, frame.rows, wavelengths_nm, frame.pitch_um);
   const double pixel_mm = frame.pitch_um * mm_per_um;
-  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
-    const Losses losses = losses_of_picture(lens, wavelengths_nm[band], options.losses);
-    const GhostTracer tracer(lens, wavelengths_nm[band], losses, 0, options.clip);
-    for (const BrightSource& source : sources) {
-      const std::optional<StarPupil> pupil = star_pupil(tracer, source, frame);
-      if (!pupil) continue;
-      const double from_mm = std::max(pupil->core_mm, core_mm), blur_mm = pupil->source_mm + pixel_mm / 2;
-      const double irradiance = source.irradiance[band];
-      const std::span<float> pixels = light.band(static_cast<int>(band));
-      parallel_for(static_cast<std::size_t>(frame.rows), [&](std::size_t row) {
-        const double y_mm = frame.y_mm(static_cast<double>(row) + 0.5) - pupil->y_mm;
-        float* const out = pixels.data() + row * static_cast<std::size_t>(frame.columns);
-        for (int column = 0; column < frame.columns; ++column) {
-          const double x_mm = frame.x_mm(column + 0.5) - pupil->x_mm;
-          if (x_mm * x_mm + y_mm * y_mm < from_mm * from_mm) continue;
-          out[column] +=
-              static_cast<float>(irradiance * pupil->flux_mm2 *
-                                 star_irradiance(*pupil, wavelengths_nm[band], x_mm, y_mm, blur_mm));
-        }
-      });
-      // What the star has is taken from the core.
-      BrightSource core = source;
-      core.irradiance = {irradiance * star_share_beyond(*pupil, wavelengths_nm[band], from_mm, blur_mm)};
-      const SpectralImage taken = straight_light(lens, frame, {wavelengths_nm[band]}, {&core, 1}, options);
-      for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] -= taken.band(0)[i];
-    }
+  struct Star {
+    std::optional<StarPupil> pupil;
+    double from_mm = 0, blur_mm = 0;
+    double share = 0;  ///< of its light, farther out
+  };
+  std::vector<std::unique_ptr<GhostTracer>> tracers;
+  for (const double nm : wavelengths_nm)
+    tracers.push_back(std::make_unique<GhostTracer>(lens, nm, losses_of_picture(lens, nm, options.losses), 0,
+                                                    options.clip));
+  const std::size_t bands = wavelengths_nm.size();
+  std::vector<Star> stars(bands * sources.size());  // [source][band]
+  parallel_tasks(stars.size(), [&](std::size_t i) {
+    Star& star = stars[i];
+    star.pupil = star_pupil(*tracers[i % bands], sources[i / bands], frame);
+    if (!star.pupil) return;
+    star.from_mm = std::max(star.pupil->core_mm, core_mm);
+    star.blur_mm = star.pupil->source_mm + pixel_mm / 2;
+    star.share = star_share_beyond(*star.pupil, wavelengths_nm[i % bands], star.from_mm, star.blur_mm);
+  });
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const Star& star = stars[i];
+    if (!star.pupil) continue;
+    const std::size_t band = i % bands;
+    const double all = sources[i / bands].irradiance[band] * star.pupil->flux_mm2;
+    const std::span<float> pixels = light.band(static_cast<int>(band));
+    parallel_for(static_cast<std::size_t>(frame.rows), [&](std::size_t row) {
+      const double y_mm = frame.y_mm(static_cast<double>(row) + 0.5) - star.pupil->y_mm;
+      float* const out = pixels.data() + row * static_cast<std::size_t>(frame.columns);
+      for (int column = 0; column < frame.columns; ++column) {
+        const double x_mm = frame.x_mm(column + 0.5) - star.pupil->x_mm;
+        if (x_mm * x_mm + y_mm * y_mm < star.from_mm * star.from_mm) continue;
+        out[column] += static_cast<float>(
+            all * star_irradiance(*star.pupil, wavelengths_nm[band], x_mm, y_mm, star.blur_mm));
+      }
+    });
+  }
+  // What the stars have is taken from their cores.
+  std::vector<BrightSource> cores(sources.begin(), sources.end());
+  for (std::size_t i = 0; i < stars.size(); ++i) cores[i / bands].irradiance[i % bands] *= stars[i].share;
+  const SpectralImage taken = straight_light(lens, frame, wavelengths_nm, cores, options);
+  for (std::size_t band = 0; band < bands; ++band) {
+    const std::span<float> pixels = light.band(static_cast<int>(band));
+    const std::span<const float> less = taken.band(static_cast<int>(band));
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] -= less[i];
   }
   return light;
 }

@@ -14,7 +14,9 @@
 #include <petzval/live/bench_picture.h>
 #include <petzval/live/bench_plots.h>
 #include <petzval/live/bench_psf.h>
+#include <petzval/live/bench_render.h>
 #include <petzval/live/bench_sensor.h>
+#include <petzval/live/stage_time.h>
 #include <petzval/simulate/analysis.h>
 
 #include <algorithm>
@@ -40,19 +42,6 @@ struct LensInUse {
   Camera camera = {};
   Lens lens = Lens();
 };
-
-std::string optics_key(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}", state.lens_json, state.coating_text(), state.f_number.value_or(0),
-                     state.focus.text(), state.distance_m.value_or(0), state.defocus_mm);
-}
-
-std::string stray_key_of(const BenchState& state) {
-  const Sun sun = state.sun.value_or(Sun{});
-  const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
-                     sun.illuminance_lx, state.ghosts, state.starburst, state.threshold, state.roughness_nm,
-                     ghost.first, ghost.second);
-}
 
 /// As the picture uses it: focused, and the object where the scene stands.
 Lens used_for_scene(Camera camera, const std::optional<double>& distance_m, const Context& context) {
@@ -115,6 +104,8 @@ struct Bench::Impl {
   const BenchQuestions* ask = nullptr;  ///< while show() is under way
   int threads = 0;
   BenchPicture pictures = {};
+  BenchRender renderings = {};
+  bool solid = false;  ///< whether the scene that was shown last has three dimensions
   std::optional<BenchPlots> plots = {};
   int uploads = 0;
 
@@ -146,7 +137,7 @@ struct Bench::Impl {
     if (const auto found = shown.find(name); found != shown.end() && found->second == key) return true;
     if (gives_way(name)) throw Cancelled();
     shown.erase(name);
-    const Clock::time_point began = Clock::now();
+    const StageTime time;
     Context context;
     context.threads = threads;
     context.progress = [&](double, const std::string&) { return !gives_way(name); };
@@ -163,8 +154,7 @@ struct Bench::Impl {
     }
     shown[name] = key;
     shown_at[name] = Clock::now();
-    const std::chrono::duration<double, std::milli> took = Clock::now() - began;
-    tell({{"kind", "stage"}, {"id", id}, {"stage", name}, {"ms", std::round(took.count() * 10) / 10}});
+    tell({{"kind", "stage"}, {"id", id}, {"stage", name}, {"ms", time.ms()}, {"cpu_ms", time.cpu_ms()}});
     return true;
   }
 
@@ -200,14 +190,22 @@ void Bench::Impl::show_psf(const BenchState& state, const Context& context) cons
 
 void Bench::Impl::show_stray(const BenchState& state) const {
   const double sensor_reflectance = read_sensor(sensor_path(state)).reflectance.value_or(0.0);
-  json message = stray_json({use.lens, use.camera.losses}, state.sun, state.ghost, sensor_reflectance);
+  const std::optional<Sun> sun =
+      state.chosen_sun < state.suns.size() ? std::optional(state.suns[state.chosen_sun]) : std::nullopt;
+  json message = stray_json({use.lens, use.camera.losses}, sun, state.ghost, sensor_reflectance);
   message["kind"] = "stray";
   message["id"] = state.id;
   tell(message);
 }
 
 void Bench::Impl::show(const BenchState& state) {
-  const std::string key = optics_key(state);
+  solid = is_solid_scene(state.scene);
+  // What is seen of a scene in three dimensions is as far away as the lens is focused.
+  const std::optional<double> object_m = !solid ? state.distance_m
+                                         : state.focus.kind == Focus::Kind::distance
+                                             ? std::optional(state.focus.distance_m)
+                                             : std::nullopt;
+  const std::string key = fmt::format("{}|{}", state.camera_key(), object_m.value_or(0));
   if (use.key != key) {
     use.key.clear();
     std::string failed_at = "lens";
@@ -215,6 +213,7 @@ void Bench::Impl::show(const BenchState& state) {
       use.camera = {};
       use.camera.lens = lens_from_json(state.lens_json, "lens");
       use.camera.f_number = state.f_number;
+      use.camera.blades = state.blades;
       use.camera.focus = state.focus;
       use.camera.defocus_mm = state.defocus_mm;
       for (const auto& [surface, name] : state.coatings) {
@@ -225,33 +224,34 @@ void Bench::Impl::show(const BenchState& state) {
       }
       use.camera.lens.validate();
       failed_at = "camera";
-      use.lens = used_for_scene(use.camera, state.distance_m, {});
+      use.lens = used_for_scene(use.camera, object_m, {});
     } catch (const Error& error) {
       return problem(state.id, failed_at, error.what());
     }
     use.key = key;
   }
   if (!stage(state.id, "layout", key, [&](const Context&) { show_layout(state); })) return;
-  const std::string stray_key = stray_key_of(state);
   const auto picture = [&](const char* name, PictureQuality quality) {
     const auto scene = scene_paths.find(state.scene);
     // The picture knows itself whether it is new.
     const auto work = [&](const Context& context) {
+      if (solid) return renderings.show(state, use.camera, sensor_path(state), quality, context, send);
       pictures.show(state, {use.lens, use.camera.losses},
                     scene == scene_paths.end() ? state.scene : scene->second, sensor_path(state), quality,
                     context, send);
     };
-    return stage(
-        state.id, name,
-        fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", key, stray_key, state.scene, state.illuminant,
-                    state.sensor, static_cast<int>(state.exposure.kind), state.exposure.value,
-                    state.compensation_ev, state.noise, state.denoise, state.sharpen, state.tone),
-        work);
+    return stage(state.id, name,
+                 fmt::format("{}|{}|{}|{}|{}|{}", key, state.stray_key(), state.scene, state.illuminant,
+                             state.sensor, state.shot_key()),
+                 work);
   };
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
-  if (state.sun || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
-    stage(state.id, "stray", fmt::format("{}|{}|{}", key, stray_key, state.sensor),
+  const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
+  if (!state.suns.empty() || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
+    stage(state.id, "stray",
+          fmt::format("{}|{}|{}|{},{}|{}", key, state.stray_key(), state.chosen_sun, ghost.first,
+                      ghost.second, state.sensor),
           [&](const Context&) { show_stray(state); });
   plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   if (state.picture && picture("preview", PictureQuality::preview)) {
@@ -291,6 +291,7 @@ void Bench::greet() {
                {"sensor", start.sensor.empty() ? sensor_for(lens) : start.sensor},
                {"lenses", list_of_lenses()},
                {"scenes", impl_->names.scenes},
+               {"solid_scenes", solid_scenes()},
                {"sensors", impl_->names.sensors},
                {"illuminants", impl_->names.illuminants},
                {"tones", impl_->names.tones},
@@ -322,6 +323,10 @@ void Bench::focus(const FocusWish& wish) {
   try {
     if (impl_->use.key.empty()) throw InputError("there is no lens that could be focused");
     const CoatedLens lens{impl_->use.lens, impl_->use.camera.losses};
+    if (impl_->solid)
+      return impl_->tell({{"kind", "focused"},
+                          {"id", wish.id},
+                          {"distance_m", impl_->renderings.distance_m(wish.place_mm)}});
     impl_->tell({{"kind", "focused"},
                  {"id", wish.id},
                  {"shift_mm", best_spot_focus(lens.lens, field_at(lens, wish.place_mm)).shift_mm}});
@@ -337,6 +342,8 @@ void Bench::save(const SaveWish& wish, const Context& context) {
     if (of_lens && impl_->use.key.empty()) throw InputError("there is no lens that could be saved");
     if (of_lens)
       write_lens(impl_->use.camera.lens, path);
+    else if (impl_->solid)
+      impl_->renderings.write(path, context);
     else
       impl_->pictures.write(path, context);
     const std::string bytes = read_whole_file(path);

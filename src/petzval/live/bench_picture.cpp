@@ -4,12 +4,9 @@
 #include <petzval/imaging/image_table.h>
 #include <petzval/live/bench_json.h>
 #include <petzval/live/bench_picture.h>
-#include <petzval/sensor/colour_calibration.h>
 #include <petzval/simulate/flare.h>
-#include <petzval/simulate/prepared_exposure.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 namespace petzval {
@@ -31,44 +28,6 @@ namespace {
 
 QualityCost preview_cost(int most_columns, int scene_columns) {
   return {"preview", most_columns, scene_columns, {460, 540, 610}, "460,540,610", 2e-2, 6, 64, 1e-2};
-}
-
-/// All that the light on the sensor depends on.
-std::string light_key_of(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", state.lens_json, state.coating_text(),
-                     state.f_number.value_or(0), state.focus.text(), state.distance_m.value_or(0),
-                     state.defocus_mm, state.scene, state.illuminant, state.sensor);
-}
-
-/// All that stray light depends on besides the light of the picture.
-std::string stray_light_key(const BenchState& state) {
-  if (!state.has_stray_light()) return {};
-  const Sun sun = state.sun.value_or(Sun{});
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}", state.sun.has_value(), sun.right_deg, sun.up_deg,
-                     sun.illuminance_lx, state.ghosts, state.starburst, state.threshold, state.roughness_nm);
-}
-
-/// And what its picture does, besides.
-std::string shown_key_of(const BenchState& state) {
-  return fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", light_key_of(state), stray_light_key(state),
-                     static_cast<int>(state.exposure.kind), state.exposure.value, state.compensation_ev,
-                     state.noise, state.denoise, state.sharpen, state.tone);
-}
-
-OutputOptions output_options(const BenchState& state) {
-  OutputOptions options;
-  options.expose.exposure = state.exposure;
-  options.expose.compensation_ev = state.compensation_ev;
-  if (!state.noise)
-    options.expose.without = {NoiseSource::shot, NoiseSource::dark,   NoiseSource::read,
-                              NoiseSource::dsnu, NoiseSource::prnu,   NoiseSource::column,
-                              NoiseSource::row,  NoiseSource::defects};
-  options.development.options.denoise_strength = state.denoise;
-  options.development.options.sharpen_amount = state.sharpen;
-  options.development.options.tone = state.tone == "soft" ? ToneCurve::soft : ToneCurve::none;
-  options.shown.compensation_ev = state.compensation_ev;
-  options.shown.false_colour = true;
-  return options;
 }
 
 /// How far light spreads about its chief ray [um], the most of a table.
@@ -123,64 +82,26 @@ ImageOptions image_options(const QualityCost& cost) {
   return options;
 }
 
-/// Levels of a display by their linear light, which is asked for every pixel.
-class DisplayLevels {
- public:
-  DisplayLevels() {
-    for (std::size_t i = 0; i <= steps; ++i)
-      levels_[i] = quantised_8(srgb_encoded(static_cast<double>(i) / steps));
-  }
-  std::uint8_t operator()(double linear) const {
-    return linear > 0 ? levels_[static_cast<std::size_t>(std::min(linear, 1.0) * steps + 0.5)] : levels_[0];
-  }
-
- private:
-  static constexpr std::size_t steps = 1 << 14;  // the steepest level is four of them wide
-  std::array<std::uint8_t, steps + 1> levels_{};
-};
-
-/// RGBA of 8 bits, as a canvas takes them.
-std::vector<std::uint8_t> pixels_of(const Planes& planes) {
-  static const DisplayLevels level;
-  const std::size_t count = static_cast<std::size_t>(planes.columns) * static_cast<std::size_t>(planes.rows);
-  std::vector<std::uint8_t> pixels(4 * count, 255);
-  const std::size_t channels = planes.values.size();
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto& plane = planes.values[std::min(c, channels - 1)];
-    for (std::size_t i = 0; i < count; ++i) pixels[4 * i + c] = level(plane[i]);
-  }
-  return pixels;
+/// All that the light on the sensor depends on.
+std::string light_key_of(const BenchState& state) {
+  return fmt::format("{}|{}|{}|{}", state.camera_key(), state.scene, state.illuminant, state.sensor);
 }
 
-std::vector<std::uint8_t> pixels_of(const PngImage& picture) {
-  std::vector<std::uint8_t> pixels;
-  const std::size_t channels = static_cast<std::size_t>(picture.channels);
-  for (std::size_t i = 0; i + channels <= picture.samples.size(); i += channels) {
-    for (std::size_t c = 0; c < 3; ++c)
-      pixels.push_back(static_cast<std::uint8_t>(picture.samples[i + std::min(c, channels - 1)]));
-    pixels.push_back(255);
-  }
-  return pixels;
+/// And what its picture does, besides.
+std::string shown_key_of(const BenchState& state) {
+  return fmt::format("{}|{}|{}", light_key_of(state), state.stray_key(), state.shot_key());
 }
 
-/// The picture with a sun, ghosts and stars of all bright sources, and with what surfaces scatter.
+/// The picture with suns, ghosts and stars of all bright sources, and with what surfaces scatter.
 SpectralImage with_stray_light(const BenchState& state, const CoatedLens& used, const Sensor& sensor,
                                double psf_mm, const SourcesFound& found, const QualityCost& cost,
                                const SpectralImage& light, const Context& context) {
-  FlareOptions options;
-  if (state.sun) options.suns = {*state.sun};
-  options.ghosts = state.ghosts;
-  options.starburst = state.starburst;
-  options.scatter = state.roughness_nm > 0;
-  options.neglected_share = cost.neglected_ghosts;
+  const FlareOptions options = flare_options(state, cost.neglected_ghosts);
   const LitLens lens{used.lens, used.losses, Tracer::Clip::apertures, reflection_of(sensor), psf_mm};
   SpectralImage stray = light;
   FlareLayers layers = flare_layers(lens, sensor.geometry, light.wavelengths_nm(), found, options, context);
   add_layers(layers, stray);
-  if (options.scatter) {
-    options.surfaces_scatter = Scatter{.roughness_nm = state.roughness_nm};
-    add_scatter(lens, options, layers, stray, context);
-  }
+  if (options.scatter) add_scatter(lens, options, layers, stray, context);
   return stray;
 }
 
@@ -202,17 +123,10 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedL
     shot.stray_key.clear();
     int most_columns = cost.most_columns;
     if (const Shot& preview = previews_[preview_size_]; &shot == &full_ && preview.light_key == light_key)
-      most_columns = columns_for(preview.spread_um, preview.sensor.sensor.geometry.width_mm(),
+      most_columns = columns_for(preview.spread_um, preview.sensor.binned.sensor.geometry.width_mm(),
                                  preview_costs[0].most_columns, cost.most_columns);
-    const std::string sensor_key = fmt::format("{}|{}", sensor_path, most_columns);
-    if (shot.sensor_key != sensor_key) {
-      shot.sensor_key.clear();
-      shot.sensor = binned_sensor(sensor_path, most_columns);
-      shot.calibrations = shot.sensor.sensor.electronics ? standard_calibrations(shot.sensor.sensor)
-                                                         : std::vector<ColourCalibration>{};
-      shot.sensor_key = sensor_key;
-    }
-    TableCamera optics = bench_optics(used, shot.sensor.sensor, cost, context);
+    shot.sensor.choose(sensor_path, most_columns);
+    TableCamera optics = bench_optics(used, shot.sensor.binned.sensor, cost, context);
     shot.spread_um = spread_um(optics.table);
     ImageReport report;
     const std::string scene_key = scene_path + '|' + state.illuminant;
@@ -224,7 +138,7 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedL
     shot.method = report.method;
     shot.light_key = light_key;
   }
-  const std::string stray_key = stray_light_key(state);
+  const std::string stray_key = state.stray_key();
   if (shot.stray_key != stray_key || stray_key.empty()) {
     shot.stray_key.clear();
     shot.stray.reset();
@@ -235,8 +149,8 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedL
                                         image_options(cost), context);
       shot.sources =
           find_sources(plan.scene, used.lens.total_track_mm(), SourceSearch{.threshold = state.threshold});
-      shot.stray = with_stray_light(state, used, shot.sensor.sensor, shot.spread_um * mm_per_um, shot.sources,
-                                    cost, *shot.light, context);
+      shot.stray = with_stray_light(state, used, shot.sensor.binned.sensor, shot.spread_um * mm_per_um,
+                                    shot.sources, cost, *shot.light, context);
     }
     shot.stray_key = stray_key;
   }
@@ -266,39 +180,16 @@ void BenchPicture::show(const BenchState& state, const CoatedLens& used, const s
     if (!full) other.shown_key.clear();
   if (full) shot.shown_key.clear();
   shot.outputs = output_options(state);
-  const Sensor& sensor = shot.sensor.sensor;
-  std::vector<std::uint8_t> pixels;
-  std::string exposure;
-  if (develops(shot.outputs, sensor)) {
-    const RawImage raw = result_within(context, [&](const ProgressCallback&) {
-      const PreparedExposure exposed(shot.lit(), sensor, shot.outputs.expose, context, shot.calibrations);
-      return exposed.raw({&exposed.first_current(), 1}, context.seed);
-    });
-    exposure = fmt::format("{:.4g} s", raw.exposure_s);
-    pixels = pixels_of(develop(raw, shot.outputs.development, context).planes);
-  } else {
-    pixels = pixels_of(srgb_picture(shot.lit(), shot.outputs.shown));
-    exposure = "light on the sensor";
-  }
-  const SensorGeometry& frame = sensor.geometry;
-  send({json{{"kind", "picture"},
-             {"id", state.id},
-             {"quality", cost.name},
-             {"columns", frame.columns},
-             {"rows", frame.rows},
-             {"pitch_um", frame.pitch_um},
-             {"pixels_added", shot.sensor.pixels_added},
-             {"bands", shot.light->bands()},
-             {"wavelengths", cost.wavelengths},
-             {"tolerance", cost.tolerance},
-             {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
-             {"sensor_settings", shot.sensor.settings},
-             {"exposure", exposure},
-             {"sources", state.has_stray_light() ? sources_json(used.lens, shot.sources) : json::array()},
-             {"neglected_ghosts", cost.neglected_ghosts},
-             {"method", shot.method}}
-            .dump(),
-        std::move(pixels), true});
+  send_picture(shot.lit(), shot.sensor, shot.outputs,
+               {{"id", state.id},
+                {"quality", cost.name},
+                {"wavelengths", cost.wavelengths},
+                {"tolerance", cost.tolerance},
+                {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
+                {"sources", state.has_stray_light() ? sources_json(used.lens, shot.sources) : json::array()},
+                {"neglected_ghosts", cost.neglected_ghosts},
+                {"method", shot.method}},
+               context, send);
   shot.shown_key = shown_key;
   if (in_stride && !full)
     choose_preview(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
@@ -308,7 +199,7 @@ void BenchPicture::write(const std::string& path, const Context& context) const 
   const Shot& shot = full_;
   if (!shot.light || shot.shown_key.empty())
     throw InputError("there is no full picture yet; wait until it is no preview");
-  write_outputs(shot.lit(), {path}, shot.sensor.sensor, shot.outputs, context);
+  write_outputs(shot.lit(), {path}, shot.sensor.binned.sensor, shot.outputs, context);
 }
 
 }  // namespace petzval

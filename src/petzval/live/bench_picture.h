@@ -3,12 +3,9 @@
 #pragma once
 
 #include <petzval/live/bench.h>
-#include <petzval/live/bench_sensor.h>
-#include <petzval/simulate/develop.h>
+#include <petzval/live/bench_shown.h>
 #include <petzval/simulate/imaging_session.h>
-#include <petzval/simulate/outputs.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,15 +33,14 @@ class BenchPicture {
  private:
   struct Shot {
     std::string light_key = {}, stray_key = {}, shown_key = {};
-    std::string scene_key = {}, sensor_key = {};
+    std::string scene_key = {};
     std::optional<ImagingSession> session = {};  ///< of the scene
     std::optional<TableCamera> optics = {};      ///< of the light
     std::optional<SpectralImage> light = {};     ///< without what goes astray
     SourcesFound sources = {};                   ///< that the scene holds, for stray light
     std::optional<SpectralImage> stray = {};     ///< with it; absent: nothing does
-    BinnedSensor sensor = {};
-    std::vector<ColourCalibration> calibrations = {};  ///< of the sensor
-    double spread_um = 0;                              ///< how far light spreads about its chief ray
+    ShownSensor sensor = {};
+    double spread_um = 0;  ///< how far light spreads about its chief ray
     OutputOptions outputs = {};
     std::string method = {};
 

@@ -2,6 +2,7 @@
 #include <petzval/base/error.h>
 #include <petzval/live/bench_json.h>
 #include <petzval/live/bench_plots.h>
+#include <petzval/live/stage_time.h>
 #include <petzval/simulate/analysis.h>
 
 #ifdef __linux__
@@ -126,7 +127,7 @@ void BenchPlots::show(const PlotWish& wish) {
 }
 
 void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
-  const Clock::time_point began = Clock::now();
+  const StageTime time;
   Context context;
   const int all = wish.threads > 0 ? wish.threads : static_cast<int>(std::thread::hardware_concurrency());
   context.threads = std::max(1, all / 2);
@@ -142,11 +143,11 @@ void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
                   {"plots", std::move(plots)}}),
          {}});
   shown_at_[name] = Clock::now();
-  const std::chrono::duration<double, std::milli> took = shown_at_[name] - began;
   send_({text_of({{"kind", "stage"},
                   {"id", wish.id},
                   {"stage", "plot:" + name},
-                  {"ms", std::round(took.count() * 10) / 10}}),
+                  {"ms", time.ms()},
+                  {"cpu_ms", time.cpu_ms()}}),
          {}});
 }
 

@@ -16,7 +16,7 @@ namespace petzval {
 namespace {
 
 /// More than any message has, so that what is refused is refused soon.
-constexpr std::size_t most_upload_header_bytes = 4096, most_name_bytes = 200, most_plots = 16;
+constexpr std::size_t most_upload_header_bytes = 4096, most_name_bytes = 200, most_plots = 16, most_suns = 16;
 
 double number_within(const JsonEntry& entry, double least, double most) {
   const double value = entry.number("a number");
@@ -37,8 +37,7 @@ std::int64_t id_of(const JsonEntry& message) {
   return static_cast<std::int64_t>(id);
 }
 
-std::size_t surface_of(const JsonEntry& entry) {
-  constexpr double most = 1000;
+std::size_t count_of(const JsonEntry& entry, double most) {
   const double number = number_within(entry, 0, most);
   if (number != std::floor(number)) entry.fail("must be a whole number");
   return static_cast<std::size_t>(number);
@@ -67,7 +66,11 @@ std::array<double, 2> place_of(const JsonEntry& entry) {
 }
 
 void read_camera(const JsonEntry& camera, BenchState& state) {
-  camera.allow_only({"f_number", "focus", "distance_m", "defocus_mm"});
+  camera.allow_only({"f_number", "blades", "focus", "distance_m", "defocus_mm"});
+  if (const JsonEntry blades = camera.at("blades"); !blades.is_null()) {
+    state.blades = StopBlades{.count = static_cast<int>(count_of(blades, StopBlades::most))};
+    state.blades->validate();
+  }
   state.f_number = optional_within(camera.at("f_number"), 0.1, 1000);
   state.focus = Focus::parse(short_text(camera.at("focus")));
   state.distance_m = optional_within(camera.at("distance_m"), 1e-3, 1e6);
@@ -85,25 +88,27 @@ void read_shot(const JsonEntry& shot, BenchState& state) {
 
 /// Angles of a sun reach as far as Sun::at() takes them.
 void read_stray(const JsonEntry& stray, BenchState& state) {
-  stray.allow_only({"sun_deg", "sun_lx", "ghosts", "starburst", "threshold", "roughness_nm", "ghost"});
-  if (const JsonEntry sun = stray.at("sun_deg"); !sun.is_null()) {
+  stray.allow_only({"suns", "sun", "ghosts", "starburst", "threshold", "roughness_nm", "ghost"});
+  for (const JsonEntry& sun : stray.at("suns").items("suns")) {
     constexpr double most_deg = 79;
-    const std::vector<JsonEntry> angles = sun.items("two numbers");
-    if (angles.size() != 2) sun.fail("must be two numbers");
-    state.sun.emplace();
-    state.sun->right_deg = number_within(angles[0], -most_deg, most_deg);
-    state.sun->up_deg = number_within(angles[1], -most_deg, most_deg);
+    sun.allow_only({"deg", "lx"});
+    const std::vector<JsonEntry> angles = sun.at("deg").items("two numbers");
+    if (angles.size() != 2) sun.at("deg").fail("must be two numbers");
+    state.suns.push_back({.right_deg = number_within(angles[0], -most_deg, most_deg),
+                          .up_deg = number_within(angles[1], -most_deg, most_deg),
+                          .illuminance_lx = number_within(sun.at("lx"), 1e-3, 1e7)});
   }
-  const double illuminance_lx = number_within(stray.at("sun_lx"), 1e-3, 1e7);
-  if (state.sun) state.sun->illuminance_lx = illuminance_lx;
+  if (state.suns.size() > most_suns) stray.at("suns").fail(fmt::format("must be at most {}", most_suns));
+  state.chosen_sun = count_of(stray.at("sun"), most_suns);
   state.threshold = number_within(stray.at("threshold"), 1, 1e6);
   state.ghosts = stray.at("ghosts").truth();
   state.starburst = stray.at("starburst").truth();
   state.roughness_nm = number_within(stray.at("roughness_nm"), 0, 100);
   if (const JsonEntry ghost = stray.at("ghost"); !ghost.is_null()) {
+    constexpr double most_surfaces = 1000;
     const std::vector<JsonEntry> pair = ghost.items("two surfaces");
     if (pair.size() != 2) ghost.fail("must be two surfaces");
-    state.ghost = GhostPair{surface_of(pair[0]), surface_of(pair[1])};
+    state.ghost = GhostPair{count_of(pair[0], most_surfaces), count_of(pair[1], most_surfaces)};
     if (state.ghost->first <= state.ghost->second)
       ghost.fail("must be the surface that reflects first and one in front of it");
   }
@@ -142,11 +147,37 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
+std::string BenchState::camera_key() const {
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}", lens_json, coating_text(), f_number.value_or(0),
+                     blades ? blades->count : -1, focus.text(), distance_m.value_or(0), defocus_mm);
+}
+
+std::string BenchState::stray_key() const {
+  if (!has_stray_light()) return {};
+  std::string key = fmt::format("{}|{}|{}|{}", ghosts, starburst, threshold, roughness_nm);
+  for (const Sun& sun : suns) key += fmt::format("|{},{}:{}", sun.right_deg, sun.up_deg, sun.illuminance_lx);
+  return key;
+}
+
+std::string BenchState::shot_key() const {
+  return fmt::format("{}|{}|{}|{}|{}|{}|{}", static_cast<int>(exposure.kind), exposure.value, compensation_ev,
+                     noise, denoise, sharpen, tone);
+}
+
 std::string BenchState::coating_text() const {
   std::string text;
   for (const auto& [surface, name] : coatings)
     text += fmt::format("{}surfaces[{}]={}", text.empty() ? "" : ",", surface, name);
   return text;
+}
+
+const std::vector<std::string>& solid_scenes() {
+  static const std::vector<std::string> names = bundled_names("scenes", ".pbrt");
+  return names;
+}
+
+bool is_solid_scene(const std::string& name) {
+  return std::ranges::find(solid_scenes(), name) != solid_scenes().end();
 }
 
 LiveNames bundled_live_names() {
@@ -156,6 +187,7 @@ LiveNames bundled_live_names() {
     const std::string name = scene.name.substr(0, scene.name.find('['));
     if (!is_deep_chart(name)) names.scenes.push_back(name);
   }
+  names.scenes.insert(names.scenes.end(), solid_scenes().begin(), solid_scenes().end());
   names.sensors = bundled_names("sensors", ".json");
   names.illuminants = {"", "D65", "D50", "A", "F11", "2856K", "4000K", "6500K", "9000K"};
   for (const Analysis& analysis : analyses()) names.analyses.push_back(analysis.name);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/flare/ghost_way.h>
+#include <petzval/lens/stop_blades.h>
 #include <petzval/simulate/expose.h>
 #include <petzval/simulate/flare.h>
 #include <petzval/simulate/focus.h>
@@ -24,6 +25,9 @@ struct LiveNames {
 };
 /// Those of the bundled data.
 LiveNames bundled_live_names();
+/// Of the scenes, those in three dimensions, which are rendered.
+const std::vector<std::string>& solid_scenes();
+bool is_solid_scene(const std::string& name);
 
 /// All that is on the bench. The lens is native JSON, read later, so that a fault in it is told as one of the
 /// lens and not of the message.
@@ -32,6 +36,7 @@ struct BenchState {
   std::string lens_json = {};
   std::map<std::size_t, std::string> coatings = {};  ///< surface → a bundled coating
   std::optional<double> f_number = {};
+  std::optional<StopBlades> blades = {};  ///< absent: as the prescription has them
   Focus focus = {};
   std::optional<double> distance_m = {};  ///< of the scene from the sensor; absent: infinity
   double defocus_mm = 0;
@@ -42,16 +47,22 @@ struct BenchState {
   double denoise = 0, sharpen = 0;
   std::string tone = "none";
   std::array<double, 2> cursor_mm =
-      {};                       ///< a place on the sensor, as the upright picture shows it: x right, y up
-  std::optional<Sun> sun = {};  ///< added to the scene
-  /// Of the sun, and of what the scene itself holds that is brighter than `threshold` times its mean.
+      {};                      ///< a place on the sensor, as the upright picture shows it: x right, y up
+  std::vector<Sun> suns = {};  ///< added to the scene
+  std::size_t chosen_sun = 0;  ///< of them, whose light shows the way of a ghost
+  /// Of suns, and of what the scene itself holds that is brighter than `threshold` times its mean.
   bool ghosts = false, starburst = false;
   double threshold = SourceSearch().threshold;
   double roughness_nm = 0;              ///< of surfaces that do not say how they scatter; 0: nothing scatters
   std::optional<GhostPair> ghost = {};  ///< whose way the layout shows
+  /// The lens and how it is used: what is alike here is the same.
+  std::string camera_key() const;
+  /// The same of stray light, empty: none; and of exposure and development.
+  std::string stray_key() const;
+  std::string shot_key() const;
   /// "surfaces[0]=mgf2,surfaces[2]=mgf2"; empty: none.
   std::string coating_text() const;
-  bool has_stray_light() const { return sun || ghosts || starburst || roughness_nm > 0; }
+  bool has_stray_light() const { return !suns.empty() || ghosts || starburst || roughness_nm > 0; }
   std::vector<std::string> plots = {};  ///< analyses that are shown
   bool picture = true;
 };
