@@ -19,19 +19,19 @@ namespace petzval {
 
 namespace {
 
-using Samples = std::vector<double>;
+using Levels = std::vector<double>;
 
 // ISO 15739 and ISO 12232: luminance, and what colour differences weigh beside it.
 constexpr double red_weight = 0.2125, green_weight = 0.7154, blue_weight = 0.0721;
 constexpr double red_difference_weight = 0.279, blue_difference_weight = 0.088;
 
-double mean_of(const Samples& values) {
+double mean_of(const Levels& values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());
 }
 
-double variance_of(const Samples& values) {
+double variance_of(const Levels& values) {
   const double mean = mean_of(values);
   double sum = 0;
   for (const double value : values) sum += (value - mean) * (value - mean);
@@ -39,12 +39,12 @@ double variance_of(const Samples& values) {
 }
 
 /// One patch: [channel][exposure][pixel].
-using PatchSamples = std::vector<std::vector<Samples>>;
+using PatchSamples = std::vector<std::vector<Levels>>;
 using TakeSamples = std::function<PatchSamples(const GreyPatch&)>;
 
 /// a R + b G + c B of each pixel and exposure.
-std::vector<Samples> mixed(const PatchSamples& rgb, double a, double b, double c) {
-  std::vector<Samples> result = rgb[0];
+std::vector<Levels> mixed(const PatchSamples& rgb, double a, double b, double c) {
+  std::vector<Levels> result = rgb[0];
   for (std::size_t k = 0; k < result.size(); ++k)
     for (std::size_t i = 0; i < result[k].size(); ++i)
       result[k][i] = a * rgb[0][k][i] + b * rgb[1][k][i] + c * rgb[2][k][i];
@@ -90,7 +90,7 @@ Oecf evaluated(std::vector<std::string> channels, double white, std::span<const 
     const PatchSamples samples = take(patch);
     OecfPoint point{patch, {}, {}, false, 0};
     double brightest = 0;
-    for (const std::vector<Samples>& channel : samples) {
+    for (const std::vector<Levels>& channel : samples) {
       const PatchNoise noise = patch_noise(channel);
       point.levels.push_back(noise.mean);
       constexpr double deviations = 3;
@@ -152,12 +152,12 @@ PatchNoise patch_noise(std::span<const std::vector<double>> exposures) {
     throw InputError("temporal noise shows between exposures; two at least would be right, or eight");
   const std::size_t pixels = exposures[0].size();
   if (pixels < 2) throw InputError("a patch with fewer than two pixels of a channel has no noise to measure");
-  Samples mean(pixels);
-  for (const Samples& exposure : exposures)
+  Levels mean(pixels);
+  for (const Levels& exposure : exposures)
     for (std::size_t i = 0; i < pixels; ++i) mean[i] += exposure[i] / n;
   double differences = 0;
-  Samples difference(pixels);
-  for (const Samples& exposure : exposures) {
+  Levels difference(pixels);
+  for (const Levels& exposure : exposures) {
     for (std::size_t i = 0; i < pixels; ++i) difference[i] = exposure[i] - mean[i];
     differences += variance_of(difference) / n;
   }
@@ -179,7 +179,7 @@ Oecf measure_oecf(std::span<const RawImage> exposures, int channel, std::span<co
                      check_patch(patch, first.columns, first.rows);
                      PatchSamples samples(1);
                      for (const RawImage& raw : exposures) {
-                       Samples values;
+                       Levels values;
                        for (int row = patch.y; row < patch.y + patch.height; ++row)
                          for (int column = patch.x; column < patch.x + patch.width; ++column)
                            if (raw.mosaic.channel(row, column) == channel)
@@ -205,7 +205,7 @@ Oecf measure_oecf(std::span<const ComparablePicture> exposures, std::span<const 
     PatchSamples samples(first.bands);
     for (std::size_t band = 0; band < first.bands; ++band)
       for (const ComparablePicture& picture : exposures) {
-        Samples values;
+        Levels values;
         for (int row = patch.y; row < patch.y + patch.height; ++row)
           for (int column = patch.x; column < patch.x + patch.width; ++column)
             values.push_back(
