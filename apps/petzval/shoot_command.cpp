@@ -77,7 +77,7 @@ bool has_depth_of_space(const std::string& scene) {
 
 /// Whether an option is one for scenes in three dimensions alone, or for others alone; absent: for both.
 std::optional<bool> effect_in_space(const std::string& option) {
-  if (option == "--instants" || option == "--samples") return true;
+  if (option == "--instants" || option == "--spp") return true;
   constexpr const char* of_planes[] = {"--method",   "--tolerance",   "--nodes",       "--tile",
                                        "--section",  "--transform",   "--supersample", "--fit",
                                        "--surround", "--interpolate", "--layers",      "--motion-step"};
@@ -214,7 +214,7 @@ void add_shoot_command(CLI::App& app, Shared& shared) {
   options->light.add_light_to(*command);
   options->clip.add_to(*command);
   command
-      ->add_option("--samples", options->samples,
+      ->add_option("--spp", options->samples,
                    "Paths a pixel at each instant of a scene in three dimensions; default: 64")
       ->check(whole_number());
   command

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <petzval/colour/illuminants.h>
 #include <petzval/measure/colour_chart.h>
+#include <petzval/measure/oecf.h>
 #include <petzval/measure/photon_transfer.h>
 #include <petzval/measure/picture_comparison.h>
 #include <petzval/measure/sfr/frame_sharpness.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/measure/sfr/sharpest_place.h>
 #include <petzval/report/sfr_page.h>
+#include <petzval/sensor/formats/dng.h>
+#include <petzval/simulate/outputs.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "call.h"
 #include "edges.h"
@@ -348,6 +353,14 @@ void bind_sensor_test(nb::module_& module) {
       .def_prop_ro("dsnu_e", [](const SensorTest& t) { return t.uniformity.dsnu_e; })
       .def_prop_ro("prnu_percent", [](const SensorTest& t) { return t.uniformity.prnu_percent; })
       .def_prop_ro(
+          "grey_total_snr", [](const SensorTest& t) { return t.grey.total_snr; },
+          "ISO 15739: signal-to-noise ratio of a grey of 0.18/√2 of saturation.")
+      .def_prop_ro("grey_temporal_snr", [](const SensorTest& t) { return t.grey.temporal_snr; })
+      .def_prop_ro("grey_fixed_pattern_snr", [](const SensorTest& t) { return t.grey.fixed_pattern_snr; })
+      .def_prop_ro(
+          "iso_dynamic_range_db", [](const SensorTest& t) { return t.grey.dynamic_range_db; },
+          "ISO 15739: saturation over the temporal noise in the dark.")
+      .def_prop_ro(
           "mean_dn",
           [](const SensorTest& t) {
             Numbers values;
@@ -383,6 +396,64 @@ void bind_sensor_test(nb::module_& module) {
       nb::arg("levels") = 24, nb::arg("stack") = 32, nb::arg("seed") = 1, nb::arg("threads") = 0,
       nb::arg("progress").none() = nb::none(),
       "Exposes a sensor as EMVA 1288 wants it and evaluates a channel.");
+}
+
+// ---- greys
+
+Oecf oecf_of_files(const std::vector<std::string>& pictures, const std::optional<std::string>& patches,
+                   const std::string& channel, const std::string& light) {
+  if (pictures.empty()) throw InputError("`pictures`: exposures of a chart, two at least, would be right");
+  const bool raw = is_raw_name(pictures.front());
+  if (raw && !patches)
+    throw InputError("a chart is found in developed pictures; `patches` says where it is in raw files");
+  const std::vector<GreyPatch> greys =
+      patches ? read_grey_patches(*patches) : colorchecker_greys(pictures.front(), illuminant(light));
+  if (!raw) {
+    std::vector<ComparablePicture> read;
+    for (const std::string& path : pictures) read.push_back(read_comparable_picture(path));
+    return measure_oecf(read, greys);
+  }
+  std::vector<RawImage> read;
+  for (const std::string& path : pictures) read.push_back(read_dng(path));
+  const std::vector<std::string>& names = read.front().channels;
+  const auto found = std::ranges::find(names, channel.empty() ? std::string("green") : channel);
+  if (found == names.end() && !channel.empty())
+    throw InputError(fmt::format("`channel` {}: {} would be right", channel, fmt::join(names, " or ")));
+  return measure_oecf(read, found == names.end() ? 0 : static_cast<int>(found - names.begin()), greys);
+}
+
+void bind_oecf(nb::module_& module) {
+  module.def(
+      "measure_oecf",
+      [](const std::vector<std::string>& pictures, const std::optional<std::string>& patches,
+         const std::string& channel, const std::string& light) {
+        const Oecf oecf = oecf_of_files(pictures, patches, channel, light);
+        nb::dict columns, units;
+        const auto add = [&](const std::string& name, auto&& value_of) {
+          Numbers values;
+          for (const OecfPoint& point : oecf.points) values.push_back(value_of(point));
+          columns[nb::str(name.c_str())] = array_of(std::move(values));
+          units[nb::str(name.c_str())] = "";
+        };
+        add("exposure", [](const OecfPoint& p) { return p.patch.exposure; });
+        for (std::size_t c = 0; c < oecf.channels.size(); ++c)
+          add(oecf.channels[c] + "_level", [c](const OecfPoint& p) { return p.levels[c]; });
+        add("incremental_gain", [](const OecfPoint& p) { return p.incremental_gain; });
+        add("temporal_noise", [](const OecfPoint& p) { return p.noise.temporal; });
+        add("fixed_pattern_noise", [](const OecfPoint& p) { return p.noise.fixed_pattern; });
+        add("total_snr", [](const OecfPoint& p) { return p.total_snr(); });
+        return call_python("petzval._tables", "Table", columns, units,
+                           fmt::format("dynamic range {}{:.1f} dB", oecf.saturates ? "" : "above ",
+                                       20 * std::log10(oecf.dynamic_range())),
+                           "");
+      },
+      nb::arg("pictures"), nb::kw_only(), nb::arg("patches").none() = nb::none(), nb::arg("channel") = "",
+      nb::arg("light") = "D65",
+      "Levels (ISO 14524) and noise (ISO 15739) of a chart's greys in exposures of one kind, files .dng, "
+      ".png "
+      "or .tif, two at least, as a Table. `patches`: a .csv of x_px, y_px, width_px, height_px, exposure; "
+      "None: the greys of a ColorChecker that is found. `channel` of raw files; empty: green, or "
+      "the first.");
 }
 
 // ---- colour
@@ -423,6 +494,7 @@ void bind_measure(nb::module_& module) {
   bind_sfr(module);
   bind_comparison(module);
   bind_sensor_test(module);
+  bind_oecf(module);
   bind_chart(module);
 }
 
