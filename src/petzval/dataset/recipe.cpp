@@ -77,7 +77,7 @@ const std::vector<RecipeParameter>& recipe_parameters() {
 const std::vector<RecipeParameter>& light_parameters() {
   static const std::vector<RecipeParameter> kinds = {
       {"light_scale@", "one light of a world so many times as strong", false, 0, 1e12},
-      {"light_turn_deg@", "the same turned, as petzval render --light does it", false, -1e6, 1e6},
+      {"light_turn_deg@", "the same turned about the upright axis of the world", false, -1e6, 1e6},
       {"light_kelvin@", "with the colour of a black body", false, 100, 1e6},
   };
   return kinds;
