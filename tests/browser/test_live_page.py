@@ -186,6 +186,7 @@ class LivePage(unittest.TestCase):
         # The floor behind the ball: the ray falls by 0.2 - 0.84 * 1.8 mm / 50 mm a metre from a height of 0.34 m.
         browser.until("what is behind it is sharp", lambda: browser.session()["focus_m"] > ball)
         self.assertLess(abs(browser.session()["focus_m"] - 0.34 / (0.2 - 0.84 * 1.8 / 50)), 0.15)
+        browser.settle()
 
     def test_surfaces_are_coated(self):
         browser = self.browser
