@@ -85,8 +85,8 @@ class ExitPupilRegions {
   PupilDensityTable densities_;
 };
 
-/// The radius of the circle on the film that light comes to, at one azimuth at least: to one part in a hundred
-/// of `film_radius_mm`, at which the search begins. 0 where none comes.
+/// The radius of the circle on the film that light comes to, at one azimuth at least: to one part in a
+/// hundred of `film_radius_mm`, at which the search begins. 0 where none comes.
 double lit_radius_mm(const Tracer& tracer, double film_radius_mm);
 
 }  // namespace petzval
