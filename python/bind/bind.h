@@ -63,6 +63,7 @@ void bind_design(nb::module_& module);
 void bind_dataset(nb::module_& module);
 void bind_raw(nb::module_& module);
 void bind_target(nb::module_& module);
+void bind_edges(nb::module_& module);
 void bind_measure(nb::module_& module);
 
 /// A numpy array of these values, which it takes over.

@@ -17,6 +17,7 @@ NB_MODULE(_petzval, module) {
   bind_design(module);
   bind_raw(module);
   bind_target(module);
+  bind_edges(module);
   bind_measure(module);
   bind_dataset(module);
 }
