@@ -46,5 +46,33 @@ TEST_P(ProductOfLens, KeepsTheToleranceAskedFor) {
 INSTANTIATE_TEST_SUITE_P(Bundled, ProductOfLens,
                          ::testing::Values("edmund-54852", "dgauss-50mm", "fisheye-10mm"));
 
+/// Just inside its last field this lens's pupil closes within a few cells. To give cells there kernels of
+/// their own must not cost more than the rest of the picture: those beyond the picture count, whose light
+/// reaches in.
+TEST(ProductPlan, GivesFewCellsKernelsOfTheirOwn) {
+  constexpr double nm = 430, least_ns_of_weight = 2, cell_um = 1.875;
+  TableOptions options;
+  options.wavelengths_nm = {420, nm, 440};
+  options.max_image_height_mm = 3;
+  Lens lens = read_lens("edmund-54852").lens;
+  lens.surfaces.back().thickness_mm -= 0.015;
+  const LensDataTable table = build_lens_data_table(lens, options);
+  const PsfField psfs(table, nm, cell_um, PsfInterpolation::psf, LightCentres(table));
+  const int margin = psfs.radius();
+  const SourceGrid grid({2560 + 2 * margin, 1920 + 2 * margin, cell_um}, margin);
+  const auto plan = plan_product(psfs, grid, {1e-3});
+  ASSERT_TRUE(plan);
+  double cells = 0;
+  for (int row = 0; row < grid.cells.rows; ++row)
+    for (int column = 0; column < grid.cells.columns; ++column)
+      cells += plan->exact.holds(
+                   std::hypot(column + 0.5 - grid.cells.columns / 2.0, row + 0.5 - grid.cells.rows / 2.0))
+                   ? 1
+                   : 0;
+  const double weights = std::pow(2 * margin + 1, 2);
+  EXPECT_LE(cells * weights * least_ns_of_weight, plan->filter_ns + plan->kernels_ns);
+  EXPECT_EQ(cells > 0, plan->exact_ns > 0);
+}
+
 }  // namespace
 }  // namespace petzval

@@ -216,8 +216,8 @@ double HeightKernels::coefficients() const {
 namespace {
 
 void bring_to_unit_sum(Kernel& kernel) {
-  const double sum = kernel.sum();
-  for (double& weight : kernel.weights) weight /= sum;
+  const double scale = 1 / kernel.sum();
+  for (double& weight : kernel.weights) weight *= scale;
 }
 
 }  // namespace

@@ -229,7 +229,7 @@ RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int n
 
   constexpr int most_shells = 8;
   struct Shell {
-    double inner_radius, share, square;  ///< of the whole grid
+    double inner_radius, square;  ///< of the whole grid
   };
   std::vector<Shell> shells;
   std::size_t from = 0;
@@ -237,7 +237,7 @@ RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int n
   for (int k = 0; k < most_shells; ++k) {
     const std::size_t to = std::max(from + 1, cells.end_of_shell(k));
     const double share = cells.share(from, to), square = cells.square(from, to);
-    shells.push_back({cells.places()[to].radius, share, share * square});
+    shells.push_back({cells.places()[to].radius, share * square});
     rest += share * square;
     worst = std::max(worst, square);
     from = to;
@@ -249,7 +249,6 @@ RimError rim_error(const PsfField& psfs, const SourceGrid& grid, int tile, int n
   for (const Shell& shell : shells) {
     if (rest <= limit * limit) break;
     rest -= shell.square;
-    rim.ring_share += shell.share;
     rim.ring = {shell.inner_radius, cells.places().front().radius + 2.0 * tile};  // a tile that begins inside
   }
   rim.within = rest <= limit * limit;

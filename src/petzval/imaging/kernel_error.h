@@ -50,7 +50,6 @@ struct CellRing {
 /// cells, mixtures may be off by far more than elsewhere.
 struct RimError {
   CellRing ring;           ///< that must be left out for the error of the rest to stay within the limit
-  double ring_share = 0;   ///< of the cells of the grid
   double mean_square = 0;  ///< of the error of the rim without the ring, as a part of the whole grid's
   double outermost = 0;    ///< mean square error in its outermost thousandth
   bool within = true;      ///< false: even without the largest ring that is looked at it is beyond the limit

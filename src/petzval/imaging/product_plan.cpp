@@ -51,9 +51,9 @@ double kernel_bytes(const PsfField& psfs, const SourceGrid& grid, const ProductP
 
 /// Gathered sums that might do, and what they would cost.
 ProductPlan direct_candidate(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes) {
-  constexpr double product_ns = 0.036;  // per product
-  constexpr double mix_ns = 0.1;        // per weight of a kernel that goes into a mixture
-  constexpr double add_ns = 5;          // per cell whose light is prepared and added
+  const double product_ns = 0.58 / double(lane_count());  // per product
+  constexpr double mix_ns = 0.1;                          // per weight of a kernel that goes into a mixture
+  constexpr double add_ns = 5;                            // per cell whose light is prepared and added
   ProductPlan plan;
   plan.tile = tile;
   plan.nodes = nodes;
@@ -129,14 +129,31 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid
   return plans;
 }
 
+/// Cells of the grid in a ring, those beyond the picture too.
+double cells_in(const CellRing& ring, const SensorGeometry& grid) {
+  const double half_width = grid.columns / 2.0;
+  // Of half a row, from the middle to a radius.
+  const auto within = [&](double radius, double below) {
+    const double squared = radius * radius - below * below;
+    return squared > 0 ? std::min(half_width, std::sqrt(squared)) : 0.0;
+  };
+  double cells = 0;
+  for (int row = 0; row < grid.rows; ++row) {
+    const double below = row + 0.5 - grid.rows / 2.0;
+    cells += 2 * (within(ring.to, below) - within(ring.from, below));
+  }
+  return cells;
+}
+
 /// Gives the plan what cells at the rim need kernels of their own, and the error that it has then. Whether
 /// that keeps it within the limit.
 bool mend_rim(const PsfField& psfs, const SourceGrid& grid, const RimError& rim, ProductPlan& plan) {
-  constexpr double scatter_ns = 1;  // of exact_blur, per weight
-  const double size = 2.0 * psfs.radius() + 1, cells = double(grid.cells.columns) * grid.cells.rows;
+  constexpr double weight_ns = 10;  // of exact_blur, per weight of a kernel and sample of its PSF
+  const double size = 2.0 * psfs.radius() + 1;
   plan.rim_error = rim;
   plan.exact = rim.ring;
-  plan.exact_ns = rim.ring_share * cells * (kernel_ns(psfs) + scatter_ns * size * size);
+  plan.exact_ns =
+      rim.ring.empty() ? 0 : cells_in(rim.ring, grid.cells) * weight_ns * (psfs.coefficients() + size * size);
   plan.estimated_error = std::hypot(plan.estimated_error, std::sqrt(rim.mean_square));
   return rim.within;
 }
@@ -162,7 +179,10 @@ std::optional<ProductPlan> kept_plan(const ProductPlan& hint, const PsfField& ps
   const double limit = caution_of_hint * options.tolerance;
   if (plan.estimated_error > limit) return {};
   const RimError rim = rim_error_like(hint.rim_error, psfs, grid, plan.tile, plan.nodes, limit);
-  return mend_rim(psfs, grid, rim, plan) ? std::optional(plan) : std::nullopt;
+  // A rim that has grown may want kernels of its own for far more cells: then another layout is cheaper.
+  constexpr double much_dearer = 1.5;
+  if (!mend_rim(psfs, grid, rim, plan) || plan.total_ns() > much_dearer * hint.total_ns()) return {};
+  return plan;
 }
 
 }  // namespace
@@ -209,7 +229,9 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
     }
   };
   choose(0, most_kernel_bytes);
-  if (!best) choose(most_kernel_bytes, most_kernel_bytes_at_need);
+  // Many kernels of cells at the rim cost more than memory does.
+  if (!best || best->exact_ns > best->filter_ns + best->kernels_ns)
+    choose(most_kernel_bytes, most_kernel_bytes_at_need);
   return best;
 }
 
