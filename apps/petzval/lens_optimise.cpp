@@ -41,6 +41,7 @@ void print_as_json(const OptimiseCommand& command, const OptimiseRequest& reques
                                  {"field", field_definition(request.at.field_kind)},
                                  {"rows", rows_json(optimised_fields(result, request.at, request.merit))},
                                  {"numbers", rows_json(optimised_numbers(result))}};
+  if (request.glasses > 0) json["glasses"] = rows_json(optimised_glasses(result));
   print_json(json);
 }
 
@@ -53,6 +54,12 @@ void print_as_text(const OptimiseCommand& command, const OptimiseRequest& reques
   print_table(optimised_fields(result, request.at, request.merit));
   fmt::print("\n");
   print_table(optimised_numbers(result));
+  if (request.glasses == 0) return;
+  fmt::print("\n");
+  if (result.glasses.empty())
+    fmt::print("no glass among the {} nearest of each is better\n", request.glasses);
+  else
+    print_table(optimised_glasses(result));
 }
 
 void run_optimise(const OptimiseCommand& command, const Shared& shared) {
@@ -111,6 +118,12 @@ void add_lens_optimise(CLI::App& lens, Shared& shared) {
       ->add_option("--start-spread", request.start_spread,
                    "How far beside: a share of every number; default: 0.05")
       ->check(positive_number());
+  command
+      ->add_option(
+          "--glasses", request.glasses,
+          "Also try so many glasses of the same maker, the nearest by nd and Vd, in the place of each; "
+          "default: 0, glasses stay")
+      ->check(CLI::Range(0, 100));
   command->add_option("--plot", options->plot, "Also draw the merit by round: .svg, .png or .pdf")
       ->check(output_file());
   command->add_option("-o,--output", options->output, "Lens file to write; its extension tells the format")

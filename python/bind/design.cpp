@@ -75,8 +75,8 @@ std::shared_ptr<Lens> built(const Lens& lens, std::size_t number, const std::vec
 nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables, const Numbers& fields,
                     const std::optional<std::string>& field_type, const Numbers& wavelengths_nm,
                     const Numbers& field_weights, const std::string& merit, std::optional<double> efl_mm,
-                    double least_rim_mm, int rounds, int starts, double start_spread, bool ignore_apertures,
-                    std::uint64_t seed, int threads, const nb::object& progress) {
+                    double least_rim_mm, int rounds, int starts, double start_spread, int glasses,
+                    bool ignore_apertures, std::uint64_t seed, int threads, const nb::object& progress) {
   OptimiseRequest request;
   for (const std::string& text : variables)
     for (const LensVariable& each : parse_lens_variables(lens, text)) request.variables.push_back(each);
@@ -87,6 +87,7 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
   request.efl_mm = efl_mm;
   request.least_rim_mm = least_rim_mm;
   request.rounds = rounds, request.starts = starts, request.start_spread = start_spread;
+  request.glasses = glasses;
   Call call({threads, seed, progress});
   const OptimiseResult found =
       call([lens, &request](const Context& context) { return optimise(lens, request, context); });
@@ -101,7 +102,8 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
                   {"start", Numbers{static_cast<double>(found.start)}},
                   {"by_round", found.by_round}};
   result.tables = {{"rows", "by field", optimised_fields(found, request.at, request.merit)},
-                   {"numbers", "what was altered", optimised_numbers(found)}};
+                   {"numbers", "what was altered", optimised_numbers(found)},
+                   {"glasses", "glasses that were replaced", optimised_glasses(found)}};
   result.plots.push_back(optimise_plot(found.lens.name, found, request.merit));
   return nb::make_tuple(std::make_shared<Lens>(found.lens), python_of("optimise", result));
 }
@@ -174,7 +176,8 @@ constexpr const char* optimise_text =
     "\"image\", "
     "\"surfaces[1].conic=-2:0\"]; none: radii and image. `merit`: spot [um] or wavefront [nm]. `efl_mm`: the "
     "focal "
-    "length to hold; None: as it is. docs/OPTIMISING.md.";
+    "length to hold; None: as it is. `glasses`: try so many near ones of its maker in the place of each. "
+    "docs/OPTIMISING.md.";
 
 }  // namespace
 
@@ -201,8 +204,9 @@ void bind_design(nb::module_&) {
       nb::arg("fields") = Numbers(), nb::arg("field_type").none() = nb::none(),
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(), nb::arg("merit") = "spot",
       nb::arg("efl_mm").none() = nb::none(), nb::arg("least_rim_mm") = 0.5, nb::arg("rounds") = 30,
-      nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("ignore_apertures") = false,
-      nb::arg("seed") = 1, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), optimise_text);
+      nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("glasses") = 0,
+      nb::arg("ignore_apertures") = false, nb::arg("seed") = 1, nb::arg("threads") = 0,
+      nb::arg("progress").none() = nb::none(), optimise_text);
 }
 
 }  // namespace petzval::python

@@ -41,6 +41,14 @@ def test_errors_say_what_would_be_right():
         lens.built(0, grade="best")
     with pytest.raises(pz.InputError, match="radii, thicknesses"):
         lens.optimise(["bendings"])
+
+
+def test_glasses_are_chosen():
+    lens = pz.Lens("plano-convex")
+    better, report = lens.optimise(glasses=5)
+    assert better.surfaces[0].material != lens.surfaces[0].material
+    assert report.facts["after"][0] < lens.optimise()[1].facts["after"][0]
+    assert report.tables["glasses"].rows[0]["glass"] == str(better.surfaces[0].material)
     with pytest.raises(pz.InputError, match="element_tilt_deg"):
         lens.tolerance(tolerances=["tilt=3"])
 

@@ -6,9 +6,11 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/spots.h>
 #include <petzval/base/error.h>
+#include <petzval/glass/catalogue.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/surface_shape.h>
+#include <petzval/optimise/glass_choice.h>
 #include <petzval/optimise/optimise.h>
 #include <petzval/optimise/ray_merit.h>
 
@@ -150,6 +152,83 @@ TEST(Optimise, AWavefrontBecomesSmaller) {
   const OptimiseResult result = optimise(lens, request);
   EXPECT_LT(result.after, 0.5 * result.before);
   EXPECT_LT(spot_um(result.lens), spot_um(lens));
+}
+
+TEST(GlassChoice, NeighboursAreTheNearestOfTheMaker) {
+  const auto glass = GlassCatalogue::bundled().find("SCHOTT:N-SF2");
+  const std::vector<double> nm{480, 550, 640};
+  const auto near = nearest_glasses(*glass, 6, nm);
+  ASSERT_EQ(near.size(), 6U);
+  // Every glass of the maker that is not among them is farther away than the last of them.
+  double last = 0;
+  for (const auto& each : near) {
+    EXPECT_EQ(each->catalogue, "SCHOTT");
+    EXPECT_NE(each->name, glass->name);
+    const double distance = glass_distance(*glass->abbe(), *each->abbe());
+    EXPECT_GE(distance, last) << each->name;
+    last = distance;
+  }
+  for (const std::string& name : GlassCatalogue::bundled().full_names()) {
+    if (!name.starts_with("SCHOTT:") || name == glass->full_name()) continue;
+    const auto other = GlassCatalogue::bundled().find(name);
+    const bool among = std::ranges::any_of(near, [&](const auto& each) { return each->full_name() == name; });
+    if (!among && other->abbe()) {
+      EXPECT_GE(glass_distance(*glass->abbe(), *other->abbe()), last) << name;
+    }
+  }
+  EXPECT_GT(nearest_glasses(*glass, 10000, nm).size(), 50U);
+}
+
+/// A singlet, whose colour alone a glass can mend: by a law, the longitudinal colour of a thin lens is f/Vd.
+Lens singlet(const char* glass) {
+  Lens lens;
+  lens.name = "singlet";
+  lens.wavelengths_nm = {486.1327, 587.5618, 656.2725};
+  lens.reference_wavelength_nm = 587.5618;
+  lens.aperture = {Aperture::Kind::entrance_pupil_diameter_mm, 5};
+  lens.surfaces = {Surface::sphere(55, 3, glass_material(glass), 4), Surface::sphere(-250, 86, {}, 4)};
+  lens.surfaces[0].stop = true;
+  return lens;
+}
+
+// Glasses of a singlet go towards large Vd, step by step as long as there is a
+// nearer one that is better; and where they end no neighbour is better, each tried by itself.
+TEST(Optimise, GlassesAreChosenUntilNoNeighbourIsBetter) {
+  constexpr int neighbours = 8;
+  const Lens lens = singlet("SCHOTT:N-BAK4");
+  OptimiseRequest request = request_for(lens, {"radii", "image"});
+  const OptimiseResult same_glass = optimise(lens, request);
+  request.glasses = neighbours;
+  const OptimiseResult result = optimise(lens, request);
+  ASSERT_EQ(result.glasses.size(), 1U);
+  EXPECT_EQ(result.glasses[0].before, "SCHOTT:N-BAK4");
+  const auto chosen = catalogue_glass(result.lens, 0);
+  EXPECT_EQ(result.glasses[0].after, chosen->full_name());
+  const auto vd = [](const std::shared_ptr<const Glass>& glass) { return glass->abbe()->vd; };
+  EXPECT_GT(vd(chosen), vd(catalogue_glass(lens, 0)));
+  // The spot of a slow singlet at its best focus is colour alone: it goes as 1/Vd, to what spheres add.
+  EXPECT_NEAR(result.after / same_glass.after, vd(catalogue_glass(lens, 0)) / vd(chosen), 0.1);
+  OptimiseRequest alone = request;
+  alone.glasses = 0;
+  for (const auto& near : nearest_glasses(*chosen, neighbours, lens.wavelengths_nm)) {
+    Lens other = result.lens;
+    other.surfaces[0].material = Material(near);
+    EXPECT_GT(optimise(other, alone).after, result.after * (1 - 1e-3)) << near->name;
+  }
+}
+
+TEST(Optimise, GlassesDoNotDependOnThreadsAndNeedACatalogue) {
+  const Lens lens = singlet("SCHOTT:N-BAK4");
+  OptimiseRequest request = request_for(lens, {"radii", "image"});
+  request.glasses = 3;
+  Context one, two;
+  one.threads = 1, two.threads = 2;
+  const OptimiseResult first = optimise(lens, request, one), second = optimise(lens, request, two);
+  EXPECT_EQ(first.after, second.after);
+  EXPECT_EQ(first.lens.surfaces[0].material.description(), second.lens.surfaces[0].material.description());
+  Lens constant = lens;
+  constant.surfaces[0].material = Material(Material::Constant{1.6});
+  EXPECT_THROW(optimise(constant, request), InputError);
 }
 
 TEST(Optimise, StopsWhenTold) {

@@ -8,6 +8,7 @@
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 #include <petzval/numeric/random.h>
+#include <petzval/optimise/glass_choice.h>
 #include <petzval/optimise/optimise.h>
 #include <petzval/optimise/ray_merit.h>
 
@@ -30,7 +31,11 @@ constexpr double efl_cost_um = 5e3, rim_cost_um = 1e3, nm_of_wave_per_um = 50;
 constexpr double lost_ray = 1e6;
 /// A round that improves less than by this share is the last. Steps of one round at most.
 constexpr double worth_a_round = 1e-4;
-constexpr int most_steps = 25, most_rounds = 1000, most_starts = 1000;
+constexpr int most_steps = 25, most_rounds = 1000, most_starts = 1000, most_glasses = 100;
+/// A glass that improves the squares by less than this share is not worth a change. Rounds by which a glass
+/// is judged.
+constexpr double worth_a_glass = 1e-3;
+constexpr int rounds_for_glass = 5;
 /// Of differences that are smooth and cost nothing: a third of the digits.
 constexpr double difference_share = 1e-6;
 
@@ -240,6 +245,51 @@ Descent descend(Lens lens, const OptimiseRequest& request, const Objective::Targ
   return descent;
 }
 
+/// A glass in the place of another, and the numbers as far as they have followed.
+struct GlassTrial {
+  std::size_t surface;
+  std::shared_ptr<const Glass> glass;
+  std::optional<Descent> descent;  ///< nothing if no light gets through
+};
+
+std::vector<GlassTrial> glass_trials(const Lens& lens, const OptimiseRequest& request) {
+  std::vector<GlassTrial> trials;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (const std::shared_ptr<const Glass> glass = catalogue_glass(lens, i))
+      for (auto& near :
+           nearest_glasses(*glass, static_cast<std::size_t>(request.glasses), request.at.wavelengths_nm))
+        trials.push_back({i, std::move(near), {}});
+  return trials;
+}
+
+/// Changes one glass after another, each time the one that pays most, until none does.
+void choose_glasses(Descent& best, const OptimiseRequest& request, const Objective::Targets& targets,
+                    const std::function<void()>& check_stop, const ProgressCallback& progress) {
+  OptimiseRequest brief = request;
+  brief.rounds = std::min(request.rounds, rounds_for_glass);
+  for (;;) {
+    std::vector<GlassTrial> trials = glass_trials(best.lens, request);
+    std::atomic<std::size_t> done = 0;
+    parallel_tasks(trials.size(), [&](std::size_t i) {
+      Lens lens = best.lens;
+      lens.surfaces[trials[i].surface].material = Material(trials[i].glass);
+      try {
+        trials[i].descent = descend(std::move(lens), brief, targets, check_stop, [](int) {});
+      } catch (const InputError&) {
+      }
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(trials.size()), "glasses");
+    });
+    const Descent* winner = nullptr;
+    for (const GlassTrial& trial : trials)
+      if (trial.descent && (!winner || trial.descent->cost < winner->cost)) winner = &*trial.descent;
+    if (!winner || winner->cost > best.cost * (1 - worth_a_glass)) return;
+    Descent next = descend(winner->lens, request, targets, check_stop, [](int) {});
+    best.by_round.insert(best.by_round.end(), next.by_round.begin(), next.by_round.end());
+    best.lens = std::move(next.lens);
+    best.cost = next.cost;
+  }
+}
+
 /// A lens beside the given one, within the limits of the variables.
 Lens beside(const Lens& lens, const OptimiseRequest& request, std::uint64_t seed, std::size_t start) {
   const Mapping mapping(lens, request.variables);
@@ -286,6 +336,14 @@ void check(const Lens& lens, const OptimiseRequest& request) {
   if (!(request.start_spread > 0 && request.start_spread < 1))
     throw InputError(
         fmt::format("starts spread by {:g}; a share between 0 and 1 would be right", request.start_spread));
+  if (request.glasses < 0 || request.glasses > most_glasses)
+    throw InputError(fmt::format("{} glasses to try; 0 to {} would be right", request.glasses, most_glasses));
+  bool any_glass = request.glasses == 0;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) any_glass = any_glass || catalogue_glass(lens, i);
+  if (!any_glass)
+    throw InputError(
+        "no glass of this lens is from a catalogue, so none has neighbours; `glasses` 0 would be "
+        "right");
   if (!(request.least_rim_mm >= 0))
     throw InputError(fmt::format("a rim of {:g} mm; 0 or more would be right", request.least_rim_mm));
 }
@@ -304,6 +362,9 @@ OptimiseResult report(const Lens& lens, const OptimiseRequest& request, const De
   for (const LensVariable& variable : request.variables)
     result.numbers.push_back(
         {variable.number, shown_value(lens, variable.number), shown_value(best.lens, variable.number)});
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (const auto old = catalogue_glass(lens, i), now = catalogue_glass(best.lens, i); old != now)
+      result.glasses.push_back({i, old->full_name(), now->full_name()});
   result.by_round = best.by_round;
   result.lens = best.lens;
   result.lens.name += ", optimised";
@@ -335,6 +396,7 @@ OptimiseResult work(const Lens& lens, const OptimiseRequest& request, std::uint6
   std::size_t best = 0;
   for (std::size_t i = 1; i < starts; ++i)
     if (descents[i] && descents[i]->cost < descents[best]->cost) best = i;
+  if (request.glasses > 0) choose_glasses(*descents[best], request, targets, look_up, progress);
   OptimiseResult result = report(lens, request, *descents[best]);
   result.start = static_cast<int>(best);
   return result;

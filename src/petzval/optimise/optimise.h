@@ -6,7 +6,9 @@
 #include <petzval/base/context.h>
 #include <petzval/optimise/lens_variable.h>
 
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace petzval {
@@ -27,6 +29,7 @@ struct OptimiseRequest {
   int rounds = 30;                    ///< at most; in each the rays are chosen anew from the real pupils
   int starts = 1;                     ///< the lens itself, and this number less one that begin beside it
   double start_spread = 0.05;         ///< how far beside: standard deviation, as a share of every number
+  int glasses = 0;  ///< so many of the nearest of its maker are tried in each glass's place (nearest_glasses)
 };
 
 /// One variable before and after.
@@ -35,20 +38,28 @@ struct OptimisedNumber {
   double before = 0, after = 0;  ///< as people give it: the radius of a curvature
 };
 
+/// A glass that another has replaced, "SCHOTT:N-SF2".
+struct ChosenGlass {
+  std::size_t surface = 0;  ///< that it follows
+  std::string before, after;
+};
+
 struct OptimiseResult {
   Lens lens;                                        ///< as altered, its name saying so
   double before = 0, after = 0;                     ///< the merit: root mean square over the weighted fields
   std::vector<double> fields_before, fields_after;  ///< of every field
   double efl_before_mm = 0, efl_after_mm = 0;
   std::vector<OptimisedNumber> numbers;
-  std::vector<double> by_round;  ///< the merit, from the start of the winner on
-  int start = 0;                 ///< which start won; 0: the lens itself
+  std::vector<ChosenGlass> glasses;  ///< that were replaced, in the order of surfaces
+  std::vector<double> by_round;      ///< the merit, from the start of the winner on
+  int start = 0;                     ///< which start won; 0: the lens itself
 };
 
 /// Least squares by Levenberg and Marquardt (Moré's MINPACK, as Eigen has it) over transverse aberrations or
 /// path differences of rays through the real pupils, with exact derivatives (trace_derived); beside them the
-/// focal length and the thickness of glass at the rim. A lens that no step improves comes back as it was. The
-/// same request and seed give the same lens on any number of threads.
+/// focal length and the thickness of glass at the rim. Glasses are chosen after that: each near one is put in
+/// the place of each, the numbers follow, the best such change is kept, until none is better. A lens that no
+/// step improves comes back as it was. The same request and seed give the same lens on any number of threads.
 /// \throws InputError for variables, weights or numbers that do not fit, a lens with poses, a field at which
 /// no ray passes; Cancelled.
 OptimiseResult optimise(const Lens& lens, const OptimiseRequest& request = {}, const Context& context = {});

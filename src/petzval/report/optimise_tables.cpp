@@ -31,6 +31,14 @@ Table optimised_numbers(const OptimiseResult& result) {
   return table;
 }
 
+Table optimised_glasses(const OptimiseResult& result) {
+  Table table{{{"surface", "", 0, "surface"}, {"before", "", 0, "glass_before"}, {"after", "", 0, "glass"}},
+              {}};
+  for (const ChosenGlass& each : result.glasses)
+    table.rows.push_back({static_cast<double>(each.surface), each.before, each.after});
+  return table;
+}
+
 Plot optimise_plot(const std::string& lens, const OptimiseResult& result, OptimiseMerit merit) {
   Plot plot;
   plot.title = lens;

@@ -20,6 +20,8 @@ const char* name_of(OptimiseMerit merit);
 Table optimised_fields(const OptimiseResult& result, const FieldTableRequest& at, OptimiseMerit merit);
 /// Every variable before and after.
 Table optimised_numbers(const OptimiseResult& result);
+/// Every glass that another has replaced.
+Table optimised_glasses(const OptimiseResult& result);
 /// The merit over the rounds.
 Plot optimise_plot(const std::string& lens, const OptimiseResult& result, OptimiseMerit merit);
 
