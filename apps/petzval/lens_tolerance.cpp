@@ -120,7 +120,8 @@ void run(ToleranceCommand command, const Shared& shared) {
   request.distribution = distributions().at(command.distribution);
   if (!command.azimuths.empty())
     request.judge.azimuths_deg = parse_number_list(command.azimuths, "azimuths_deg");
-  for (const std::string& text : command.tolerances) request.tolerances.push_back(parse_tolerance(text));
+  for (const std::string& text : command.tolerances)
+    for (const Tolerance& each : parse_tolerances(text)) request.tolerances.push_back(each);
   const Lens read = command.fields.prepare(command.lens.read(shared), shared);
   const Lens lens = command.camera.used(read, command.fields.request(read), shared);
   request.judge.at = command.fields.request(lens);

@@ -123,7 +123,8 @@ nb::tuple tolerances_to(const std::vector<Tolerance>& tolerances) {
 
 std::vector<Tolerance> tolerances_from(const std::vector<std::string>& texts) {
   std::vector<Tolerance> tolerances;
-  for (const std::string& text : texts) tolerances.push_back(parse_tolerance(text));
+  for (const std::string& text : texts)
+    for (const Tolerance& each : parse_tolerances(text)) tolerances.push_back(each);
   return tolerances;
 }
 

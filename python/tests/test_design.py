@@ -46,9 +46,9 @@ def test_errors_say_what_would_be_right():
 def test_glasses_are_chosen():
     lens = pz.Lens("plano-convex")
     better, report = lens.optimise(glasses=5)
-    assert better.surfaces[0].material != lens.surfaces[0].material
+    assert better.surfaces[0].glass != lens.surfaces[0].glass
     assert report.facts["after"][0] < lens.optimise()[1].facts["after"][0]
-    assert report.tables["glasses"].rows[0]["glass"] == str(better.surfaces[0].material)
+    assert report.tables["glasses"].rows[0]["glass"] in str(better.surfaces[0].glass)
     with pytest.raises(pz.InputError, match="element_tilt_deg"):
         lens.tolerance(tolerances=["tilt=3"])
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What each kind of tolerance does to a lens, against its definition; names of other programs; mistakes.
+#include <fmt/format.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/pose.h>
+#include <petzval/lens/surface_shape.h>
 #include <petzval/lens/tolerance.h>
 
 #include <set>
@@ -43,6 +45,55 @@ TEST(Tolerance, FringesAreCountedAtTheRim) {
   const double exact = sag(built) - sag(designed), steepness = std::pow(h / radius(designed, 0), 2);
   EXPECT_NEAR(exact / 546.07e-6, 1, 2 * steepness);
   EXPECT_GT(exact, 0);
+}
+
+/// From the definition: heights of the surface itself at its rim.
+double sag_at(const Lens& lens, std::size_t surface, double azimuth) {
+  const double rim = *lens.surfaces[surface].semi_diameter_mm;
+  return surface_point(shape_of(lens.surfaces[surface]), rim * std::cos(azimuth), rim * std::sin(azimuth))
+      .sag;
+}
+
+TEST(Tolerance, IrregularityIsSagFromPeakToValley) {
+  constexpr double fringe_mm = 546.07e-6 / 2;
+  std::vector<Lens> lenses(4, triplet_of_tolerances());
+  lenses[1].surfaces[2].asphere = {{2, 1e-4}, {4, -3e-6}, {8, 1e-9}};
+  lenses[2].surfaces[2].shape = {
+      "zernike_sag", {{"normalisation_radius_mm", {9.0}}, {"coefficients_mm", {0, 1e-3, 0, 0, 2e-4}}}};
+  lenses[3].surfaces[2].shape = {
+      "xy_polynomial", {{"normalisation_radius_mm", {11.0}}, {"coefficients_mm", {1e-3, 0, 0, 2e-3}}}};
+  const Tolerance tolerance = parse_tolerance("irregularity_fringes@2=2");
+  for (const Lens& lens : lenses)
+    for (const double turn : {0.0, 45.0, 90.0, 135.0}) {
+      // An error of 2 fringes whose peak lies at an azimuth; opposite errors have peak and valley exchanged.
+      const double twice = radians(2 * turn);
+      const Lens built = with_error(lens, tolerance, 2 * std::cos(twice), 2 * std::sin(twice));
+      const auto change = [&](double azimuth_deg) {
+        return sag_at(built, 2, radians(azimuth_deg)) - sag_at(lens, 2, radians(azimuth_deg));
+      };
+      EXPECT_NEAR(change(turn) - change(turn + 90), 2 * fringe_mm, 1e-9 * fringe_mm);
+      EXPECT_NEAR(change(turn) + change(turn + 90), 0, 1e-9 * fringe_mm);
+      EXPECT_NEAR(change(turn + 45), 0, 1e-9 * fringe_mm);
+      EXPECT_NEAR(change(turn + 180), change(turn), 1e-9 * fringe_mm);
+    }
+}
+
+TEST(Tolerance, ReadsDrawingsOfIso10110) {
+  const auto text_of = [](const char* text) {
+    std::string all;
+    for (const Tolerance& each : parse_tolerances(text))
+      all += fmt::format("{}={:.6g} ", place_of(each), each.limit);
+    return all;
+  };
+  EXPECT_EQ(text_of("3/2(0.5)@4"), "radius_fringes@4=2 irregularity_fringes@4=0.5 ");
+  EXPECT_EQ(text_of("3/-(0.5)@4"), "irregularity_fringes@4=0.5 ");
+  EXPECT_EQ(text_of("3/3@0"), "radius_fringes@0=3 ");
+  EXPECT_EQ(text_of("4/3'@1"), "surface_tilt_deg@1=0.05 ");
+  EXPECT_EQ(text_of("4/6@1"), "surface_tilt_deg@1=0.1 ");
+  EXPECT_EQ(text_of("index@0=0.001"), "index@0=0.001 ");
+  for (const char* text :
+       {"3/", "4/", "3/@1", "3/-@1", "3/2(1@1", "3/2(1/0.5)@1", "3/2(1)@x", "4/x@1", "3/2(1)"})
+    expect_mentions(error_of([&] { parse_tolerances(text); }), {"ISO 10110", "4/TILT"});
 }
 
 TEST(Tolerance, ThicknessMovesWhatLiesBehind) {
@@ -92,6 +143,7 @@ TEST(Tolerance, KnowsTheNamesOfOtherPrograms) {
   for (const auto& [theirs, ours] : {std::pair{"TRAD", "radius_mm"},
                                      {"TFRN", "radius_fringes"},
                                      {"DLF", "radius_fringes"},
+                                     {"IRR", "irregularity_fringes"},
                                      {"TTHI", "thickness_mm"},
                                      {"DLT", "thickness_mm"},
                                      {"TIND", "index"},
@@ -149,6 +201,9 @@ TEST(Tolerance, SaysWhatWouldBeRight) {
   expect_mentions(complaint("radius_percent@0-1=1"), {"one surface"});
   expect_mentions(complaint("radius_percent@0=0"), {"positive number of %"});
   expect_mentions(complaint("radius_percent@0=-1"), {"positive number of %"});
+  Lens odd = triplet_of_tolerances();
+  odd.surfaces[2].asphere = {{3, 1e-6}};
+  expect_mentions(error_of([&] { check(odd, parse_tolerance("IRR@2=1")); }), {"surfaces[2]", "odd powers"});
   expect_mentions(complaint("index@1=0.001"), {"surfaces[1]", "air"});
   Lens lens = triplet_of_tolerances();
   lens.surfaces[0].semi_diameter_mm.reset();

@@ -279,8 +279,9 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   if (const auto tolerances = root.find("build_tolerances"))
     for (const JsonEntry& item : tolerances->items("a list of tolerances")) {
       try {
-        recipe.build_tolerances.push_back(
-            parse_tolerance(item.text("a tolerance such as \"element_tilt_deg@2-3=0.05\"")));
+        for (const Tolerance& each :
+             parse_tolerances(item.text("a tolerance such as \"element_tilt_deg@2-3=0.05\"")))
+          recipe.build_tolerances.push_back(each);
       } catch (const InputError& error) {
         item.fail(error.what());
       }

@@ -5,6 +5,8 @@
 #include <petzval/base/text_lines.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens.h>
+#include <petzval/lens/shapes/xy_terms.h>
+#include <petzval/lens/surface_kind.h>
 #include <petzval/lens/tolerance.h>
 
 #include <algorithm>
@@ -35,6 +37,17 @@ const char* glass(const Lens& lens, std::size_t surface) {
              ? "is followed by air; a surface before glass would be right"
              : nullptr;
 }
+/// Where astigmatism can be added to the sag.
+const char* polynomial(const Lens& lens, std::size_t surface) {
+  const Surface& at = lens.surfaces[surface];
+  if (at.shape && at.shape->kind != "xy_polynomial" && at.shape->kind != "zernike_sag")
+    return "is of a kind to which no polynomial can be added; a conic, even powers of r, xy_polynomial or "
+           "zernike_sag would be right";
+  for (const auto& [power, coefficient] : at.asphere)
+    if (power % 2 != 0 || power > 20)
+      return "has odd powers of r or such above 20; even ones up to 20 would be right";
+  return bounded(lens, surface);
+}
 const char* anywhere(const Lens&, std::size_t) {
   return nullptr;
 }
@@ -50,6 +63,43 @@ void radius_mm(Lens& lens, const Tolerance& at, double x, double) {
 void radius_fringes(Lens& lens, const Tolerance& at, double x, double) {
   Surface& surface = lens.surfaces[at.first];
   surface.curvature_per_mm += x * fringe_mm / (*surface.semi_diameter_mm * *surface.semi_diameter_mm);
+}
+/// The conic and even powers of r as a polynomial of x and y over the clear aperture.
+AddedShape as_xy_polynomial(const Surface& surface) {
+  const double radius = *surface.semi_diameter_mm;
+  std::vector<double> terms(5);
+  for (const auto& [power, coefficient] : surface.asphere) {
+    const auto degree = static_cast<std::size_t>(power), half = degree / 2;
+    terms.resize(std::max(terms.size(), degree * (degree + 3) / 2));
+    double term = coefficient * std::pow(radius, power);  // of (x² + y²)^half, by the binomial theorem
+    for (std::size_t k = 0; k <= half; ++k) {
+      terms[degree * (degree + 1) / 2 - 1 + 2 * k] += term;
+      term *= static_cast<double>(half - k) / static_cast<double>(k + 1);
+    }
+  }
+  return {"xy_polynomial", {{"normalisation_radius_mm", {radius}}, {"coefficients_mm", terms}}};
+}
+/// N fringes in reflection are a sag that differs by N λ/2 between the highest and the lowest place of the
+/// rim: N λ/4 times ρ² cos 2θ, and ρ² sin 2θ for y.
+void irregularity_fringes(Lens& lens, const Tolerance& at, double x, double y) {
+  Surface& surface = lens.surfaces[at.first];
+  if (!surface.shape) {
+    surface.shape = as_xy_polynomial(surface);
+    surface.asphere.clear();
+  }
+  std::vector<double>& terms = surface.shape->parameters["coefficients_mm"];
+  const double wider = shape_numbers(surface, "normalisation_radius_mm").at(0) / *surface.semi_diameter_mm;
+  const double per_fringe = fringe_mm / 4 * wider * wider;
+  if (surface.shape->kind == "xy_polynomial") {
+    terms.resize(std::max<std::size_t>(terms.size(), 5));
+    terms[2] += x * per_fringe;
+    terms[3] += 2 * y * per_fringe;
+    terms[4] -= x * per_fringe;
+  } else {  // Noll's Z5 and Z6, √6 ρ² sin 2θ and √6 ρ² cos 2θ
+    terms.resize(std::max<std::size_t>(terms.size(), 6));
+    terms[4] += y * per_fringe / std::sqrt(6.0);
+    terms[5] += x * per_fringe / std::sqrt(6.0);
+  }
 }
 void thickness_mm(Lens& lens, const Tolerance& at, double x, double) {
   lens.surfaces[at.first].thickness_mm += x;
@@ -102,6 +152,9 @@ constexpr ToleranceKind kinds[] = {
     {"radius_mm", "mm", "of a radius of curvature", "TRAD DLR", false, false, curved, radius_mm},
     {"radius_fringes", "fringes", "of power, in reflection at 546.07 nm over the clear aperture", "TFRN DLF",
      false, false, bounded, radius_fringes},
+    {"irregularity_fringes", "fringes",
+     "astigmatic, from peak to valley over the clear aperture, in reflection at 546.07 nm", "IRR", true,
+     false, polynomial, irregularity_fringes},
     {"thickness_mm", "mm", "of the gap behind a surface; what lies behind moves along", "TTHI DLT", false,
      false, anywhere, thickness_mm},
     {"index", "", "nd of the glass behind a surface", "TIND DLN", false, false, glass, index},
@@ -246,6 +299,39 @@ Tolerance parse_tolerance(std::string_view text) {
   Tolerance tolerance{std::string(text.substr(0, at)), *first, *last, *limit};
   tolerance.kind = kind_of(tolerance).name;
   return tolerance;
+}
+
+std::vector<Tolerance> parse_tolerances(std::string_view text) {
+  if (!text.starts_with("3/") && !text.starts_with("4/")) return {parse_tolerance(text)};
+  const auto wrong = [&] {
+    return InputError(
+        fmt::format("\"{}\" is not a tolerance of ISO 10110; 3/POWER(IRREGULARITY)@SURFACE in fringes or "
+                    "4/TILT@SURFACE in minutes of arc would be right",
+                    text));
+  };
+  const std::size_t at = text.find('@');
+  const auto surface = at == text.npos ? std::nullopt : index_in(text.substr(at + 1));
+  if (!surface) throw wrong();
+  std::vector<Tolerance> tolerances;
+  const auto add = [&](const char* kind, std::string_view number, double unit) {
+    if (number == "-") return;
+    const auto limit = parse_number(std::string(number));
+    if (!limit) throw wrong();
+    tolerances.push_back({kind, *surface, *surface, *limit * unit});
+  };
+  const std::string_view limits = text.substr(2, at - 2);
+  if (text.front() == '4') {
+    add("surface_tilt_deg", limits.substr(0, limits.find('\'')), 1 / 60.0);
+  } else {
+    const std::size_t open = limits.find('(');
+    add("radius_fringes", limits.substr(0, open), 1);
+    if (open != limits.npos) {
+      if (limits.back() != ')') throw wrong();
+      add("irregularity_fringes", limits.substr(open + 1, limits.size() - open - 2), 1);
+    }
+  }
+  if (tolerances.empty()) throw wrong();
+  return tolerances;
 }
 
 std::string place_of(const Tolerance& tolerance) {

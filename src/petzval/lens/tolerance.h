@@ -56,6 +56,9 @@ std::vector<std::pair<std::size_t, std::size_t>> elements_of(const Lens& lens);
 /// A tolerance as the command line has it: "element_tilt_deg@2-3=0.05", surfaces counted from 0. \throws
 /// InputError saying what is wrong and what would be right.
 Tolerance parse_tolerance(std::string_view text);
+/// The same, or what a drawing by ISO 10110 says of a surface: "3/2(0.5)@4", power and irregularity in fringe
+/// spacings, one of them "-" where it is not stated, and "4/3@4", the tilt of the surface in minutes of arc.
+std::vector<Tolerance> parse_tolerances(std::string_view text);
 /// "element_tilt_deg@2-3".
 std::string place_of(const Tolerance& tolerance);
 
