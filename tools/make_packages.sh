@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Makes what people install, in FOLDER: the source release, the Debian packages and the Python wheel.
-# Usage: tools/make_packages.sh FOLDER [--try] [source] [deb] [wheel]     (without names: all three)
+# Usage: tools/make_packages.sh FOLDER [--try] [source] [deb] [wheel] [container]     (without names: the first three)
 # --try, as root: each is used in a bare Debian 12 of its own (debootstrap, in FOLDER/bare), the wheel in Debian 13 as well.
+# `container --try` runs the steps of Containerfile in a bare system, for machines without Docker.
 # PYTHON: another than python3, for the wheel.
 set -euo pipefail
 
@@ -18,7 +19,7 @@ try=false kinds=()
 for word in "$@"; do
   case $word in
     --try) try=true ;;
-    source | deb | wheel) kinds+=("$word") ;;
+    source | deb | wheel | container) kinds+=("$word") ;;
     *) usage ;;
   esac
 done
@@ -109,7 +110,34 @@ sensor = pz.Sensor("example-vga", {"columns": 64, "rows": 48, "pitch_um": 50})
 camera = pz.Camera("edmund-54852", f_number=4, sensor=sensor)
 light = camera.image(pz.SceneRequest("studio", wavelengths_nm=[450, 550, 650]))
 print(sys.version.split()[0], light, pz.develop(camera.expose(light)))'
+    in_bare $name /opt/v/bin/python -c '
+import subprocess
+import sys
+timed = "import time; start = time.process_time(); import petzval; print(time.process_time() - start)"
+best_ms = 1e3 * min(float(subprocess.check_output([sys.executable, "-c", timed])) for _ in range(5))
+print(f"import petzval: {best_ms:.0f} ms")
+assert best_ms < 150'
   done
+}
+
+# steps STAGE: what the container recipe runs in its build (1) or in the image (2).
+steps() { awk -v stage="$1" '/^FROM/ { n++ } n == stage && sub(/^RUN /, "")' "$here/Containerfile"; }
+
+make_container() { make_source; }
+
+try_container() { # its steps, without a container
+  bare container-build bookworm bash,ca-certificates
+  bare container bookworm bash,ca-certificates
+  local build=$folder/bare/container-build image=$folder/bare/container step
+  rm -rf "$build/petzval" "$build/packages"
+  tar -xzf "$folder/petzval-$version.tar.gz" -C "$build"
+  mv "$build/petzval-$version" "$build/petzval"
+  while read -r step; do in_bare container-build bash -ec "$step" </dev/null; done < <(steps 1)
+  cp "$build"/packages/petzval_*.deb "$image/tmp"
+  while read -r step; do in_bare container bash -ec "$step" </dev/null; done < <(steps 2)
+  mkdir -p "$image/work"
+  in_bare container bash -c 'cd /work && petzval image studio --lens edmund-54852 --quiet -o studio.png'
+  test -s "$image/work/studio.png"
 }
 
 unmount() { umount --quiet "$folder"/bare/*/proc || true; }

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/numeric/chebyshev_surface.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -75,6 +76,42 @@ TEST(ChebyshevSurface, MeetsPolynomialsWithoutSymmetry) {
   // A surface that must be even cannot be this one, and a polynomial of two variables has (d+1)(d+2)/2 terms.
   EXPECT_GT(ChebyshevSurface::fit(points.x, points.y, values, 4)[0].max_residual(), 0.1);
   EXPECT_EQ(ChebyshevSurface::unknowns(4, none), 15u);
+}
+
+/// The law of least squares: what is left of the values is orthogonal to every term.
+void expect_orthogonal_residual(ChebyshevSurface::Symmetry symmetry) {
+  const int degree = 12;
+  Points points = sample([](double x, double y) { return std::sin(1e4 * x) + std::sin(1e4 * y); });
+  if (symmetry == ChebyshevSurface::Symmetry::none)
+    for (std::size_t i = 0, half = points.x.size(); i < half; ++i) {
+      points.x.push_back(-1.01 * points.x[i]), points.y.push_back(points.y[i]);
+      points.value.push_back(std::sin(7e4 * points.x[i]));
+    }
+  const std::array<std::span<const double>, 1> values{points.value};
+  const std::vector<ChebyshevSurface> fitted =
+      ChebyshevSurface::fit(points.x, points.y, values, degree, symmetry);
+  ASSERT_EQ(fitted.size(), 1u);
+  const auto [low, high] = std::minmax_element(points.y.begin(), points.y.end());
+  EXPECT_GT(fitted[0].rms_residual(), 0.1);  // there is something left
+  const int odd = symmetry == ChebyshevSurface::Symmetry::none ? 1 : 0;
+  for (int power = 0; power <= odd; ++power)
+    for (int m = 0; 2 * m + power <= degree; ++m)
+      for (int n = 0; 2 * m + power + n <= degree; ++n) {
+        double sum = 0;
+        for (std::size_t i = 0; i < points.x.size(); ++i) {
+          const double r = points.x[i] / fitted[0].x_scale();
+          const double u = std::clamp(2 * r * r - 1, -1.0, 1.0);
+          const double v = std::clamp((2 * points.y[i] - *low - *high) / (*high - *low), -1.0, 1.0);
+          sum += (points.value[i] - fitted[0](points.x[i], points.y[i])) * std::pow(r, power) *
+                 std::cos(m * std::acos(u)) * std::cos(n * std::acos(v));
+        }
+        EXPECT_NEAR(sum, 0, 1e-9) << power << " " << m << " " << n;
+      }
+}
+
+TEST(ChebyshevSurface, LeavesWhatIsOrthogonalToEveryTerm) {
+  expect_orthogonal_residual(ChebyshevSurface::Symmetry::even_in_x);
+  expect_orthogonal_residual(ChebyshevSurface::Symmetry::none);
 }
 
 TEST(ChebyshevSurface, GivesItsSeriesAlongX) {

@@ -37,6 +37,113 @@ void require_points(std::span<const double> x, std::span<const double> y,
   if (!good) throw InputError("a surface fit needs as many finite values as points, and at least one point");
 }
 
+/// The terms r^p T_m(u) T_n(v) at the points, r = x/x_scale, p = 0 and for what is odd in x 1. Each is a
+/// product of a function of x and one of y, and no list of all of them is kept: their sums over the points
+/// are products of matrices that are a dozen times smaller.
+class PointTerms {
+ public:
+  PointTerms(std::span<const double> x, std::span<const double> y, double x_scale, double y_middle,
+             double y_scale, int degree, ChebyshevSurface::Symmetry symmetry) {
+    const auto points = static_cast<Eigen::Index>(x.size());
+    const Eigen::Index highest = degree, most = highest / 2;
+    for (Eigen::Index m = 0; m <= most; ++m) factors_.push_back({0, m, highest - 2 * m + 1});
+    if (symmetry == ChebyshevSurface::Symmetry::none)
+      for (Eigen::Index m = 0; 2 * m < highest; ++m) factors_.push_back({1, m, highest - 2 * m});
+    const Eigen::ArrayXd ratio = Eigen::Map<const Eigen::ArrayXd>(x.data(), points) / x_scale;
+    const Eigen::ArrayXd v = (Eigen::Map<const Eigen::ArrayXd>(y.data(), points) - y_middle) / y_scale;
+    of_u_ = chebyshev_columns(2 * ratio.square() - 1, 2 * most + 1);
+    of_v_ = chebyshev_columns(v, 2 * highest + 1);
+    ratio_ = ratio.matrix();
+    of_x_.resize(points, static_cast<Eigen::Index>(factors_.size()));
+    for (Eigen::Index k = 0; const Factor& factor : factors_)
+      of_x_.col(k++) =
+          (factor.power == 0 ? Eigen::ArrayXd::Ones(points) : ratio) * of_u_.col(factor.m).array();
+    of_y_ = of_v_.leftCols(highest + 1);
+  }
+
+  /// Every term, a column each.
+  Eigen::MatrixXd all() const {
+    Eigen::MatrixXd terms(of_x_.rows(), unknowns());
+    for (Eigen::Index k = 0, to = 0; const Factor& factor : factors_) {
+      terms.middleCols(to, factor.length) =
+          of_y_.leftCols(factor.length).array().colwise() * of_x_.col(k++).array();
+      to += factor.length;
+    }
+    return terms;
+  }
+
+  /// The sum over the points of each term times these values.
+  Eigen::VectorXd projected(const Eigen::VectorXd& values) const {
+    const Eigen::MatrixXd sums = of_y_.transpose() * (of_x_.array().colwise() * values.array()).matrix();
+    Eigen::VectorXd result(unknowns());
+    for (Eigen::Index k = 0, to = 0; const Factor& factor : factors_) {
+      result.segment(to, factor.length) = sums.col(k++).head(factor.length);
+      to += factor.length;
+    }
+    return result;
+  }
+
+  /// The polynomial at the points.
+  Eigen::VectorXd values(const Eigen::VectorXd& coefficients) const {
+    Eigen::MatrixXd of_factor = Eigen::MatrixXd::Zero(of_y_.cols(), of_x_.cols());
+    for (Eigen::Index k = 0, from = 0; const Factor& factor : factors_) {
+      of_factor.col(k++).head(factor.length) = coefficients.segment(from, factor.length);
+      from += factor.length;
+    }
+    return (of_y_ * of_factor).cwiseProduct(of_x_).rowwise().sum();
+  }
+
+  /// The sums of products of two terms; the lower half. As T_m T_k = (T_{m+k} + T_|m−k|)/2, they are those of
+  /// single terms of twice the degree.
+  Eigen::MatrixXd normal_equations() const {
+    std::array<Eigen::MatrixXd, 3> moments;  // by the power of r
+    for (int power = 0; power <= 2 * factors_.back().power; ++power)
+      moments[static_cast<std::size_t>(power)] =
+          of_v_.transpose() * (of_u_.array().colwise() * ratio_.array().pow(power)).matrix();
+    Eigen::MatrixXd normal(unknowns(), unknowns());
+    Eigen::Index column = 0;
+    for (auto one = factors_.begin(); one != factors_.end(); column += one++->length) {
+      Eigen::Index row = column;
+      for (auto other = one; other != factors_.end(); row += other++->length) {
+        const Eigen::MatrixXd& moment = moments[static_cast<std::size_t>(one->power + other->power)];
+        const Eigen::VectorXd of_n =
+            0.25 * (moment.col(one->m + other->m) + moment.col(std::abs(one->m - other->m)));
+        for (Eigen::Index n = 0; n < one->length; ++n)
+          for (Eigen::Index q = 0; q < other->length; ++q)
+            normal(row + q, column + n) = of_n[n + q] + of_n[std::abs(n - q)];
+      }
+    }
+    return normal;
+  }
+
+ private:
+  /// r^power T_m(u), which stands before T_0(v) … T_{length−1}(v).
+  struct Factor {
+    int power;
+    Eigen::Index m, length;
+  };
+
+  Eigen::Index unknowns() const {
+    Eigen::Index count = 0;
+    for (const Factor& factor : factors_) count += factor.length;
+    return count;
+  }
+  /// T_0 … T_{count−1}, a column each.
+  static Eigen::MatrixXd chebyshev_columns(const Eigen::ArrayXd& t, Eigen::Index count) {
+    Eigen::MatrixXd columns(t.size(), count);
+    columns.col(0).setOnes();
+    if (count > 1) columns.col(1) = t.matrix();
+    for (Eigen::Index n = 2; n < count; ++n)
+      columns.col(n) = (2 * t * columns.col(n - 1).array()).matrix() - columns.col(n - 2);
+    return columns;
+  }
+
+  std::vector<Factor> factors_;
+  Eigen::VectorXd ratio_;
+  Eigen::MatrixXd of_u_, of_v_;  ///< to twice the degree
+  Eigen::MatrixXd of_x_, of_y_;  ///< of each factor, and T_n(v)
+};
+
 }  // namespace
 
 std::size_t ChebyshevSurface::unknowns(int degree, Symmetry symmetry) {
@@ -60,52 +167,36 @@ std::vector<ChebyshevSurface> ChebyshevSurface::fit(std::span<const double> x, s
   for (const double value : x) frame.x_scale_ = std::max(frame.x_scale_, std::abs(value));
   if (!(frame.x_scale_ > 0) || !(frame.y_scale_ > 0) || x.size() < unknowns(degree, symmetry)) return {};
 
-  const auto rows = static_cast<Eigen::Index>(x.size()),
-             columns = static_cast<Eigen::Index>(unknowns(degree, symmetry));
-  Eigen::MatrixXd basis(columns, rows);  // a column a point
-  std::vector<double> of_u(frame.terms()), of_v(static_cast<std::size_t>(frame.degree_) + 1);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const double ratio = x[static_cast<std::size_t>(i)] / frame.x_scale_;
-    chebyshev(2 * ratio * ratio - 1, of_u.size(), of_u.data());
-    chebyshev((y[static_cast<std::size_t>(i)] - frame.y_middle_) / frame.y_scale_, of_v.size(), of_v.data());
-    double* to = basis.col(i).data();
-    for (std::size_t m = 0; m < of_u.size(); ++m)
-      for (std::size_t n = 0; n + 2 * m < of_v.size(); ++n) *to++ = of_u[m] * of_v[n];
-    if (symmetry == Symmetry::even_in_x) continue;
-    for (std::size_t m = 0; 2 * m + 1 < of_v.size(); ++m)
-      for (std::size_t n = 0; n + 2 * m + 1 < of_v.size(); ++n) *to++ = ratio * of_u[m] * of_v[n];
-  }
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(columns, columns);
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(basis);
-  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(normal);
+  const PointTerms terms(x, y, frame.x_scale_, frame.y_middle_, frame.y_scale_, frame.degree_, symmetry);
+  const Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower> solver(terms.normal_equations());
   const auto pivots = solver.vectorD();
   const bool well_determined =
       solver.info() == Eigen::Success && pivots.minCoeff() > least_pivot * pivots.maxCoeff();
   // Points that leave much of their box empty tell the terms apart by less than the normal equations resolve.
   std::optional<Eigen::HouseholderQR<Eigen::MatrixXd>> orthogonal;
   if (!well_determined) {
-    orthogonal.emplace(basis.transpose());
+    orthogonal.emplace(terms.all());
     const Eigen::ArrayXd diagonal = orthogonal->matrixQR().diagonal().array().abs();
     if (!(diagonal.minCoeff() > least_pivot * diagonal.maxCoeff())) return {};
   }
 
   std::vector<ChebyshevSurface> surfaces;
   for (const auto& list : values) {
-    const Eigen::Map<const Eigen::VectorXd> wanted(list.data(), rows);
+    const Eigen::Map<const Eigen::VectorXd> wanted(list.data(), static_cast<Eigen::Index>(list.size()));
     Eigen::VectorXd solution, residual;
     if (orthogonal) {
       solution = orthogonal->solve(wanted);
     } else {
-      solution = solver.solve(basis * wanted);
-      residual = wanted - basis.transpose() * solution;
-      solution += solver.solve(basis * residual);  // gives back what the squared condition number took
+      solution = solver.solve(terms.projected(wanted));
+      residual = wanted - terms.values(solution);
+      solution += solver.solve(terms.projected(residual));  // what the squared condition number took
     }
-    residual = wanted - basis.transpose() * solution;
+    residual = wanted - terms.values(solution);
     ChebyshevSurface surface = frame;
     const auto even = solution.begin() + static_cast<std::ptrdiff_t>(unknowns(frame.degree_));
     surface.coefficients_.assign(solution.begin(), even);
     surface.odd_.assign(even, solution.end());
-    surface.rms_residual_ = residual.norm() / std::sqrt(static_cast<double>(rows));
+    surface.rms_residual_ = residual.norm() / std::sqrt(static_cast<double>(residual.size()));
     surface.max_residual_ = residual.lpNorm<Eigen::Infinity>();
     surfaces.push_back(std::move(surface));
   }
