@@ -36,7 +36,9 @@ TEST(OriginalRaw, ComesBackAndIsPassedOver) {
     ASSERT_EQ(libraw.unpack(), LIBRAW_SUCCESS);
     EXPECT_EQ(libraw.imgdata.sizes.width, 41);
     EXPECT_EQ(libraw.imgdata.idata.filters, 0u);
-    EXPECT_EQ(libraw.imgdata.rawdata.color3_image[100][1], 9);
+    const libraw_rawdata_t& planes = libraw.imgdata.rawdata;
+    ASSERT_TRUE(planes.color3_image || planes.color4_image);
+    EXPECT_EQ(planes.color3_image ? planes.color3_image[100][1] : planes.color4_image[100][1], 9);
   }
 }
 
