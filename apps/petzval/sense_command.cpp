@@ -5,6 +5,7 @@
 #include <petzval/base/file_extension.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/image/formats/irradiance.h>
+#include <petzval/isp/raw_output.h>
 #include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/formats/dng.h>
 #include <petzval/sensor/raw_file.h>
@@ -83,7 +84,7 @@ void sense(const SenseCommand& command, const Shared& shared) {
   sensor.require_electronics();
   const RawImage raw = expose(read_irradiance(command.irradiance, bare_irradiance(command, sensor)), sensor,
                               command.choice.options(), context_of(shared));
-  for (const std::string& path : staged) write_raw(path, raw);
+  for (const std::string& path : staged) write_raw_output(path, raw);
   if (const std::string note = mosaic_note(raw);
       !note.empty() && std::ranges::any_of(command.outputs, is_raw_name))
     send_note(context_of(shared), note);

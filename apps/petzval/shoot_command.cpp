@@ -5,8 +5,8 @@
 #include <petzval/base/file_extension.h>
 #include <petzval/base/staged_files.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/isp/raw_output.h>
 #include <petzval/scene/wavelength_list.h>
-#include <petzval/sensor/raw_file.h>
 
 #include <algorithm>
 #include <fstream>
@@ -63,7 +63,7 @@ void write_frame(const ClipFolder& folder, int frame, const RawImage& raw, const
     if (format != "dng")
       write_picture(path, petzval::develop(raw, development, context), command.bits);
     else
-      write_raw(path, raw);
+      write_raw_output(path, raw);
   }
   files.commit();
 }

@@ -2,8 +2,8 @@
 // Raw images and developed pictures.
 #include <fmt/format.h>
 #include <petzval/colour/illuminants.h>
+#include <petzval/isp/raw_output.h>
 #include <petzval/sensor/formats/dng.h>
-#include <petzval/sensor/raw_file.h>
 
 #include "call.h"
 #include "camera.h"
@@ -130,8 +130,8 @@ void bind_raw_image(nb::module_& module) {
       "What a sensor records: a mosaic of numbers with all that is needed to make a picture of it.")
       .def_static("load", &read_dng, nb::arg("path"), "Reads a .dng, of `save` or of many a camera.")
       .def(
-          "save", [](const RawImage& raw, const std::string& path) { write_raw(path, raw); }, nb::arg("path"),
-          "Writes .dng with everything, .tif or .npy with the numbers, .exr.")
+          "save", [](const RawImage& raw, const std::string& path) { write_raw_output(path, raw); },
+          nb::arg("path"), "Writes .dng with everything, .tif or .npy with the numbers, .exr.")
       .def_prop_ro(
           "values",
           [](nb::handle self) {

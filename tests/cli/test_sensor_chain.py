@@ -38,17 +38,23 @@ class SensorChain(ProgramTest):
                             "-o", "raw.dng", "--quiet")
         self.assertAlmostEqual(more["exposure_s"] / summary["exposure_s"], 2, 9)
 
-    def test_mosaics_that_others_do_not_know_are_noted_and_have_a_way_out(self):
+    def test_mosaics_that_others_do_not_know_are_noted_and_have_a_picture_beside(self):
         self.make_light(sensor="96x64@2.4")
         for sensor, noted in (("rgbw-1280x960", True), ("third-inch-1280x960", False)):
             said = self.petzval("sense", "light.exr", "--sensor", sensor, "--sensor-set", "pitch_um=2.4",
-                                "--illuminant", "D65", "-o", "raw.dng")
+                                "--illuminant", "D65", "-o", f"{sensor}.dng", "-o", f"{sensor}.tif")
             self.assertEqual(said.returncode, 0, said.stderr)
             self.assertEqual("note: few other programs develop" in said.stderr, noted, sensor)
-        self.assert_succeeds("develop", "raw.dng", "-o", "linear.dng", "-o", "linear.npy")
-        tiff = self.contents()["linear.dng"]
-        self.assertEqual(tiff[:4], b"II*\0")
-        self.assertGreater(len(tiff), 96 * 64 * 3 * 2)
+        files = self.contents()
+        picture_bytes, mosaic_bytes = 96 * 64 * 3 * 2, 96 * 64 * 2
+        self.assertGreater(len(files["rgbw-1280x960.dng"]), picture_bytes)
+        self.assertLess(len(files["third-inch-1280x960.dng"]), 2 * mosaic_bytes)
+        # What others see is what `develop` makes of the mosaic: the samples stand behind the head of the file.
+        said = self.assert_succeeds("develop", "rgbw-1280x960.dng", "-o", "linear.dng")
+        self.assertIn("WGWRGWRWWBWGBWGW", said)
+        head = 8
+        self.assertEqual(self.contents()["linear.dng"][head:head + picture_bytes],
+                         files["rgbw-1280x960.dng"][head:head + picture_bytes])
 
     def test_brightness_by_itself_undoes_the_exposure(self):
         self.make_raw("--exposure-compensation", "-5", name="dark.dng")

@@ -98,6 +98,9 @@ TEST_F(Dng, LibRawSeesTheCamera) {
   EXPECT_NEAR(static_cast<double>(data.other.focal_len), 35, 1e-5);
   EXPECT_NEAR(static_cast<double>(data.other.iso_speed), 200, 1e-5);
   EXPECT_STREQ(data.lens.Lens, "Some Lens 35mm");
+  EXPECT_NEAR(static_cast<double>(data.lens.MinFocal), 35, 1e-5);  // LensInfo
+  EXPECT_NEAR(static_cast<double>(data.lens.MaxFocal), 35, 1e-5);
+  EXPECT_NEAR(static_cast<double>(data.lens.MaxAp4MinFocal), 2.8, 1e-6);
   // White balance: multipliers are the inverse of the neutral.
   EXPECT_NEAR(static_cast<double>(data.color.cam_mul[0] / data.color.cam_mul[1]), 2, 1e-6);
   EXPECT_NEAR(static_cast<double>(data.color.cam_mul[2] / data.color.cam_mul[1]), 1 / 0.7, 1e-6);

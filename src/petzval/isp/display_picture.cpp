@@ -9,7 +9,7 @@
 #include <petzval/image/formats/png.h>
 #include <petzval/image/formats/tiff.h>
 #include <petzval/isp/display_picture.h>
-#include <petzval/sensor/formats/linear_dng.h>
+#include <petzval/isp/linear_picture.h>
 
 #include <algorithm>
 #include <cmath>
@@ -100,23 +100,6 @@ void write_jpeg_picture(const std::string& path, const Planes& planes, int bits,
   write_jpeg(path, image, options);
 }
 
-void write_dng_picture(const std::string& path, const Planes& planes, DisplaySpace space,
-                       const std::string& provenance) {
-  LinearPicture picture{planes.columns, planes.rows, {}, {}, "linear picture", provenance};
-  const ColourMatrix matrix = display_from_xyz(space);
-  for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
-  const std::size_t columns = static_cast<std::size_t>(planes.columns), channels = planes.values.size();
-  picture.samples.resize(planes.values[0].size() * channels);
-  parallel_for(static_cast<std::size_t>(planes.rows), [&](std::size_t row) {
-    constexpr float white = 65535;
-    for (std::size_t at = row * columns; at < (row + 1) * columns; ++at)
-      for (std::size_t k = 0; k < channels; ++k)
-        picture.samples[at * channels + k] =
-            static_cast<std::uint16_t>(white * std::clamp(planes.values[k][at], 0.0f, 1.0f) + 0.5f);
-  });
-  write_linear_dng(path, picture);
-}
-
 std::vector<float> interleaved(const Planes& planes) {
   const std::size_t channels = planes.values.size();
   std::vector<float> values(planes.values[0].size() * channels);
@@ -165,7 +148,8 @@ void write_display_picture(const std::string& path, const Planes& planes, Displa
         {.facts = facts, .description = provenance, .srgb = space == DisplaySpace::srgb});
   if (extension == ".tif" || extension == ".tiff")
     return write_tiff_picture(path, planes, bits, icc, provenance);
-  if (extension == ".dng" && channels == 3) return write_dng_picture(path, planes, space, provenance);
+  if (extension == ".dng" && channels == 3)
+    return write_linear_dng(path, linear_picture(planes, space, provenance));
   throw InputError(path, channels == 3 ? "a picture is written as .png, .jpg, .tif, .exr, .npy or .dng"
                                        : "one plane is written as .png, .jpg, .tif, .exr or .npy");
 }

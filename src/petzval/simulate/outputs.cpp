@@ -6,6 +6,7 @@
 #include <petzval/image/formats/irradiance.h>
 #include <petzval/image/picture.h>
 #include <petzval/isp/display_picture.h>
+#include <petzval/isp/raw_output.h>
 #include <petzval/sensor/formats/dng.h>
 #include <petzval/simulate/outputs.h>
 
@@ -122,7 +123,7 @@ Outputs shoot(const SpectralImage& light, const std::vector<std::string>& raws,
               const std::vector<std::string>& pictures, const Sensor& sensor, const OutputOptions& options,
               StagedFiles& files, const Context& context) {
   Outputs made{expose(light, sensor, options.expose, context), {}};
-  for (const std::string& path : raws) write_dng(files.stage(path), *made.raw);
+  for (const std::string& path : raws) write_raw_output(files.stage(path), *made.raw);
   if (const std::string note = mosaic_note(*made.raw); !raws.empty() && !note.empty())
     send_note(context, note);
   if (pictures.empty()) return made;

@@ -6,6 +6,7 @@
 #include <petzval/sensor/formats/dng.h>
 #include <petzval/sensor/formats/dng_opcodes.h>
 #include <petzval/sensor/formats/dng_tags.h>
+#include <petzval/sensor/formats/original_raw.h>
 #include <tiffio.h>
 
 #include <algorithm>
@@ -359,6 +360,12 @@ class DngReader {
 
 RawImage parse_dng(std::string bytes, const std::string& path) {
   dng::register_tags();
+  try {
+    // A picture for other programs, with the mosaic in it.
+    if (std::optional<std::string> original = original_raw(bytes)) bytes = std::move(*original);
+  } catch (const InputError& error) {
+    throw InputError(path, std::string("has ") + error.what());
+  }
   return DngReader(path, std::move(bytes)).image();
 }
 

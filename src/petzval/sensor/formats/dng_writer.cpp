@@ -86,6 +86,12 @@ class DngWriter {
     set(TIFFTAG_UNIQUECAMERAMODEL, ("Petzval " + model).c_str());
     set(TIFFTAG_SOFTWARE, fmt::format("petzval {}", version_text()).c_str());
     if (!raw_.provenance.empty()) set(TIFFTAG_IMAGEDESCRIPTION, raw_.provenance.c_str());
+    if (raw_.lens.focal_length_mm > 0 && raw_.lens.f_number > 0) {
+      const auto focal_mm = static_cast<float>(raw_.lens.focal_length_mm),
+                 f_number = static_cast<float>(raw_.lens.f_number);
+      const float range[] = {focal_mm, focal_mm, f_number, f_number};  // no zoom
+      set(TIFFTAG_LENSINFO, range);
+    }
   }
   static std::string version_text() { return petzval::version(); }
 
@@ -218,8 +224,8 @@ std::string mosaic_note(const RawImage& raw) {
   const bool square = raw.mosaic.rows == raw.mosaic.columns;
   if (raw.mosaic.is_uniform() || (rgb && square && (raw.mosaic.rows == bayer || raw.mosaic.rows == x_trans)))
     return {};
-  return "few other programs develop raw files of this mosaic; developed as .dng it is a picture in linear "
-         "light that LibRaw, RawTherapee and darktable read";
+  return "few other programs develop this mosaic: for them (LibRaw, RawTherapee, darktable) the .dng holds a "
+         "picture in linear light, and the mosaic as its original raw file";
 }
 
 std::string dng_bytes(const RawImage& raw, const std::string& path) {

@@ -97,14 +97,18 @@ class LinearDngWriter {
 
 }  // namespace
 
-void write_linear_dng(const std::string& path, const LinearPicture& picture) {
+std::string linear_dng_bytes(const LinearPicture& picture, const std::string& path) {
   if (picture.columns < 1 || picture.rows < 1 ||
       picture.samples.size() !=
           primaries * static_cast<std::size_t>(picture.columns) * static_cast<std::size_t>(picture.rows))
     throw InputError(path, fmt::format("{} samples for a picture of {} x {} x {}", picture.samples.size(),
                                        picture.columns, picture.rows, primaries));
   dng::register_tags();
-  write_whole_file(path, LinearDngWriter(path, picture).bytes());
+  return LinearDngWriter(path, picture).bytes();
+}
+
+void write_linear_dng(const std::string& path, const LinearPicture& picture) {
+  write_whole_file(path, linear_dng_bytes(picture, path));
 }
 
 }  // namespace petzval

@@ -20,5 +20,7 @@ struct LinearPicture {
 /// Writes it as DNG 1.4, LinearRaw of 16 bits without compression. The same bytes for the same picture.
 /// \throws InputError for samples that do not fill it; as WholeFile; Failure.
 void write_linear_dng(const std::string& path, const LinearPicture& picture);
+/// The bytes of that file. \param path  for messages.
+std::string linear_dng_bytes(const LinearPicture& picture, const std::string& path);
 
 }  // namespace petzval
