@@ -29,6 +29,11 @@
 #undef POCKETFFT_HDRONLY_H
 #undef POCKETFFT_NO_VECTORS
 #define POCKETFFT_NO_MULTITHREADING
+// It would call aligned_alloc() for sizes that are no multiple of the alignment, which not every C library
+// grants.
+#ifndef _LIBCPP_HAS_NO_ALIGNED_ALLOCATION
+#define _LIBCPP_HAS_NO_ALIGNED_ALLOCATION
+#endif
 HWY_BEFORE_NAMESPACE();
 #include <gemmi/third_party/pocketfft_hdronly.h>
 namespace petzval::HWY_NAMESPACE {
