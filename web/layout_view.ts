@@ -19,10 +19,15 @@ export class LayoutView {
   private lens: Lens | null = null;
   private way: Point[][] = [];
   private scale = 1;
+  private width = 0;  // asking the element for them would lay out the whole page
+  private height = 0;
   private drag: {first: number; last: number; from: number; stop: boolean} | null = null;
 
   constructor(private readonly listener: LayoutListener) {
-    new ResizeObserver(() => this.draw()).observe(this.element);
+    new ResizeObserver(entries => {
+      [this.width, this.height] = [entries[0].contentRect.width, entries[0].contentRect.height];
+      this.draw();
+    }).observe(this.element);
   }
 
   show(message: Incoming, lens: Lens): void {
@@ -34,6 +39,7 @@ export class LayoutView {
 
   /** The way of a ghost in place of the rays of the picture; empty: none. */
   showWay(way: Point[][]): void {
+    if (way.length === 0 && this.way.length === 0) return;
     this.way = way;
     this.draw();
   }
@@ -42,8 +48,8 @@ export class LayoutView {
 
   private draw(): void {
     const data = this.last;
-    if (!data || this.element.clientWidth === 0) return;
-    const width = this.element.clientWidth, height = this.element.clientHeight;
+    if (!data || this.width === 0) return;
+    const {width, height} = this;
     const z1 = data.image_z as number;
     const lead = 0.22 * z1;
     let reach = data.image_height as number;
@@ -65,12 +71,13 @@ export class LayoutView {
     for (const field of this.way.length ? [{rays: this.way, colour: "var(--ghost)"}] : data.fields)
       for (const ray of field.rays as Point[][]) rays.append(s("path", {class: "ray", d: path(ray), stroke: field.colour}));
     svg.append(rays);
-    data.surfaces.forEach((surface: any, i: number) => {
-      if (surface.stop) svg.append(this.stopMark(px(surface.z), py, surface.height, reach, i));
-    });
     const tall = Math.max(data.image_height, reach * 0.2) * 1.04;
     svg.append(s("path", {class: "sensor", d: `M${px(z1)} ${py(tall)}V${py(-tall)}`}));
     this.addHandles(svg, data, px, py, path, tall);
+    // Above the glass, which may be where its edges are.
+    data.surfaces.forEach((surface: any, i: number) => {
+      if (surface.stop) svg.append(this.stopMark(px(surface.z), py, data.first_order.stop_semi_diameter_mm ?? surface.height, reach, i));
+    });
     for (const {surface} of data.blocked) {
       const at = data.surfaces[surface];
       if (at) svg.append(s("path", {class: "blocked", d: path(at.profile)}));
@@ -141,7 +148,7 @@ export class LayoutView {
     if (!drag) return;
     if (drag.stop) {
       const box = this.element.getBoundingClientRect();
-      const middle = (this.element.clientHeight - 22 + 9) / 2;
+      const middle = (this.height - 22 + 9) / 2;
       return this.listener.stopRadius(Math.max(0.02, Math.abs(event.clientY - box.top - middle) / this.scale), done);
     }
     const shift = (event.clientX - drag.from) / this.scale;

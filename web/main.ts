@@ -148,7 +148,11 @@ class Page {
       const file = event.dataTransfer?.files[0];
       if (file) void this.upload(file);
     });
-    new ResizeObserver(() => this.drawPlot()).observe(this.plotBox);
+    new ResizeObserver(entries => {
+      const {width, height} = entries[0].contentRect;
+      this.plotSize = `${width} ${height}`;
+      this.drawPlot();
+    }).observe(this.plotBox);
     const theme = localStorage.getItem("petzval-theme");
     if (theme) document.documentElement.dataset.theme = theme;
     explainTerms();
@@ -277,8 +281,16 @@ class Page {
     this.ask();  // the server works while the page does
     this.history.record(JSON.stringify(this.session), gesture);
     if (done && gesture !== "plot") this.history.endGesture();
-    this.refresh();
+    this.refreshSoon();
   }
+
+  /** With the next frame: until then answers of the server may come. */
+  private refreshSoon(): void {
+    if (this.stale) return;
+    this.stale = true;
+    requestAnimationFrame(() => { if (this.stale) this.refresh(); });
+  }
+  private stale = false;  ///< whether the page shows a session of before
 
   private alterLens(alter: (lens: Lens) => void, gesture: string, done = true): void {
     this.change(() => {
@@ -304,10 +316,10 @@ class Page {
   /** The stop by its radius: as an f-number where that closes it, as the f-number scales with it. */
   private openStop(radius: number, done: boolean): void {
     if (this.stopNow <= 0) return;
-    const widest = this.widest(), wished = this.fNumberNow * this.stopNow / radius;
-    this.stopNow = radius;
+    const widest = this.widest(), wished = Math.min(64, Math.max(widest, this.fNumberNow * this.stopNow / radius));
+    this.stopNow *= this.fNumberNow / wished;
     this.fNumberNow = wished;
-    const value = Number(Math.min(64, Math.max(widest, wished)).toPrecision(4));
+    const value = Number(wished.toPrecision(4));
     this.change(() => { this.session.f_number = value <= widest * 1.003 ? null : value; }, "stop", done);
   }
   private stopNow = 0;
@@ -346,6 +358,7 @@ class Page {
 
   /** Everything that follows from the session alone. */
   private refresh(): void {
+    this.stale = false;
     const session = this.session;
     this.table.show(session.lens);
     this.picture.setCursor(session.cursor_mm);
@@ -771,7 +784,7 @@ class Page {
     const plots = this.plots.get(this.session?.plot);
     const ofGhosts = this.session?.plot === "ghosts" ? [this.ghosts, JSON.stringify(this.session.stray.ghost)] : [];
     const other = this.session?.compared && this.compare.plots?.analysis === this.session.plot ? this.compare.plots : null;
-    const drawn = [plots, other, this.plotBox.clientWidth, this.plotBox.clientHeight, ...ofGhosts];
+    const drawn = [plots, other, this.plotSize, ...ofGhosts];
     if (plots && drawn.length === this.drawnPlot.length && drawn.every((each, i) => each === this.drawnPlot[i])) return;
     this.drawnPlot = drawn;
     if (plots && ofGhosts.length > 0) return this.drawGhosts(plots);
@@ -797,6 +810,7 @@ class Page {
     table.scrollTop = scrolled;
   }
 
+  private plotSize = "";
   private drawnPlot: unknown[] = [];  ///< what drawPlot() drew last, and in how many pixels
 
   private startExercise(exercise: (typeof exercises)[number]): void {

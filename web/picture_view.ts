@@ -29,13 +29,17 @@ export class PictureView {
   private kept: Kept | null = null;
   private split = 0.5;
   private frame_mm: [number, number] = [36, 24];
+  private box = {width: 0, height: 0};
   private cursor: [number, number] = [0, 0];
 
   constructor(private readonly listener: PictureListener) {
     this.stage.append(this.now, this.sources, this.mark, this.divider, this.captions);
     this.element = h("div", {class: "picture-box", tabindex: "0", "aria-label": "picture; arrow keys move the place of the point-spread function"}, this.stage);
     this.divider.hidden = true;
-    new ResizeObserver(() => this.fit()).observe(this.element);
+    new ResizeObserver(entries => {
+      this.box = entries[0].contentRect;
+      this.fit();
+    }).observe(this.element);
     this.stage.addEventListener("pointerdown", event => this.down(event));
     this.stage.addEventListener("dblclick", () => this.listener.focused(...this.cursor));
     this.divider.addEventListener("pointerdown", event => this.dragDivider(event));
@@ -64,7 +68,7 @@ export class PictureView {
       mark.style.top = `${50 - 100 * source.y_mm / this.frame_mm[1]}%`;
       return mark;
     }));
-    this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, ${message.samples ? `${message.samples} rays a pixel` : `blur to ${100 * message.tolerance} %`}`;
+    this.badge.title = `${columns} × ${rows} pixels, ${message.bands} bands, ${message.samples ? `${message.samples} rays a pixel` : `estimated error ${shown(100 * message.estimated_error, 2)} %`}`;
     this.element.dataset.quality = message.quality;
     this.element.classList.remove("stale");
     this.fit();
@@ -103,6 +107,7 @@ export class PictureView {
   /** Where suns are imaged, within the frame or beside it; null: that is not known. */
   setSuns(places_mm: ([number, number] | null)[], chosen: number): void {
     this.sunPlaces = places_mm;
+    if (places_mm.length === 0 && this.suns.length === 0) return;
     while (this.suns.length < places_mm.length) this.suns.push(this.newSun(this.suns.length));
     for (const mark of this.suns.splice(places_mm.length)) mark.remove();
     // Beyond the box they wait at its edge.
@@ -158,8 +163,7 @@ export class PictureView {
 
   /** As large as the box takes, in the sensor's own proportions. */
   private fit(): void {
-    const box = this.element.getBoundingClientRect();
-    const scale = Math.min(box.width / this.frame_mm[0], box.height / this.frame_mm[1]);
+    const scale = Math.min(this.box.width / this.frame_mm[0], this.box.height / this.frame_mm[1]);
     this.stage.style.width = `${Math.floor(scale * this.frame_mm[0])}px`;
     this.stage.style.height = `${Math.floor(scale * this.frame_mm[1])}px`;
     this.setCursor(this.cursor);

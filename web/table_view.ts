@@ -115,6 +115,7 @@ export class TableView {
     const all = i < 0;
     const choose = (event: Event) => {
       const name = (event.target as HTMLSelectElement).value;
+      delete (event.target as HTMLSelectElement).dataset.shown;
       if (name === keptCoating) return this.refresh();
       this.listener.changed(lens => lens.surfaces.forEach((_, k) => {
         if (all ? isCoatable(lens, k) : k === i) coat(lens, k, name === "" ? null : name);
@@ -129,6 +130,9 @@ export class TableView {
     const lens = this.lens!, all = select.dataset.coating === "all";
     const own = all ? commonCoating(lens) : lens.surfaces[Number(select.dataset.coating)]?.coating ?? null;
     const mixed = all && own === null && lens.surfaces.some(each => each.coating !== undefined);
+    const state = JSON.stringify([own, mixed, this.listener.coatings().length]);
+    if (select.dataset.shown === state) return;
+    select.dataset.shown = state;
     const options: [string, string, string][] = [...(mixed ? [[keptCoating, "…", ""] as [string, string, string]] : []), ["", all ? "bare" : "–", "bare glass"],
       ...this.listener.coatings().map((each): [string, string, string] => [each.name, each.name, each.title])];
     select.replaceChildren(...(all ? [h("option", {disabled: true}, "coating of all")] : []), ...options.map(([value, text, title]) => h("option", {value, title}, text)));
@@ -195,6 +199,7 @@ export class TableView {
     const commit = (text: string) => {
       const glass = glassOf(text);
       if (glass === null || text === field.dataset.shown) return;
+      field.dataset.shown = text;
       this.listener.changed(lens => {
         if (glass === undefined) delete lens.surfaces[i].glass;
         else lens.surfaces[i].glass = glass;
@@ -202,8 +207,9 @@ export class TableView {
     };
     field.addEventListener("input", () => this.search(field, commit));
     field.addEventListener("focus", () => field.select());
-    field.addEventListener("change", () => commit(field.value));
-    field.addEventListener("blur", () => setTimeout(() => this.closeList(), 150));
+    // What was typed to search by is no glass yet while one is chosen from the list.
+    field.addEventListener("change", () => setTimeout(() => { if (!this.list?.contains(document.activeElement)) commit(field.value); }));
+    field.addEventListener("blur", event => { if (!this.list?.contains(event.relatedTarget as Node | null)) this.closeList(); });
     field.addEventListener("keydown", event => {
       const items = [...(this.list?.querySelectorAll("button") ?? [])] as HTMLElement[];
       if (event.key === "ArrowDown" && items[0]) { event.preventDefault(); items[0].focus(); }
@@ -215,14 +221,22 @@ export class TableView {
   private search(field: HTMLInputElement, commit: (text: string) => void): void {
     if (field.value.trim().length < 2) return this.closeList();
     this.listener.searchGlass(field.value.trim(), glasses => {
+      if (document.activeElement !== field) return;  // one is being chosen from the list of a shorter text, or none is wanted
       this.closeList();
-      if (document.activeElement !== field || glasses.length === 0) return;
-      this.list = h("div", {class: "glass-list", role: "listbox"}, ...glasses.map(glass => {
-        const choose = () => { field.value = glass.name; commit(glass.name); this.closeList(); };
+      if (glasses.length === 0) return;
+      const left = (event: FocusEvent) => {
+        const to = event.relatedTarget as Node | null;
+        if (!this.list || to === field || this.list.contains(to)) return;
+        this.closeList();
+        field.value = field.dataset.shown ?? "";
+      };
+      this.list = h("div", {class: "glass-list", role: "listbox", onfocusout: left}, ...glasses.map(glass => {
+        const choose = () => { field.value = glass.name; commit(glass.name); this.closeList(); field.focus(); };
         return h("button", {type: "button", role: "option", onpointerdown: (event: Event) => { event.preventDefault(); choose(); },
           onkeydown: (event: KeyboardEvent) => {
             const at = event.currentTarget as HTMLElement;
             if (event.key === "Enter") { event.preventDefault(); choose(); }
+            if (event.key === "Escape") { this.closeList(); field.focus(); }
             if (event.key === "ArrowDown") (at.nextElementSibling as HTMLElement | null)?.focus();
             if (event.key === "ArrowUp") ((at.previousElementSibling ?? field) as HTMLElement).focus();
           }},
@@ -236,8 +250,9 @@ export class TableView {
   }
 
   private closeList(): void {
-    this.list?.remove();
+    const list = this.list;
     this.list = null;
+    list?.remove();
   }
 
   private makeStop(i: number): void {
@@ -282,14 +297,16 @@ export class TableView {
       const surface: any = lens.surfaces[Number(index)] ?? {};
       const value = rest.startsWith("asphere.") ? surface.asphere?.[rest.slice(8)] : surface[rest];
       const text = value === null || value === undefined || (rest === "conic" && value === 0) ? "" : shown(value, 7).replace("−", "-");
+      field.parentElement!.classList.toggle("pinned", this.listener.isPinned(path));
+      if (field.dataset.shown === text && field.value === text) return;
       field.value = field.dataset.shown = text;
       field.title = typeof value === "number" ? String(value) : "";
-      field.parentElement!.classList.toggle("pinned", this.listener.isPinned(path));
     });
     this.element.querySelectorAll<HTMLInputElement>("input[data-glass]").forEach(field => {
       if (field === document.activeElement && !all && field.value !== field.dataset.shown) return;
-      field.value = field.dataset.shown = glassText(lens.surfaces[Number(field.dataset.glass)]?.glass);
-      field.title = field.value;
+      const text = glassText(lens.surfaces[Number(field.dataset.glass)]?.glass);
+      if (field.dataset.shown === text && field.value === text) return;
+      field.value = field.dataset.shown = field.title = text;
     });
     this.element.querySelectorAll<HTMLSelectElement>("select.coating").forEach(select => this.showCoating(select));
   }

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The page of petzval live as a person meets it, in Chromium.
 
-    test_live_page.py PROGRAM CHROMIUM CHROMEDRIVER
+    test_live_page.py PROGRAM CHROMIUM CHROMEDRIVER [TEST ...]
 """
 
 import json
 import pathlib
 import sys
 import tempfile
+import time
 import unittest
 
 from selenium.webdriver.common.action_chains import ActionChains
@@ -297,11 +298,30 @@ class LivePage(unittest.TestCase):
         field.click()
         field.send_keys(Keys.CONTROL, "a")
         field.send_keys("nbak1")
-        self.browser.until("a list", lambda: "SCHOTT:N-BAK1" in self.browser.text(".glass-list"))
+        self.browser.until("a list", lambda: "SCHOTT:N-BAK1" in self.browser.text(".glass-list button"))
         field.send_keys(Keys.ARROW_DOWN)
+        self.assertEqual(self.browser.run("return document.activeElement.querySelector('span')?.textContent"), "SCHOTT:N-BAK1")
+        time.sleep(0.3)  # a person looks before the choice
         self.browser.driver.switch_to.active_element.send_keys(Keys.ENTER)
         self.browser.settle()
         self.assertEqual(self.browser.session()["lens"]["surfaces"][0]["glass"], "SCHOTT:N-BAK1")
+        self.assertEqual(field.get_attribute("value"), "SCHOTT:N-BAK1")
+        self.assertEqual(self.browser.text(".glass-list"), "")
+
+    def test_typed_search_is_forgotten_when_none_is_chosen(self):
+        before = self.browser.session()["lens"]["surfaces"][0]["glass"]
+        field = self.browser.driver.find_element(By.CSS_SELECTOR, "[data-glass='0']")
+        shown = field.get_attribute("value")
+        field.click()
+        field.send_keys(Keys.CONTROL, "a")
+        field.send_keys("nbak1")
+        self.browser.until("a list", lambda: "SCHOTT:N-BAK1" in self.browser.text(".glass-list button"))
+        field.send_keys(Keys.ARROW_DOWN)
+        self.browser.driver.find_element(By.CSS_SELECTOR, "[data-path='surfaces[0].radius_mm']").click()
+        self.browser.until("no list", lambda: not self.browser.text(".glass-list"))
+        self.assertEqual(field.get_attribute("value"), shown)
+        self.assertEqual(self.browser.session()["lens"]["surfaces"][0]["glass"], before)
+        self.assertEqual(self.problem(), "")
 
     def test_glass_can_be_dragged_along_the_axis(self):
         handle = self.browser.driver.find_elements(By.CSS_SELECTOR, ".layout .handle:not(.vertical)")[-1]  # the sensor
@@ -384,6 +404,31 @@ class LivePage(unittest.TestCase):
             self.browser.until("the lens is there", lambda: self.browser.session()["lensName"] == "mine")
             self.browser.settle()
             self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 3.25)
+
+    def touch(self, element, dx, dy):
+        """A finger put on the middle of an element, moved and lifted."""
+        box = self.browser.run("const box = arguments[0].getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]", element)
+        def at(kind, points):
+            self.browser.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        steps = 4
+        at("touchStart", [{"x": box[0], "y": box[1]}])
+        for i in range(1, steps + 1):
+            at("touchMove", [{"x": box[0] + dx * i / steps, "y": box[1] + dy * i / steps}])
+        at("touchEnd", [])
+        self.browser.settle()
+
+    def test_a_finger_moves_glass_stop_slider_and_ring(self):
+        find = lambda selector: self.browser.driver.find_elements(By.CSS_SELECTOR, selector)[-1]
+        before = self.browser.session()
+        self.touch(find(".layout .handle:not(.vertical)"), -8, 0)
+        moved = self.browser.session()
+        self.assertLess(moved["lens"]["surfaces"][2]["thickness_mm"], before["lens"]["surfaces"][2]["thickness_mm"])
+        self.touch(find(".layout .handle.vertical"), 0, -6)
+        self.assertIsNotNone(self.browser.session()["f_number"])
+        self.touch(find("[data-slider='compensation_ev']"), 20, 0)
+        self.assertGreater(self.browser.session()["shot"]["compensation_ev"], 0)
+        self.touch(self.browser.driver.find_element(By.CSS_SELECTOR, ".picture"), 30, 0)
+        self.assertGreater(self.browser.session()["cursor_mm"][0], before["cursor_mm"][0])
 
     def test_lens_and_picture_are_saved(self):
         self.change_shows("""const select = document.querySelector('[data-coating="all"]');
@@ -470,4 +515,4 @@ class ServerThatEnds(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:], verbosity=2)

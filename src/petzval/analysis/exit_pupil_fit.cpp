@@ -8,7 +8,7 @@ namespace petzval {
 
 namespace {
 
-constexpr int degrees_tried[] = {10, 16, 24};
+constexpr int degrees_tried[] = {10, 16, 24, 32, 40};
 
 }  // namespace
 
@@ -22,6 +22,7 @@ std::vector<std::optional<ExitPupilFit>> ExitPupilFit::of(const ExitPupil& pupil
   std::vector<std::optional<ExitPupilFit>> fits(sensor_shifts_mm.size());
   const std::vector<ExitPupil::Sample> samples = pupil.samples(model, sensor_shifts_mm);
   if (samples.empty()) return fits;
+  const double tolerance = pupil.detail().fit_tolerance;
   const bool uniform = model.amplitude == PupilModel::Amplitude::uniform;
   std::vector<double> alpha, beta, amplitude;
   for (const ExitPupil::Sample& sample : samples) {

@@ -16,12 +16,8 @@ namespace petzval {
 /// changes the phase by what the rays travel and nothing else.
 class ExitPupilFit {
  public:
-  /// Largest miss of the polynomials at any of the rays: of the phase [waves], and of the amplitude against
-  /// its largest value. A transfer function errs by less than 2π times this.
-  static constexpr double tolerance = 2e-5;
-
   /// \param sensor_shift_mm  how far the sensor stands behind the lens's own image surface; the wave is then
-  /// about the chief ray's new point. \returns nothing when no polynomial of degree 24 or less is so near;
+  /// about the chief ray's new point. \returns nothing when no polynomial of degree 40 or less is as near as PupilDetail asks;
   /// then ExitPupil::wave is there.
   static std::optional<ExitPupilFit> of(const ExitPupil& pupil, const PupilModel& model,
                                         double sensor_shift_mm = 0);

@@ -122,9 +122,16 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
     if (row.sensors.empty()) return {};
     return row;
   }
-  const std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief, options.detail);
+  std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief, options.detail);
   if (!pupil) return {};
-  const std::vector<std::optional<ExitPupilFit>> fits = ExitPupilFit::of(*pupil, options.model, shifts);
+  std::vector<std::optional<ExitPupilFit>> fits = ExitPupilFit::of(*pupil, options.model, shifts);
+  const auto fits_all = [&] {
+    return std::ranges::all_of(fits, [](const auto& fit) { return fit.has_value(); });
+  };
+  if (const PupilDetail all = options.detail.with_all_rays(); !fits_all() && !(all == options.detail)) {
+    pupil = ExitPupil::of(tracer, chief, all);
+    fits = ExitPupilFit::of(*pupil, options.model, shifts);
+  }
   for (std::size_t s = 0; s < shifts.size(); ++s) {
     check_stop();
     const double shift = shifts[s];

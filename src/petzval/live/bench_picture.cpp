@@ -20,6 +20,7 @@ struct QualityCost {
   std::vector<double> wavelengths_nm;
   const char* wavelengths;  ///< the same, as they are typed
   double tolerance;
+  int cells_per_pixel;  ///< 0: as many as the tolerance needs
   int fields, largest_psf_size;
   double neglected_ghosts;  ///< share of their light
 };
@@ -27,7 +28,7 @@ struct QualityCost {
 namespace {
 
 QualityCost preview_cost(int most_columns, int scene_columns) {
-  return {"preview", most_columns, scene_columns, {460, 540, 610}, "460,540,610", 2e-2, 6, 64, 1e-2};
+  return {"preview", most_columns, scene_columns, {460, 540, 610}, "460,540,610", 2e-2, 1, 6, 64, 1e-2};
 }
 
 /// How far light spreads about its chief ray [um], the most of a table.
@@ -79,6 +80,7 @@ SceneRequest scene_of(const std::string& scene_path, const std::string& illumina
 ImageOptions image_options(const QualityCost& cost) {
   ImageOptions options;
   options.imaging.product.tolerance = cost.tolerance;
+  options.imaging.supersample = cost.cells_per_pixel;
   return options;
 }
 
@@ -107,8 +109,8 @@ SpectralImage with_stray_light(const BenchState& state, const CoatedLens& used, 
 
 const QualityCost full_cost{
     "full",       640,  960, {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
-    "400:20:700", 1e-2, 16,  128,
-    1e-3};
+    "400:20:700", 1e-2, 0,   16,
+    128,          1e-3};
 const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), preview_cost(640, 960)};
 
 }  // namespace
@@ -136,6 +138,7 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedL
     shot.light = shot.session->image(optics, context, &report);
     shot.optics = std::move(optics);
     shot.method = report.method;
+    shot.estimated_error = report.imaging.estimated_error();
     shot.light_key = light_key;
   }
   const std::string stray_key = state.stray_key();
@@ -185,6 +188,7 @@ void BenchPicture::show(const BenchState& state, const CoatedLens& used, const s
                 {"quality", cost.name},
                 {"wavelengths", cost.wavelengths},
                 {"tolerance", cost.tolerance},
+                {"estimated_error", shot.estimated_error},
                 {"scene_columns", is_builtin_scene(scene_path) ? cost.scene_columns : 0},
                 {"sources", state.has_stray_light() ? sources_json(used.lens, shot.sources) : json::array()},
                 {"neglected_ghosts", cost.neglected_ghosts},

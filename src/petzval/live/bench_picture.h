@@ -14,7 +14,7 @@ namespace petzval {
 
 /// How much a picture is to tell.
 enum class PictureQuality {
-  preview,  ///< as many pixels as are made in a tenth of a second, three bands, blur to a fiftieth
+  preview,  ///< as many pixels as are made in a tenth of a second, three bands, one cell a pixel
   full      ///< at most 640 pixels across, fewer of a blur that is wide, 16 bands, blur to a hundredth
 };
 
@@ -43,6 +43,7 @@ class BenchPicture {
     double spread_um = 0;  ///< how far light spreads about its chief ray
     OutputOptions outputs = {};
     std::string method = {};
+    double estimated_error = 0;  ///< of the light, without what goes astray
 
     const SpectralImage& lit() const { return stray ? *stray : *light; }
   };

@@ -35,6 +35,7 @@ AnalysisRequest plot_request(const Losses& losses) {
   request.plots = true;
   request.polychromatic_mtf = true;
   request.mtf.frequencies_cpmm = {0, 10, 20, 40, 60, 80, 100};
+  request.mtf.detail = PupilDetail::quick();  // closer than a plot's lines are thin
   return request;
 }
 

@@ -72,16 +72,17 @@ class Linearity {
     if (signal_e <= 0) return signal_e;
     return signal_e * (1 + deviation(signal_e / scale_));
   }
-  /// The signal that comes out as this; by bisection, since the curve rises.
+  /// The signal that comes out as this: the curve rises, and between two points of it is a parabola.
   double inverse(double out_e) const {
     if (out_e <= 0) return out_e;
-    double low = 0, high = 2 * std::max(out_e, scale_);
-    constexpr int halvings = 60;
-    for (int i = 0; i < halvings; ++i) {
-      const double middle = (low + high) / 2;
-      ((*this)(middle) < out_e ? low : high) = middle;
-    }
-    return (low + high) / 2;
+    const auto at = [&](std::size_t i) { return scale_ * fractions_[i] * (1 + deviations_[i]); };
+    if (fractions_.size() == 1 || out_e <= at(0)) return out_e / (1 + deviations_.front());
+    if (out_e >= at(fractions_.size() - 1)) return out_e / (1 + deviations_.back());
+    std::size_t i = 0;
+    while (at(i + 1) < out_e) ++i;
+    const double slope = (deviations_[i + 1] - deviations_[i]) / (fractions_[i + 1] - fractions_[i]);
+    const double linear = 1 + deviations_[i] - slope * fractions_[i];
+    return 2 * out_e / (linear + std::sqrt(linear * linear + 4 * slope / scale_ * out_e));
   }
 
  private:
