@@ -5,17 +5,19 @@
 
 Moves the air gaps of a lens in turn. From each input event to the frame that paints what came of it: rays, point spread and plot,
 preview; each move waits for the preview of the one before. A frame counts as painted when the browser calls back after the one in
-which the page was altered. Then 900 quick moves without waiting, and the server's resident memory after 100 and after 1,000.
+which the page was altered. Then 1,000 quick moves without waiting, and the server's resident memory after 100 of them and after all.
 """
 
 import os
 import pathlib
 import statistics
 import sys
+import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "tests" / "browser"))
 from live_browser import SLIDE, Browser, Server, resident_mb, sweep  # noqa: E402
 
+PAUSE_S = 2  # a server that rests gives memory back
 # One move; resolves with the milliseconds from the event to the paint of each stage.
 MOVE = """
 const [gap, to, done] = arguments, page = window.petzvalPage, times = {};
@@ -29,7 +31,10 @@ page.take = (message, bytes) => {
   if (message.kind === "layout") painted("rays");
   if (message.kind === "psf") painted("psf");
   if (message.kind === "plots") painted("plot");
-  if (message.kind === "picture" && message.quality === "preview") painted("preview");
+  if (message.kind === "picture" && message.quality === "preview") {
+    times.columns = message.columns;
+    painted("preview");
+  }
 };
 const slider = document.querySelector(`[data-slider="surfaces[${gap}].thickness_mm"]`);
 slider.value = to;
@@ -77,13 +82,20 @@ def main():
             values = sorted(each[stage] for each in times if stage in each)
             if values:
                 print(f"  {stage:8} median {statistics.median(values):7.1f} ms, nine of ten within {values[int(0.9 * (len(values) - 1))]:7.1f} ms")
+        columns = [int(each["columns"]) for each in times]
+        print("  previews of", ", ".join(f"{width} pixels across ({columns.count(width)})" for width in sorted(set(columns))))
         browser.settle()
         print("the full picture, on the server:", browser.run("return window.petzvalPage.times.get('picture')"), "ms")
-        few = resident_mb(server.process)
-        sweep(browser, gaps, 1000 - moves)
+        # After 100 moves and after 1,000 the same has been asked for: waiting, quickly, and by stages.
+        sweep(browser, gaps, 100)
         for stage, values in work_of_stages(browser, gaps).items():
             print(f"  {stage:12} {statistics.median(values):7.1f} ms of one core")
-        print(f"memory of the server: {few:.0f} MB after {moves} moves, {resident_mb(server.process):.0f} MB after 1,000")
+        time.sleep(PAUSE_S)
+        few = resident_mb(server.process)
+        sweep(browser, gaps, 900)
+        work_of_stages(browser, gaps)
+        time.sleep(PAUSE_S)
+        print(f"memory of the server: {few:.0f} MB after the first 100 quick moves, {resident_mb(server.process):.0f} MB after 1,000")
 
 
 if __name__ == "__main__":

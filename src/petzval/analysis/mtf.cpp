@@ -125,11 +125,10 @@ std::optional<OtfRow> otf_row(const FieldTracer& tracer, const ChiefRay& chief, 
   std::optional<ExitPupil> pupil = ExitPupil::of(tracer, chief, options.detail);
   if (!pupil) return {};
   std::vector<std::optional<ExitPupilFit>> fits = ExitPupilFit::of(*pupil, options.model, shifts);
-  const auto fits_all = [&] {
-    return std::ranges::all_of(fits, [](const auto& fit) { return fit.has_value(); });
-  };
-  if (const PupilDetail all = options.detail.with_all_rays(); !fits_all() && !(all == options.detail)) {
-    pupil = ExitPupil::of(tracer, chief, all);
+  PupilDetail detail = options.detail, more = detail.with_more_rays();
+  while (more != detail && std::ranges::any_of(fits, [](const auto& fit) { return !fit; })) {
+    detail = std::exchange(more, more.with_more_rays());
+    pupil = ExitPupil::of(tracer, chief, detail);
     fits = ExitPupilFit::of(*pupil, options.model, shifts);
   }
   for (std::size_t s = 0; s < shifts.size(); ++s) {

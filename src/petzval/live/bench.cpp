@@ -245,6 +245,7 @@ void Bench::Impl::show(const BenchState& state) {
                              state.sensor, state.shot_key()),
                  work);
   };
+  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
   const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
@@ -253,7 +254,6 @@ void Bench::Impl::show(const BenchState& state) {
           fmt::format("{}|{}|{}|{},{}|{}", key, state.stray_key(), state.chosen_sun, ghost.first,
                       ghost.second, state.sensor),
           [&](const Context&) { show_stray(state); });
-  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);

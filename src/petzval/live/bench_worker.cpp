@@ -2,6 +2,10 @@
 #include <petzval/base/error.h>
 #include <petzval/live/bench_worker.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -14,6 +18,13 @@ namespace {
 constexpr std::size_t most_waiting = 512, most_waiting_bytes = most_upload_bytes + 8 * most_message_bytes;
 /// How long nothing must come before the full picture is begun.
 constexpr std::chrono::milliseconds rest_of_the_hand{180};
+
+/// What the last pictures took and nothing needs any more.
+void give_back_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
 
 std::string refusal(const std::string& text) {
   return nlohmann::json{{"kind", "refused"}, {"text", text}}.dump(-1, ' ', false,
@@ -56,8 +67,15 @@ Context BenchWorker::context() {
 }
 
 bool BenchWorker::wait_for_work() {
+  constexpr std::chrono::seconds pause{1};
   std::unique_lock lock(mutex_);
-  woken_.wait(lock, [this] { return ending_ || !waiting_.empty() || newest_; });
+  const auto is_there = [this] { return ending_ || !waiting_.empty() || newest_; };
+  if (!woken_.wait_for(lock, pause, is_there)) {
+    lock.unlock();
+    give_back_memory();
+    lock.lock();
+    woken_.wait(lock, is_there);
+  }
   return !ending_;
 }
 
