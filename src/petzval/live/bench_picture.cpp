@@ -111,7 +111,8 @@ const QualityCost full_cost{
     "full",       640,  960, {400, 420, 440, 460, 480, 500, 520, 540, 560, 580, 600, 620, 640, 660, 680, 700},
     "400:20:700", 1e-2, 0,   16,
     128,          1e-3};
-const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), preview_cost(640, 960)};
+const std::array preview_costs{preview_cost(160, 320), preview_cost(320, 480), preview_cost(480, 720),
+                               preview_cost(640, 960)};
 
 }  // namespace
 
@@ -161,8 +162,8 @@ bool BenchPicture::form_light(Shot& shot, const BenchState& state, const CoatedL
 }
 
 void BenchPicture::choose_preview(double seconds) {
-  // The next size takes two to three times as long.
-  constexpr double too_long_s = 0.13, short_s = 0.045;
+  // The next size takes up to twice as long.
+  constexpr double too_long_s = 0.12, short_s = 0.055;
   if (seconds > too_long_s && preview_size_ > 0)
     --preview_size_;
   else if (seconds < short_s && preview_size_ + 1 < preview_sizes)

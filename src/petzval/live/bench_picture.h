@@ -53,7 +53,7 @@ class BenchPicture {
   /// How many pixels a preview has from now on, by how long the last one took.
   void choose_preview(double seconds);
 
-  static constexpr std::size_t preview_sizes = 3;
+  static constexpr std::size_t preview_sizes = 4;
   Shot previews_[preview_sizes], full_;
   std::size_t preview_size_ = 1;
 };
