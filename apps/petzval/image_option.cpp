@@ -137,7 +137,8 @@ void ImageChoice::add_light_to(CLI::App& command) {
   camera.losses.add_to(command);
   command.add_option("--layers", image.depth.layers,
                      "Layers that a scene with depth is cut into; 0: as many as its defocus needs");
-  camera.add_sensor(command, "768x576@6.25 (pitch in um), a file or a name; default: the scene's samples");
+  camera.add_sensor(command,
+                    "768x576@6.25 (pitch in um), a file or a name; default: the lens's fields, 640 x 480");
   add_method_options(command);
 }
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/optics/build.h>
 #include <petzval/simulate/image.h>
+#include <petzval/simulate/lens_on_sensor.h>
 
 #include <algorithm>
 #include <atomic>
@@ -158,6 +161,33 @@ TEST(Image, MakesFewerPsfsForAPreview) {
   };
   EXPECT_EQ(psfs(1e-3), 31 * 3);
   EXPECT_LT(psfs(1e-2), 31 * 3 / 2);
+}
+
+TEST(Image, FramesTheFieldsOfALensWithoutASensor) {
+  struct Case {
+    const char* lens;
+    double height_mm;  // of the last field's image: f tan θ, or half of the image circle in the lens's name
+    double tolerance;  // relative
+  };
+  for (const Case& of : {Case{"cooke-triplet", 50 * std::tan(20 * pi / 180), 0.02},
+                         {"m12-4.5mm", 2.8, 0.02},
+                         {"telecentric-0.25x", 4.0, 0.02},
+                         {"telecentric-0.5x", 5.5, 0.02}}) {
+    Camera camera;
+    camera.lens = read_lens(of.lens).lens;
+    const SceneRequest chart{.name = "checkerboard", .options = {.wavelengths_nm = {550}}};
+    const ImagePlan plan = plan_image(chart, camera);
+    EXPECT_EQ(plan.frame.columns, 640) << of.lens;
+    EXPECT_EQ(plan.frame.rows, 480) << of.lens;
+    // Eight pixels, from which PSFs reach in, are left to the end of the field.
+    EXPECT_NEAR(plan.frame.pitch_um * 1e-3 * 408, of.height_mm, of.tolerance * of.height_mm) << of.lens;
+    if (const auto object_mm = camera.lens.object_distance_mm;
+        object_mm && is_afocal(first_order(camera.lens))) {
+      // A lens of no power sees what stands where its designer put it.
+      ASSERT_TRUE(plan.scene.distance_m()) << of.lens;
+      EXPECT_NEAR(*plan.scene.distance_m(), 1e-3 * (*object_mm + camera.lens.total_track_mm()), 1e-4);
+    }
+  }
 }
 
 TEST(Image, CanBeStopped) {

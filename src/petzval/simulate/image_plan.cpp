@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene and a camera brought together: distance, focus, table, frame.
 #include <fmt/format.h>
+#include <petzval/analysis/field_tracer.h>
+#include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
@@ -12,6 +14,7 @@
 #include <petzval/scene/depth_map.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/imaging_memory.h>
+#include <petzval/simulate/lens_on_sensor.h>
 #include <petzval/simulate/mounting.h>
 
 #include <algorithm>
@@ -41,6 +44,9 @@ bool is_open(const SceneRequest& scene) {
   return !scene.options.panorama && is_open_scene(scene.name);
 }
 
+/// From where PSFs spread into a frame, at most.
+constexpr double pixels_beyond = 8;
+
 /// Whether somebody says how wide it is.
 bool has_width(const SceneRequest& scene) {
   return scene.options.horizontal_angle_deg || scene.options.width_m;
@@ -64,8 +70,7 @@ Scene read(const SceneRequest& asked, std::optional<double> expected_m, bool exp
   return scene;
 }
 
-/// Without a sensor whose frame it would fill, a chart or a photograph of 4:3 is as wide as the fields of the
-/// lens.
+/// Without a sensor whose frame it would fill, a photograph is as wide as the fields of the lens.
 SceneRequest as_wide_as_fields(SceneRequest request, const Camera& camera) {
   constexpr double across = 0.8;  // of the diagonal
   const double view_deg = first_order(camera.lens).field_of_view_deg;
@@ -73,6 +78,39 @@ SceneRequest as_wide_as_fields(SceneRequest request, const Camera& camera) {
   if (view_deg > 0 && view_deg < 170)
     request.options.horizontal_angle_deg = 2 * degrees(std::atan(across * std::tan(radians(view_deg) / 2)));
   return request;
+}
+
+/// How far from the axis the fields of a lens are imaged, but for what is too far aside for a plane scene; 0:
+/// nobody says.
+double fields_image_height_mm(const Lens& lens) {
+  constexpr double widest_deg = 75;
+  double height_mm = 0;
+  FieldTracer tracer(lens, lens.reference_wavelength_nm);
+  for (const double value : lens.fields.values) {
+    double field = object_field(lens, lens.fields.kind, value);
+    if (!lens.object_distance_mm) field = std::clamp(field, -widest_deg, widest_deg);
+    if (const auto chief = tracer.chief_ray(field))
+      height_mm = std::max(height_mm, std::hypot(chief->image_x_mm, chief->image_height_mm));
+  }
+  return height_mm;
+}
+
+/// Where a chart is imaged if nobody says: on 640 × 480 pixels whose corner is the end of the lens's fields.
+std::optional<Sensor> frame_of_fields(const SceneRequest& request, const Camera& camera) {
+  if (camera.sensor || !is_open(request) || has_width(request) || !is_builtin_scene(request.name) ||
+      is_deep_chart(request.name))
+    return camera.sensor;
+  constexpr int columns = 640, rows = 480;
+  const double height_mm = fields_image_height_mm(camera.lens);
+  if (!(height_mm > 0)) return {};
+  // What PSFs bring into the corner from beyond it lies within the fields, too.
+  const double pixels = std::hypot(columns, rows) / 2 + pixels_beyond;
+  return read_sensor(fmt::format("{}x{}@{:.4g}", columns, rows, height_mm * um_per_mm / pixels));
+}
+
+Optics with_frame(const SceneRequest& request, Optics optics) {
+  if (auto* const camera = std::get_if<Camera>(&optics)) camera->sensor = frame_of_fields(request, *camera);
+  return optics;
 }
 
 std::optional<double> middle_from_sensor_m(const Scene& scene, MountedLens& lens) {
@@ -148,7 +186,6 @@ double pixel_um(const Scene& scene, const Lens& lens, const std::optional<Sensor
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
 double image_height_mm(const Scene& scene, double pitch_um, const std::optional<Sensor>& sensor) {
-  constexpr double pixels_beyond = 8;
   const double half_diagonal_mm = sensor
                                       ? sensor->geometry.half_diagonal_mm()
                                       : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
@@ -157,7 +194,6 @@ double image_height_mm(const Scene& scene, double pitch_um, const std::optional<
 
 /// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
 std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
-  constexpr double pixels_beyond = 8;
   const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
   return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
 }
@@ -229,6 +265,13 @@ void check_flare(const ImagePlan& plan) {
         "takes it away)");
 }
 
+/// Whether a chart stands where the lens has its object: a lens that stays as it is, or one of next to no
+/// power, which images nothing that is far away.
+bool expects_object(const Camera& camera) {
+  const bool nearby = camera.focus.kind == Focus::Kind::automatic && camera.lens.object_distance_mm;
+  return camera.focus.kind == Focus::Kind::design || (nearby && is_afocal(first_order(camera.lens)));
+}
+
 /// Scene and table, before frame and scene are fitted to each other.
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context, ImagingMemory* memory) {
@@ -236,8 +279,7 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   Scene scene = std::holds_alternative<Scene>(input)
                     ? std::get<Scene>(std::move(input))
                     : read(as_wide_as_fields(*std::get<const SceneRequest*>(input), camera),
-                           lens.object_distance_from_sensor_m(), camera.focus.kind == Focus::Kind::design,
-                           context, memory);
+                           lens.object_distance_from_sensor_m(), expects_object(camera), context, memory);
   const bool deep = !scene.depth_m.empty();
   if (scene.distance_m() && !deep) {
     MountedLens placed = lens;
@@ -356,6 +398,7 @@ ImagePlan plan(SceneInput input, Optics optics, const ImageOptions& options, con
     throw InputError(
         "`least_scene_angle_deg` is for a chart or a photograph that fills the frame of a `sensor`; "
         "`scene.horizontal_angle_deg` would be right");
+  if (request) optics = with_frame(*request, std::move(optics));
   const ImageOptions wanted = with_photosite(options, optics);
   ImagePlan result = std::visit(
       [&](auto& camera) {
@@ -394,20 +437,20 @@ ImagePlan plan_image(Scene scene, Optics optics, const ImageOptions& options, co
 }
 
 bool fills_frame(const SceneRequest& scene, const Optics& optics, const ImageOptions& options) {
-  return sensor_of(optics) && is_open(scene) && !has_width(scene) &&
-         options.imaging.surround == Surround::error;
+  return is_open(scene) && !has_width(scene) && options.imaging.surround == Surround::error &&
+         sensor_of(with_frame(scene, optics));
 }
 
 std::optional<double> filling_angle_deg(const SceneRequest& scene, const Optics& optics,
                                         const ImageOptions& options, const Context& context) {
   if (!fills_frame(scene, optics, options)) return {};
-  const ImageOptions wanted = with_photosite(options, optics);
+  Optics framed = with_frame(scene, optics);
+  const ImageOptions wanted = with_photosite(options, framed);
   return result_within(context, [&](const ProgressCallback&) {
-    Optics copy = optics;
     const ImagePlan outline = std::visit(
         [&](auto& camera) { return source(&scene, camera, wanted, TableDetail::outline, context, nullptr); },
-        copy);
-    return filling_angle_deg(outline, sensor_of(optics)->geometry);
+        framed);
+    return filling_angle_deg(outline, sensor_of(framed)->geometry);
   });
 }
 
