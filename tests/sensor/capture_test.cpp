@@ -286,6 +286,8 @@ TEST(Capture, StatedNoiseIsThatOfMeansAndOfBrackets) {
     const auto [level, variance] = mean_and_variance(mean);
     EXPECT_NEAR((mean.noise_slope() * level + mean.noise_offset()) / variance, 1, 0.06) << electrons;
   }
+  sensor.electronics->gain_modes[0].read_noise_e =
+      50;  // 2.7 steps of the merged numbers, whatever rounding does
   double least = 1e9, most = 0;
   for (const double rate : {0.0, 1.0, 10.0, 100.0, 1000.0, 4000.0, 8000.0, 20000.0, 40000.0, 85000.0}) {
     std::vector<RawImage> frames;
@@ -296,8 +298,7 @@ TEST(Capture, StatedNoiseIsThatOfMeansAndOfBrackets) {
     }
     const RawImage merged = merge_bracket(frames);
     const auto [level, variance] = mean_and_variance(merged);
-    const double ratio =
-        (merged.noise_slope() * level + merged.noise_offset() + 1.0 / 12) / variance;  // numbers are rounded
+    const double ratio = (merged.noise_slope() * level + merged.noise_offset()) / variance;
     least = std::min(least, ratio), most = std::max(most, ratio);
     if (rate == 0) {
       EXPECT_NEAR(ratio, 1, 0.06);

@@ -80,6 +80,25 @@ Preview preview_of(const RawImage& raw, int samples_per_pixel) {
   return preview;
 }
 
+/// libtiff gives the place of a directory a type of its own (IFD); cameras write it as a number (LONG), which
+/// is what exiftool's validation asks for. A BigTIFF stays as it is.
+std::string with_plain_place(std::string tiff) {
+  constexpr char type_ifd = 13, type_long = 4, low_sub_ifd = 0x4a, high_sub_ifd = 0x01;
+  constexpr std::size_t entry_bytes = 12, classic_mark = 42;
+  const auto number = [&](std::size_t at, std::size_t size) {
+    std::size_t value = 0;
+    for (std::size_t i = size; i-- > 0;) value = value << 8 | static_cast<std::uint8_t>(tiff[at + i]);
+    return value;
+  };
+  if (number(2, 2) != classic_mark) return tiff;
+  const std::size_t directory = number(4, 4);
+  for (std::size_t i = 0; i < number(directory, 2); ++i)
+    if (char* const entry = tiff.data() + directory + 2 + entry_bytes * i;
+        entry[0] == low_sub_ifd && entry[1] == high_sub_ifd && entry[2] == type_ifd)
+      entry[2] = type_long;
+  return tiff;
+}
+
 /// A file being written, as cameras lay theirs out: EXIF, a preview with what is known of the camera, and
 /// below that the raw picture with what is known of its numbers. Each part sets its tags; libtiff sorts them.
 class DngWriter {
@@ -117,7 +136,7 @@ class DngWriter {
                  std::size_t{2} * samples_per_pixel_ * static_cast<std::size_t>(raw_.columns),
                  static_cast<std::uint32_t>(raw_.rows));
     stream_.require(TIFFWriteDirectory(tiff_) != 0);
-    return stream_.finish();
+    return with_plain_place(stream_.finish());
   }
 
  private:
