@@ -54,7 +54,7 @@ def ppm(data):
 
 
 def discs(picture):
-    """Centres of gravity (column, row) of the dark discs that do not touch the border."""
+    """Centres of gravity (column, row) of the dark discs that do not touch the border, of 20 pixels or more."""
     darkness = picture.max() - picture.astype(float).mean(axis=2)
     darkness = np.maximum(darkness - darkness.max() / 2, 0)
     rows, columns = darkness.shape
@@ -71,6 +71,8 @@ def discs(picture):
                     left[near] = False
                     todo.append(near)
         places = np.array(disc)
+        if len(places) < 20:  # a speck of noise
+            continue
         if places.min() > 0 and places[:, 0].max() < rows - 1 and places[:, 1].max() < columns - 1:
             weights = darkness[places[:, 0], places[:, 1]]
             centres.append((weights @ places[:, ::-1]) / weights.sum())

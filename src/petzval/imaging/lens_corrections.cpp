@@ -131,7 +131,7 @@ constexpr double greatest_gain = 16;
 /// Gains over a frame from light(x, y) [mm from the axis, in image space] over that of the middle.
 template <typename Light>
 GainMap gain_map_of(const SensorGeometry& frame, const Light& light) {
-  constexpr int points = 33;  // along the longer side: bilinear in between to 1e-3 of cos⁴
+  constexpr int points = 65;  // along the longer side: bilinear in between to 1 % of the edge of a fisheye
   const int longest = std::max(frame.columns, frame.rows);
   const auto along = [&](int pixels) { return 2 + (points - 2) * pixels / longest; };
   GainMap map{along(frame.columns), along(frame.rows), {}};
