@@ -73,7 +73,7 @@ class SensorChain(ProgramTest):
         self.assertLess(len(files["third-inch-1280x960.dng"]), 2 * mosaic_bytes)
         # What others see is what `develop` makes of the mosaic.
         said = self.assert_succeeds("develop", "rgbw-1280x960.dng", "-o", "linear.dng")
-        self.assertIn("WGWRWGRWWBWGBWGW", said)
+        self.assertIn("WGWRGWRWWBWGBWGW", said)
         linear = self.contents()["linear.dng"]
         self.assertEqual(raw_bytes(linear, picture_bytes), raw_bytes(files["rgbw-1280x960.dng"], picture_bytes))
         # Both say what camera and lens made them, and how the lens bends.
