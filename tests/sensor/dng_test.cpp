@@ -450,7 +450,14 @@ TEST_F(Dng, ATagOfAnotherTypeIsRefusedNotTakenForItsBytes) {
 }
 
 TEST_F(Dng, DamageIsRefusedOrHarmless) {
-  write_dng(path("a.dng"), example());
+  RawImage raw = example();
+  raw.bad_pixels = {{7, 3}};
+  raw.lens.fisheye_warp = {1.01, -0.2, 0.03, -0.004};
+  raw.lens.vignetting = {0.1, 0.02, 0.003, 4e-4, 5e-5};
+  raw.lens.gain_map = {3, 2, {1, 1.25F, 2, 1, 1.5F, 3}};
+  raw.shot_noise_share = 0.25;
+  raw.date_time = parse_date_time("2026-11-26 10:07:09.25");
+  write_dng(path("a.dng"), raw);
   const std::string bytes = read_whole_file(path("a.dng"));
   const auto attempt = [&](const std::string& damaged) {
     const std::string name = path("damaged.dng");
