@@ -46,6 +46,11 @@ void SenseChoice::add_to(CLI::App& command, bool after_light, bool of_clip) {
                        "Light of the scene, for white balance; default: as the irradiance says");
   command.add_option("--exit-pupil", given.exit_pupil_mm,
                      "From the sensor, negative in front of it [mm]; for microlenses");
+  command.add_option(
+      "--date-time", date_time,
+      fmt::format("When the exposure{} began, for raw files and EXIF: \"2026-11-26 10:00:00\"; "
+                  "default: no date",
+                  of_clip ? " of the first frame" : ""));
 }
 
 ExposeOptions SenseChoice::options() const {
@@ -53,6 +58,7 @@ ExposeOptions SenseChoice::options() const {
   options.exposure = Exposure::parse(exposure);
   options.metering = metering == "average" ? Metering::Rule::average : Metering::Rule::highlights;
   if (!illuminant.empty()) options.illuminant = petzval::illuminant(illuminant);
+  if (!date_time.empty()) options.date_time = parse_date_time(date_time);
   for (const std::string& name : without) options.without.insert(noise_source(name));
   return options;
 }

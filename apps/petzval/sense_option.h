@@ -13,7 +13,7 @@
 namespace petzval::app {
 
 struct SenseChoice {
-  std::string exposure = "auto", metering = "highlights", illuminant;
+  std::string exposure = "auto", metering = "highlights", illuminant, date_time;
   std::vector<std::string> without;
   ExposeOptions given;  ///< what the options fill in directly
 

@@ -290,7 +290,7 @@ void add_target_command(CLI::App& app, Shared& shared) {
     sensor->excludes(command->get_option(settled));
   for (const char* exposing :
        {"--exposure", "--metering", "--exposure-compensation", "--conversion-gain", "--gain", "--temperature",
-        "--serial", "--frames", "--bracket", "--without", "--exit-pupil", "--picture"})
+        "--serial", "--frames", "--bracket", "--without", "--exit-pupil", "--date-time", "--picture"})
     command->get_option(exposing)->needs(sensor);
   command->add_option("--exact-sfr", options->exact_sfr, "Write the true SFR along every edge: .csv")
       ->check(output_file());

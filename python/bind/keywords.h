@@ -50,13 +50,13 @@ ExposeOptions expose_options(const nb::object& exposure, const std::string& mete
                              const std::string& gain_mode, double analog_gain, Maybe<double> temperature_c,
                              Maybe<std::uint64_t> serial, const std::vector<std::string>& without,
                              const Numbers& bracket_ev, const std::string& illuminant, Maybe<double> f_number,
-                             Maybe<double> exit_pupil_mm);
+                             Maybe<double> exit_pupil_mm, const std::string& date_time);
 #define PETZVAL_EXPOSE_KEYWORDS                                                                           \
   nb::arg("exposure") = "auto", nb::arg("metering") = "highlights", nb::arg("compensation_ev") = 0.0,     \
   nb::arg("gain_mode") = "", nb::arg("analog_gain") = 1.0, nb::arg("temperature_c").none() = nb::none(),  \
   nb::arg("serial").none() = nb::none(), nb::arg("without") = std::vector<std::string>(),                 \
   nb::arg("bracket_ev") = Numbers(), nb::arg("illuminant") = "", nb::arg("f_number").none() = nb::none(), \
-  nb::arg("exit_pupil_mm").none() = nb::none()
+  nb::arg("exit_pupil_mm").none() = nb::none(), nb::arg("date_time") = ""
 
 /// How a call works.
 #define PETZVAL_CALL_KEYWORDS nb::arg("threads") = 0, nb::arg("progress").none() = nb::none()

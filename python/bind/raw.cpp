@@ -27,7 +27,8 @@ ExposeOptions expose_options(const nb::object& exposure, const std::string& mete
                              const std::string& gain_mode, double analog_gain, Maybe<double> temperature_c,
                              Maybe<std::uint64_t> serial, const std::vector<std::string>& without,
                              const Numbers& bracket_ev, const std::string& illuminant_name,
-                             Maybe<double> f_number, Maybe<double> exit_pupil_mm) {
+                             Maybe<double> f_number, Maybe<double> exit_pupil_mm,
+                             const std::string& date_time) {
   ExposeOptions options;
   options.exposure = exposure_from(exposure);
   options.metering = choice<Metering::Rule>(
@@ -38,6 +39,7 @@ ExposeOptions expose_options(const nb::object& exposure, const std::string& mete
   for (const std::string& name : without) options.without.insert(noise_source(name));
   options.bracket_ev = bracket_ev;
   options.f_number = f_number, options.exit_pupil_mm = exit_pupil_mm;
+  if (!date_time.empty()) options.date_time = parse_date_time(date_time);
   if (!illuminant_name.empty()) options.illuminant = illuminant(illuminant_name);
   return options;
 }
@@ -85,7 +87,9 @@ constexpr const char* expose_text =
     "`frames` are averaged, exposures of "
     "`bracket_ev` merged. `illuminant`: for white balance; empty: as the light says. `f_number` (for "
     "exposure values) and `exit_pupil_mm` (from the sensor, negative in front of it; for microlenses): the "
-    "lens's, where they are known. Raises InputError; "
+    "lens's, where they are known. `date_time`: when it began, for files (\"2026-11-26 10:00:00\"); empty: "
+    "they "
+    "state none. Raises InputError; "
     "Cancelled.";
 
 WhiteBalance white_balance_from(const nb::object& white_balance, const nb::object& sensor) {
@@ -181,6 +185,10 @@ void bind_raw_image(nb::module_& module) {
       .def_ro("dn_per_e", &RawImage::dn_per_e)
       .def_ro("exposure_s", &RawImage::exposure_s)
       .def_ro("iso", &RawImage::iso)
+      .def_prop_ro(
+          "date_time",
+          [](const RawImage& raw) { return raw.date_time ? iso_date_time(*raw.date_time) : std::string(); },
+          "When the exposure began, as ISO 8601 writes it; empty: not known.")
       .def_ro("as_shot_neutral", &RawImage::as_shot_neutral)
       .def_prop_ro("lens", [](const RawImage& raw) { return raw.lens; })
       .def_ro("sensor_name", &RawImage::sensor_name)

@@ -36,9 +36,10 @@ def test_rolling_shutter_and_flicker(program, camera):
 
 def test_bracket_and_automatic_exposure(program, camera):
     program.run("shoot", *SHOT, "--pan", 10, "--frames", 2, "--fps", 12, "--bracket", "0,-2", "--metering", "average", "--without",
-                "shot,read", "--format", "dng", "-o", "clip")
+                "shot,read", "--date-time", "2026-11-26 10:00:00", "--format", "dng", "-o", "clip")
     clip = camera.shoot(EDGE, 2, fps=12, pan_deg_per_s=10, bracket_ev=[0, -2], metering="average", without=["shot", "read"],
-                        method="none")
+                        date_time="2026-11-26 10:00:00", method="none")
+    assert [raw.date_time for raw in clip] == ["2026-11-26T10:00:00", "2026-11-26T10:00:00.083333"]
     assert clip.timing(1)[0] == 1 / 12 and clip.timing(0, 1)[0] == clip.exposure_s
     assert_frames(program, clip)
 

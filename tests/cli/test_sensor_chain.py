@@ -3,10 +3,32 @@
 
 import json
 import math
+import re
+import struct
 import unittest
 
 from petzval_cli import ProgramTest
 from sample_files import SMALL_BAYER
+
+
+LENS_INFO, EXIF, OPCODE_LIST_3, SUB_DIRECTORIES, STRIP_OFFSETS = 50736, 34665, 51022, 330, 273
+
+
+def directories(file):
+    """Tags of the first directory and of the one below it, with their counts and values or places (TIFF 6.0)."""
+    def entries(place):
+        count = struct.unpack_from("<H", file, place)[0]
+        return {tag: (count, value) for tag, _, count, value in
+                (struct.unpack_from("<HHII", file, place + 2 + 12 * i) for i in range(count))}
+
+    first = entries(struct.unpack_from("<I", file, 4)[0])
+    return first, entries(first[SUB_DIRECTORIES][1])
+
+
+def raw_bytes(file, count):
+    strips, place = directories(file)[1][STRIP_OFFSETS]
+    at = place if strips == 1 else struct.unpack_from("<I", file, place)[0]
+    return file[at:at + count]
 
 
 class SensorChain(ProgramTest):
@@ -49,12 +71,34 @@ class SensorChain(ProgramTest):
         picture_bytes, mosaic_bytes = 96 * 64 * 3 * 2, 96 * 64 * 2
         self.assertGreater(len(files["rgbw-1280x960.dng"]), picture_bytes)
         self.assertLess(len(files["third-inch-1280x960.dng"]), 2 * mosaic_bytes)
-        # What others see is what `develop` makes of the mosaic: the samples stand behind the head of the file.
+        # What others see is what `develop` makes of the mosaic.
         said = self.assert_succeeds("develop", "rgbw-1280x960.dng", "-o", "linear.dng")
         self.assertIn("WGWRGWRWWBWGBWGW", said)
-        head = 8
-        self.assertEqual(self.contents()["linear.dng"][head:head + picture_bytes],
-                         files["rgbw-1280x960.dng"][head:head + picture_bytes])
+        linear = self.contents()["linear.dng"]
+        self.assertEqual(raw_bytes(linear, picture_bytes), raw_bytes(files["rgbw-1280x960.dng"], picture_bytes))
+        # Both say what camera and lens made them, and how the lens bends.
+        for file in (linear, files["rgbw-1280x960.dng"]):
+            first, below = directories(file)
+            self.assertIn(LENS_INFO, first)
+            self.assertIn(EXIF, first)
+            self.assertIn(OPCODE_LIST_3, below)
+
+    def test_date_and_time_are_what_the_user_says(self):
+        """The computer's clock is in no file: the same command makes the same bytes on any day."""
+        for name in ("a.dng", "b.dng"):
+            self.make_raw("--date-time", "2026-11-26 10:07:09.25", name=name)
+        self.make_raw(name="none.dng")
+        for raw in ("a", "none"):
+            self.assert_succeeds("develop", f"{raw}.dng", "-o", f"{raw}.png", "-o", f"{raw}.jpg", "-o", f"{raw}-linear.dng", "--quiet")
+        files = self.contents()
+        self.assertEqual(files["a.dng"], files["b.dng"])
+        for name in ("a.dng", "a.png", "a.jpg", "a-linear.dng"):
+            self.assertEqual(files[name].count(b"2026:11:26 10:07:09\0"), 2, name)  # DateTime, DateTimeOriginal
+            self.assertEqual(files[name].count(b"250000\0"), 1, name)
+        for name in ("none.dng", "none.png", "none.jpg", "none-linear.dng"):
+            self.assertIsNone(re.search(rb"[12]\d\d\d:\d\d:\d\d", files[name]), name)
+        self.assert_refused("sense", "light.exr", "--sensor", "third-inch-1280x960", "--date-time", "today", "-o", "c.dng",
+                            words=["today", "2026-11-26 10:00:00"])
 
     def test_brightness_by_itself_undoes_the_exposure(self):
         self.make_raw("--exposure-compensation", "-5", name="dark.dng")

@@ -21,12 +21,16 @@ class Shoot(ProgramTest):
     def test_same_bytes_for_any_number_of_threads(self):
         for threads in ("1", "2"):
             self.assert_succeeds(*CLIP, "--frames", "2", "--format", "png,dng", "--events", "--threads", threads,
-                                 "--quiet", "-o", f"clip{threads}")
+                                 "--date-time", "2026-12-31 23:59:59.99", "--quiet", "-o", f"clip{threads}")
         one, two = self.files_of("clip1"), self.files_of("clip2")
         self.assertEqual(sorted(one), ["clip.json", "events.txt", "frame-000000.dng", "frame-000000.png",
                                        "frame-000001.dng", "frame-000001.png"])
         self.assertEqual(one, two)
         self.assertNotEqual(one["frame-000000.dng"], one["frame-000001.dng"])
+        for kind in ("dng", "png"):  # a 24th of a second from frame to frame
+            self.assertIn(b"2026:12:31 23:59:59\0", one[f"frame-000000.{kind}"])
+            self.assertIn(b"2027:01:01 00:00:00\0", one[f"frame-000001.{kind}"])
+            self.assertIn(b"031667\0", one[f"frame-000001.{kind}"])
         t, column, row, sign = one["events.txt"].splitlines()[0].split()
         self.assertGreaterEqual(float(t), 0)
         self.assertIn(sign, (b"0", b"1"))

@@ -64,7 +64,10 @@ double tag_of(const std::string& tiff, std::size_t directory, std::uint32_t tag)
 
 TEST(JpegOutput, SaysHowItWasTaken) {
   JpegOptions options;
-  options.facts = {1.0 / 250, 2.8, 6.25, 88.4, "a sensor", "a lens"};
+  options.facts = {.exposure_s = 1.0 / 250,
+                   .iso = 88.4,
+                   .lens = {.name = "a lens", .focal_length_mm = 6.25, .f_number = 2.8},
+                   .camera = "a sensor"};
   const JpegImage image = gradient_picture(3);
   const std::string tiff = exif_of(image.columns, image.rows, options);
   const auto exif = static_cast<std::size_t>(tag_of(tiff, 8, 0x8769));

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 
@@ -51,6 +52,28 @@ RawImage example(const std::string& order = "RGGB") {
   raw.lens = {"Some Lens 35mm", 35, 2.8, 0};
   raw.sensor_name = "Some Sensor";
   return raw;
+}
+
+/// As they stand in a file.
+std::string sample_bytes(const RawImage& raw) {
+  return {reinterpret_cast<const char*>(raw.samples.data()), 2 * raw.samples.size()};
+}
+
+std::uint32_t number_at(const std::string& bytes, std::size_t at, std::size_t count) {
+  std::uint32_t value = 0;
+  for (std::size_t i = count; i-- > 0;) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+std::string number_bytes(std::uint32_t value) {
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> 8 * i & 0xff);
+  return bytes;
+}
+/// Where the entry of a tag stands in a directory, by the letter of TIFF 6.0; 0: there is none.
+std::size_t entry_of(const std::string& bytes, std::size_t directory, std::uint32_t tag) {
+  for (std::uint32_t i = 0; i < number_at(bytes, directory, 2); ++i)
+    if (number_at(bytes, directory + 2 + 12 * i, 2) == tag) return directory + 2 + 12 * i;
+  return 0;
 }
 
 std::unique_ptr<LibRaw> opened(const std::string& path) {
@@ -119,6 +142,89 @@ TEST_F(Dng, LibRawSeesTheCamera) {
   }
 }
 
+// A preview in the first directory, the mosaic in one below it; LibRaw finds both. The grey of a mosaic that
+// is even but for its white balance: sRGB of 0.25 is 137 of 255.
+TEST_F(Dng, IsLaidOutAsByCameras) {
+  RawImage raw = example();
+  for (int row = 0; row < raw.rows; ++row)
+    for (int column = 0; column < raw.columns; ++column) {
+      const auto channel = static_cast<std::size_t>(raw.mosaic.channel(row, column));
+      raw.samples[static_cast<std::size_t>(row * raw.columns + column)] =
+          static_cast<std::uint16_t>(std::lround(64 + 0.25 * (4095 - 64) * raw.as_shot_neutral[channel]));
+    }
+  const std::string bytes = dng_bytes(raw, "a.dng");
+  constexpr std::uint32_t kind = 254, photometric = 262, sub_directories = 330, opcode_list_3 = 51022;
+  const std::size_t first = number_at(bytes, 4, 4);
+  const auto value = [&](std::size_t directory, std::uint32_t tag) {
+    return number_at(bytes, entry_of(bytes, directory, tag) + 8, 2);
+  };
+  EXPECT_EQ(value(first, kind), 1u);
+  EXPECT_EQ(value(first, photometric), 2u);
+  EXPECT_EQ(number_at(bytes, first + 2 + 12 * number_at(bytes, first, 2), 4), 0u) << "another page";
+  const std::size_t below = number_at(bytes, entry_of(bytes, first, sub_directories) + 8, 4);
+  EXPECT_EQ(value(below, kind), 0u);
+  EXPECT_EQ(value(below, photometric), 32803u);
+  EXPECT_EQ(entry_of(bytes, first, opcode_list_3), 0u);
+
+  LibRaw libraw;
+  ASSERT_EQ(libraw.open_buffer(const_cast<char*>(bytes.data()), bytes.size()), LIBRAW_SUCCESS);
+  ASSERT_EQ(libraw.unpack_thumb(), LIBRAW_SUCCESS);
+  const libraw_thumbnail_t& preview = libraw.imgdata.thumbnail;
+  EXPECT_EQ(preview.twidth, 30);
+  EXPECT_EQ(preview.theight, 22);
+  const auto* samples = reinterpret_cast<const std::uint8_t*>(preview.thumb);
+  for (int i = 0; i < 3 * 30 * 22; ++i) ASSERT_NEAR(samples[i], 137, 1) << i;
+}
+
+TEST_F(Dng, DateAndTimeAreThoseOfTheImage) {
+  RawImage raw = example();
+  EXPECT_FALSE(parse_dng(dng_bytes(raw, "a.dng"), "a.dng").date_time);
+  raw.date_time = parse_date_time("2026-11-26 10:07:09.25");
+  write_dng(path("a.dng"), raw);
+  EXPECT_EQ(read_dng(path("a.dng")).date_time, raw.date_time);
+  const std::time_t seen = opened(path("a.dng"))->imgdata.other.timestamp;  // by the computer's time zone
+  const std::tm* clock = std::localtime(&seen);
+  EXPECT_EQ(clock->tm_year, 126);
+  EXPECT_EQ(clock->tm_mon, 10);
+  EXPECT_EQ(clock->tm_mday, 26);
+  EXPECT_EQ(clock->tm_hour, 10);
+  EXPECT_EQ(clock->tm_min, 7);
+  EXPECT_EQ(clock->tm_sec, 9);
+}
+
+TEST_F(Dng, DirectoriesThatLeadNowhereOrInCirclesAreRefused) {
+  const std::string good = dng_bytes(example(), "a.dng");
+  const std::size_t first = number_at(good, 4, 4);
+  const std::size_t sub = entry_of(good, first, 330) + 8;
+  const std::size_t exif = entry_of(good, first, 34665) + 8;
+  const auto end = static_cast<std::uint32_t>(good.size());
+  for (const auto& [at, places] :
+       {std::pair{sub, std::vector<std::uint32_t>{0, 1, static_cast<std::uint32_t>(first), end - 1, end,
+                                                  0xfffffff0}},
+        std::pair{exif, std::vector<std::uint32_t>{1, end - 1, end, 0xfffffff0}}})
+    for (const std::uint32_t place : places) {
+      std::string bad = good;
+      bad.replace(at, 4, number_bytes(place));
+      EXPECT_THROW(parse_dng(bad, "a.dng"), InputError) << at << " " << place;
+    }
+  // A page that is its own next one is not looked at.
+  std::string loop = good;
+  loop.replace(first + 2 + 12 * number_at(good, first, 2), 4,
+               number_bytes(static_cast<std::uint32_t>(first)));
+  EXPECT_EQ(parse_dng(loop, "a.dng").samples, example().samples);
+}
+
+TEST_F(Dng, MergedExposuresKeepTheirElectrons) {
+  RawImage raw = example();
+  raw.shot_noise_share = 1 / std::sqrt(21);
+  const RawImage back = parse_dng(dng_bytes(raw, "a.dng"), "a.dng");
+  EXPECT_DOUBLE_EQ(back.shot_noise_share, raw.shot_noise_share);
+  EXPECT_NEAR(back.dn_per_e, 0.25, 1e-12);
+  EXPECT_NEAR(back.read_noise_e, 3, 1e-12);
+  raw.shot_noise_share = 1.5;
+  EXPECT_THROW(dng_bytes(raw, "a.dng"), InputError);
+}
+
 TEST_F(Dng, TablesOfAllSamplesComeBack) {
   // One entry more than libtiff counts: the greatest sample, which is white, keeps its value.
   RawImage raw = example();
@@ -150,6 +256,13 @@ TEST_F(Dng, BadPixelsAndWhatUndoesTheLensComeBack) {
     EXPECT_EQ(back.lens.warp, raw.lens.warp);
     EXPECT_EQ(back.lens.vignetting, raw.lens.vignetting);
     EXPECT_NEAR(back.pitch_um, 3.75, 1e-6);
+    raw.lens.fisheye_warp = {1.01, -0.2, 0.03, -0.004};
+    raw.lens.warp.clear(), raw.lens.vignetting.clear();
+    raw.lens.gain_map = {3, 2, {1, 1.25F, 2, 1, 1.5F, 3}};
+    const RawImage other = parse_dng(dng_bytes(raw, "a.dng"), "a.dng");
+    EXPECT_EQ(other.lens.fisheye_warp, raw.lens.fisheye_warp);
+    EXPECT_EQ(other.lens.gain_map, raw.lens.gain_map);
+    EXPECT_TRUE(other.lens.warp.empty());
     // FixBadPixelsList as DNG 1.4 prints it: its number, version 1.3, length 12 + 3 · 8, the phase of the
     // mosaic.
     const std::string phases[] = {"RGGB", "GRBG", "GBRG", "BGGR"};
@@ -164,8 +277,7 @@ TEST_F(Dng, BadListsOfOpcodesAreRefused) {
   RawImage raw = example();
   raw.bad_pixels = {{7, 3}};
   const std::string good = dng_bytes(raw, "a.dng");
-  // The last: the directory is written anew behind that of EXIF.
-  const std::size_t at = good.rfind(std::string("\0\0\0\1\0\0\0\5\1\3\0\0", 12));
+  const std::size_t at = good.find(std::string("\0\0\0\1\0\0\0\5\1\3\0\0", 12));
   ASSERT_NE(at, std::string::npos);
   // Two opcodes, a longer one, more points than there are, a row beyond the picture.
   for (const std::size_t byte : {3u, 19u, 27u, 35u}) {
@@ -177,7 +289,7 @@ TEST_F(Dng, BadListsOfOpcodesAreRefused) {
 
 // A picture without a mosaic: what LibRaw makes of it in linear sRGB is the picture.
 TEST_F(Dng, LibRawDevelopsALinearPictureToItself) {
-  LinearPicture picture{40, 30, {}, {}, "linear", ""};
+  LinearPicture picture{40, 30, {}, {}, {}, ""};
   const ColourMatrix matrix = srgb_from_xyz();
   for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
   for (std::uint64_t i = 0; i < 3 * 40 * 30; ++i)
@@ -275,11 +387,37 @@ TEST_F(Dng, LinearizationIsAppliedByLibRawAndByUs) {
 
 TEST_F(Dng, ExiftoolFindsNothingWrong) {
   if (std::system("exiftool -ver >/dev/null 2>&1") != 0) GTEST_SKIP() << "exiftool is not installed";
-  write_dng(path("a.dng"), example());
-  const std::string command =
-      "exiftool -validate -warning -error -a '" + path("a.dng") + "' > '" + path("said") + "'";
-  EXPECT_EQ(std::system(command.c_str()), 0);
-  EXPECT_EQ(read_whole_file(path("said")), "Validate                        : OK\n");
+  RawImage raw = example();
+  raw.bad_pixels = {{7, 3}};
+  raw.lens.fisheye_warp = {1.01, -0.2, 0.03, -0.004};
+  raw.lens.gain_map = {3, 2, {1, 1.25F, 2, 1, 1.5F, 3}};
+  raw.shot_noise_share = 0.25;
+  raw.date_time = parse_date_time("2026-11-26 10:07:09.25");
+  write_dng(path("a.dng"), raw);
+  LinearPicture picture{8, 6, std::vector<std::uint16_t>(3 * 8 * 6, 9), {}, camera_facts(raw), ""};
+  picture.rgb_from_xyz = {3, -1, 0, -1, 2, 0, 0, 0, 1};
+  write_linear_dng(path("l.dng"), picture);
+  for (const char* name : {"a.dng", "l.dng"}) {
+    const auto said = [&](const std::string& about) {
+      EXPECT_EQ(
+          std::system(("exiftool -S " + about + " '" + path(name) + "' > '" + path("said") + "'").c_str()),
+          0);
+      return read_whole_file(path("said"));
+    };
+    EXPECT_EQ(said("-validate -warning -error -a"), "Validate: OK\n") << name;
+    EXPECT_EQ(said("-DateTimeOriginal -SubSecTimeOriginal -ModifyDate -LensModel -FNumber -OpcodeList3"),
+              "DateTimeOriginal: 2026:11:26 10:07:09\nSubSecTimeOriginal: 250000\n"
+              "ModifyDate: 2026:11:26 10:07:09\nLensModel: Some Lens 35mm\nFNumber: 2.8\n"
+              "OpcodeList3: WarpFisheye\n")
+        << name;
+  }
+  const auto said_of_maps = [&](const char* name) {
+    EXPECT_EQ(std::system(("exiftool -S -OpcodeList2 '" + path(name) + "' > '" + path("said") + "'").c_str()),
+              0);
+    return read_whole_file(path("said"));
+  };
+  EXPECT_EQ(said_of_maps("a.dng"), "OpcodeList2: GainMap, GainMap, GainMap, GainMap\n");
+  EXPECT_EQ(said_of_maps("l.dng"), "OpcodeList2: GainMap\n");
 }
 
 /// Entries of a directory are tag, type, count and place; the file is little-endian.
@@ -299,7 +437,7 @@ TEST_F(Dng, ATagOfAnotherTypeIsRefusedNotTakenForItsBytes) {
         Change{"ColorMatrix1", 50721, signed_rational, ascii},
         Change{"BlackLevel", 50714, rational, ascii}}) {
     std::string changed = bytes;
-    const std::size_t at = changed.rfind(entry(tag, from));  // libtiff writes the directory twice
+    const std::size_t at = changed.find(entry(tag, from));
     ASSERT_NE(at, changed.npos) << name;
     changed.replace(at, 4, entry(tag, to));
     try {
@@ -312,7 +450,14 @@ TEST_F(Dng, ATagOfAnotherTypeIsRefusedNotTakenForItsBytes) {
 }
 
 TEST_F(Dng, DamageIsRefusedOrHarmless) {
-  write_dng(path("a.dng"), example());
+  RawImage raw = example();
+  raw.bad_pixels = {{7, 3}};
+  raw.lens.fisheye_warp = {1.01, -0.2, 0.03, -0.004};
+  raw.lens.vignetting = {0.1, 0.02, 0.003, 4e-4, 5e-5};
+  raw.lens.gain_map = {3, 2, {1, 1.25F, 2, 1, 1.5F, 3}};
+  raw.shot_noise_share = 0.25;
+  raw.date_time = parse_date_time("2026-11-26 10:07:09.25");
+  write_dng(path("a.dng"), raw);
   const std::string bytes = read_whole_file(path("a.dng"));
   const auto attempt = [&](const std::string& damaged) {
     const std::string name = path("damaged.dng");
@@ -329,15 +474,17 @@ TEST_F(Dng, DamageIsRefusedOrHarmless) {
   };
   for (std::size_t length = 0; length < bytes.size(); length += 97)
     EXPECT_FALSE(attempt(bytes.substr(0, length))) << length;
-  // Samples lie in front; everything that can mislead stands behind them. Bits, bytes and words at random.
-  const std::size_t first = 2 * 60 * 44;
+  // Samples mislead nobody; everything else may. Bits, bytes and words at random.
+  const std::size_t mosaic = bytes.find(sample_bytes(example())), mosaic_bytes = 2 * 60 * 44;
+  ASSERT_NE(mosaic, bytes.npos);
   for (std::uint64_t i = 0; i < 4000; ++i) {
     RandomStream random(8, 1, i);
     std::string damaged = bytes;
     const std::uint64_t changes = 1 + random.bits() % 3;
     for (std::uint64_t k = 0; k < changes; ++k) {
       const bool header = random.bits() % 16 == 0;
-      const std::size_t at = header ? random.bits() % 8 : first + random.bits() % (bytes.size() - first);
+      std::size_t at = header ? random.bits() % 8 : random.bits() % (bytes.size() - mosaic_bytes);
+      if (at >= mosaic) at += mosaic_bytes;
       damaged[at] = random.bits() % 2 ? static_cast<char>(random.bits())
                                       : static_cast<char>(damaged[at] ^ (1 << random.bits() % 8));
     }

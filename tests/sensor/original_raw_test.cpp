@@ -12,7 +12,7 @@ namespace petzval {
 namespace {
 
 std::string picture_bytes() {
-  LinearPicture picture{41, 30, std::vector<std::uint16_t>(3 * 41 * 30, 9), {}, "linear", ""};
+  LinearPicture picture{41, 30, std::vector<std::uint16_t>(3 * 41 * 30, 9), {}, {}, ""};
   const ColourMatrix matrix = srgb_from_xyz();
   for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
   return linear_dng_bytes(picture, "l.dng");

@@ -4,6 +4,7 @@
 
 #include <petzval/base/large_floats.h>
 #include <petzval/colour/spectrum.h>
+#include <petzval/image/camera_facts.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -17,17 +18,6 @@ namespace petzval {
 /// What a pixel value stands for: the irradiance at the pixel's centre, its mean over a square of one pitch,
 /// or its mean over the photosite of the sensor that it is made for.
 enum class PixelAperture { point, box, photosite };
-
-/// The lens that light came through, as far as a camera notes it in its files.
-struct LensFacts {
-  std::string name = {};
-  double focal_length_mm = 0, f_number = 0;  ///< the working f-number; 0: not known
-  double exit_pupil_mm = 0;  ///< from the sensor, negative in front of it; 0: not known, or at infinity
-  /// What undoes distortion and fall-off over this frame, r = 1 in its corners: a point at r of a straight
-  /// picture is found at r·(w₀ + w₁r² + w₂r⁴ + w₃r⁶), and its light × (1 + v₀r² + … + v₄r¹⁰) is even (DNG's
-  /// WarpRectilinear and FixVignetteRadial). Empty: not known.
-  std::vector<double> warp = {}, vignetting = {};
-};
 
 /// Spectral irradiance on the sensor [W·m⁻²·nm⁻¹]: `bands` planes of `rows` × `columns`, upright (the optical
 /// inversion is undone), row 0 on top, pixel centres at half-integers. With image-space x', y' of the real

@@ -68,9 +68,9 @@ double even_value(const std::vector<double>& terms, double r) {
   return sum;
 }
 
-std::vector<double> warp_of(std::vector<FieldPoint> points, double tolerance) {
-  // Where more would be needed than there is, the straight picture is shown so large that its corners are the
-  // frame's.
+/// Points of the straight picture up to a little beyond its corner, with how they are met. Where more would
+/// be needed than there is, the straight picture is shown so large that its corners are the frame's.
+std::vector<FieldPoint> shown_points(const std::vector<FieldPoint>& points) {
   double scale = 1;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const FieldPoint &inner = points[i - 1], &outer = points[i];
@@ -79,18 +79,33 @@ std::vector<double> warp_of(std::vector<FieldPoint> points, double tolerance) {
     scale = std::max(1.0, 1 / (inner.straight + share * (outer.straight - inner.straight)));
     break;
   }
+  std::vector<FieldPoint> shown;
+  for (FieldPoint point : points) {
+    point.straight *= scale;
+    if (point.straight > 0 && point.straight <= 1.1) shown.push_back(point);
+  }
+  constexpr std::size_t least = 5;
+  if (shown.size() < least || shown.back().straight < 1) return {};
+  return shown;
+}
+
+/// Terms of real = Σ wᵢ t²ⁱ⁺¹ with t = variable(straight), or none where they miss a point by the tolerance.
+template <typename Variable>
+std::vector<double> warp_of(const std::vector<FieldPoint>& points, double tolerance,
+                            const Variable& variable) {
+  if (points.empty()) return {};
   std::vector<Eigen::Vector3d> samples;
   for (const FieldPoint& point : points) {
-    const double r = scale * point.straight;
-    if (r > 0 && r <= 1.1) samples.emplace_back(r, point.real / r, r);
+    const double t = variable(point.straight);
+    samples.emplace_back(t, point.real / t, t);
   }
-  constexpr std::size_t terms = 4;
-  if (samples.size() < terms + 1 || samples.back()(0) < 1) return {};
+  constexpr int terms = 4;
   const Eigen::VectorXd fit = even_polynomial(samples, 0, terms - 1);
-  std::vector<double> warp(fit.begin(), fit.end());
-  for (const Eigen::Vector3d& sample : samples)
-    if (sample(0) <= 1 && std::abs(even_value(warp, sample(0)) - sample(1)) * sample(0) > tolerance)
-      return {};
+  const std::vector<double> warp(fit.begin(), fit.end());
+  for (const FieldPoint& point : points) {
+    const double t = variable(point.straight);
+    if (point.straight <= 1 && std::abs(even_value(warp, t) * t - point.real) > tolerance) return {};
+  }
   return warp;
 }
 
@@ -111,15 +126,80 @@ std::vector<double> vignetting_of(const std::vector<FieldPoint>& points) {
   return {fit.begin(), fit.end()};
 }
 
+constexpr double greatest_gain = 16;
+
+/// Gains over a frame from light(x, y) [mm from the axis, in image space] over that of the middle.
+template <typename Light>
+GainMap gain_map_of(const SensorGeometry& frame, const Light& light) {
+  constexpr int points = 65;  // along the longer side: bilinear in between to 1 % of the edge of a fisheye
+  const int longest = std::max(frame.columns, frame.rows);
+  const auto along = [&](int pixels) { return 2 + (points - 2) * pixels / longest; };
+  GainMap map{along(frame.columns), along(frame.rows), {}};
+  const double middle = light(0, 0), pitch_mm = frame.pitch_um * mm_per_um;
+  if (!(middle > 0)) return {};
+  for (int row = 0; row < map.rows; ++row)
+    for (int column = 0; column < map.columns; ++column) {
+      const double x = (0.5 - static_cast<double>(column) / (map.columns - 1)) * frame.columns * pitch_mm;
+      const double y = (static_cast<double>(row) / (map.rows - 1) - 0.5) * frame.rows * pitch_mm;
+      map.gains.push_back(static_cast<float>(
+          std::min(greatest_gain, middle / std::max(light(x, y), middle / greatest_gain))));
+    }
+  return map;
+}
+
+/// Where x lies among increasing numbers: the place before it, and the share of the way to the next.
+std::pair<std::size_t, double> between(const std::vector<double>& numbers, double x) {
+  const auto after = std::upper_bound(numbers.begin() + 1, numbers.end() - 1, x);
+  const auto i = static_cast<std::size_t>(after - numbers.begin() - 1);
+  return {i, std::clamp((x - numbers[i]) / (numbers[i + 1] - numbers[i]), 0.0, 1.0)};
+}
+
+GainMap gain_map_by_height(const LensDataTable& table, const SensorGeometry& frame) {
+  const std::size_t wavelength = nearest_wavelength(table);
+  std::vector<double> heights, light;
+  for (std::size_t i = 0; i < table.fields.size(); ++i) {
+    heights.push_back(table.real_image_height_mm[table.index(i, wavelength)]);
+    light.push_back(table.g_sensor_sr[table.index(i, wavelength)]);
+  }
+  if (heights.size() < 2 || heights.back() < frame.half_diagonal_mm()) return {};
+  return gain_map_of(frame, [&](double x, double y) {
+    const auto [i, share] = between(heights, std::hypot(x, y));
+    return std::lerp(light[i], light[i + 1], share);
+  });
+}
+
+GainMap gain_map_by_place(const LensDataTable& table, const SensorGeometry& frame) {
+  const std::size_t wavelength = nearest_wavelength(table);
+  const FramePlaces& places = *table.frame;
+  const auto at = [&](std::size_t column, std::size_t row) {
+    return table.g_sensor_sr[table.index(places.place(column, row), wavelength)];
+  };
+  return gain_map_of(frame, [&](double x, double y) {
+    const auto [i, right] = between(places.x_mm, x);
+    const auto [j, down] = between(places.y_mm, y);
+    return std::lerp(std::lerp(at(i, j), at(i + 1, j), right),
+                     std::lerp(at(i, j + 1), at(i + 1, j + 1), right), down);
+  });
+}
+
 }  // namespace
 
 void add_corrections(LensFacts& facts, const LensDataTable& table, const SensorGeometry& frame) {
+  if (table.frame) {
+    facts.gain_map = gain_map_by_place(table, frame);
+    return;
+  }
   const double corner_mm = frame.half_diagonal_mm();
   const std::vector<FieldPoint> points = field_points(table, corner_mm);
   if (points.empty()) return;
   constexpr double pixels = 0.2;
-  facts.warp = warp_of(points, pixels * frame.pitch_um * mm_per_um / corner_mm);
+  const double tolerance = pixels * frame.pitch_um * mm_per_um / corner_mm;
+  const std::vector<FieldPoint> shown = shown_points(points);
+  facts.warp = warp_of(shown, tolerance, [](double r) { return r; });
+  if (facts.warp.empty())
+    facts.fisheye_warp = warp_of(shown, tolerance, [](double r) { return std::atan(r); });
   facts.vignetting = vignetting_of(points);
+  if (facts.vignetting.empty()) facts.gain_map = gain_map_by_height(table, frame);
 }
 
 }  // namespace petzval

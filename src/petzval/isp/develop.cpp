@@ -16,11 +16,11 @@ double range(const RawImage& raw) {
 
 /// Variance of a linear value x is scale · x + offset.
 double noise_scale(const RawImage& raw) {
-  return raw.dn_per_e / range(raw);
+  return raw.noise_slope() / range(raw);
 }
 double noise_offset(const RawImage& raw) {
-  const double k = noise_scale(raw), step = 1 / range(raw);
-  return k * k * raw.read_noise_e * raw.read_noise_e + step * step / 12;
+  const double step = 1 / range(raw);
+  return step * step * (raw.noise_offset() + 1.0 / 12);
 }
 
 std::vector<double> neutral_for(const RawImage& raw, const LinearMosaic& mosaic,

@@ -149,7 +149,7 @@ void write_display_picture(const std::string& path, const Planes& planes, Displa
   if (extension == ".tif" || extension == ".tiff")
     return write_tiff_picture(path, planes, bits, icc, provenance);
   if (extension == ".dng" && channels == 3)
-    return write_linear_dng(path, linear_picture(planes, space, provenance));
+    return write_linear_dng(path, linear_picture(planes, space, provenance, facts));
   throw InputError(path, channels == 3 ? "a picture is written as .png, .jpg, .tif, .exr, .npy or .dng"
                                        : "one plane is written as .png, .jpg, .tif, .exr or .npy");
 }

@@ -6,8 +6,9 @@
 
 namespace petzval {
 
-LinearPicture linear_picture(const Planes& planes, DisplaySpace space, const std::string& provenance) {
-  LinearPicture picture{planes.columns, planes.rows, {}, {}, "linear picture", provenance};
+LinearPicture linear_picture(const Planes& planes, DisplaySpace space, const std::string& provenance,
+                             const CameraFacts& facts) {
+  LinearPicture picture{planes.columns, planes.rows, {}, {}, facts, provenance};
   const ColourMatrix matrix = display_from_xyz(space);
   for (std::size_t i = 0; i < 9; ++i) picture.rgb_from_xyz[i] = matrix[i / 3][i % 3];
   const std::size_t columns = static_cast<std::size_t>(planes.columns), channels = planes.values.size();

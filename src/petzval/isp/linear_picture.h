@@ -10,6 +10,7 @@
 namespace petzval {
 
 /// Three planes of light of a display's primaries in 16 bits, cut at 0 and 1.
-LinearPicture linear_picture(const Planes& planes, DisplaySpace space, const std::string& provenance);
+LinearPicture linear_picture(const Planes& planes, DisplaySpace space, const std::string& provenance,
+                             const CameraFacts& facts);
 
 }  // namespace petzval

@@ -17,9 +17,8 @@ void write_raw_output(const std::string& path, const RawImage& raw) {
     return write_raw(path, raw);
   const std::string original = dng_bytes(raw, path);
   // What is developed is what one would read.
-  LinearPicture picture =
-      linear_picture(develop_planes(parse_dng(original, path)), DisplaySpace::srgb, raw.provenance);
-  picture.model = raw.sensor_name;
+  const LinearPicture picture = linear_picture(develop_planes(parse_dng(original, path)), DisplaySpace::srgb,
+                                               raw.provenance, camera_facts(raw));
   write_whole_file(path, with_original_raw(linear_dng_bytes(picture, path), original));
 }
 

@@ -337,6 +337,9 @@ RawImage capture(const PhotoCurrent& current, const Sensor& sensor, double expos
       std::floor(electronics.black_level_dn + exposure.dn_per_e() * exposure.saturation_e()) * steps;
   raw.dn_per_e = exposure.dn_per_e() * steps;
   raw.read_noise_e = exposure.read_noise_e() / std::sqrt(options.frames);
+  if (options.frames > 1)  // the mean is rounded once more
+    raw.read_noise_e = std::hypot(raw.read_noise_e, 1 / (std::sqrt(12.0) * raw.dn_per_e));
+  raw.shot_noise_share = 1.0 / options.frames;
   raw.bad_pixels = exposure.bad_pixels();
   raw.exposure_s = exposure_s;
   raw.pitch_um = sensor.geometry.pitch_um;

@@ -46,6 +46,10 @@ RawImage merge_bracket(const std::vector<RawImage>& frames) {
   for (const RawImage& frame : frames) seconds += frame.exposure_s;
   // Read noise in the dark, where all frames count.
   merged.read_noise_e *= std::sqrt(static_cast<double>(frames.size())) * shortest->exposure_s / seconds;
+  merged.read_noise_e = std::hypot(merged.read_noise_e, 1 / (std::sqrt(12.0) * merged.dn_per_e));
+  // Shot noise of a sum over all times in the shadows, of the shortest in the highlights. Between the two a
+  // line through the dark can be off by no less than this one, the root of their ratio.
+  merged.shot_noise_share *= std::sqrt(shortest->exposure_s / seconds);
   return merged;
 }
 

@@ -11,7 +11,9 @@ namespace petzval {
 /// Several exposures of one scene made into one raw image of 16 bits: each pixel is the sum of the electrons
 /// of all frames in which it stays below 90 % of saturation, over the sum of their exposure times (the
 /// estimate of greatest likelihood under shot noise); pixels that saturate in all frames are white. Levels
-/// are those of the shortest exposure. \throws InputError unless the frames are of one sensor at one gain.
+/// are those of the shortest exposure. The shot noise that is stated is the geometric mean of that of all
+/// frames (of shadows) and that of the shortest (of highlights): off by at most the root of the ratio of
+/// times. \throws InputError unless the frames are of one sensor at one gain.
 RawImage merge_bracket(const std::vector<RawImage>& frames);
 
 /// Merges readings of one exposure at several conversion gains: the mean of those below 90 % of their

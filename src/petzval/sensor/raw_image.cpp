@@ -37,8 +37,15 @@ void RawImage::validate() const {
   if (!as_shot_neutral.empty() && as_shot_neutral.size() != channels.size())
     throw InputError(
         fmt::format("a neutral of {} numbers for {} channels", as_shot_neutral.size(), channels.size()));
+  if (!(shot_noise_share > 0 && shot_noise_share <= 1))
+    throw InputError(
+        fmt::format("a share of shot noise of {:g}; above 0 up to 1 would be right", shot_noise_share));
   for (const double value : as_shot_neutral)
     if (!(value > 0) || std::isinf(value)) throw InputError("a neutral that is not positive");
+}
+
+CameraFacts camera_facts(const RawImage& raw) {
+  return {raw.exposure_s, raw.iso, raw.pitch_um, raw.lens, raw.sensor_name, raw.date_time};
 }
 
 }  // namespace petzval

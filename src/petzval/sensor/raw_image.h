@@ -37,6 +37,8 @@ struct RawImage {
   double black_level = 0, white_level = 65535;
   double dn_per_e = 0;      ///< linear values per electron; 0: not known
   double read_noise_e = 0;  ///< rms in the dark, quantisation included
+  /// Variance of shot noise over that of a single exposure: 1/N of the mean of N.
+  double shot_noise_share = 1;
 
   std::vector<ColourCalibration> calibrations = {};  ///< none, one or two
   std::vector<double> as_shot_neutral = {};  ///< of each channel under the light of the scene, the greatest 1
@@ -46,6 +48,7 @@ struct RawImage {
   double exposure_s = 0, iso = 0;
   double pitch_um = 0;  ///< 0: not known
   LensFacts lens = {};
+  std::optional<DateTime> date_time = {};  ///< when the exposure began, if a user said so
   std::string sensor_name = {}, provenance = {};
 
   double pixel(int row, int column) const {
@@ -53,8 +56,14 @@ struct RawImage {
                                          static_cast<std::size_t>(column)];
     return linearization.empty() ? stored : linearization[stored];
   }
+  /// Linear values have the variance slope · (value − black level) + offset.
+  double noise_slope() const { return dn_per_e * shot_noise_share; }
+  double noise_offset() const { return dn_per_e * dn_per_e * read_noise_e * read_noise_e; }
   /// \throws InputError if sizes, levels or matrices contradict each other.
   void validate() const;
 };
+
+/// What a picture made of it may note.
+CameraFacts camera_facts(const RawImage& raw);
 
 }  // namespace petzval

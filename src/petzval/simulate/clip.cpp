@@ -249,7 +249,9 @@ RawImage Clip::frame(int index, const Context& context) const {
         if (progress) progress((double(i) + share) / double(exposures), "frame");
       }));
     }
-    return impl_->exposure.raw(currents, impl_->seed, index);
+    RawImage raw = impl_->exposure.raw(currents, impl_->seed, index);
+    if (raw.date_time) raw.date_time = later(*raw.date_time, impl_->timing(index, 0).start_s);
+    return raw;
   });
 }
 

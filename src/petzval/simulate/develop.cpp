@@ -82,8 +82,7 @@ Picture develop(const RawImage& raw, const Development& development, const Conte
     picture.space = options.space;
     picture.planes = develop_planes(raw, options, &picture.report, step);
     picture.provenance = fmt::format("petzval {} develop: {}", version(), raw.provenance);
-    picture.facts = {raw.exposure_s, raw.lens.f_number, raw.lens.focal_length_mm,
-                     raw.iso,        raw.sensor_name,   raw.lens.name};
+    picture.facts = camera_facts(raw);
     return picture;
   });
 }
@@ -91,6 +90,7 @@ Picture develop(const RawImage& raw, const Development& development, const Conte
 Picture with_insets(const Picture& picture, const std::vector<PictureInset>& insets) {
   const InsetSheet sheet(picture.planes.columns, picture.planes.rows, insets);
   Picture beside = picture;
+  beside.facts.lens.warp.clear(), beside.facts.lens.vignetting.clear();  // are those of the frame
   beside.planes.columns = sheet.columns();
   beside.planes.rows = sheet.rows();
   const std::size_t pixels =

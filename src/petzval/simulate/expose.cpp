@@ -163,6 +163,7 @@ PreparedExposure::PreparedExposure(const SpectralImage& light, Sensor sensor, co
   facts_.iso = saturation_speed(sensor_, mode, options.analog_gain, illuminant(daylight));
   if (light.lens) facts_.lens = *light.lens;
   if (options.f_number) facts_.lens.f_number = *options.f_number;
+  facts_.date_time = options.date_time;
   facts_.provenance = fmt::format("petzval {} sense: {}; {}", version(), sensor_.name, light.provenance);
 }
 
@@ -177,6 +178,7 @@ RawImage PreparedExposure::raw(std::span<const PhotoCurrent> currents, std::uint
   raw.as_shot_neutral = facts_.as_shot_neutral;
   raw.iso = facts_.iso;
   raw.lens = facts_.lens;
+  raw.date_time = facts_.date_time;
   raw.provenance = facts_.provenance;
   return raw;
 }

@@ -48,6 +48,7 @@ struct ExposeOptions {
   std::vector<double> bracket_ev = {};       ///< exposures that differ by these stops are merged
   std::optional<double> f_number = {};       ///< for exposure values; absent: the lens's, where known
   std::optional<double> exit_pupil_mm = {};  ///< from the sensor, negative in front of it; for microlenses
+  std::optional<DateTime> date_time = {};    ///< by the camera's clock, for files; absent: they state none
   std::optional<Spectrum> illuminant = {};   ///< for white balance; absent: as the image says
 };
 

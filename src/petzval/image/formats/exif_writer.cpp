@@ -100,6 +100,7 @@ std::string exif_of(int columns, int rows, const JpegOptions& options) {
     directory.rational(0x011b, 72);
     directory.number(0x0128, exif_short, 2);  // inches
     directory.text(0x0131, std::string("petzval ") + version());
+    if (facts.date_time) directory.text(0x0132, exif_date_time(*facts.date_time));
     directory.number(0x0213, exif_short, 1);
     directory.number(0x8769, exif_long, exif_at);
     return directory;
@@ -110,19 +111,21 @@ std::string exif_of(int columns, int rows, const JpegOptions& options) {
       static_cast<std::uint32_t>(header_bytes + main_directory(0).placed(header_bytes).size());
   ExifDirectory exif;
   exif.rational(0x829a, facts.exposure_s);
-  exif.rational(0x829d, facts.f_number);
+  exif.rational(0x829d, facts.lens.f_number);
   constexpr double most_iso = 65535;
   if (facts.iso >= 1)
     exif.number(0x8827, exif_short, static_cast<std::uint32_t>(std::min(most_iso, std::round(facts.iso))));
   exif.bytes(0x9000, "0232");
+  if (facts.date_time) exif.text(0x9003, exif_date_time(*facts.date_time));
   exif.bytes(0x9101, std::string("\1\2\3\0", 4));
-  exif.rational(0x920a, facts.focal_length_mm);
+  exif.rational(0x920a, facts.lens.focal_length_mm);
+  if (facts.date_time) exif.text(0x9291, exif_subseconds(*facts.date_time));
   exif.bytes(0xa000, "0100");
   constexpr std::uint32_t is_srgb = 1, uncalibrated = 0xffff;
   exif.number(0xa001, exif_short, options.srgb ? is_srgb : uncalibrated);
   exif.number(0xa002, exif_long, static_cast<std::uint32_t>(columns));
   exif.number(0xa003, exif_long, static_cast<std::uint32_t>(rows));
-  exif.text(0xa434, facts.lens);
+  exif.text(0xa434, facts.lens.name);
   std::string header("II");
   put(header, 42, 2);
   put(header, header_bytes, 4);

@@ -30,8 +30,11 @@ constexpr std::pair<const char*, double LensFacts::*> lens_numbers[] = {
     {"fNumber", &LensFacts::f_number},
     {"exitPupil_mm", &LensFacts::exit_pupil_mm}};
 constexpr std::pair<const char*, std::vector<double> LensFacts::*> lens_lists[] = {
-    {"lensWarp", &LensFacts::warp}, {"lensVignetting", &LensFacts::vignetting}};
-constexpr const char* provenance_attribute = "comments";  // OpenEXR's own name for it: viewers show it
+    {"lensWarp", &LensFacts::warp},
+    {"lensVignetting", &LensFacts::vignetting},
+    {"lensFisheyeWarp", &LensFacts::fisheye_warp}};
+constexpr const char* gain_map_attribute = "lensGainMap";  // columns, rows, gains
+constexpr const char* provenance_attribute = "comments";   // OpenEXR's own name for it: viewers show it
 
 std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -63,6 +66,9 @@ SpectralExr description_of(const SpectralImage& image, const std::vector<ExrPlan
     for (const auto& [attribute, member] : lens_lists)
       if (!((*image.lens).*member).empty())
         exr.strings[attribute] = fmt::format("{}", fmt::join((*image.lens).*member, " "));
+    if (const GainMap& map = image.lens->gain_map; map.rows > 0)
+      exr.strings[gain_map_attribute] =
+          fmt::format("{} {} {}", map.columns, map.rows, fmt::join(map.gains, " "));
   }
   return exr;
 }
@@ -89,6 +95,21 @@ std::vector<double> numbers_of(const std::string& text, const std::string& path,
   return numbers;
 }
 
+GainMap gain_map_of(const std::string& text, const std::string& path) {
+  const std::vector<double> numbers = numbers_of(text, path, gain_map_attribute);
+  constexpr std::size_t sizes = 2;
+  constexpr double most = 4096;  // points on a side
+  const auto is_side = [](double side) { return side >= 2 && side <= most && side == std::floor(side); };
+  if (numbers.size() < sizes || !is_side(numbers[0]) || !is_side(numbers[1]) ||
+      static_cast<double>(numbers.size() - sizes) != numbers[0] * numbers[1])
+    throw InputError(
+        path, fmt::format("the attribute {}: columns, rows (2 to {:g}) and as many gains would be right",
+                          gain_map_attribute, most));
+  GainMap map{static_cast<int>(numbers[0]), static_cast<int>(numbers[1]), {}};
+  for (std::size_t i = sizes; i < numbers.size(); ++i) map.gains.push_back(static_cast<float>(numbers[i]));
+  return map;
+}
+
 std::optional<LensFacts> lens_of(const SpectralExr& exr, const std::string& path) {
   LensFacts lens;
   bool known = false;
@@ -104,6 +125,8 @@ std::optional<LensFacts> lens_of(const SpectralExr& exr, const std::string& path
   for (const auto& [attribute, member] : lens_lists)
     if (const auto found = exr.strings.find(attribute); found != exr.strings.end())
       lens.*member = numbers_of(found->second, path, attribute), known = true;
+  if (const auto found = exr.strings.find(gain_map_attribute); found != exr.strings.end())
+    lens.gain_map = gain_map_of(found->second, path), known = true;
   return known ? std::optional(lens) : std::nullopt;
 }
 

@@ -10,9 +10,11 @@ namespace petzval {
 
 /// Writes a raw image as DNG: 16-bit samples without compression; mosaic, levels, linearization, two colour
 /// and forward matrices, white balance, noise profile; exposure, ISO, f-number, focal length and lens in
-/// EXIF. One channel is written as linear raw, without a mosaic. The same bytes for the same image: no date.
-/// \throws InputError for an image that contradicts itself, or with channels that DNG has no number for (it
-/// knows red, green, blue, cyan, magenta, yellow and white or clear); as WholeFile; Failure.
+/// EXIF. One channel is written as linear raw, without a mosaic. Laid out as by cameras: a preview (at most
+/// 256 pixels long, white balanced) comes first, the raw picture stands below it (in a SubIFD). The same
+/// bytes for the same image: no date but that of the image. \throws InputError for an image that contradicts
+/// itself, or with channels that DNG has no number for (it knows red, green, blue, cyan, magenta, yellow and
+/// white or clear); as WholeFile; Failure.
 void write_dng(const std::string& path, const RawImage& raw);
 /// Whether DNG has numbers for all channels of the image.
 bool fits_dng(const RawImage& raw);

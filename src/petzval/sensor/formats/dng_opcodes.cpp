@@ -13,7 +13,13 @@ namespace petzval::dng {
 
 namespace {
 
-enum Opcode : std::uint32_t { warp_rectilinear = 1, fix_vignette_radial = 3, fix_bad_pixels_list = 5 };
+enum Opcode : std::uint32_t {
+  warp_rectilinear = 1,
+  warp_fisheye = 2,
+  fix_vignette_radial = 3,
+  fix_bad_pixels_list = 5,
+  gain_map = 9
+};
 constexpr std::uint32_t since_dng_1_3 = 0x01030000, optional_flag = 1;
 constexpr std::size_t vignetting_terms = 5, warp_terms = 4, tangential_terms = 2, centre_terms = 2;
 
@@ -28,6 +34,7 @@ class BigEndian {
     add(static_cast<std::uint32_t>(bits >> 32));
     add(static_cast<std::uint32_t>(bits & 0xffffffff));
   }
+  void add(float value) { add(std::bit_cast<std::uint32_t>(value)); }
   void add_opcode(Opcode opcode, const BigEndian& parameters) {
     add(std::uint32_t{opcode});
     add(since_dng_1_3);
@@ -52,6 +59,11 @@ class BigEndianReader {
   double real() {
     const std::uint64_t high = whole();
     const auto value = std::bit_cast<double>(high << 32 | whole());
+    if (!std::isfinite(value)) throw InputError("an opcode with a number that is none");
+    return value;
+  }
+  float narrow_real() {
+    const auto value = std::bit_cast<float>(whole());
     if (!std::isfinite(value)) throw InputError("an opcode with a number that is none");
     return value;
   }
@@ -125,6 +137,37 @@ void take_warp(BigEndianReader& parameters, RawImage& raw) {
   if (rest == std::vector<double>{0, 0, 0.5, 0.5}) raw.lens.warp = terms;
 }
 
+void take_fisheye_warp(BigEndianReader& parameters, RawImage& raw) {
+  const std::uint32_t planes = parameters.whole();
+  if (parameters.left() != sizeof(double) * (std::size_t{planes} * warp_terms + centre_terms))
+    throw InputError("a warp of another length than it states");
+  if (planes != 1) return;
+  const std::vector<double> terms = parameters.reals(warp_terms);
+  if (parameters.reals(centre_terms) == std::vector<double>{0.5, 0.5}) raw.lens.fisheye_warp = terms;
+}
+
+/// Of maps over the whole frame, alike for all planes, the first.
+void take_gain_map(BigEndianReader& parameters, RawImage& raw) {
+  const std::uint32_t top = parameters.whole(), left = parameters.whole();
+  const std::uint32_t bottom = parameters.whole(), right = parameters.whole();
+  for (int skipped = 0; skipped < 4; ++skipped) parameters.whole();  // planes, pitches
+  const std::uint32_t rows = parameters.whole(), columns = parameters.whole();
+  const std::vector<double> places = parameters.reals(4);
+  const std::uint32_t planes = parameters.whole();
+  constexpr std::uint32_t most = 4096;  // points on a side
+  if (rows < 1 || columns < 1 || planes < 1 || rows > most || columns > most || planes > most ||
+      parameters.left() != sizeof(float) * std::size_t{rows} * columns * planes)
+    throw InputError("a map of gains of another length than it states");
+  const auto spacing = [](std::uint32_t points) { return 1.0 / (points - 1.0); };
+  const bool whole = top < 2 && left < 2 && bottom == static_cast<std::uint32_t>(raw.rows) &&
+                     right == static_cast<std::uint32_t>(raw.columns) && planes == 1 && rows > 1 &&
+                     columns > 1 && places == std::vector<double>{spacing(rows), spacing(columns), 0, 0};
+  if (!whole || raw.lens.gain_map.rows > 0) return;
+  raw.lens.gain_map = {static_cast<int>(columns), static_cast<int>(rows), {}};
+  for (std::size_t i = 0; i < std::size_t{rows} * columns; ++i)
+    raw.lens.gain_map.gains.push_back(parameters.narrow_real());
+}
+
 void take_vignetting(BigEndianReader& parameters, RawImage& raw) {
   const std::vector<double> terms = parameters.reals(vignetting_terms);
   if (parameters.reals(centre_terms) == std::vector<double>{0.5, 0.5}) raw.lens.vignetting = terms;
@@ -148,11 +191,35 @@ std::string opcodes_of_samples(const RawImage& raw) {
   return list.bytes();
 }
 
+std::string opcodes_of_values(const RawImage& raw) {
+  const GainMap& map = raw.lens.gain_map;
+  if (map.rows < 2 || map.columns < 2) return {};
+  const std::uint32_t pitch = raw.mosaic.rows == 2 && raw.mosaic.columns == 2 ? 2 : 1;
+  BigEndian list;
+  list.add(pitch * pitch);
+  for (std::uint32_t kind = 0; kind < pitch * pitch; ++kind) {
+    BigEndian parameters;
+    const auto planes = static_cast<std::uint32_t>(raw.mosaic.is_uniform() ? raw.channels.size() : 1);
+    for (const std::uint32_t value :
+         {kind / pitch, kind % pitch, static_cast<std::uint32_t>(raw.rows),
+          static_cast<std::uint32_t>(raw.columns), std::uint32_t{0}, planes, pitch, pitch,
+          static_cast<std::uint32_t>(map.rows), static_cast<std::uint32_t>(map.columns)})
+      parameters.add(value);
+    for (const double place : {1.0 / (map.rows - 1), 1.0 / (map.columns - 1), 0.0, 0.0})
+      parameters.add(place);
+    parameters.add(std::uint32_t{1});  // for all planes
+    for (const float gain : map.gains) parameters.add(gain);
+    list.add_opcode(gain_map, parameters);
+  }
+  return list.bytes();
+}
+
 std::string opcodes_of_picture(const LensFacts& lens) {
   BigEndian list;
-  const bool even = lens.vignetting.size() == vignetting_terms, straight = lens.warp.size() == warp_terms;
-  if (!even && !straight) return {};
-  list.add(static_cast<std::uint32_t>(even + straight));
+  const bool even = lens.vignetting.size() == vignetting_terms, straight = lens.warp.size() == warp_terms,
+             fisheye = !straight && lens.fisheye_warp.size() == warp_terms;
+  if (!even && !straight && !fisheye) return {};
+  list.add(static_cast<std::uint32_t>(even + (straight || fisheye)));
   const auto add_centre = [](BigEndian& parameters) { parameters.add(0.5), parameters.add(0.5); };
   if (even) {
     BigEndian parameters;
@@ -160,13 +227,13 @@ std::string opcodes_of_picture(const LensFacts& lens) {
     add_centre(parameters);
     list.add_opcode(fix_vignette_radial, parameters);
   }
-  if (straight) {
+  if (straight || fisheye) {
     BigEndian parameters;
     parameters.add(std::uint32_t{1});  // planes
-    for (const double term : lens.warp) parameters.add(term);
-    for (std::size_t i = 0; i < tangential_terms; ++i) parameters.add(0.0);
+    for (const double term : straight ? lens.warp : lens.fisheye_warp) parameters.add(term);
+    for (std::size_t i = 0; straight && i < tangential_terms; ++i) parameters.add(0.0);
     add_centre(parameters);
-    list.add_opcode(warp_rectilinear, parameters);
+    list.add_opcode(straight ? warp_rectilinear : warp_fisheye, parameters);
   }
   return list.bytes();
 }
@@ -177,9 +244,16 @@ void take_sample_opcodes(std::span<const std::uint8_t> list, RawImage& raw) {
   });
 }
 
+void take_value_opcodes(std::span<const std::uint8_t> list, RawImage& raw) {
+  for_opcodes(list, [&](std::uint32_t opcode, BigEndianReader parameters) {
+    if (opcode == gain_map) take_gain_map(parameters, raw);
+  });
+}
+
 void take_picture_opcodes(std::span<const std::uint8_t> list, RawImage& raw) {
   for_opcodes(list, [&](std::uint32_t opcode, BigEndianReader parameters) {
     if (opcode == warp_rectilinear) take_warp(parameters, raw);
+    if (opcode == warp_fisheye) take_fisheye_warp(parameters, raw);
     if (opcode == fix_vignette_radial) take_vignetting(parameters, raw);
   });
 }

@@ -35,6 +35,7 @@ class DngReader {
     go_to_raw();
     read_frame();
     read_mosaic();
+    read_noise();
     read_levels();
     read_opcodes();
     read_samples();
@@ -86,10 +87,29 @@ class DngReader {
       calibration.temperature_k = temperature_of(light);
       raw_.calibrations.push_back(calibration);
     }
+    const char* when = nullptr;
+    if (TIFFGetField(tiff_, TIFFTAG_DATETIME, &when) && when) take_date_time(when, "");
+    std::uint16_t count = 0;
+    const std::uint8_t* own = nullptr;
+    if (TIFFGetField(tiff_, TIFFTAG_DNGPRIVATEDATA, &count, &own) && own)
+      raw_.shot_noise_share = dng::shot_noise_share(std::string(own, own + count)).value_or(1);
+    read_noise();
+  }
+
+  /// Is in the first directory or in that of the raw picture.
+  void read_noise() {
     std::uint32_t count = 0;
     const double* profile = nullptr;
     if (TIFFGetField(tiff_, dng::noise_profile_tag, &count, &profile) && profile && count >= 2)
       noise_scale_ = profile[0], noise_offset_ = profile[1];
+  }
+
+  /// Dates that are none ("0000:00:00 00:00:00") are not known.
+  void take_date_time(const std::string& seconds, const std::string& fraction) {
+    try {
+      raw_.date_time = parse_date_time(fraction.empty() ? seconds : seconds + "." + fraction);
+    } catch (const InputError&) {
+    }
   }
 
   /// Of EXIF's light sources.
@@ -215,8 +235,8 @@ class DngReader {
     const double range = raw_.white_level - raw_.black_level;
     if (noise_scale_ > 0 && noise_offset_ >= 0 && std::isfinite(noise_scale_) &&
         std::isfinite(noise_offset_)) {
-      raw_.dn_per_e = noise_scale_ * range;
-      raw_.read_noise_e = std::sqrt(noise_offset_) / noise_scale_;
+      raw_.dn_per_e = noise_scale_ * range / raw_.shot_noise_share;
+      raw_.read_noise_e = std::sqrt(noise_offset_) * range / raw_.dn_per_e;
     }
   }
 
@@ -230,6 +250,8 @@ class DngReader {
     try {
       if (const auto samples = list(dng::opcode_list_1_tag); !samples.empty())
         dng::take_sample_opcodes(samples, raw_);
+      if (const auto values = list(dng::opcode_list_2_tag); !values.empty())
+        dng::take_value_opcodes(values, raw_);
       if (const auto picture = list(dng::opcode_list_3_tag); !picture.empty())
         dng::take_picture_opcodes(picture, raw_);
     } catch (const InputError& error) {
@@ -320,8 +342,12 @@ class DngReader {
     std::uint16_t count = 0;
     const std::uint16_t* iso = nullptr;
     if (TIFFGetField(tiff_, EXIFTAG_ISOSPEEDRATINGS, &count, &iso) && iso && count >= 1) raw_.iso = iso[0];
-    const char* lens = nullptr;
-    if (TIFFGetField(tiff_, EXIFTAG_LENSMODEL, &lens) && lens) raw_.lens.name = lens;
+    const auto text = [&](std::uint32_t tag) {
+      const char* value = nullptr;
+      return TIFFGetField(tiff_, tag, &value) && value ? std::string(value) : std::string();
+    };
+    raw_.lens.name = text(EXIFTAG_LENSMODEL);
+    take_date_time(text(EXIFTAG_DATETIMEORIGINAL), text(EXIFTAG_SUBSECTIMEORIGINAL));
   }
 
   /// A black level that libtiff ignored would be 0.

@@ -2,6 +2,8 @@
 // Digital negatives without a mosaic, which every program reads whatever the sensor was.
 #pragma once
 
+#include <petzval/image/camera_facts.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -14,10 +16,11 @@ struct LinearPicture {
   int columns = 0, rows = 0;
   std::vector<std::uint16_t> samples = {};  ///< row by row, red, green, blue
   std::array<double, 9> rgb_from_xyz = {};  ///< row by row
-  std::string model = {}, provenance = {};
+  CameraFacts facts = {};
+  std::string provenance = {};
 };
 
-/// Writes it as DNG 1.4, LinearRaw of 16 bits without compression. The same bytes for the same picture.
+/// Writes it as write_dng() does, LinearRaw of three samples a pixel in the mosaic's place.
 /// \throws InputError for samples that do not fill it; as WholeFile; Failure.
 void write_linear_dng(const std::string& path, const LinearPicture& picture);
 /// The bytes of that file. \param path  for messages.
