@@ -28,7 +28,7 @@ constexpr std::uint32_t optimiser_starts = 0x0b71;
 /// merit [µm]; of wavefronts [nm] fifty times as much, about as spots of a slow lens compare with its waves.
 constexpr double efl_cost_um = 5e3, rim_cost_um = 1e3, nm_of_wave_per_um = 50;
 /// A per cent of distortion too much costs as much as so many µm of spot, or per cent of MTF.
-constexpr double distortion_cost_um = 10;
+constexpr double distortion_cost_um = 100;
 /// Stands for a lens through which a ray does not get: no step leads there.
 constexpr double lost_ray = 1e6;
 /// A round that improves less than by this share is the last. Steps of one round at most.

@@ -148,8 +148,9 @@ Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
       {{"against f·θ", "%", 3, "distortion_ftheta_percent", {"f-theta [%]", ".4f", 13}},
        [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }}};
   // Of lenses with poses.
-  if (std::ranges::any_of(rows,
-                          [](const Row& row) { return row.image_x_mm != 0 || row.across_percent != 0; })) {
+  if (std::ranges::any_of(rows, [](const Row& row) {
+        return std::abs(row.image_x_mm) > 0 || std::abs(row.across_percent) > 0;
+      })) {
     columns.push_back({{"beside the field", "mm", 5, "image_x_mm", {"", ".6f", 24}},
                        [](const Row& row) { return row.image_x_mm; }});
     columns.push_back({{"beside the field", "%", 3, "across_percent", {"", ".4f", 22}},
@@ -203,7 +204,7 @@ Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows) {
   std::vector<Column<Row>> columns{{height_column, [](const Row& row) { return row.real_image_height_mm; }},
                                    {{"lateral colour", "µm", 4, "lateral_colour_um"},
                                     [](const Row& row) { return row.lateral_colour_um; }}};
-  if (std::ranges::any_of(rows, [](const Row& row) { return row.across_um != 0; }))
+  if (std::ranges::any_of(rows, [](const Row& row) { return std::abs(row.across_um) > 0; }))
     columns.push_back(
         {{"beside the field", "µm", 4, "across_um"}, [](const Row& row) { return row.across_um; }});
   return make<Row>(kind, rows, columns);
