@@ -34,7 +34,7 @@ Lens pinhole(double tilt_x_deg, double tilt_y_deg) {
   lens.surfaces = {Surface::sphere(INFINITY, 20)};
   lens.surfaces[0].stop = true;
   lens.surfaces[0].ideal_lens = IdealLens{20};
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 1};
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 0.1};  // aberrations count as its square
   lens.fields.values = {0, 20};
   lens.wavelengths_nm = {550};
   lens.reference_wavelength_nm = 550;
