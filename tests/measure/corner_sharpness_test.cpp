@@ -18,8 +18,9 @@ MeasuredEdge edge_at(double x_px, double y_px, double mtf50_cpp, const std::stri
 }
 
 TEST(CornerSharpness, IsTheMeanOfEachCornersEdges) {
-  const std::vector<MeasuredEdge> edges{edge_at(10, 10, 0.2),  edge_at(30, 20, 0.3),  edge_at(190, 10, 0.2),
-                                        edge_at(5, 145, 0.15), edge_at(195, 140, 0.3), edge_at(100, 75, 0.01)};
+  const std::vector<MeasuredEdge> edges{edge_at(10, 10, 0.2),   edge_at(30, 20, 0.3),
+                                        edge_at(190, 10, 0.2),  edge_at(5, 145, 0.15),
+                                        edge_at(195, 140, 0.3), edge_at(100, 75, 0.01)};
   const CornerSharpness corners = corner_sharpness(edges, 200, 150);
   EXPECT_DOUBLE_EQ(corners.mtf50_cpp[0], 0.25);  // top left: rows run down
   EXPECT_DOUBLE_EQ(corners.mtf50_cpp[1], 0.2);
