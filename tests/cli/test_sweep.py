@@ -56,7 +56,7 @@ class Sweep(ProgramTest):
         self.assert_succeeds("lens", "scale", "cooke-triplet", "--factor", "0.2", "-o", "small.json", "--quiet")
         board = ["sweep", "image", "slanted-board:8", "--lens", "small.json", "--sensor", "icx625-mono", "--sensor-set",
                  "columns=200", "--sensor-set", "rows=150", "--wavelengths", "550", "--focus", "design", "--vary",
-                 "sensor_pose.tilt_y_deg=-1,0,1", "--corners", "-o", "out"]
+                 "sensor_pose.tilt_y_deg=-4,0,4", "--corners", "-o", "out"]
         said = self.json_of(*board, "--accept", "corners.symmetry>=0.9", "--accept", "corners.least_cpp>=0.01")
         corners = [{key.split(".")[1]: row[key] for key in row if key.startswith("corners.")} for row in said["rows"]]
         left, middle, right = ((each["top_left_cpp"], each["top_right_cpp"]) for each in corners)
