@@ -34,7 +34,7 @@ Lens pinhole(double tilt_x_deg, double tilt_y_deg) {
   lens.surfaces = {Surface::sphere(INFINITY, 20)};
   lens.surfaces[0].stop = true;
   lens.surfaces[0].ideal_lens = IdealLens{20};
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 0.1};  // aberrations count as its square
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 1};
   lens.fields.values = {0, 20};
   lens.wavelengths_nm = {550};
   lens.reference_wavelength_nm = 550;
@@ -160,7 +160,7 @@ TEST(ImmersedObjects, KeepTheirEtendue) {
   lens.object_material = Material(Material::Constant{1.333});
   lens.object_distance_mm = 300;
   lens.fields = {Fields::Kind::object_height_mm, {0}};
-  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 1};
+  lens.aperture = {Aperture::Kind::stop_semi_diameter_mm, 0.1};  // aberrations count as its square
   lens.set_image_distance_mm(first_order(lens).paraxial_image_mm);
   FieldTracer tracer(lens, 550);
   const ChiefRay chief = *tracer.chief_ray(0);
