@@ -5,6 +5,8 @@
 For files of the Optical Bench (.txt), of FlareSim (.lens) and of LensLibrary (.zmx beside lens_properties_list.txt):
 
     tools/check_focal_lengths.py FOLDER --program build/release/bin/petzval
+
+With --optiland (pip install optiland) every .zmx that both programs read is also compared with that ray tracer.
 """
 
 import argparse
@@ -38,14 +40,38 @@ def listed(folder):
     return values
 
 
+def optiland_mm(path):
+    """The focal length by Optiland; text that says why not."""
+    try:
+        from optiland.fileio import load_zemax_file
+        return float(load_zemax_file(str(path)).paraxial.f2()), ""
+    except ImportError:
+        raise
+    except BaseException as error:  # whatever another program fails with is its answer
+        return None, f"{type(error).__name__}: {error}".splitlines()[0][:70]
+
+
+def tell_beside(beside):
+    """Counts and disagreements of (name, ours, theirs, why theirs is none)."""
+    both = [(abs(ours / theirs - 1), name, ours, theirs) for name, ours, theirs, _ in beside if theirs]
+    print(f"Optiland reads {len(both)} of these {len(beside)} .zmx; "
+          f"{sum(each[0] < 1e-4 for each in both)} focal lengths agree to 1e-4:")
+    for off, name, ours, theirs in sorted(both, reverse=True):
+        if off >= 1e-4:
+            print(f"  {100 * off:8.2f} %  Petzval {ours:.6g} mm, Optiland {theirs:.6g} mm  {name}")
+    for why, count in collections.Counter(each[3] for each in beside if each[3]).most_common():
+        print(f"  {count:4}  {why}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--program", default="petzval")
     parser.add_argument("--worst", type=int, default=10, help="so many of the worst are listed")
+    parser.add_argument("--optiland", action="store_true", help="compare .zmx with Optiland too")
     arguments = parser.parse_args()
     properties = listed(arguments.folder)
-    refused, off, read = collections.Counter(), [], 0
+    refused, off, beside, read = collections.Counter(), [], [], 0
     for path in sorted(arguments.folder.rglob("*")):
         text = path.read_text(errors="replace") if path.is_file() else ""
         bench = path.suffix == ".txt" and "[lens data]" in text
@@ -58,11 +84,15 @@ def main():
             continue
         read += 1
         stated, found = stated_mm(path, text, properties), json.loads(run.stdout)["efl_mm"]
+        if arguments.optiland and found and path.suffix.lower() == ".zmx":
+            beside.append((path.name, found, *optiland_mm(path)))
         if stated and found:
             off.append((abs(abs(found) / abs(stated) - 1), path.name, stated, found))
     print(f"{read} files read, {sum(refused.values())} refused")
     for reason, count in refused.most_common():
         print(f"  {count:4}  {reason}")
+    if beside:
+        tell_beside(beside)
     if off:
         off.sort()
         print(f"focal lengths of {len(off)}: off by {100 * statistics.median(each[0] for each in off):.3g} % (median); "

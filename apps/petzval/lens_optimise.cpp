@@ -2,6 +2,7 @@
 // petzval lens optimise.
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/number_text.h>
 #include <petzval/base/quantities.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/report/optimise_tables.h>
@@ -62,10 +63,22 @@ void print_as_text(const OptimiseCommand& command, const OptimiseRequest& reques
     print_table(optimised_glasses(result));
 }
 
+OptimiseMerit optimise_merit(const std::string& text, double& frequency_cpmm) {
+  constexpr std::string_view mtf = "mtf@";
+  if (text == "spot") return OptimiseMerit::rms_spot;
+  if (text == "wavefront") return OptimiseMerit::wavefront;
+  const auto number = text.starts_with(mtf) ? parse_number(text.substr(mtf.size())) : std::nullopt;
+  if (!number || !(*number > 0))
+    throw InputError(fmt::format(
+        "--merit \"{}\": spot, wavefront, or mtf@40 for the MTF at 40 cycles/mm, would be right", text));
+  frequency_cpmm = *number;
+  return OptimiseMerit::mtf;
+}
+
 void run_optimise(const OptimiseCommand& command, const Shared& shared) {
   if (!command.plot.empty()) require_drawing(command.plot, "a plot");
   OptimiseRequest request = command.request;
-  if (command.merit == "wavefront") request.merit = OptimiseMerit::wavefront;
+  request.merit = optimise_merit(command.merit, request.mtf_frequency_cpmm);
   const Lens lens = command.fields.prepare(command.lens.read(shared), shared);
   for (const std::string& text : command.variables)
     for (const LensVariable& variable : parse_lens_variables(lens, text))
@@ -98,10 +111,14 @@ void add_lens_optimise(CLI::App& lens, Shared& shared) {
                    "surfaces[1].conic, with =LOW:HIGH for limits (repeatable); default: radii and image")
       ->take_all()
       ->allow_extra_args(false);
+  command->add_option(
+      "--merit", options->merit,
+      "What is made small: spot (RMS radius), wavefront, or what the MTF lacks of 1, mtf@F at F "
+      "cycles/mm; default: spot");
   command
-      ->add_option("--merit", options->merit,
-                   "What is made small: spot (RMS radius) or wavefront; default: spot")
-      ->check(CLI::IsMember({"spot", "wavefront"}));
+      ->add_option("--most-distortion", request.most_distortion_percent,
+                   "Of every field, about the paraxial height [%]; default: it does not count")
+      ->check(number_not_negative());
   command->add_option("--efl", request.efl_mm, "The focal length that it shall have [mm]; default: as it has")
       ->check(finite_number());
   options->fields.add_to(*command);

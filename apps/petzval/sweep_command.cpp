@@ -9,9 +9,11 @@
 #include <petzval/report/sweep_plot.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "clip.h"
@@ -23,6 +25,7 @@
 #include "sweep_scene.h"
 #include "sweep_sheet.h"
 #include "sweep_tables.h"
+#include "sweep_yield.h"
 
 namespace petzval::app {
 
@@ -69,24 +72,28 @@ void check_plot(const SweepCommand& options, const std::vector<SweptParameter>& 
 /// \throws InputError for a quantity that the command does not measure, and then nothing stays of the first
 /// point. \param results  of which the last was made.
 void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results) {
-  if (options.plot_of.empty()) return;
+  std::vector<std::pair<const char*, std::string>> asked;
+  for (const std::string& key : options.plot_of) asked.emplace_back("--plot-of", key);
+  for (const std::string& text : options.accept) asked.emplace_back("--accept", parse_criterion(text).column);
+  if (asked.empty()) return;
   std::vector<std::string> varied;
   for (const auto& [key, value] : results.back().point) varied.push_back(key);
   const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), varied);
-  for (const std::string& key : options.plot_of) {
+  for (const auto& [option, key] : asked) {
     if (std::ranges::find(measured, key) != measured.end()) continue;
     std::error_code ignored;
     std::filesystem::remove(options.folder + "/" + name_of_point(results.size() - 1) + ".json", ignored);
     for (const std::string& path : results.back().outputs) std::filesystem::remove(path, ignored);
-    throw InputError(fmt::format("--plot-of {}: the command measures no such thing; {} would be right", key,
+    throw InputError(fmt::format("{} {}: the command measures no such thing; {} would be right", option, key,
                                  fmt::join(measured, ", ")));
   }
 }
 
 void write_page(const SweepCommand& options, const std::vector<PointResult>& results, const Table& table,
-                const std::string& plot, bool pictures) {
+                const std::string& plot, const std::string& yield, bool pictures) {
   html::Page page(fmt::format("Sweep of petzval {}", options.command),
                   fmt::format("{} points", results.size()));
+  if (!yield.empty()) page.add(html::paragraph(yield));
   if (pictures)
     page.section("Contact sheet")
         .add(html::picture(html::linked_image("contact-sheet.png", "contact sheet")));
@@ -174,19 +181,40 @@ void refuse_if_all_are_refused(const std::vector<PointResult>& results) {
   throw InputError(same ? first : fmt::format("{}{} (and the other points are refused too)", at, first));
 }
 
+/// Pictures in the order of the points; where they are judged, from the best to the worst, with what they
+/// are judged by.
+std::vector<SheetEntry> sheet_entries(const std::vector<PointResult>& results,
+                                      const std::vector<JudgedPoint>& judged,
+                                      const std::vector<Criterion>& criteria) {
+  std::vector<std::size_t> order(results.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!judged.empty())
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+      const double sign = criteria.front().at_least ? 1 : -1;
+      const double first = sign * judged[a].value, second = sign * judged[b].value;
+      return !std::isnan(first) && (std::isnan(second) || first > second);
+    });
+  std::vector<SheetEntry> sheet;
+  for (const std::size_t i : order) {
+    std::string label = label_of(results[i].point);
+    if (!judged.empty())
+      label += fmt::format("  {:.3g}{}", judged[i].value, judged[i].good ? "" : "  rejected");
+    sheet.push_back({results[i].picture, label});
+  }
+  return sheet;
+}
+
 /// Tables, the sheet and the page. \returns their names.
 std::set<std::string> write_summary(const SweepCommand& options, const std::vector<PointResult>& results,
                                     const std::vector<SweptParameter>& parameters, const Json& rows,
-                                    const Shared& shared) {
+                                    const std::vector<JudgedPoint>& judged,
+                                    const std::vector<Criterion>& criteria, const Shared& shared) {
   std::set<std::string> names{"sweep.csv", "index.html"};
   const Table table = table_of(rows);
   write_whole_file(options.folder + "/sweep.csv", to_csv(table));
-  std::vector<SheetEntry> sheet;
-  bool pictures = false;
-  for (const PointResult& result : results) {
-    sheet.push_back({result.picture, label_of(result.point)});
-    pictures = pictures || !result.picture.empty();
-  }
+  const std::vector<SheetEntry> sheet = sheet_entries(results, judged, criteria);
+  const bool pictures =
+      std::ranges::any_of(results, [](const PointResult& result) { return !result.picture.empty(); });
   if (pictures) {
     const double brightening = write_contact_sheet(options.folder + "/contact-sheet.png", sheet,
                                                    pictures_in_unit(options, parameters));
@@ -197,7 +225,7 @@ std::set<std::string> write_summary(const SweepCommand& options, const std::vect
   }
   const std::string plot = options.plot.empty() ? "" : plot_svg(options, parameters, table, shared);
   if (!plot.empty()) write_drawing(options.plot, plot);
-  write_page(options, results, table, plot, pictures);
+  write_page(options, results, table, plot, judged.empty() ? "" : yield_text(judged, criteria), pictures);
   return names;
 }
 
@@ -211,6 +239,8 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
     throw InputError("what is varied? --vary f-number=2,4,8 or --points FILE.csv would be right");
   const std::vector<SweepPoint> points = points_of(options, parameters);
   check_plot(options, parameters);
+  std::vector<Criterion> criteria;
+  for (const std::string& text : options.accept) criteria.push_back(parse_criterion(text));
   check_command_lines(app, options, parameters, shared);
   for (const std::string& text : notes) note(shared, text);
   SweepFolder folder(options.folder, planned_files(options, points.size()));
@@ -247,16 +277,28 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   }
   refuse_if_all_are_refused(results);
   const Json rows = rows_of(results);
-  written.merge(write_summary(options, results, parameters, rows, shared));
+  const std::vector<JudgedPoint> judged =
+      criteria.empty() ? std::vector<JudgedPoint>() : judged_points(results, criteria);
+  written.merge(write_summary(options, results, parameters, rows, judged, criteria, shared));
   folder.finish(rows, written);
   if (!options.clip.empty() && failed == 0)
     write_clip(options.clip, options.folder + "/point-%04d.png", options.frames_per_second);
   if (failed == points.size())
     throw Failure(fmt::format("every point failed, the last one: {}", results.back().error));
-  if (shared.json) return print_json({{"points", points.size()}, {"failed", failed}, {"rows", rows}});
+  if (shared.json) {
+    Json json = {{"points", points.size()}, {"failed", failed}, {"rows", rows}};
+    if (!judged.empty()) {
+      const Yield yield = yield_of(good_points(judged), judged.size());
+      json["yield"] = yield.share;
+      json["yield_interval_95"] = {yield.low, yield.high};
+      for (const JudgedPoint& point : judged) json["good"].push_back(point.good);
+    }
+    return print_json(json);
+  }
   if (!shared.quiet)
     fmt::print("{} points, {} failed: {}/index.html, sweep.csv, sweep.json{}\n", points.size(), failed,
                options.folder, written.contains("contact-sheet.png") ? ", contact-sheet.png" : "");
+  if (!shared.quiet && !judged.empty()) fmt::print("{}\n", yield_text(judged, criteria));
 }
 
 void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::string& name,
@@ -304,7 +346,17 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
           "Columns of sweep.csv that the plot shows, separated by commas; default: what the command is "
           "about")
       ->delimiter(',');
+  command
+      ->add_option(
+          "--accept", options->accept,
+          "What a good point keeps, COLUMN>=VALUE or COLUMN<=VALUE of sweep.csv: the share of good points "
+          "with its interval, and the sheet from the best to the worst (repeatable)")
+      ->take_all()
+      ->allow_extra_args(false);
   if (name == "lens") return;
+  command->add_flag("--corners", options->corners,
+                    "Measure the edges in the four corners of every picture: MTF50 of each, the least, their "
+                    "symmetry, and the colours' offset");
   command
       ->add_option("--clip", options->clip,
                    "Also put the pictures together into a film (.mp4, .webm or .gif), by the program ffmpeg")

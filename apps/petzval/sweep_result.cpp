@@ -13,6 +13,7 @@
 
 #include "field_option.h"
 #include "run_command.h"
+#include "sweep_yield.h"
 
 namespace petzval::app {
 
@@ -50,7 +51,8 @@ Json entry_of(const Json& record, const char* key) {
 }
 
 /// Takes the point from an earlier run of the same arguments, if it was finished then and stands as it did.
-bool recall(const std::string& record_path, PointResult& result, const Shared& shared) {
+/// \param corners  whether they are to be measured.
+bool recall(const std::string& record_path, bool corners, PointResult& result, const Shared& shared) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(record_path, ignored)) return false;
   const Json record = Json::parse(read_whole_file(record_path), nullptr, false);
@@ -65,18 +67,20 @@ bool recall(const std::string& record_path, PointResult& result, const Shared& s
                                sum.is_null() ? "gone" : "not as it was written"));
       return false;
     }
-  if (!numbers.is_object()) return false;
+  if (!numbers.is_object() || numbers.contains("corners") != corners) return false;
   result.numbers = numbers;
   return result.done = true;
 }
 
 /// Runs the command of the point, and records what it made.
-void make(PointResult& result, const std::string& folder, const std::string& name, RenderSession* renders) {
-  const CommandOutcome outcome = run_command(result.arguments, renders);
+void make(PointResult& result, const SweepCommand& options, const std::string& name, const Shared& shared) {
+  const CommandOutcome outcome = run_command(result.arguments, shared.renders);
   result.exit_code = outcome.exit_code;
   result.numbers = outcome.numbers;
   result.done = outcome.exit_code == 0 && result.numbers.is_object();
-  if (result.done) return write_whole_file(folder + "/" + name + ".json", record_of(result).dump(1) + "\n");
+  if (result.done && options.corners) measure_corners(result, shared);
+  if (result.done)
+    return write_whole_file(options.folder + "/" + name + ".json", record_of(result).dump(1) + "\n");
   result.numbers = Json::object();
   result.picture.clear();
   result.outputs.clear();
@@ -117,7 +121,7 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   for (const std::string& path : result.outputs)
     result.arguments.insert(result.arguments.end(), {"-o", path});
   result.checksums = checksums_of_files(result.arguments, stem);
-  if (!recall(stem + ".json", result, shared)) make(result, options.folder, name, shared.renders);
+  if (!recall(stem + ".json", options.corners, result, shared)) make(result, options, name, shared);
   return result;
 }
 

@@ -76,6 +76,7 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
                     const std::optional<std::string>& field_type, const Numbers& wavelengths_nm,
                     const Numbers& field_weights, const std::string& merit, std::optional<double> efl_mm,
                     double least_rim_mm, int rounds, int starts, double start_spread, int glasses,
+                    std::optional<double> mtf_cpmm, std::optional<double> most_distortion_percent,
                     bool ignore_apertures, std::uint64_t seed, int threads, const nb::object& progress) {
   OptimiseRequest request;
   for (const std::string& text : variables)
@@ -84,6 +85,8 @@ nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables,
   request.field_weights = field_weights;
   request.merit = choice<OptimiseMerit>(
       "merit", merit, {{"spot", OptimiseMerit::rms_spot}, {"wavefront", OptimiseMerit::wavefront}});
+  if (mtf_cpmm) request.merit = OptimiseMerit::mtf, request.mtf_frequency_cpmm = *mtf_cpmm;
+  request.most_distortion_percent = most_distortion_percent;
   request.efl_mm = efl_mm;
   request.least_rim_mm = least_rim_mm;
   request.rounds = rounds, request.starts = starts, request.start_spread = start_spread;
@@ -177,6 +180,8 @@ constexpr const char* optimise_text =
     "\"surfaces[1].conic=-2:0\"]; none: radii and image. `merit`: spot [um] or wavefront [nm]. `efl_mm`: the "
     "focal "
     "length to hold; None: as it is. `glasses`: try so many near ones of its maker in the place of each. "
+    "`mtf_cpmm`: the frequency at which what the MTF lacks of 1 is "
+    "made small, in place of `merit`. `most_distortion_percent`: of every field. "
     "docs/OPTIMISING.md.";
 
 }  // namespace
@@ -205,6 +210,7 @@ void bind_design(nb::module_&) {
       nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(), nb::arg("merit") = "spot",
       nb::arg("efl_mm").none() = nb::none(), nb::arg("least_rim_mm") = 0.5, nb::arg("rounds") = 30,
       nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("glasses") = 0,
+      nb::arg("mtf_cpmm").none() = nb::none(), nb::arg("most_distortion_percent").none() = nb::none(),
       nb::arg("ignore_apertures") = false, nb::arg("seed") = 1, nb::arg("threads") = 0,
       nb::arg("progress").none() = nb::none(), optimise_text);
 }

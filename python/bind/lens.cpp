@@ -221,6 +221,11 @@ void bind_lens(nb::module_& module) {
           },
           nb::for_setter(nb::arg("value").none()), "From the object to vertex 1; None: infinity.")
       .def_prop_rw(
+          "object_glass", [](const Lens& self) { return self.object_material; },
+          [](Lens& self, const nb::object& glass) { self.object_material = material_from(glass); },
+          nb::for_setter(nb::arg("value").none()),
+          "What the object is immersed in; a name, a Glass, or None for air is taken.")
+      .def_prop_rw(
           "groups", [](const Lens& self) { return groups_to(self.groups); },
           [](Lens& self, const nb::iterable& groups) { self.groups = groups_from(groups); },
           "Neighbouring surfaces that stand off their places as one: ({\"surfaces\": (2, 3), \"pose\": "

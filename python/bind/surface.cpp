@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "surface.h"
 
+#include <fmt/ranges.h>
 #include <petzval/lens/formats/native.h>
 
 #include <charconv>
@@ -75,6 +76,50 @@ nb::object scatter_of(const Surface& surface) {
   return native_value(surface.scatter ? scatter_text(*surface.scatter) : "");
 }
 
+nb::object grating_of(const Surface& surface) {
+  if (!surface.grating) return nb::none();
+  nb::dict dict;
+  dict["lines_per_mm"] = surface.grating->lines_per_mm;
+  dict["order"] = surface.grating->order;
+  dict["rotation_deg"] = surface.grating->rotation_deg;
+  return read_only(dict);
+}
+
+nb::object ideal_lens_of(const Surface& surface) {
+  if (!surface.ideal_lens) return nb::none();
+  nb::dict dict;
+  dict["focal_length_mm"] = surface.ideal_lens->focal_length_mm;
+  return read_only(dict);
+}
+
+/// The numbers of a dict, by name; the first `required` of them must be there.
+std::vector<double> numbers_of(const nb::dict& dict, const char* what, std::vector<const char*> names,
+                               std::size_t required) {
+  std::vector<double> numbers(names.size(), 0.0);
+  std::size_t found = 0, needed = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!dict.contains(names[i])) continue;
+    numbers[i] = nb::cast<double>(dict[names[i]]);
+    ++found, needed += i < required;
+  }
+  if (found != dict.size() || needed != required)
+    throw InputError(fmt::format("`{}` takes {}", what, fmt::join(names, ", ")));
+  return numbers;
+}
+
+void set_grating(Surface& surface, const nb::object& grating) {
+  surface.grating.reset();
+  if (grating.is_none()) return;
+  const auto numbers = numbers_of(dict_of(grating), "grating", {"lines_per_mm", "order", "rotation_deg"}, 2);
+  surface.grating = Grating{numbers[0], numbers[1], numbers[2]};
+}
+
+void set_ideal_lens(Surface& surface, const nb::object& ideal_lens) {
+  surface.ideal_lens.reset();
+  if (ideal_lens.is_none()) return;
+  surface.ideal_lens = IdealLens{numbers_of(dict_of(ideal_lens), "ideal_lens", {"focal_length_mm"}, 1)[0]};
+}
+
 void set_coating(Surface& surface, const nb::object& coating) {
   surface.coating.reset();
   if (coating.is_none()) return;
@@ -103,6 +148,8 @@ std::string repr(SurfaceView& view) {
   if (!s.asphere.empty()) text += ", asphere=" + nb::cast<std::string>(nb::repr(nb::cast(s.asphere)));
   if (!s.apertures.empty()) text += fmt::format(", apertures=<{} figures>", s.apertures.size());
   if (!s.pose.is_none()) text += ", pose=" + nb::cast<std::string>(nb::repr(dict_of(pose_to(s.pose))));
+  if (s.grating) text += ", grating=" + nb::cast<std::string>(nb::repr(dict_of(grating_of(s))));
+  if (s.ideal_lens) text += ", ideal_lens=" + nb::cast<std::string>(nb::repr(dict_of(ideal_lens_of(s))));
   if (s.shape) text += ", shape=" + nb::cast<std::string>(nb::repr(dict_of(shape_of(s))));
   return text + ")";
 }
@@ -128,6 +175,11 @@ SurfaceView surface(Maybe<double> radius_mm, double thickness_mm, const nb::obje
   return SurfaceView(std::move(s));
 }
 
+/// What pickles.
+nb::object plain(const nb::object& dict) {
+  return dict.is_none() ? dict : nb::object(dict_of(dict));
+}
+
 nb::tuple state_of(SurfaceView& view) {
   const Surface& s = view.get();
   if (s.transfer)
@@ -139,14 +191,15 @@ nb::tuple state_of(SurfaceView& view) {
   return nb::make_tuple(s.curvature_per_mm, s.thickness_mm, s.material, s.stop,
                         std::pair(s.blades.count, s.blades.rotation_deg), s.semi_diameter_mm, s.conic,
                         s.asphere, shape.is_none() ? shape : nb::object(dict_of(shape)), s.mirror, apertures,
-                        dict_of(pose_to(s.pose)), coating_of(s), scatter_of(s));
+                        dict_of(pose_to(s.pose)), coating_of(s), scatter_of(s), plain(grating_of(s)),
+                        plain(ideal_lens_of(s)));
 }
 
 SurfaceView of_state(double curvature_per_mm, double thickness_mm, const Material& glass, bool stop,
                      std::pair<int, double> blades, Maybe<double> semi_diameter_mm, double conic,
                      const std::map<int, double>& asphere, const nb::object& shape, bool mirror,
                      const nb::iterable& apertures, const nb::dict& pose, const nb::object& coating,
-                     const nb::object& scatter) {
+                     const nb::object& scatter, const nb::object& grating, const nb::object& ideal_lens) {
   Surface s;
   s.curvature_per_mm = curvature_per_mm, s.thickness_mm = thickness_mm;
   s.material = glass;
@@ -157,6 +210,7 @@ SurfaceView of_state(double curvature_per_mm, double thickness_mm, const Materia
   set_shape(s, shape);
   s.apertures = apertures_from(apertures), s.pose = pose_from(pose);
   set_coating(s, coating), set_scatter(s, scatter);
+  set_grating(s, grating), set_ideal_lens(s, ideal_lens);
   return SurfaceView(std::move(s));
 }
 
@@ -234,6 +288,17 @@ void bind_surface_itself(nb::module_& module) {
           "As the native file has it: a bundled name, a reflectance, [(wavelength [nm], reflectance), …], a "
           "dict with \"layers\", or None for bare glass; assign a whole value.")
       .def_prop_rw(
+          "grating", [](View& v) { return grating_of(v.get()); },
+          [](View& v, const nb::object& grating) { set_grating(v.get(), grating); },
+          nb::for_setter(nb::arg("value").none()),
+          "Lines ruled on it, {\"lines_per_mm\": 600, \"order\": -1, \"rotation_deg\": 0}, or None; assign a "
+          "whole dict.")
+      .def_prop_rw(
+          "ideal_lens", [](View& v) { return ideal_lens_of(v.get()); },
+          [](View& v, const nb::object& ideal) { set_ideal_lens(v.get(), ideal); },
+          nb::for_setter(nb::arg("value").none()),
+          "The ideal lens that this plane is, {\"focal_length_mm\": 50}, or None; assign a whole dict.")
+      .def_prop_rw(
           "scatter", [](View& v) { return scatter_of(v.get()); },
           [](View& v, const nb::object& scatter) { set_scatter(v.get(), scatter); },
           nb::for_setter(nb::arg("value").none()),
@@ -246,7 +311,8 @@ void bind_surface_itself(nb::module_& module) {
       });
   module.def("_surface_from_state", of_state, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
              nb::arg().none(), nb::arg(), nb::arg(), nb::arg().none(), nb::arg(), nb::arg(), nb::arg(),
-             nb::arg().none(), nb::arg().none());
+             nb::arg().none(), nb::arg().none(), nb::arg().none() = nb::none(),
+             nb::arg().none() = nb::none());
 }
 
 }  // namespace

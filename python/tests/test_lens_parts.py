@@ -159,3 +159,25 @@ def test_coatings_and_scatter_by_surface():
         first.coating = "mgf3"
     with pytest.raises(pz.InputError, match="roughness"):
         first.scatter = {"roughness": 2}
+
+
+def test_gratings_ideal_lenses_and_immersed_objects():
+    """The grating equation and f tan of its angle, worked by hand; pickled and in the native file."""
+    front = pz.Surface(thickness_mm=1, stop=True)
+    front.grating = {"lines_per_mm": 300, "order": 1}
+    back = pz.Surface(thickness_mm=50)
+    back.ideal_lens = {"focal_length_mm": 50}
+    lens = pz.Lens(surfaces=[front, back], aperture={"stop_semi_diameter_mm": 4}, wavelengths_nm=[550])
+    assert dict(lens.surfaces[0].grating) == {"lines_per_mm": 300, "order": 1, "rotation_deg": 0}
+    again = pickle.loads(pickle.dumps(lens.surfaces[0]))
+    assert dict(again.grating) == dict(front.grating) and again.ideal_lens is None
+    assert dict(pickle.loads(pickle.dumps(lens)).surfaces[1].ideal_lens) == {"focal_length_mm": 50}
+    sine = 300 * 550e-6
+    table = lens.distortion([0])
+    assert table["image_height_mm"].tolist() == pytest.approx([50 * sine / (1 - sine ** 2) ** 0.5], abs=1e-9)
+    lens.surfaces[0].grating = None
+    assert lens.surfaces[0].grating is None
+    with pytest.raises(pz.InputError, match="lines_per_mm"):
+        lens.surfaces[0].grating = {"order": 1}
+    lens.object_distance_mm, lens.object_glass = 100, pz.Glass.constant(1.5)
+    assert lens.altered("object_distance_mm", 90).object_glass.index(550) == pytest.approx(1.5)

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import math
 import os
 import signal
 import subprocess
@@ -49,6 +50,30 @@ class Sweep(ProgramTest):
         self.assertEqual([row["lens"] for row in said["rows"]], ["edmund-54852", "cooke-triplet"])
         self.assertAlmostEqual(said["rows"][0]["efl_mm"], 6.0, delta=0.01)
         self.assertAlmostEqual(said["rows"][1]["efl_mm"], 50.0, delta=0.5)
+
+    def test_yield_in_the_picture(self):
+        # A sensor turned about y: one side is sharper, and turned the other way the other side.
+        self.assert_succeeds("lens", "scale", "cooke-triplet", "--factor", "0.2", "-o", "small.json", "--quiet")
+        board = ["sweep", "image", "slanted-board:8", "--lens", "small.json", "--sensor", "icx625-mono", "--sensor-set",
+                 "columns=200", "--sensor-set", "rows=150", "--wavelengths", "550", "--focus", "design", "--vary",
+                 "sensor_pose.tilt_y_deg=-4,0,4", "--corners", "-o", "out"]
+        said = self.json_of(*board, "--accept", "corners.symmetry>=0.9", "--accept", "corners.least_cpp>=0.01")
+        corners = [{key.split(".")[1]: row[key] for key in row if key.startswith("corners.")} for row in said["rows"]]
+        left, middle, right = ((each["top_left_cpp"], each["top_right_cpp"]) for each in corners)
+        for one, other in zip(left, reversed(right)):
+            self.assertAlmostEqual(one / other, 1, delta=0.05)
+        self.assertGreater(abs(math.log(left[0] / left[1])), 0.2)
+        self.assertAlmostEqual(middle[0] / middle[1], 1, delta=0.05)
+        self.assertEqual(said["good"], [False, True, False])
+        self.assertAlmostEqual(said["yield"], 1 / 3)
+        low, high = said["yield_interval_95"]
+        # One of three: 1 - (1 - p)^3 = 0.025, and the same from above.
+        self.assertAlmostEqual(low, 1 - 0.975 ** (1 / 3), places=6)
+        self.assertAlmostEqual(high ** 3 + 3 * high ** 2 * (1 - high), 0.975, places=6)
+        text = self.assert_succeeds(*board, "--accept", "corners.symmetry>=0.9")
+        self.assertIn("yield: 1 of 3, 33.3 % (95 % interval", text)
+        self.assert_refused(*board, "--accept", "symmetry>=0.9", words=("corners.symmetry",))
+        self.assert_refused(*board, "--accept", "corners.symmetry=0.9", words=("COLUMN>=VALUE",))
 
     def test_a_plot_of_what_was_measured(self):
         self.assert_succeeds("sweep", "lens", "spots", "cooke-triplet", "--fields", "0,14", "--wavelengths", "550", "--vary",

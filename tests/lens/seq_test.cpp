@@ -219,11 +219,12 @@ TEST(SeqReader, RefusesWhatItDoesNotModel) {
   const auto with = [&](const std::string& command) {
     return seq_complaint("  STO\n", "  STO\n " + command + "\n");
   };
-  for (const char* command :
-       {"YTO", "SPS XYP", "SPS QCN", "CUF 0.1", "DIF GRT", "GRT", "HOE", "UDS", "CUX 1"})
+  for (const char* command : {"YTO", "SPS XYP", "SPS QCN", "CUF 0.1", "DIF GRT", "HOE", "UDS", "CUX 1"})
     expect_mentions(with(command), {"lens.seq:26: S3: ", std::string(command, 3).c_str(), "not modelled"});
   EXPECT_NO_THROW(read_seq_text(seq_changed("  STO\n", "  STO\n ADE 0; XDE 0.0; CUF 0.0; REX EDG 4\n")));
   expect_mentions(with("REX 4"), {"lens.seq", "REX and REY"});
+  expect_mentions(with("GRT; GRO 1"), {"lens.seq", "without a positive spacing (GRS)"});
+  expect_mentions(with("GRT; GRO 1; GRS 0.002; GRZ 1"), {"lens.seq", "oblique"});
   expect_mentions(with("CIR HOL 2"), {"lens.seq:24: ", "hole (HOL)", "not modelled"});
   expect_mentions(seq_complaint("SI    0.0 0.25", "SI    0.1 0.25"), {"curved image"});
   expect_mentions(seq_complaint("SO    0.0", "SO    0.1"), {"curved object"});

@@ -265,7 +265,7 @@ TEST(ZmxReader, RefusesWhatItDoesNotModel) {
   expect_mentions(with("SCBD 0 0 0 45"), {"SURF 1: SCBD", "tilted"});
   for (const char* record : {"SPID 1 300", "UDAD 1", "IGNR 1", "NSCO 1"})
     expect_mentions(with(record), {"SURF 1: ", std::string(record, 4).c_str()});
-  for (const char* type : {"DGRATING", "GRINSUR1", "PARAXIAL", "USERSURF", ""})
+  for (const char* type : {"TOROGRAT", "GRINSUR1", "HOLOGRM1", "USERSURF", ""})
     expect_mentions(zmx_complaint("TYPE EVENASPH", std::string("TYPE ") + type),
                     {"lens.zmx:22: SURF 1: TYPE", type, "EVENASPH"});
   expect_mentions(zmx_complaint("MODE SEQ", "MODE NSC"), {"lens.zmx:2: MODE NSC"});
@@ -274,9 +274,8 @@ TEST(ZmxReader, RefusesWhatItDoesNotModel) {
   expect_mentions(zmx_complaint("PARM 8", "PARM 9"), {"lens.zmx:26: SURF 1: PARM 9"});
   expect_mentions(zmx_complaint("  CURV 0.0\n  DISZ 0\n", "  CURV 0.1\n  DISZ 0\n"),
                   {"SURF 6: a curved image"});
-  expect_mentions(zmx_complaint("  DISZ INFINITY\n", "  DISZ 100\n  GLAS F2 0 0\n"),
-                  {"SURF 0: glass behind the object"});
   expect_mentions(zmx_complaint("DISZ 4.5", "DISZ INFINITY"), {"SURF 1: only the object"});
+  expect_mentions(zmx_complaint("TYPE EVENASPH", "TYPE PARAXIAL"), {"SURF 1: a PARAXIAL", "focal length"});
   EXPECT_NO_THROW(read_zmx_text(zmx_changed(line, "  OBDC 0 0\n  SCBD 0 0 0 0\n")));
   EXPECT_NO_THROW(read_zmx_text(zmx_changed("ENVD 20 1 0", "ENVD 40 1 0")));
 }

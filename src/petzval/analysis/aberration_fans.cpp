@@ -13,7 +13,7 @@ namespace petzval {
 namespace {
 
 std::vector<FanPoint> fan(const FieldTracer& tracer, const ChiefRay& chief, StopAim& aim, bool tangential,
-                          int count, double above_reference_mm) {
+                          int count, const std::array<double, 2>& from_reference_mm) {
   std::vector<FanPoint> points;
   // From the chief ray outwards on both sides, so that each search begins next to the ray before.
   for (const int side : {-1, 1}) {
@@ -24,7 +24,8 @@ std::vector<FanPoint> fan(const FieldTracer& tracer, const ChiefRay& chief, Stop
       if (side > 0 ? pupil < 0 : pupil >= 0) continue;
       const std::optional<PupilRay> ray = tangential ? aim.ray(0, pupil) : aim.ray(pupil, 0);
       if (!ray) continue;
-      half.push_back({pupil, ray->x_mm * um_per_mm, (ray->y_mm + above_reference_mm) * um_per_mm,
+      half.push_back({pupil, (ray->x_mm + from_reference_mm[0]) * um_per_mm,
+                      (ray->y_mm + from_reference_mm[1]) * um_per_mm,
                       opd_waves(tracer, chief, {*ray}).front()});
     }
     if (side < 0) std::reverse(half.begin(), half.end());
@@ -36,19 +37,19 @@ std::vector<FanPoint> fan(const FieldTracer& tracer, const ChiefRay& chief, Stop
 }  // namespace
 
 std::vector<AberrationFans> aberration_fans(const Lens& lens, const FieldTableRequest& request, int count) {
-  require_centred(lens, "ray fans are those of centred lenses");
   if (count < 3 || count > 100001)
     throw InputError(fmt::format("a fan of {} rays; 3 to 100001 would be right", count));
-  const std::map<double, double> reference = reference_heights_mm(lens, request);
+  const auto reference = reference_points_mm(lens, request);
   return field_rows<AberrationFans>(
       lens, request, [&](const FieldTracer& tracer, const ChiefRay& chief) -> std::optional<AberrationFans> {
         std::optional<StopAim> aim = StopAim::of(tracer, chief);
         if (!aim) return {};
-        const double above_mm = chief.image_height_mm - reference.at(chief.object_field);
+        const auto& [x_mm, y_mm] = reference.at(chief.object_field);
+        const std::array<double, 2> from_mm{chief.image_x_mm - x_mm, chief.image_height_mm - y_mm};
         AberrationFans fans;
         fans.real_image_height_mm = chief.image_height_mm;
-        fans.tangential = fan(tracer, chief, *aim, true, count, above_mm);
-        fans.sagittal = fan(tracer, chief, *aim, false, count, above_mm);
+        fans.tangential = fan(tracer, chief, *aim, true, count, from_mm);
+        fans.sagittal = fan(tracer, chief, *aim, false, count, from_mm);
         return fans;
       });
 }

@@ -10,7 +10,8 @@ namespace petzval {
 
 struct FanPoint {
   double pupil = 0;           ///< where the ray crosses the stop, in stop radii, −1 to 1
-  double x_um = 0, y_um = 0;  ///< on the image surface, from the chief ray of the reference wavelength
+  double x_um = 0, y_um = 0;  ///< on the image surface, from the chief ray of the reference wavelength;
+                              ///< of lenses with poses in the axes of the field, y along it
   double opd_waves = 0;       ///< W of wavefront.h, about the chief ray of its own wavelength
 };
 

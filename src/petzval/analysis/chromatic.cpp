@@ -23,11 +23,26 @@ double crossing_mm(const PupilRay& ray) {
   return -ray.y_mm * cosine / ray.beta;
 }
 
+/// How high a ray stands over the image surface's centre, and its slope along y.
+std::array<double, 2> line_of(const PupilRay& ray) {
+  return {ray.y_mm, ray.beta / std::sqrt(1 - ray.alpha * ray.alpha - ray.beta * ray.beta)};
+}
+
+/// Where the rays at the two ends of a zone cross.
+double crossing_of_sides_mm(StopAim& aim, double zone) {
+  constexpr double paraxial_zone = 1e-3;
+  const double reach = zone == 0 ? paraxial_zone : zone;
+  const std::optional<PupilRay> above = aim.ray(0, reach), below = aim.ray(0, -reach);
+  if (!above || !below) return std::numeric_limits<double>::quiet_NaN();
+  const auto [y1, slope1] = line_of(*above);
+  const auto [y2, slope2] = line_of(*below);
+  return -(y1 - y2) / (slope1 - slope2);
+}
+
 }  // namespace
 
 std::vector<AxialFocusRow> axial_focus_table(const Lens& lens, const std::vector<double>& wavelengths_nm,
                                              const std::vector<double>& zones, Tracer::Clip clip) {
-  require_centred(lens, "axial colour is that of centred lenses");
   for (const double zone : zones)
     if (!(zone >= 0 && zone <= 1))
       throw InputError(fmt::format("a zone of {:g} stop radii; 0 to 1 would be right", zone));
@@ -39,6 +54,10 @@ std::vector<AxialFocusRow> axial_focus_table(const Lens& lens, const std::vector
     if (!aim) throw no_ray_passes(lens, 0, wavelengths_nm[w]);
     for (std::size_t z = 0; z < zones.size(); ++z) {
       AxialFocusRow& row = rows[z * wavelengths_nm.size() + w];
+      if (!tracer.tracer().is_centred()) {
+        row = {wavelengths_nm[w], zones[z], crossing_of_sides_mm(*aim, zones[z])};
+        continue;
+      }
       row = {wavelengths_nm[w], zones[z], paraxial_focus_mm(lens, wavelengths_nm[w])};
       if (zones[z] == 0) continue;
       const std::optional<PupilRay> ray = aim->ray(0, zones[z]);
@@ -49,13 +68,14 @@ std::vector<AxialFocusRow> axial_focus_table(const Lens& lens, const std::vector
 }
 
 std::vector<LateralColourRow> lateral_colour_table(const Lens& lens, const FieldTableRequest& request) {
-  require_centred(lens, "lateral colour is that of centred lenses");
-  const std::map<double, double> reference = reference_heights_mm(lens, request);
+  const auto reference = reference_points_mm(lens, request);
   return field_rows<LateralColourRow>(
       lens, request, [&](const FieldTracer&, const ChiefRay& chief) -> std::optional<LateralColourRow> {
         LateralColourRow row;
         row.real_image_height_mm = chief.image_height_mm;
-        row.lateral_colour_um = (chief.image_height_mm - reference.at(chief.object_field)) * um_per_mm;
+        const auto& [x_mm, y_mm] = reference.at(chief.object_field);
+        row.lateral_colour_um = (chief.image_height_mm - y_mm) * um_per_mm;
+        row.across_um = (chief.image_x_mm - x_mm) * um_per_mm;
         return row;
       });
 }

@@ -12,7 +12,8 @@ struct AxialFocusRow {
   double wavelength_nm = 0;
   double zone = 0;  ///< height at the stop in stop radii; 0: paraxial
   /// Where the ray of the axial object point crosses the axis, along z from the image surface; NaN where the
-  /// ray does not pass.
+  /// ray does not pass. Of a lens with poses: where the rays of the two sides cross, of the smallest zone for
+  /// the paraxial one.
   double focus_mm = 0;
 };
 
@@ -26,7 +27,8 @@ struct LateralColourRow {
   double field = 0, wavelength_nm = 0;
   double real_image_height_mm = 0;
   double lateral_colour_um =
-      0;  ///< chief-ray height less that of the reference wavelength, same object point
+      0;                 ///< chief-ray height less that of the reference wavelength, same object point
+  double across_um = 0;  ///< the same across the field, of lenses with poses
 };
 
 /// Rows in the order fields × wavelengths. \throws InputError naming a field that no chief ray passes at.

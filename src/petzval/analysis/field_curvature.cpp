@@ -5,6 +5,7 @@
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/lens/surface_shape.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,7 +33,7 @@ struct Vergence {
   }
 };
 
-/// Where the chief ray's neighbours cross it, for lenses without surfaces to walk.
+/// Where the chief ray's neighbours cross each other, for lenses without round surfaces to walk.
 AstigmaticFoci foci_of_neighbours(const FieldTracer& tracer, const ChiefRay& chief) {
   const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
   // So small that third order is not seen, and so large that rounding is not.
@@ -40,7 +41,7 @@ AstigmaticFoci foci_of_neighbours(const FieldTracer& tracer, const ChiefRay& chi
   const double stop_mm = tracer.tracer().stop_radius_mm();
   const double nudge = nudge_share * (pencil.v_through(stop_mm) - pencil.v_through(0));
   const auto at = [&](double u, double v) {
-    return tracer.tracer().trace(pencil.ray(u, chief.v + v).value_or(Ray{}), Tracer::Clip::none);
+    return tracer.tracer().trace(pencil.ray(chief.u + u, chief.v + v).value_or(Ray{}), Tracer::Clip::none);
   };
   const auto focus_mm = [&](const Ray& high, const Ray& low, std::size_t axis) {
     const double apart = high.point_mm[axis] - low.point_mm[axis];
@@ -53,7 +54,10 @@ AstigmaticFoci foci_of_neighbours(const FieldTracer& tracer, const ChiefRay& chi
 }  // namespace
 
 AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief) {
-  if (is_ray_transfer(tracer.lens())) return foci_of_neighbours(tracer, chief);
+  const Lens& lens = tracer.lens();
+  if (is_ray_transfer(lens) || !is_round(lens) ||
+      std::ranges::any_of(lens.surfaces, [](const Surface& each) { return each.ideal_lens.has_value(); }))
+    return foci_of_neighbours(tracer, chief);
   const Tracer& glass = tracer.tracer();
   const Pencil pencil = Pencil::from_object(tracer.lens(), chief.object_field);
   const Ray launched = *pencil.ray(0, chief.v);
@@ -86,7 +90,6 @@ AstigmaticFoci astigmatic_foci(const FieldTracer& tracer, const ChiefRay& chief)
 }
 
 std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const FieldTableRequest& request) {
-  require_centred(lens, "field curvature is that of centred lenses");
   return field_rows<FieldCurvatureRow>(
       lens, request,
       [&](const FieldTracer& tracer, const ChiefRay& chief) -> std::optional<FieldCurvatureRow> {
@@ -100,7 +103,7 @@ std::vector<FieldCurvatureRow> field_curvature_table(const Lens& lens, const Fie
         row.tangential_mm = foci.tangential_mm * chief.at_image.direction[2];
         row.sagittal_mm = foci.sagittal_mm * chief.at_image.direction[2];
         const bool has_height = lens.object_distance_mm || std::abs(chief.object_field) < 90;
-        row.petzval_mm = has_height && !is_ray_transfer(lens)
+        row.petzval_mm = has_height && !is_ray_transfer(lens) && is_round(lens)
                              ? paraxial.paraxial_image_mm - lens.image_distance_mm() +
                                    height * height / (2 * paraxial.petzval_radius_mm)
                              : std::numeric_limits<double>::quiet_NaN();

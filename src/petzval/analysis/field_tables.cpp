@@ -74,6 +74,28 @@ double distortion_on_axis_percent(const Lens& lens, double wavelength_nm) {
   return 100 * (trace_paraxial(lens, height, slope, wavelength_nm).height_mm.back() / ideal - 1);
 }
 
+/// Where a field lands about where field 0 lands: along the field, and across it.
+struct FromCentre {
+  double along_mm, across_mm;
+};
+
+std::optional<FromCentre> from_centre(FieldTracer& tracer, double object_field) {
+  const std::optional<ChiefRay> centre = tracer.chief_ray(0), chief = tracer.chief_ray(object_field);
+  if (!centre || !chief) return {};
+  return FromCentre{chief->image_height_mm - centre->image_height_mm, chief->image_x_mm - centre->image_x_mm};
+}
+
+/// h'/ideal − 1 [%] of a lens with poses near field 0, by a small step along the field on both sides.
+double distortion_at_centre_percent(FieldTracer& tracer) {
+  constexpr double step_deg = 1e-2, step_per_distance = 1e-4;
+  const Lens& lens = tracer.lens();
+  const double step = lens.object_distance_mm ? *lens.object_distance_mm * step_per_distance : step_deg;
+  const auto above = from_centre(tracer, step), below = from_centre(tracer, -step);
+  if (!above || !below) return not_a_number;
+  const double ideal = ideal_image_height_mm(lens, step, tracer.tracer().wavelength_nm());
+  return 100 * ((above->along_mm - below->along_mm) / (2 * ideal) - 1);
+}
+
 }  // namespace
 
 FieldTableRequest FieldTableRequest::of(const Lens& lens) {
@@ -81,25 +103,31 @@ FieldTableRequest FieldTableRequest::of(const Lens& lens) {
 }
 
 std::vector<DistortionRow> distortion_table(const Lens& lens, const FieldTableRequest& request) {
-  require_centred(lens, "distortion is that of centred lenses");
   auto rows = tabulate<DistortionRow>(lens, request, [&](FieldTracer& tracer, double, double object_field) {
     const double wavelength = tracer.tracer().wavelength_nm();
     const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
     DistortionRow row;
     row.lit = chief && tracer.object_pupil(*chief, lit_azimuths);
     row.image_height_mm = row.lit ? chief->image_height_mm : not_a_number;
+    row.image_x_mm = row.lit ? chief->image_x_mm : not_a_number;
+    const bool centred = tracer.tracer().is_centred();
+    const std::optional<FromCentre> from = centred ? std::nullopt : from_centre(tracer, object_field);
+    const double height_mm = !row.lit || centred ? row.image_height_mm : from ? from->along_mm : not_a_number;
+    const double at_centre =
+        centred ? distortion_on_axis_percent(lens, wavelength) : distortion_at_centre_percent(tracer);
     // A tangent ends at 90°.
     const bool has_ideal = lens.object_distance_mm || std::abs(object_field) < 90;
     row.paraxial_image_height_mm =
         has_ideal ? ideal_image_height_mm(lens, object_field, wavelength) : not_a_number;
     const auto percent = [&](double ideal) {
-      return object_field == 0 ? distortion_on_axis_percent(lens, wavelength)
-                               : 100 * (row.image_height_mm - ideal) / ideal;
+      return object_field == 0 ? at_centre : 100 * (height_mm - ideal) / ideal;
     };
     row.paraxial_distortion_percent = percent(row.paraxial_image_height_mm);
-    const double on_axis = 1 + distortion_on_axis_percent(lens, wavelength) / 100;
+    const double on_axis = 1 + at_centre / 100;
     row.distortion_percent =
-        object_field == 0 ? 0 : 100 * (row.image_height_mm / (row.paraxial_image_height_mm * on_axis) - 1);
+        object_field == 0 ? 0 : 100 * (height_mm / (row.paraxial_image_height_mm * on_axis) - 1);
+    if (from && object_field != 0)
+      row.across_percent = 100 * from->across_mm / (row.paraxial_image_height_mm * on_axis);
     if (!lens.object_distance_mm)
       row.distortion_ftheta_percent = percent(first_order(lens, wavelength).efl_mm * radians(object_field));
     return row;

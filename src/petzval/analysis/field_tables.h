@@ -32,12 +32,16 @@ struct DistortionRow {
   bool lit = true;                      ///< false: no ray passes; heights and percentages are NaN
   double image_height_mm = 0;           ///< real chief ray
   double paraxial_image_height_mm = 0;  ///< f tan θ or m h at this wavelength
+  double image_x_mm = 0;                ///< of a lens with poses, across the field
   /// (real − ideal)/ideal about the centre of the picture: the ideal height is the paraxial one times the
   /// real magnification at the centre, on the sensor where it stands, over the paraxial one; 0 on the axis.
   double distortion_percent = 0;
   /// (real − paraxial)/paraxial; at zero field its limit, which is zero where the sensor is in paraxial
   /// focus.
   double paraxial_distortion_percent = 0;
+  /// Of a lens with poses, whose centre is where field 0 lands: how far the image lies beside the field, per
+  /// ideal height; 0 at field 0.
+  double across_percent = 0;
   /// Against f θ; only for objects at infinity.
   std::optional<double> distortion_ftheta_percent;
 };

@@ -154,7 +154,7 @@ bool FieldTracer::image_pupil_in_one_piece(const ChiefRay& chief) const {
 
 double FieldTracer::g_sensor_sr(const ChiefRay& chief) const {
   const std::optional<PupilBoundary> pupil = image_pupil(chief);
-  const double n = tracer_.image_index();
+  const double n = tracer_.image_index() / tracer_.object_index();
   return pupil ? n * n * lit_area(image_pencil(chief), *pupil) : 0.0;
 }
 

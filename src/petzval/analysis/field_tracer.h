@@ -63,8 +63,8 @@ class FieldTracer {
   /// into parts nor has a hole. By a grid of rays; parts smaller than a hundredth of its width go unseen.
   bool image_pupil_in_one_piece(const ChiefRay& chief) const;
 
-  /// n'² ∬ dα dβ over the directions that reach the object through every aperture [sr]: what a uniform wall
-  /// of unit radiance gives in irradiance at the chief ray's image point; 0 where no ray passes.
+  /// (n'/n)² ∬ dα dβ over the directions that reach the object through every aperture [sr]: what a uniform
+  /// wall of unit radiance gives in irradiance at the chief ray's image point; 0 where no ray passes.
   double g_sensor_sr(const ChiefRay& chief) const;
   /// The flux of one object point per area of its chief-ray image, per radiance [sr]; 0 where no ray passes.
   /// (docs/CONVENTIONS.md, "Radiometry".)

@@ -45,7 +45,7 @@ class UnfoldedLens {
  public:
   UnfoldedLens(const Lens& lens, double wavelength_nm, const GhostOptions& options) {
     require_no_mirrors(lens, "ghosts are those of lenses without one");
-    double before = 1;
+    double before = lens.object_material.index(wavelength_nm);
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
       const Surface& given = lens.surfaces[i];
       GhostSurface surface;
@@ -217,6 +217,7 @@ void check(const Lens& lens, const GhostOptions& options) {
 
 std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& given) {
   require_glass(lens, "ghosts need");
+  require_no_bends(lens, "ghosts need");
   lens.validate();
   GhostOptions options = given;
   options.losses = given.losses.of(lens);

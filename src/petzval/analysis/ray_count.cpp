@@ -19,7 +19,7 @@ double counted_g_sensor_sr(const Tracer& tracer, double image_height_mm, int ray
     tracer.trace_backward(row, clip);
     passed += std::count(row.status.begin(), row.status.end(), RayStatus::ok);
   }
-  const double cell = 2.0 / rays_a_side, n = tracer.image_index();
+  const double cell = 2.0 / rays_a_side, n = tracer.image_index() / tracer.object_index();
   return n * n * static_cast<double>(passed) * cell * cell;
 }
 

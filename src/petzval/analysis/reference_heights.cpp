@@ -4,16 +4,17 @@
 
 namespace petzval {
 
-std::map<double, double> reference_heights_mm(const Lens& lens, const FieldTableRequest& request) {
-  std::map<double, double> heights;
+std::map<double, std::array<double, 2>> reference_points_mm(const Lens& lens,
+                                                            const FieldTableRequest& request) {
+  std::map<double, std::array<double, 2>> points;
   FieldTracer tracer(lens, lens.reference_wavelength_nm, request.clip, request.azimuth_deg);
   for (const double field : request.fields) {
     const double object = object_field(lens, request.field_kind, field);
     const std::optional<ChiefRay> chief = tracer.chief_ray(object);
     if (!chief) throw no_ray_passes(lens, field, lens.reference_wavelength_nm);
-    heights[object] = chief->image_height_mm;
+    points[object] = {chief->image_x_mm, chief->image_height_mm};
   }
-  return heights;
+  return points;
 }
 
 }  // namespace petzval

@@ -4,12 +4,14 @@
 
 #include <petzval/analysis/field_tables.h>
 
+#include <array>
 #include <map>
 
 namespace petzval {
 
-/// Chief-ray image heights [mm] at the lens's reference wavelength by object field, for the fields of a
-/// request. \throws InputError naming a field that no chief ray passes at.
-std::map<double, double> reference_heights_mm(const Lens& lens, const FieldTableRequest& request);
+/// Chief-ray image points x', y' [mm] at the lens's reference wavelength by object field, for the fields of
+/// a request; x' is 0 of a centred lens. \throws InputError naming a field that no chief ray passes at.
+std::map<double, std::array<double, 2>> reference_points_mm(const Lens& lens,
+                                                            const FieldTableRequest& request);
 
 }  // namespace petzval

@@ -127,7 +127,10 @@ SeidelTerms& SeidelTerms::operator+=(const SeidelTerms& other) {
 
 SeidelSums seidel_sums(const Lens& lens) {
   require_glass(lens, "Seidel sums need");
-  require_centred(lens, "Seidel sums belong to centred lenses");
+  require_no_bends(lens, "Seidel sums need");
+  require_centred(
+      lens,
+      "Seidel sums belong to centred lenses (Zernike terms, fans and field curvature are there for all)");
   const ParaxialLens paraxial(lens);
   const TracedRay marginal = paraxial.marginal(), chief = paraxial.chief();
   SeidelSums sums;

@@ -302,6 +302,7 @@ void check(const Lens& lens, const TransferFitRequest& request) {
   lens.validate();
   require_centred(lens, "ray transfers are those of centred lenses");
   require_glass(lens, "fitting needs");
+  require_no_bends(lens, "fitting needs");
   require_no_mirrors(lens, "ray transfers are those of lenses without one");
   if (!lens.surfaces.back().material.is_air())
     throw InputError(lens.name +

@@ -51,6 +51,7 @@ GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& g
                          const SensorReflection& sensor, Tracer::Clip clip)
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "ghosts need");
+  require_no_bends(lens, "ghosts need");
   require_centred(lens, "ghosts are those of centred lenses");
   const Losses losses = given.of(lens);
   losses.validate(lens);

@@ -58,6 +58,7 @@ struct ScatterTracer::Landing {
 ScatterTracer::ScatterTracer(const Lens& lens, double wavelength_nm, const Losses& losses, Tracer::Clip clip)
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "scatter needs");
+  require_no_bends(lens, "scatter needs");
   require_centred(lens, "scatter is that of centred lenses");
   require_no_mirrors(lens, "scatter");
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

@@ -32,7 +32,7 @@ struct UnitMarginalRay {
   double stop_height = 0, image_height_at_last_vertex = 0, image_reduced_slope = 0;
 
   UnitMarginalRay(const ParaxialSystem& system, std::optional<double> object_distance_mm) {
-    const double y = object_distance_mm.value_or(1), w = object_distance_mm ? 1 : 0;
+    const double y = object_distance_mm.value_or(1), w = object_distance_mm ? system.object_index : 0;
     stop_height = system.to_stop.height(y, w);
     image_height_at_last_vertex = system.whole.height(y, w);
     image_reduced_slope = system.whole.reduced_slope(y, w);
@@ -77,7 +77,7 @@ double stop_semi_diameter_mm(const Lens& lens) {
     case Kind::working_f_number:
       return from_image_na(0.5 / value);
     case Kind::object_na:
-      return std::tan(std::asin(value)) * std::abs(unit.stop_height);
+      return std::tan(std::asin(value / system.object_index)) * std::abs(unit.stop_height);
     case Kind::f_number:
       break;
   }
@@ -96,7 +96,7 @@ struct ObjectPoint {
 
 ObjectPoint object_point(const Lens& lens, const ParaxialSystem& system, double field) {
   using Kind = Fields::Kind;
-  const double pupil_mm = distance_mm(system.to_stop.b, system.to_stop.a);
+  const double pupil_mm = distance_mm(system.object_index * system.to_stop.b, system.to_stop.a);
   const auto at_depth = [&](double depth_mm) {
     return ObjectPoint{depth_mm / (*lens.object_distance_mm + pupil_mm), depth_mm};
   };
@@ -106,8 +106,9 @@ ObjectPoint object_point(const Lens& lens, const ParaxialSystem& system, double 
     return {tangent, lens.object_distance_mm ? tangent * (*lens.object_distance_mm + pupil_mm) : 0};
   }
   if (lens.fields.kind == Kind::object_height_mm) return at_depth(-field);
-  if (!lens.object_distance_mm) return {-field * system.whole.c, 0};
-  return at_depth(-field * UnitMarginalRay(system, lens.object_distance_mm).image_reduced_slope);
+  if (!lens.object_distance_mm) return {-field * system.whole.c / system.object_index, 0};
+  return at_depth(-field * UnitMarginalRay(system, lens.object_distance_mm).image_reduced_slope /
+                  system.object_index);
 }
 
 void fill_field(FirstOrder& result, const Lens& lens, const ParaxialSystem& system, double marginal_scale) {
@@ -116,14 +117,14 @@ void fill_field(FirstOrder& result, const Lens& lens, const ParaxialSystem& syst
   const ObjectPoint point = object_point(lens, system, largest);
   const bool is_angle = lens.fields.kind == Fields::Kind::angle_deg;
   result.field_of_view_deg = 2 * (is_angle ? largest : degrees(std::atan(std::abs(point.tangent))));
-  result.lagrange_invariant_mm =
-      marginal_scale * std::abs(lens.object_distance_mm ? point.depth_mm : point.tangent);
+  result.lagrange_invariant_mm = system.object_index * marginal_scale *
+                                 std::abs(lens.object_distance_mm ? point.depth_mm : point.tangent);
 }
 
 void fill_pupils(FirstOrder& result, const Lens& lens, const ParaxialSystem& system) {
   const double stop_diameter = 2 * result.stop_semi_diameter_mm;
   const ParaxialMatrix &front = system.to_stop, &rear = system.from_stop;
-  result.entrance_pupil.position_mm = distance_mm(front.b, front.a);
+  result.entrance_pupil.position_mm = distance_mm(system.object_index * front.b, front.a);
   result.entrance_pupil.diameter_mm = distance_mm(stop_diameter, std::abs(front.a));
   const double from_last_vertex = distance_mm(-system.image_index * rear.b, rear.d);
   result.exit_pupil.position_mm = from_last_vertex - lens.image_distance_mm();
@@ -139,11 +140,11 @@ FirstOrder first_order(const Lens& lens, std::optional<double> wavelength_nm) {
   const UnitMarginalRay unit(system, lens.object_distance_mm);
   result.efl_mm = efl_mm(system);
   result.bfl_mm = distance_mm(-system.image_index * system.whole.a, system.whole.c);
-  result.ffl_mm = distance_mm(system.whole.d, system.whole.c);
+  result.ffl_mm = distance_mm(system.object_index * system.whole.d, system.whole.c);
   result.petzval_radius_mm = distance_mm(-1, system.image_index * system.petzval_sum_per_mm);
   result.total_track_mm = lens.total_track_mm();
   result.paraxial_image_mm = paraxial_image_mm(system, unit);
-  result.magnification = lens.object_distance_mm ? 1 / unit.image_reduced_slope : 0;
+  result.magnification = lens.object_distance_mm ? system.object_index / unit.image_reduced_slope : 0;
 
   result.stop_semi_diameter_mm = stop_semi_diameter_mm(lens);
   const double scale = result.stop_semi_diameter_mm / std::abs(unit.stop_height);
@@ -161,7 +162,7 @@ FirstOrder first_order(const Lens& lens, std::optional<double> wavelength_nm) {
 
 ParaxialRay trace_paraxial(const Lens& lens, double height_mm, double slope, double wavelength_nm) {
   ParaxialRay ray;
-  double height = height_mm, u = slope, index = 1, sense = 1;
+  double height = height_mm, u = slope, index = lens.object_material.index(wavelength_nm), sense = 1;
   std::optional<double> leaving;
   for (const Surface& surface : lens.surfaces) {
     const double index_after = surface.mirror ? index : surface.material.index(wavelength_nm);
@@ -177,7 +178,9 @@ ParaxialRay trace_paraxial(const Lens& lens, double height_mm, double slope, dou
     }
     if (leaving) u = *std::exchange(leaving, std::nullopt);
     const double step = surface.mirror ? -2 * index : index_after - index;
-    u = (index * u - height * step * sense * vertex_curvature_per_mm(surface)) / index_after;
+    const double power = surface.ideal_lens ? 1 / surface.ideal_lens->focal_length_mm
+                                            : step * sense * vertex_curvature_per_mm(surface);
+    u = (index * u - height * power) / index_after;
     if (surface.mirror) sense = -sense;
     ray.slope.push_back(u);
     height += sense * surface.thickness_mm * u;
@@ -204,8 +207,9 @@ double paraxial_image_height_mm(const Lens& lens, double object_field, double wa
     return object_field;
   const ParaxialSystem system = paraxial_system(lens, wavelength_nm);
   const ObjectPoint point = object_point(lens, system, object_field);
-  if (!lens.object_distance_mm) return point.tangent * efl_mm(system);
-  return -point.depth_mm / UnitMarginalRay(system, lens.object_distance_mm).image_reduced_slope;
+  if (!lens.object_distance_mm) return system.object_index * point.tangent * efl_mm(system);
+  return -point.depth_mm * system.object_index /
+         UnitMarginalRay(system, lens.object_distance_mm).image_reduced_slope;
 }
 
 }  // namespace petzval

@@ -34,9 +34,8 @@ double Lens::total_track_mm() const {
 }
 
 const Material& Lens::medium_behind(std::size_t surface) const {
-  static const Material air;
   while (surfaces[surface].mirror)
-    if (surface-- == 0) return air;
+    if (surface-- == 0) return object_material;
   return surfaces[surface].material;
 }
 

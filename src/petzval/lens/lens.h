@@ -4,6 +4,7 @@
 
 #include <petzval/glass/material.h>
 #include <petzval/lens/aperture_figure.h>
+#include <petzval/lens/bend.h>
 #include <petzval/lens/coating.h>
 #include <petzval/lens/pose.h>
 #include <petzval/lens/scatter.h>
@@ -44,6 +45,8 @@ struct Surface {
   double conic = 0;                             ///< k
   std::map<int, double> asphere = {};           ///< power p of r → a_p [mm^(1−p)]
   std::optional<AddedShape> shape = {};         ///< takes c and k, and stands in place of powers of r
+  std::optional<Grating> grating = {};          ///< ruled on it
+  std::optional<IdealLens> ideal_lens = {};     ///< that this plane is
   Pose pose = {};                               ///< where it stands, if not on its place
   std::optional<Scatter> scatter = {};          ///< of its own, before that of the lens
   std::optional<Coating> coating = {};          ///< what it reflects counts wherever light passes
@@ -105,6 +108,7 @@ struct Lens {
   std::string name = {};
   std::string source = {};
   std::optional<double> object_distance_mm = {};  ///< from the object to vertex 1; absent = infinity
+  Material object_material = {};                  ///< what the object is immersed in
   Aperture aperture = {};
   Fields fields = {};
   std::vector<double> wavelengths_nm{587.5618};
@@ -122,7 +126,10 @@ struct Lens {
   const StopBlades& stop_blades() const { return surfaces[stop_index()].blades; }
   /// From vertex 1 to the image surface, along the light.
   double total_track_mm() const;
-  /// What fills the gap behind a surface: behind a mirror, what is in front of it.
+  /// What fills the gap in front of a surface, and behind it: behind a mirror, what is in front of it.
+  const Material& medium_before(std::size_t surface) const {
+    return surface == 0 ? object_material : medium_behind(surface - 1);
+  }
   const Material& medium_behind(std::size_t surface) const;
   /// +1 where light runs towards +z in the gap behind a surface, −1 where it comes back: it turns at mirrors.
   double sense_behind(std::size_t surface) const;

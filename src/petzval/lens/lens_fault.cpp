@@ -38,7 +38,7 @@ Fault coating_fault(const Lens& lens, std::size_t i) {
   } catch (const InputError& error) {
     return LensFault{path, fmt::format("cannot be: {}", error.what())};
   }
-  const bool from_air = i == 0 || lens.medium_behind(i - 1).is_air();
+  const bool from_air = lens.medium_before(i).is_air();
   if (surface.coating->has_films() && (surface.mirror || from_air == surface.material.is_air()))
     return LensFault{path, "has films, which lie between air and glass; a reflectance would be right here"};
   return {};
@@ -191,6 +191,42 @@ Fault surface_fault(const Surface& surface, const std::string& path) {
   return surface.shape ? shape_fault(surface, at("shape")) : Fault();
 }
 
+/// Gratings are ruled on what rays meet in closed form; an ideal lens is a plane.
+Fault bend_fault(const Surface& surface, const std::string& path) {
+  if (surface.grating) {
+    const Grating& grating = *surface.grating;
+    const std::string at = path + ".grating";
+    if (!std::isfinite(grating.lines_per_mm) || !std::isfinite(grating.order) ||
+        !std::isfinite(grating.rotation_deg))
+      return LensFault{at, "must have finite lines per mm, order and rotation"};
+    if (grating.order != std::floor(grating.order))
+      return LensFault{at + ".order", "must be a whole number, negative on the other side"};
+    if (surface.shape || !surface.asphere.empty())
+      return LensFault{at, "must be ruled on a plane, a sphere or a conic"};
+    if (surface.blades.count != 0)
+      return LensFault{path + ".blades", "must stand at a surface that is round itself"};
+  }
+  if (!surface.ideal_lens) return {};
+  const double f = surface.ideal_lens->focal_length_mm;
+  if (!std::isfinite(f) || f == 0 || !std::isfinite(1 / f))
+    return LensFault{path + ".ideal_lens.focal_length_mm", "must be a finite focal length in mm, not 0"};
+  if (surface.grating || surface.mirror || surface.curvature_per_mm != 0 || surface.shape ||
+      !surface.asphere.empty())
+    return LensFault{path + ".ideal_lens", "must be a plane with nothing besides, and no mirror"};
+  return {};
+}
+
+/// What the object is immersed in, and what that asks for.
+Fault immersion_fault(const Lens& lens) {
+  if (lens.object_material.is_air()) return {};
+  constexpr double farthest_mm = 1e5;
+  if (lens.object_distance_mm && *lens.object_distance_mm >= farthest_mm)
+    return LensFault{"object_glass", "must reach from an object nearer than 100 m, or from infinity"};
+  if (lens.surfaces.front().transfer)
+    return LensFault{"object_glass", "must be air in front of a ray transfer"};
+  return {};
+}
+
 /// A ray transfer stands at the first surface, and the next one is its rear plane.
 Fault transfer_fault(const Lens& lens, std::size_t index) {
   const Surface& surface = lens.surfaces[index];
@@ -231,6 +267,7 @@ Fault surfaces_fault(const Lens& lens) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     if (Fault fault = surface_fault(lens.surfaces[i], fmt::format("surfaces[{}]", i))) return fault;
     if (Fault fault = transfer_fault(lens, i)) return fault;
+    if (Fault fault = bend_fault(lens.surfaces[i], fmt::format("surfaces[{}]", i))) return fault;
     if (lens.surfaces[i].coating)
       if (Fault fault = coating_fault(lens, i)) return fault;
     if (!lens.surfaces[i].stop) continue;
@@ -250,7 +287,10 @@ Fault aperture_fault(const Lens& lens) {
   if (lens.aperture.kind != Aperture::Kind::object_na) return {};
   if (!lens.object_distance_mm)
     return LensFault{path, "object_na needs an object at a finite distance; set object_distance_mm"};
-  if (lens.aperture.value >= 1) return LensFault{path, "object_na must be below 1: the object stands in air"};
+  const double index = lens.object_material.index(lens.reference_wavelength_nm);
+  if (lens.aperture.value >= index)
+    return LensFault{
+        path, fmt::format("object_na must be below {:g}, the index of what the object stands in", index)};
   return {};
 }
 
@@ -298,9 +338,10 @@ std::optional<LensFault> find_fault(const Lens& lens) {
   if (lens.object_distance_mm && !positive(*lens.object_distance_mm))
     return LensFault{"object_distance_mm",
                      "must be positive, in mm from the object to vertex 1, or null for infinity"};
-  if (Fault fault = aperture_fault(lens)) return fault;
   if (Fault fault = fields_fault(lens)) return fault;
-  return wavelengths_fault(lens);
+  if (Fault fault = wavelengths_fault(lens)) return fault;
+  if (Fault fault = immersion_fault(lens)) return fault;
+  return aperture_fault(lens);
 }
 
 }  // namespace petzval

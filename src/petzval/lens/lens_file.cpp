@@ -94,6 +94,13 @@ void require_designed(const Lens& lens, bool holds_poses) {
           i));
 }
 
+/// Tables of rows hold no more.
+void require_air_and_glass(const Lens& lens) {
+  require_no_bends(lens, "files of this kind hold");
+  if (!lens.object_material.is_air())
+    throw InputError("object_glass: files of this kind hold objects in air; set object_glass=null");
+}
+
 }  // namespace
 
 LensFile read_lens(const std::string& path_or_name, const LensReadOptions& options) {
@@ -107,17 +114,18 @@ LensFile read_lens(const std::string& path_or_name, const LensReadOptions& optio
 
 std::vector<std::string> write_lens(const Lens& lens, const std::string& path) {
   const auto text_of = writer_for(path);
+  const bool rows_only = text_of == pbrt_text || text_of == iset_text;
   std::string text;
   try {
     if (text_of != lens_to_json) require_designed(lens, text_of == zmx_text || text_of == seq_text);
     if (text_of != lens_to_json && text_of != iset_transfer_text)
       require_glass(lens, "files of this kind hold");
+    if (rows_only) require_air_and_glass(lens);
     text = text_of(lens);
   } catch (const InputError& error) {
     throw InputError(path, error.what());
   }
   write_whole_file(path, text);
-  const bool rows_only = text_of == pbrt_text || text_of == iset_text;
   std::vector<std::string> notes;
   if (rows_only)
     notes.push_back(path + ": holds one index a gap, and neither fields nor wavelengths: these are left out");

@@ -38,7 +38,8 @@ void include_transfer(const RayTransfer::Paraxial& transfer, ParaxialSystem& sys
 ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {
   ParaxialSystem system;
   const std::size_t stop = lens.stop_index(), last = lens.surfaces.size() - 1;
-  double index_before = 1, sense = 1;
+  system.object_index = lens.object_material.index(wavelength_nm);
+  double index_before = system.object_index, sense = 1;
   for (std::size_t i = 0; i <= last; ++i) {
     const Surface& surface = lens.surfaces[i];
     const double index_after = surface.mirror ? index_before : surface.material.index(wavelength_nm);
@@ -48,7 +49,9 @@ ParaxialSystem paraxial_system(const Lens& lens, double wavelength_nm) {
     }
     // Along the light: curvatures and gaps are those of the lens unfolded.
     const double curvature = sense * vertex_curvature_per_mm(surface);
-    const double power = (surface.mirror ? -2 * index_before : index_after - index_before) * curvature;
+    const double power = surface.ideal_lens
+                             ? 1 / surface.ideal_lens->focal_length_mm
+                             : (surface.mirror ? -2 * index_before : index_after - index_before) * curvature;
     if (surface.mirror) sense = -sense;
     const double gap = i == last ? 0 : sense * surface.thickness_mm / index_after;
     for (ParaxialMatrix* part : {&system.whole, i < stop ? &system.to_stop : &system.from_stop}) {

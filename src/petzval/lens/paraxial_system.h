@@ -17,12 +17,13 @@ struct ParaxialMatrix {
   void transfer(double reduced_distance_mm);
 };
 
-/// A lens at one wavelength, object in air. Mirrors are unfolded: all is counted along the light.
+/// A lens at one wavelength. A grating counts as its zeroth order. Mirrors are unfolded: all is counted along
+/// the light.
 struct ParaxialSystem {
   ParaxialMatrix whole;      ///< from vertex 1 (in front of it) to the last vertex (behind it)
   ParaxialMatrix to_stop;    ///< from vertex 1 to the vertex of the stop surface, in front of it
   ParaxialMatrix from_stop;  ///< from the vertex of the stop surface to the last vertex (behind it)
-  double image_index = 1;
+  double object_index = 1, image_index = 1;
   double petzval_sum_per_mm = 0;  ///< Σ φ/(n n'), without the factor n of the image space
 };
 

@@ -156,7 +156,7 @@ bool has_poses(const Lens& lens) {
 namespace {
 
 bool has_round_shape(const Surface& surface) {
-  return !surface.shape || surface_kind(surface.shape->kind).is_round;
+  return !surface.grating && (!surface.shape || surface_kind(surface.shape->kind).is_round);
 }
 
 bool has_round_apertures(const Surface& surface) {
@@ -172,7 +172,7 @@ bool is_round(const Lens& lens) {
 }
 
 Lens as_designed(Lens lens) {
-  for (Surface& surface : lens.surfaces) surface.pose = {};
+  for (Surface& surface : lens.surfaces) surface.pose = {}, surface.grating.reset();
   lens.groups.clear();
   lens.sensor_pose = {};
   return lens;
@@ -193,6 +193,11 @@ std::string first_pose(const Lens& lens) {
 
 void require_centred(const Lens& lens, const char* what) {
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (lens.surfaces[i].grating)
+      throw InputError(
+          fmt::format("{0}: surfaces[{1}] is a grating, and {2}; set surfaces[{1}].grating=null for the "
+                      "surface without lines",
+                      lens.name, i, what));
     if (!has_round_shape(lens.surfaces[i]))
       throw InputError(
           fmt::format("{}: surfaces[{}].shape is not round about the axis, and {}", lens.name, i, what));

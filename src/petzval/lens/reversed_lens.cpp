@@ -16,11 +16,12 @@ Lens reversed_lens(const Lens& lens) {
   if (!lens.states.empty()) return in_every_state(lens, reversed_lens);
   lens.validate();
   require_glass(lens, "turning it round needs");
+  require_no_bends(lens, "turning it round needs");
   require_centred(lens, "centred lenses can be turned round");
   require_no_mirrors(lens, "lenses without one can be turned round");
-  if (!lens.surfaces.back().material.is_air())
+  if (!lens.surfaces.back().material.is_air() || !lens.object_material.is_air())
     throw InputError(
-        fmt::format("{}: glass reaches up to the sensor; a lens with air on both sides can be "
+        fmt::format("{}: glass reaches up to the sensor or the object; a lens with air on both sides can be "
                     "turned round",
                     lens.name));
   Lens turned = lens;

@@ -142,6 +142,7 @@ Surface scaled_surface(Surface surface, double factor) {
   surface.curvature_per_mm /= factor;
   surface.thickness_mm *= factor;
   if (surface.semi_diameter_mm) *surface.semi_diameter_mm *= factor;
+  if (surface.ideal_lens) surface.ideal_lens->focal_length_mm *= factor;
   for (ApertureFigure& aperture : surface.apertures)
     for (double* length : {&aperture.half_width_x_mm, &aperture.half_width_y_mm, &aperture.decentre_x_mm,
                            &aperture.decentre_y_mm})
@@ -161,6 +162,7 @@ std::vector<std::string> shape_remarks(const Surface& surface) {
   if (surface.conic != 0) remarks.push_back(fmt::format("conic {:g}", surface.conic));
   for (const auto& [power, coefficient] : surface.asphere)
     remarks.push_back(fmt::format("r^{} {:g}", power, coefficient));
+  if (const std::string bend = bend_remark(surface); !bend.empty()) remarks.push_back(bend);
   if (!surface.shape) return remarks;
   std::string added = surface.shape->kind;
   for (const auto& [name, numbers] : surface.shape->parameters)

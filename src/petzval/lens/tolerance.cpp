@@ -40,6 +40,7 @@ const char* glass(const Lens& lens, std::size_t surface) {
 /// Where astigmatism can be added to the sag.
 const char* polynomial(const Lens& lens, std::size_t surface) {
   const Surface& at = lens.surfaces[surface];
+  if (at.grating || at.ideal_lens) return "is a grating or an ideal lens; a surface of glass would be right";
   if (at.shape && at.shape->kind != "xy_polynomial" && at.shape->kind != "zernike_sag")
     return "is of a kind to which no polynomial can be added; a conic, even powers of r, xy_polynomial or "
            "zernike_sag would be right";

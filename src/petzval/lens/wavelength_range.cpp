@@ -12,12 +12,16 @@ LensWavelengths wavelength_range(const Lens& lens) {
     range.shortest_nm = std::max(range.shortest_nm, shortest_nm);
     range.longest_nm = std::min(range.longest_nm, longest_nm);
   };
-  for (const Surface& surface : lens.surfaces) {
-    const Material::Kind& kind = surface.material.kind();
+  const auto narrow_to = [&](const Material& material) {
+    const Material::Kind& kind = material.kind();
     if (const auto* glass = std::get_if<std::shared_ptr<const Glass>>(&kind))
       narrow((*glass)->shortest_nm, (*glass)->longest_nm);
     if (const auto* table = std::get_if<Material::Table>(&kind))
       narrow(table->front().first, table->back().first);
+  };
+  narrow_to(lens.object_material);
+  for (const Surface& surface : lens.surfaces) {
+    narrow_to(surface.material);
     if (surface.transfer && surface.transfer->bands.size() > 1)
       narrow(surface.transfer->bands.front().wavelength_nm, surface.transfer->bands.back().wavelength_nm);
   }

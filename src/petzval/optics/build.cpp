@@ -69,7 +69,7 @@ double object_flux(const FieldTracer& tracer, const ChiefRay& chief, int azimuth
 double g_sensor_sr(const FieldTracer& tracer, const ChiefRay& chief, int azimuths) {
   const auto pupil = tracer.image_pupil(chief, azimuths);
   if (!pupil) return 0;
-  const double n = tracer.tracer().image_index();
+  const double n = tracer.tracer().image_index() / tracer.tracer().object_index();
   return n * n * tracer.lit_area(Pencil::from_image(tracer.tracer(), chief.image_height_mm), *pupil);
 }
 

@@ -27,6 +27,8 @@ constexpr std::uint32_t optimiser_starts = 0x0b71;
 /// What a relative error of the focal length of 1, and a rim that is 1 mm too thin, cost in units of the
 /// merit [µm]; of wavefronts [nm] fifty times as much, about as spots of a slow lens compare with its waves.
 constexpr double efl_cost_um = 5e3, rim_cost_um = 1e3, nm_of_wave_per_um = 50;
+/// A per cent of distortion too much costs as much as so many µm of spot, or per cent of MTF.
+constexpr double distortion_cost_um = 100;
 /// Stands for a lens through which a ray does not get: no step leads there.
 constexpr double lost_ray = 1e6;
 /// A round that improves less than by this share is the last. Steps of one round at most.
@@ -120,6 +122,10 @@ class Objective : public Eigen::DenseFunctor<double> {
   struct Targets {
     double efl_mm;
     std::vector<std::pair<std::size_t, double>> rims;  ///< surface, and how thick its glass is to stay
+    std::vector<double> fields = {};                   ///< object fields at which distortion counts
+    double most_distortion_percent = 0;
+
+    std::size_t count() const { return 1 + rims.size() + fields.size(); }
   };
 
   Objective(const Lens& lens, const OptimiseRequest& request, const Mapping& mapping, const Targets& targets,
@@ -150,22 +156,32 @@ class Objective : public Eigen::DenseFunctor<double> {
   Objective(RayMerit rays, const Lens& lens, const OptimiseRequest& request, const Mapping& mapping,
             const Targets& targets, const std::function<void()>& check_stop)
       : DenseFunctor<double>(static_cast<int>(request.variables.size()),
-                             static_cast<int>(rays.rows()) + 1 + static_cast<int>(targets.rims.size())),
+                             static_cast<int>(rays.rows()) + static_cast<int>(targets.count())),
         rays_(std::move(rays)),
         lens_(lens),
         mapping_(mapping),
         targets_(targets),
         check_stop_(check_stop),
-        cost_(request.merit == OptimiseMerit::rms_spot ? 1 : nm_of_wave_per_um) {}
+        cost_(request.merit == OptimiseMerit::wavefront ? nm_of_wave_per_um : 1) {}
 
-  /// Focal length and rims.
+  /// Focal length, rims, distortion.
   Eigen::VectorXd others(const Lens& lens) const {
-    Eigen::VectorXd values(1 + static_cast<Eigen::Index>(targets_.rims.size()));
+    Eigen::VectorXd values(static_cast<Eigen::Index>(targets_.count()));
     values[0] = cost_ * efl_cost_um * (efl_of(lens) / targets_.efl_mm - 1);
     for (std::size_t i = 0; i < targets_.rims.size(); ++i) {
       const auto& [surface, least] = targets_.rims[i];
       const double rim = glass_rim_mm(lens, surface).value_or(least);
       values[1 + static_cast<Eigen::Index>(i)] = cost_ * rim_cost_um * std::max(0.0, least - rim);
+    }
+    if (targets_.fields.empty()) return values;
+    const double nm = lens.reference_wavelength_nm;
+    FieldTracer tracer(lens, nm, Tracer::Clip::none);
+    for (std::size_t i = 0; i < targets_.fields.size(); ++i) {
+      const std::optional<ChiefRay> chief = tracer.chief_ray(targets_.fields[i]);
+      const double ideal = ideal_image_height_mm(lens, targets_.fields[i], nm);
+      const double percent = chief ? 100 * std::abs(chief->image_height_mm / ideal - 1) : lost_ray;
+      values[1 + static_cast<Eigen::Index>(targets_.rims.size() + i)] =
+          cost_ * distortion_cost_um * std::max(0.0, percent - targets_.most_distortion_percent);
     }
     return values;
   }
@@ -245,6 +261,26 @@ Descent descend(Lens lens, const OptimiseRequest& request, const Objective::Targ
   return descent;
 }
 
+/// Of an MTF, from where the spots are least.
+std::optional<Descent> descend_from_spots(const Lens& lens, const OptimiseRequest& request,
+                                          const Objective::Targets& targets,
+                                          const std::function<void()>& check_stop) {
+  OptimiseRequest spots = request;
+  spots.merit = OptimiseMerit::rms_spot;
+  try {
+    const Descent small = descend(lens, spots, targets, check_stop, [](int) {});
+    return descend(small.lens, request, targets, check_stop, [](int) {});
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+void keep_better(std::optional<Descent> other, Descent& best) {
+  if (!other || !(other->cost < best.cost)) return;
+  other->by_round.insert(other->by_round.begin(), best.by_round.front());
+  best = *std::move(other);
+}
+
 /// A glass in the place of another, and the numbers as far as they have followed.
 struct GlassTrial {
   std::size_t surface;
@@ -313,6 +349,7 @@ std::vector<LensVariable> usual_variables(const Lens& lens) {
 
 void check(const Lens& lens, const OptimiseRequest& request) {
   require_glass(lens, "optimising needs");
+  require_no_bends(lens, "optimising needs");
   lens.validate();
   require_centred(lens, "centred lenses can be optimised");
   for (std::size_t i = 0; i < request.variables.size(); ++i)
@@ -329,6 +366,11 @@ void check(const Lens& lens, const OptimiseRequest& request) {
       throw InputError(fmt::format("a field's weight of {:g}; a positive number would be right", weight));
   if (request.efl_mm && !(std::isfinite(*request.efl_mm) && *request.efl_mm != 0))
     throw InputError("a focal length that is not finite, or 0; a length in mm would be right");
+  if (request.merit == OptimiseMerit::mtf &&
+      !(request.mtf_frequency_cpmm > 0 && std::isfinite(request.mtf_frequency_cpmm)))
+    throw InputError("an MTF without a frequency; cycles/mm above 0 would be right");
+  if (request.most_distortion_percent && !(*request.most_distortion_percent >= 0))
+    throw InputError("a largest distortion that is negative; 0 or more per cent would be right");
   if (request.rounds < 1 || request.rounds > most_rounds)
     throw InputError(fmt::format("{} rounds; 1 to {} would be right", request.rounds, most_rounds));
   if (request.starts < 1 || request.starts > most_starts)
@@ -377,6 +419,12 @@ OptimiseResult work(const Lens& lens, const OptimiseRequest& request, std::uint6
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
     if (const std::optional<double> rim = glass_rim_mm(lens, i))
       targets.rims.emplace_back(i, std::min(*rim, request.least_rim_mm));
+  if (request.most_distortion_percent) {
+    targets.most_distortion_percent = *request.most_distortion_percent;
+    for (const double field : request.at.fields)
+      if (const double object = object_field(lens, request.at.field_kind, field); object != 0)
+        targets.fields.push_back(object);
+  }
   const auto starts = static_cast<std::size_t>(request.starts);
   std::vector<std::optional<Descent>> descents(starts);
   std::atomic<int> rounds = 0;
@@ -387,8 +435,10 @@ OptimiseResult work(const Lens& lens, const OptimiseRequest& request, std::uint6
   const std::function<void()> look_up = [] { check_stop(); };
   parallel_tasks(starts, [&](std::size_t start) {
     try {
-      descents[start] = descend(start == 0 ? lens : beside(lens, request, seed, start), request, targets,
-                                look_up, round_done);
+      const Lens from = start == 0 ? lens : beside(lens, request, seed, start);
+      descents[start] = descend(from, request, targets, look_up, round_done);
+      if (request.merit == OptimiseMerit::mtf)
+        keep_better(descend_from_spots(from, request, targets, look_up), *descents[start]);
     } catch (const InputError&) {
       if (start == 0) throw;  // a start through which no light gets is one less
     }

@@ -15,8 +15,9 @@ namespace petzval {
 
 /// What is made small.
 enum class OptimiseMerit {
-  rms_spot,  ///< RMS radius of the spots [µm], all wavelengths of a field about one centre
-  wavefront  ///< RMS of the wavefront [nm], of every wavelength about one point of the image
+  rms_spot,   ///< RMS radius of the spots [µm], all wavelengths of a field about one centre
+  wavefront,  ///< RMS of the wavefront [nm], of every wavelength about one point of the image
+  mtf  ///< RMS over both directions of what the MTF of all wavelengths together lacks of 1 [%], by rays
 };
 
 struct OptimiseRequest {
@@ -24,6 +25,9 @@ struct OptimiseRequest {
   FieldTableRequest at = {};                 ///< fields and wavelengths; empty: the lens's own
   std::vector<double> field_weights = {};    ///< one a field; empty: all alike
   OptimiseMerit merit = OptimiseMerit::rms_spot;
+  double mtf_frequency_cpmm = 0;  ///< of the MTF
+  /// Of every field at the reference wavelength, about the paraxial height; absent: it does not count.
+  std::optional<double> most_distortion_percent = {};
   std::optional<double> efl_mm = {};  ///< at the reference wavelength; absent: what the lens has
   double least_rim_mm = 0.5;          ///< of glass at the clear aperture; what is thinner already may stay so
   int rounds = 30;                    ///< at most; in each the rays are chosen anew from the real pupils
@@ -57,11 +61,12 @@ struct OptimiseResult {
 
 /// Least squares by Levenberg and Marquardt (Moré's MINPACK, as Eigen has it) over transverse aberrations or
 /// path differences of rays through the real pupils, with exact derivatives (trace_derived); beside them the
-/// focal length and the thickness of glass at the rim. Glasses are chosen after that: each near one is put in
-/// the place of each, the numbers follow, the best such change is kept, until none is better. A lens that no
-/// step improves comes back as it was. The same request and seed give the same lens on any number of threads.
-/// \throws InputError for variables, weights or numbers that do not fit, a lens with poses, a field at which
-/// no ray passes; Cancelled.
+/// focal length, the thickness of glass at the rim and distortion. An MTF is sought from the lens as it is
+/// and from that of the least spots, for where it is lost already it has no slope. Glasses are chosen after
+/// that: each near one is put in the place of each, the numbers follow, the best such change is kept, until
+/// none is better. A lens that no step improves comes back as it was. The same request and seed give the same
+/// lens on any number of threads. \throws InputError for variables, weights or numbers that do not fit, a
+/// lens with poses, a field at which no ray passes; Cancelled.
 OptimiseResult optimise(const Lens& lens, const OptimiseRequest& request = {}, const Context& context = {});
 
 }  // namespace petzval

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace petzval {
@@ -14,6 +15,8 @@ namespace {
 
 /// Nodes of a pupil: enough for aberrations up to the ninth order, and few enough to be quick.
 constexpr int merit_azimuths = 16, merit_radii = 5;
+/// Of a contrast, to which many waves may add up.
+constexpr int mtf_azimuths = 32, mtf_radii = 8;
 constexpr double nm_per_mm_of_path = 1e6;
 
 }  // namespace
@@ -32,7 +35,9 @@ struct RayMerit::Columns {
   }
 };
 
-RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request) : kind_(request.merit) {
+RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request)
+    : kind_(request.merit), frequency_cpmm_(request.mtf_frequency_cpmm) {
+  const bool contrast = kind_ == OptimiseMerit::mtf;
   const FieldTableRequest at = with_own_lists(request.at, lens);
   wavelengths_nm_ = at.wavelengths_nm;
   for (const LensVariable& variable : request.variables) numbers_.push_back(variable.number);
@@ -46,10 +51,11 @@ RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request) : kind_(req
     for (std::size_t f = 0; f < at.fields.size(); ++f) {
       const double object = object_field(lens, at.field_kind, at.fields[f]);
       const std::optional<ChiefRay> chief = tracer.chief_ray(object);
-      const auto pupil = chief ? tracer.object_pupil(*chief, merit_azimuths) : std::nullopt;
+      const auto pupil =
+          chief ? tracer.object_pupil(*chief, contrast ? mtf_azimuths : merit_azimuths) : std::nullopt;
       if (!pupil) throw no_ray_passes(lens, at.fields[f], wavelengths_nm_[w]);
       const Pencil pencil = Pencil::from_object(lens, object);
-      for (const PupilNode& node : pupil_nodes(*pupil, merit_radii)) {
+      for (const PupilNode& node : pupil_nodes(*pupil, contrast ? mtf_radii : merit_radii)) {
         const std::optional<Ray> launch = pencil.ray(node.u, node.v);
         if (!launch) continue;
         const Ray end = tracer.tracer().trace(*launch, Tracer::Clip::none);
@@ -63,9 +69,38 @@ RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request) : kind_(req
 
 Eigen::Index RayMerit::rows() const {
   Eigen::Index count = 0;
-  for (const FieldRays& field : fields_)
-    count += static_cast<Eigen::Index>(field.rays.size()) * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+  for (const FieldRays& field : fields_) count += rows_of(field);
   return count;
+}
+
+Eigen::Index RayMerit::rows_of(const FieldRays& field) const {
+  const auto rays = static_cast<Eigen::Index>(field.rays.size());
+  return kind_ == OptimiseMerit::mtf ? 2 : kind_ == OptimiseMerit::rms_spot ? 2 * rays : rays;
+}
+
+/// 1 less |Σ w exp(2πi f y)| in per cent, and the same along x, where mirrored rays leave a cosine.
+void RayMerit::mtf_rows(const FieldRays& field, const Columns& rays, Columns& rows) const {
+  const auto count = static_cast<Eigen::Index>(field.rays.size());
+  const double radians_per_mm = 2 * pi * frequency_cpmm_, scale = 100 * std::sqrt(field.weight / 2);
+  for (const Eigen::Index axis : {1, 0}) {
+    const bool mirrored = axis == 0 && field.rays.front().mirrored;
+    const Eigen::MatrixXd& by = rays.slopes[static_cast<std::size_t>(axis)];
+    double total = 0, cosine = 0, sine = 0;
+    Eigen::RowVectorXd cosine_by = Eigen::RowVectorXd::Zero(by.cols()), sine_by = cosine_by;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double weight = field.rays[static_cast<std::size_t>(i)].weight;
+      const double phase = radians_per_mm * rays.values(i, axis), c = std::cos(phase), s = std::sin(phase);
+      total += weight, cosine += weight * c;
+      cosine_by -= weight * s * radians_per_mm * by.row(i);
+      if (mirrored) continue;
+      sine += weight * s;
+      sine_by += weight * c * radians_per_mm * by.row(i);
+    }
+    const double length = std::max(std::hypot(cosine, sine), std::numeric_limits<double>::min());
+    const Eigen::Index row = 1 - axis;
+    rows.values(row, 0) = scale * (1 - length / total);
+    rows.slopes[0].row(row) = -scale / total * (cosine * cosine_by + sine * sine_by) / length;
+  }
 }
 
 /// Places against the mean of the field, which of mirrored rays lies at x = 0.
@@ -138,9 +173,12 @@ std::optional<Eigen::VectorXd> RayMerit::residuals(const Lens& lens, Eigen::Matr
             by.opl_mm - index * (by.alpha * x + alpha * by.x_mm + by.beta * y + beta * by.y_mm);
       }
     }
-    const Eigen::Index more = count * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+    const Eigen::Index more = rows_of(field);
     Columns rows{Eigen::MatrixXd(more, 1), {Eigen::MatrixXd(more, variables)}};
-    kind_ == OptimiseMerit::rms_spot ? spot_rows(field, rays, rows) : wave_rows(field, rays, rows);
+    if (kind_ == OptimiseMerit::mtf)
+      mtf_rows(field, rays, rows);
+    else
+      kind_ == OptimiseMerit::rms_spot ? spot_rows(field, rays, rows) : wave_rows(field, rays, rows);
     result.segment(first, more) = rows.values.col(0);
     if (slopes) slopes->middleRows(first, more) = rows.slopes[0];
     first += more;
@@ -156,8 +194,7 @@ std::vector<double> RayMerit::by_field(const Eigen::VectorXd& residuals) const {
   std::vector<double> fields;
   Eigen::Index first = 0;
   for (const FieldRays& field : fields_) {
-    const Eigen::Index more =
-        static_cast<Eigen::Index>(field.rays.size()) * (kind_ == OptimiseMerit::rms_spot ? 2 : 1);
+    const Eigen::Index more = rows_of(field);
     fields.push_back(std::sqrt(residuals.segment(first, more).squaredNorm() / field.weight));
     first += more;
   }

@@ -19,9 +19,9 @@ class RayMerit {
   /// \throws InputError naming a field at which no ray passes.
   RayMerit(const Lens& lens, const OptimiseRequest& request);
 
-  /// One row a number, [µm] of place or [nm] of path, weighted so that the squares of a field sum to its mean
-  /// square times its weight; nothing if a ray of the lens does not arrive.
-  /// \param slopes  if given, gains a row a number and a column a variable.
+  /// One row a number, [µm] of place, [nm] of path or [%] of lost MTF (tangential, sagittal), weighted so
+  /// that the squares of a field sum to its mean square times its weight; nothing if a ray of the lens does
+  /// not arrive. \param slopes  if given, gains a row a number and a column a variable.
   std::optional<Eigen::VectorXd> residuals(const Lens& lens, Eigen::MatrixXd* slopes) const;
   /// Root mean square of the fields, from what residuals() gave.
   double merit(const Eigen::VectorXd& residuals) const;
@@ -44,8 +44,11 @@ class RayMerit {
 
   void spot_rows(const FieldRays& field, const Columns& columns, Columns& rows) const;
   void wave_rows(const FieldRays& field, const Columns& columns, Columns& rows) const;
+  void mtf_rows(const FieldRays& field, const Columns& columns, Columns& rows) const;
+  Eigen::Index rows_of(const FieldRays& field) const;
 
   OptimiseMerit kind_;
+  double frequency_cpmm_;
   std::vector<double> wavelengths_nm_;
   std::vector<LensNumber> numbers_;
   std::vector<FieldRays> fields_;

@@ -136,21 +136,28 @@ Table remark_on_dark(Table table, const std::vector<Row>& rows) {
 
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows) {
   using Row = DistortionRow;
-  return remark_on_dark(
-      make<Row>(kind, rows,
-                {{{"image height", "mm", 5, "image_height_mm", {"", ".6f", 19}},
-                  [](const Row& row) { return row.image_height_mm; }},
-                 {{"paraxial height", "mm", 5, "paraxial_image_height_mm", {"", ".6f", 23}},
-                  [](const Row& row) { return row.paraxial_image_height_mm; }},
-                 {{"distortion", "%", 3, "distortion_percent", {"", ".4f", 16}},
-                  [](const Row& row) { return row.distortion_percent; }},
-                 {{"paraxial", "%", 3, "paraxial_distortion_percent", {"", ".4f", 14}},
-                  [](const Row& row) { return row.paraxial_distortion_percent; }},
-                 {{"against f·θ", "%", 3, "distortion_ftheta_percent", {"f-theta [%]", ".4f", 13}},
-                  [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }},
-                 {{"", "", 0, "lit"}, [](const Row& row) { return row.lit; }}},
-                Layout::set),
-      rows);
+  std::vector<Column<Row>> columns{
+      {{"image height", "mm", 5, "image_height_mm", {"", ".6f", 19}},
+       [](const Row& row) { return row.image_height_mm; }},
+      {{"paraxial height", "mm", 5, "paraxial_image_height_mm", {"", ".6f", 23}},
+       [](const Row& row) { return row.paraxial_image_height_mm; }},
+      {{"distortion", "%", 3, "distortion_percent", {"", ".4f", 16}},
+       [](const Row& row) { return row.distortion_percent; }},
+      {{"paraxial", "%", 3, "paraxial_distortion_percent", {"", ".4f", 14}},
+       [](const Row& row) { return row.paraxial_distortion_percent; }},
+      {{"against f·θ", "%", 3, "distortion_ftheta_percent", {"f-theta [%]", ".4f", 13}},
+       [](const Row& row) { return row.distortion_ftheta_percent.value_or(gap); }}};
+  // Of lenses with poses.
+  if (std::ranges::any_of(rows, [](const Row& row) {
+        return std::abs(row.image_x_mm) > 0 || std::abs(row.across_percent) > 0;
+      })) {
+    columns.push_back({{"beside the field", "mm", 5, "image_x_mm", {"", ".6f", 24}},
+                       [](const Row& row) { return row.image_x_mm; }});
+    columns.push_back({{"beside the field", "%", 3, "across_percent", {"", ".4f", 22}},
+                       [](const Row& row) { return row.across_percent; }});
+  }
+  columns.push_back({{"", "", 0, "lit"}, [](const Row& row) { return row.lit; }});
+  return remark_on_dark(make<Row>(kind, rows, columns, Layout::set), rows);
 }
 
 Table tabulate(const std::vector<TvDistortion>& rows) {
@@ -194,10 +201,13 @@ Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows) {
 
 Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows) {
   using Row = LateralColourRow;
-  return make<Row>(kind, rows,
-                   {{height_column, [](const Row& row) { return row.real_image_height_mm; }},
-                    {{"lateral colour", "µm", 4, "lateral_colour_um"},
-                     [](const Row& row) { return row.lateral_colour_um; }}});
+  std::vector<Column<Row>> columns{{height_column, [](const Row& row) { return row.real_image_height_mm; }},
+                                   {{"lateral colour", "µm", 4, "lateral_colour_um"},
+                                    [](const Row& row) { return row.lateral_colour_um; }}};
+  if (std::ranges::any_of(rows, [](const Row& row) { return std::abs(row.across_um) > 0; }))
+    columns.push_back(
+        {{"beside the field", "µm", 4, "across_um"}, [](const Row& row) { return row.across_um; }});
+  return make<Row>(kind, rows, columns);
 }
 
 Table tabulate(Fields::Kind kind, const std::vector<VignettingRow>& rows) {

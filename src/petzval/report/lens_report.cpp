@@ -325,7 +325,17 @@ class LensSections {
       page_.add(html::paragraph("A ray transfer has no surfaces that third-order theory could sum over."));
       return;
     }
-    const SeidelSums sums = seidel_sums(lens_);
+    const Lens designed = as_designed(lens_);
+    if (!is_round(designed) || std::ranges::any_of(lens_.surfaces, [](const Surface& surface) {
+          return surface.grating || surface.ideal_lens;
+        })) {
+      page_.add(html::paragraph(
+          "Third-order theory is that of round surfaces about one axis; the Zernike coefficients "
+          "below are those of this lens."));
+      return;
+    }
+    if (has_poses(lens_)) page_.add(html::paragraph("Of the lens as designed, without its poses:"));
+    const SeidelSums sums = seidel_sums(designed);
     page_.add(figure_with_data(
         seidel_plot(sums).svg(),
         fmt::format("Wavefront coefficients at {:g} nm, colour between {:g} and {:g} nm.", sums.wavelength_nm,

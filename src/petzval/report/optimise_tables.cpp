@@ -5,10 +5,11 @@
 namespace petzval {
 
 const char* unit_of(OptimiseMerit merit) {
-  return merit == OptimiseMerit::rms_spot ? "um" : "nm";
+  return merit == OptimiseMerit::mtf ? "%" : merit == OptimiseMerit::rms_spot ? "um" : "nm";
 }
 
 const char* name_of(OptimiseMerit merit) {
+  if (merit == OptimiseMerit::mtf) return "RMS loss of MTF";
   return merit == OptimiseMerit::rms_spot ? "RMS spot" : "RMS wavefront";
 }
 

@@ -256,6 +256,7 @@ void check_flare(const ImagePlan& plan) {
         "a lens data table does not say what its surfaces reflect; a `lens` would be right for ghosts and "
         "suns");
   require_glass(plan.lens->lens, "ghosts and suns need");
+  require_no_bends(plan.lens->lens, "ghosts and suns need");
   require_centred(plan.lens->lens, "ghosts and suns are those of centred lenses");
   if (options.scatter) scattering_lens(plan.lens->lens, options.surfaces_scatter);
   for (const Sun& sun : options.suns) sun.at(plan.scene.wavelengths_nm());

@@ -5,10 +5,10 @@
 #include <petzval/base/units.h>
 #include <petzval/numeric/random.h>
 #include <petzval/tolerance/tolerancing.h>
+#include <petzval/tolerance/yield.h>
 
 #include <algorithm>
 #include <atomic>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
 namespace petzval {
@@ -19,7 +19,6 @@ namespace {
 constexpr std::uint32_t build_errors = 0x70b5;
 /// Standard deviation over limit of normal errors.
 constexpr double deviation_per_limit = 0.5;
-constexpr double confidence = 0.95;
 /// Inverse limits are sought up to so many times the limit, to this share of them.
 constexpr double widest_inverse = 20, inverse_tolerance = 1e-3;
 constexpr int most_builds = 1'000'000;
@@ -98,15 +97,6 @@ std::optional<double> inverse_limit(const Lens& lens, const Tolerance& tolerance
   return low;
 }
 
-/// Clopper and Pearson, Biometrika 26 (1934) 404.
-void set_yield(std::size_t good, std::size_t all, ToleranceReport& report) {
-  using Binomial = boost::math::binomial_distribution<double>;
-  const auto n = static_cast<double>(all), k = static_cast<double>(good);
-  report.yield = k / n;
-  report.yield_low = good == 0 ? 0 : Binomial::find_lower_bound_on_p(n, k, (1 - confidence) / 2);
-  report.yield_high = good == all ? 1 : Binomial::find_upper_bound_on_p(n, k, (1 - confidence) / 2);
-}
-
 void check(const ToleranceRequest& request) {
   const Merit& merit = request.judge.merit;
   if (request.builds < 0 || request.builds > most_builds)
@@ -179,7 +169,8 @@ ToleranceReport work(const Lens& lens, const ToleranceRequest& request, std::uin
     const auto good = std::ranges::count_if(report.builds, [&](const Build& build) {
       return harm(merit, *request.accept, build.judgement.worst) <= 0;
     });
-    set_yield(static_cast<std::size_t>(good), builds, report);
+    const Yield yield = yield_of(static_cast<std::size_t>(good), builds);
+    report.yield = yield.share, report.yield_low = yield.low, report.yield_high = yield.high;
   }
   return report;
 }

@@ -53,6 +53,8 @@ HWY_ATTR HWY_INLINE void step(const KernelSurface<T>& surface, RayVector<T, meas
     for (RayVector<T, measures>& ray : rays) step_transfer(surface, ray);
   else
     step_surface(surface, rays);
+  if (surface.bend)
+    for (RayVector<T, measures>& ray : rays) step_bend(surface, ray);
   if (surface.mirror)
     for (RayVector<T, measures>& ray : rays) turn_back(ray);
   if (surface.posed)

@@ -3,6 +3,7 @@
 // for radiance, without.
 #pragma once
 
+#include <petzval/lens/bend_data.h>
 #include <petzval/lens/shapes/shape_data.h>
 #include <petzval/lens/transfer_data.h>
 
@@ -51,8 +52,9 @@ struct KernelSurface {
   /// Carries rays between the planes of this surface and of the one behind it; then nothing else above counts
   /// but the clip, in the coordinates of the transfer's stop.
   std::shared_ptr<const TransferData<T>> transfer;
-  bool clips_others = false;  ///< at the transfer's other apertures
-  bool counts_path = true;    ///< through the transfer; costs ten times the way itself
+  bool clips_others = false;                ///< at the transfer's other apertures
+  std::shared_ptr<const BendData<T>> bend;  ///< in the sense of travel, in place of refraction
+  bool counts_path = true;                  ///< through the transfer; costs ten times the way itself
 };
 
 /// The surfaces in the order of travel. A backward trace is a forward trace through the mirror image z → −z,

@@ -76,7 +76,9 @@ template <class T>
 KernelSurface<T> kernel_surface(const Tracer::PreparedSurface& from, bool backward, double flip,
                                 double clip_radius_sq) {
   const double before = backward ? from.index_after : from.index_before;
-  const double ratio = from.mirror ? -1 : before / (backward ? from.index_before : from.index_after);
+  const double ratio = from.bend     ? 1
+                       : from.mirror ? -1
+                                     : before / (backward ? from.index_before : from.index_after);
   KernelSurface<T> surface;
   surface.shape = kernel_shape<T>(from.shape);
   surface.flip = static_cast<T>(flip);
@@ -103,6 +105,15 @@ std::shared_ptr<const TransferData<double>> kernel_transfer(
 std::shared_ptr<const TransferData<float>> kernel_transfer(
     const std::shared_ptr<const TransferData<double>>& from, float) {
   return std::make_shared<const TransferData<float>>(in_float(*from));
+}
+
+template <class T>
+std::shared_ptr<const BendData<T>> kernel_bend(const BendData<double>& given, bool backward) {
+  const BendData<double> from = backward ? given.turned_back() : given;
+  return std::make_shared<const BendData<T>>(BendData<T>{
+      static_cast<typename BendData<T>::Kind>(from.kind), from.mirror, static_cast<T>(from.index_before),
+      static_cast<T>(from.index_after), static_cast<T>(from.along_x), static_cast<T>(from.along_y),
+      static_cast<T>(from.power), static_cast<T>(from.vergence_before), static_cast<T>(from.vergence_after)});
 }
 
 template <class T>
@@ -155,6 +166,7 @@ KernelPath<T> kernel_path(const Tracer& tracer, bool backward, Tracer::Clip clip
       surface.transfer = kernel_transfer(surfaces[i].transfer, T(0));
       surface.clips_others = clip == Tracer::Clip::apertures;
     }
+    if (surfaces[i].bend) surface.bend = kernel_bend<T>(*surfaces[i].bend, backward);
     path.surfaces.push_back(std::move(surface));
     if (surfaces[i].mirror) flip = -flip, vertex_z = -vertex_z;
   }

@@ -122,7 +122,7 @@ void Losses::validate(const Lens& lens) const {
       throw InputError(fmt::format("a coating for surfaces[{}], but {} has surfaces[0] to surfaces[{}]",
                                    surface, lens.name, lens.surfaces.size() - 1));
     coating.validate();
-    const bool front_is_air = surface == 0 || lens.medium_behind(surface - 1).is_air();
+    const bool front_is_air = lens.medium_before(surface).is_air();
     if (coating.has_films() && lens.surfaces[surface].mirror)
       throw InputError(
           fmt::format("films on surfaces[{}], which is a mirror; a reflectance would be right", surface));
@@ -137,7 +137,7 @@ LensTransmittance::LensTransmittance(const Lens& lens, double wavelength_nm, con
     : fresnel_(given.fresnel), wavelength_nm_(wavelength_nm) {
   const Losses losses = given.of(lens);
   losses.validate(lens);
-  double before = 1;
+  double before = lens.object_material.index(wavelength_nm);
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Material& material = lens.medium_behind(i);
     Interface interface;

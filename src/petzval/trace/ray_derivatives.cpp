@@ -212,9 +212,13 @@ std::optional<DerivedRay> trace_derived(const Tracer& tracer, const Ray& ray,
                                         std::span<const LensNumber> numbers) {
   if (!tracer.is_centred() || tracer.sensor_posed())
     throw InputError("derivatives of rays are those of centred lenses; a lens without poses would be right");
-  for (const Tracer::PreparedSurface& surface : tracer.surfaces())
+  for (const Tracer::PreparedSurface& surface : tracer.surfaces()) {
+    if (surface.bend)
+      throw InputError(
+          "derivatives of rays are those of surfaces that refract or reflect; set ideal_lens=null");
     if (surface.transfer)
       throw InputError("derivatives of rays are those of surfaces, and a ray transfer has none");
+  }
   std::vector<Intersection> met;
   DerivedRay result{tracer.trace(ray, Tracer::Clip::none, &met), {}};
   if (result.ray.status != RayStatus::ok) return {};

@@ -8,6 +8,7 @@
 #endif
 
 #include <hwy/highway.h>
+#include <petzval/lens/bend-inl.h>
 #include <petzval/trace/batch_kernel.h>
 #include <petzval/trace/surface_meet-inl.h>
 
@@ -212,6 +213,26 @@ HWY_ATTR HWY_INLINE void step_conic(const KernelSurface<T>& surface, RayVector<T
   ray.alive = hn::And(ray.alive, hn::Gt(gz, hn::Zero(d)));
   clip(surface, ray);
   refract(surface, gx, gy, gz, crossing.slope, ray);
+}
+
+/// A grating or an ideal lens on the plane, sphere or conic that the ray has been carried to.
+template <class T, bool measures>
+HWY_ATTR HWY_INLINE void step_bend(const KernelSurface<T>& surface, RayVector<T, measures>& ray) {
+  using V = Vector<T>;
+  const Lanes<T> d;
+  const auto c = hn::Set(d, surface.curvature);
+  BentRay<V> bent{ray.x,
+                  ray.y,
+                  hn::Neg(hn::Mul(c, ray.x)),
+                  hn::Neg(hn::Mul(c, ray.y)),
+                  gradient_z(hn::Set(d, surface.curvature * surface.shape.one_plus_conic), ray.z),
+                  ray.l,
+                  ray.m,
+                  ray.n,
+                  hn::Zero(d)};
+  bend(*surface.bend, bent);
+  ray.l = bent.l, ray.m = bent.m, ray.n = bent.n;
+  if constexpr (has_path<T> && !measures) ray.opl = hn::Add(ray.opl, bent.path);
 }
 
 /// Of a kind that has no closed form.

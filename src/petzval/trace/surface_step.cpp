@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/trace/surface_step.h>
 
+#include <petzval/lens/bend-inl.h>
 #include <petzval/trace/surface_meet-inl.h>
 
 #include <cmath>
@@ -136,6 +137,16 @@ void reflect(SurfaceRay& ray, const double normal[3]) {
   ray.l -= twice * normal[0];
   ray.m -= twice * normal[1];
   ray.n -= twice * normal[2];
+}
+
+bool bend(const BendData<double>& bend, double sense, SurfaceRay& ray, const double normal[3]) {
+  HWY_NAMESPACE::BentRay<double> bent{
+      ray.x, ray.y, sense * normal[0], sense * normal[1], normal[2], ray.l, ray.m, sense * ray.n, 0};
+  HWY_NAMESPACE::bend(bend, bent);
+  const double turn = bend.mirror ? -1 : 1;
+  ray.l = turn * bent.l, ray.m = turn * bent.m, ray.n = turn * sense * bent.n;
+  ray.opl += bent.path;
+  return std::isfinite(ray.n);
 }
 
 bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]) {

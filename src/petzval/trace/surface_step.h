@@ -23,6 +23,10 @@ bool intersect(const Tracer::PreparedSurface& surface, double sense, double inde
 /// Throws the ray back at a unit normal.
 void reflect(SurfaceRay& ray, const double normal[3]);
 
+/// Sends the ray into the order of a grating, or through an ideal lens, and adds their phase to the path;
+/// false where the order is evanescent. \param bend  in the sense of travel.
+bool bend(const BendData<double>& bend, double sense, SurfaceRay& ray, const double normal[3]);
+
 /// Vector Snell at a unit normal; false on total internal reflection. `ratio` = n_before / n_after.
 bool refract(double ratio, double sense, SurfaceRay& ray, const double normal[3]);
 

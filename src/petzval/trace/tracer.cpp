@@ -99,7 +99,10 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     } else if (!intersect(surface, sense, before, at, normal)) {
       ray.status = RayStatus::missed;
     } else if (visit(i, at, 0.0)) {
-      if (surface.mirror)
+      if (surface.bend) {
+        if (!bend(backward ? surface.bend->turned_back() : *surface.bend, sense, at, normal))
+          ray.status = RayStatus::tir;
+      } else if (surface.mirror)
         reflect(at, normal);
       else if (!refract(before / behind, sense, at, normal))
         ray.status = RayStatus::tir;
@@ -163,7 +166,7 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm)
 
 Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     : wavelength_nm_(wavelength_nm), stop_index_(lens.stop_index()), stop_radius_mm_(stop_radius_mm) {
-  double z = 0, index = 1, sense = 1;
+  double z = 0, index = lens.object_material.index(wavelength_nm), sense = 1;
   const std::vector<Frame> frames = frames_of(lens);
   for (const Surface& surface : lens.surfaces) {
     PreparedSurface prepared;
@@ -179,7 +182,8 @@ Tracer::Tracer(const Lens& lens, double wavelength_nm, double stop_radius_mm)
     if (!surface.mirror) index = surface.material.index(wavelength_nm);
     prepared.index_after = index;
     prepared.apertures = surface.apertures;
-    prepared.axes_count = surface.shape && !surface_kind(surface.shape->kind).is_round;
+    prepared.bend = bend_data(lens, surfaces_.size(), wavelength_nm, prepared.index_before, index);
+    prepared.axes_count = surface.grating || (surface.shape && !surface_kind(surface.shape->kind).is_round);
     centred_ = centred_ && !prepared.axes_count &&
                std::all_of(surface.apertures.begin(), surface.apertures.end(),
                            [](const ApertureFigure& figure) { return figure.is_round(); });

@@ -2,6 +2,7 @@
 // Sequential ray trace through a lens at one wavelength.
 #pragma once
 
+#include <petzval/lens/bend_data.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/shapes/shape_data.h>
 #include <petzval/lens/stop_blades.h>
@@ -68,7 +69,7 @@ class Tracer {
   double wavelength_nm() const { return wavelength_nm_; }
   std::size_t surface_count() const { return surfaces_.size(); }
   std::size_t stop_index() const { return stop_index_; }
-  double object_index() const { return 1.0; }
+  double object_index() const { return surfaces_.front().index_before; }
   double image_index() const { return surfaces_.back().index_after; }
   double image_z_mm() const { return image_z_mm_; }
   double vertex_z_mm(std::size_t surface) const { return surfaces_[surface].vertex_z_mm; }
@@ -120,6 +121,7 @@ class Tracer {
     double sense = 1;         ///< −1 where light comes to it from behind, thrown back by mirrors
     std::vector<ApertureFigure> apertures = {};
     std::shared_ptr<const TransferData<double>> transfer = {};  ///< carries rays to the next surface
+    std::shared_ptr<const BendData<double>> bend = {};          ///< a grating or an ideal lens
   };
   const std::vector<PreparedSurface>& surfaces() const { return surfaces_; }
   const Frame& sensor_frame() const { return sensor_frame_; }

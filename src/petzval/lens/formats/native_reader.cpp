@@ -165,6 +165,19 @@ Pose read_pose(const JsonEntry& entry) {
   return pose;
 }
 
+Grating read_grating(const JsonEntry& entry) {
+  entry.allow_only({"lines_per_mm", "order", "rotation_deg"});
+  Grating grating{entry.at("lines_per_mm").number("lines per mm"), entry.at("order").number("an order"), 0};
+  if (const auto rotation = entry.find("rotation_deg"))
+    grating.rotation_deg = rotation->number("an angle in degrees");
+  return grating;
+}
+
+IdealLens read_ideal_lens(const JsonEntry& entry) {
+  entry.allow_only({"focal_length_mm"});
+  return {entry.at("focal_length_mm").number("a focal length in mm")};
+}
+
 std::size_t read_index(const JsonEntry& entry) {
   const double number = entry.number("the index of a surface");
   if (!(number >= 0 && number < 1e6) || number != std::floor(number))
@@ -213,7 +226,8 @@ LensStates read_states(const JsonEntry& entry) {
 /// \param last  the distance to the sensor may be left out.
 Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   entry.allow_only({"radius_mm", "thickness_mm", "glass", "mirror", "semi_diameter_mm", "apertures", "conic",
-                    "asphere", "shape", "stop", "blades", "pose", "melt", "transfer", "scatter", "coating"});
+                    "asphere", "shape", "stop", "blades", "grating", "ideal_lens", "pose", "melt", "transfer",
+                    "scatter", "coating"});
   Surface surface;
   surface.curvature_per_mm = read_curvature(entry.at("radius_mm"));
   if (!last || entry.find("thickness_mm"))
@@ -234,6 +248,10 @@ Surface read_surface(const JsonEntry& entry, GlassLookup& glasses, bool last) {
   if (const auto stop = entry.find("stop")) surface.stop = stop->truth();
   if (const auto blades = entry.find("blades"); blades && !blades->is_null())
     surface.blades = read_blades(*blades);
+  if (const auto grating = entry.find("grating"); grating && !grating->is_null())
+    surface.grating = read_grating(*grating);
+  if (const auto ideal = entry.find("ideal_lens"); ideal && !ideal->is_null())
+    surface.ideal_lens = read_ideal_lens(*ideal);
   if (const auto pose = entry.find("pose"); pose && !pose->is_null()) surface.pose = read_pose(*pose);
   if (const auto transfer = entry.find("transfer"); transfer && !transfer->is_null())
     surface.transfer = read_transfer(*transfer);
@@ -312,8 +330,8 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   const JsonEntry format = top.at("format");
   if (format.text("a text") != native_format) format.fail(fmt::format("must be \"{}\"", native_format));
   top.allow_only({"format", "name", "source", "object_distance_mm", "aperture", "fields", "wavelengths_nm",
-                  "reference_wavelength_nm", "surfaces", "groups", "sensor_pose", "tolerances", "states",
-                  "scatter"});
+                  "reference_wavelength_nm", "object_glass", "surfaces", "groups", "sensor_pose",
+                  "tolerances", "states", "scatter"});
   Lens lens;
   if (const auto name = top.find("name")) lens.name = name->text("a text");
   if (const auto source = top.find("source")) lens.source = source->text("a text");
@@ -323,6 +341,7 @@ Lens read_native(const JsonDocument& document, const LensReadOptions& options) {
   if (const auto fields = top.find("fields")) lens.fields = read_fields(*fields);
   read_wavelengths(top, lens);
   GlassLookup glasses(options);
+  if (const auto medium = top.find("object_glass")) lens.object_material = read_glass(*medium, glasses);
   const std::vector<JsonEntry> surfaces = top.at("surfaces").items("a list of surfaces, front to back");
   for (const JsonEntry& surface : surfaces)
     lens.surfaces.push_back(read_surface(surface, glasses, &surface == &surfaces.back()));

@@ -102,6 +102,15 @@ std::string surface_text(const Surface& surface) {
     text += fmt::format(", \"asphere\": {{{}}}", fmt::join(terms, ", "));
   }
   if (surface.shape) text += ", \"shape\": " + shape_text(*surface.shape);
+  if (const auto& grating = surface.grating) {
+    text += fmt::format(
+        ", \"grating\": {{\"lines_per_mm\": {}, \"order\": {}{}}}", number_text(grating->lines_per_mm),
+        number_text(grating->order),
+        grating->rotation_deg == 0 ? "" : ", \"rotation_deg\": " + number_text(grating->rotation_deg));
+  }
+  if (surface.ideal_lens)
+    text += fmt::format(", \"ideal_lens\": {{\"focal_length_mm\": {}}}",
+                        number_text(surface.ideal_lens->focal_length_mm));
   if (!surface.pose.is_none()) text += ", \"pose\": " + pose_text(surface.pose);
   if (surface.scatter) text += ", \"scatter\": " + scatter_text(*surface.scatter);
   if (surface.coating) text += ", \"coating\": " + coating_text(*surface.coating);
@@ -129,6 +138,8 @@ std::string lens_to_json(const Lens& lens) {
   line("name", quoted(lens.name));
   line("source", quoted(lens.source));
   line("object_distance_mm", lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "null");
+  if (!lens.object_material.is_air())
+    line("object_glass", std::visit(NativeGlassText{}, lens.object_material.kind()));
   line("aperture", fmt::format("{{\"{}\": {}}}", aperture_keys[static_cast<std::size_t>(lens.aperture.kind)],
                                number_text(lens.aperture.value)));
   line("fields",

@@ -17,7 +17,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t most_surfaces = 1000;
+constexpr std::size_t most_bench_surfaces = 1000;
 constexpr int most_odd_powers = 20;
 /// A catalogue's glass stands for that of a row if it has its nd and Vd: patents give five digits and four.
 constexpr double same_nd = 1e-4, same_vd = 0.15;
@@ -113,8 +113,8 @@ class BenchReader {
       fail(
           "has too few columns; a row of [lens data] has name, radius, thickness, index, diameter, Abbe "
           "number");
-    if (made_.lens.surfaces.size() >= most_surfaces)
-      fail(fmt::format("is surface {}; a lens has {} at most", most_surfaces + 1, most_surfaces));
+    if (made_.lens.surfaces.size() >= most_bench_surfaces)
+      fail(fmt::format("is surface {}; a lens has {} at most", most_bench_surfaces + 1, most_bench_surfaces));
     const auto cell = [&](std::size_t i) { return i < cells.size() ? cells[i] : std::string(); };
     Surface surface;
     surface.stop = cells[1] == "AS";

@@ -17,7 +17,8 @@ namespace {
 /// 2013, KZFS4 from Hikari's (table V has another maker's). BASF64A, LASFN31, PSK53A and SFL56 differ from
 /// their successors by less than 5e-5 from 450 to 650 nm (SCHOTT's .agf of June 2025, as the package
 /// @isaac/glass-catalog compares it). Of LAFN21, SF64A and SFL4 a list of SCHOTT's old glasses at 587.6 nm
-/// has nd alone; their Vd is not known.
+/// has nd alone; their Vd is not known. WATER is pure at 20 °C (Daimon and Masumura, Appl. Opt. 46 (2007)
+/// 3811), SEAWATER has 35 per mille of salt (Quan and Fry, Appl. Opt. 34 (1995) 3477), both against air.
 constexpr RetiredGlass retired[] = {
     {"B270", 1.52308, 58.57, ""},
     {"BAF10", 1.67003, 47.11, "SCHOTT:N-BAF10"},
@@ -58,6 +59,7 @@ constexpr RetiredGlass retired[] = {
     {"LASFN31", 1.88067, 41.01, "SCHOTT:N-LASF31"},
     {"PSK3", 1.55232, 63.46, "SCHOTT:N-PSK3"},
     {"PSK53A", 1.62014, 63.48, "SCHOTT:N-PSK53"},
+    {"SEAWATER", 1.33910, 54.90, ""},
     {"SF19", 1.66680, 33.01, "SCHOTT:N-SF19"},
     {"SF3", 1.74000, 28.20, ""},
     {"SF56A", 1.78470, 26.08, "SCHOTT:N-SF56"},
@@ -80,6 +82,7 @@ constexpr RetiredGlass retired[] = {
     {"SSKN5", 1.65844, 50.88, "SCHOTT:N-SSK5"},
     {"SSKN8", 1.61772, 49.77, "SCHOTT:N-SSK8"},
     {"UBK7", 1.51680, 64.29, "SCHOTT:N-BK7"},
+    {"WATER", 1.33304, 55.75, ""},
     {"ZKN7", 1.50847, 61.19, "SCHOTT:N-ZK7"},
 };
 

@@ -47,8 +47,7 @@ const std::map<std::string, SeqKeyword, std::less<>>& keywords() {
     add(SeqRole::refused, {"NSS", "NSC"}, "a non-sequential path");
     add(SeqRole::refused, {"XTO", "YTO", "CYL", "AAS", "RDX", "CUX"}, "a surface that is not round");
     add(SeqRole::refused, {"SPL", "UDS", "QBF", "QCN", "INT", "MOD", "ZRN"}, "a special surface");
-    add(SeqRole::refused, {"DIF", "GRT", "GRO", "GRX", "GRY", "GRZ", "HOE", "HOR", "HWL", "HCT", "HCO"},
-        "a grating or a hologram");
+    add(SeqRole::refused, {"DIF", "HOE", "HOR", "HWL", "HCT", "HCO"}, "a hologram");
     add(SeqRole::refused, {"GRN", "UDG", "THM"}, "a graded index");
     return k;
   }();

@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/text_lines.h>
+#include <petzval/base/units.h>
 #include <petzval/base/wavelength.h>
 #include <petzval/glass/packed_catalogue.h>
 #include <petzval/lens/formats/axis_breaks.h>
@@ -16,6 +17,8 @@
 namespace petzval {
 
 namespace {
+
+constexpr std::array<std::string_view, 6> seq_grating_words{"GRT", "GRO", "GRS", "GRX", "GRY", "GRZ"};
 
 constexpr std::array<std::string_view, 8> seq_aperture_words{"CIR", "REX", "REY", "ELX",
                                                              "ELY", "ADX", "ADY", "ARO"};
@@ -224,6 +227,37 @@ void SeqSurfaces::put_apertures(const SeqSurface& from, double mm_per_unit, cons
                                from.clear.x * mm_per_unit, from.clear.y * mm_per_unit, 0, false});
 }
 
+bool SeqSurfaces::apply_grating(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                                const SeqContext& context) {
+  const auto word = std::find(seq_grating_words.begin(), seq_grating_words.end(), command.name);
+  if (word == seq_grating_words.end()) return false;
+  if (command.name == "GRT") {
+    surface.ruled = true;
+    return true;
+  }
+  const double value = context.number(command, first, where());
+  if (command.name == "GRO")
+    surface.order = value;
+  else if (command.name == "GRS")
+    surface.spacing = value;
+  else
+    surface.ruling_normal[static_cast<std::size_t>(word - seq_grating_words.begin()) - 3] = value;
+  return true;
+}
+
+/// Lines that planes cut which stand upright on the surface.
+void SeqSurfaces::put_grating(const SeqSurface& from, double mm_per_unit, const SeqContext& context,
+                              Surface& surface) const {
+  if (!from.ruled) return;
+  const auto& [x, y, z] = from.ruling_normal;
+  if (!(from.spacing > 0)) context.fail(from.command, "is a grating (GRT) without a positive spacing (GRS)");
+  if (z != 0 || (x == 0 && y == 0))
+    context.fail(from.command,
+                 "is a grating whose lines lie oblique to the surface (GRZ), which is not modelled");
+  surface.grating = Grating{1 / (from.spacing * mm_per_unit), from.order, degrees(std::atan2(-x, y))};
+  if (x == 0) surface.grating->rotation_deg = y > 0 ? 0 : 180;
+}
+
 void SeqSurfaces::apply_special(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                                 const SeqContext& context) {
   const std::string kind = command.has(first) ? upper_case(command.words[first]).substr(0, 3) : "";
@@ -338,7 +372,8 @@ bool SeqSurfaces::apply_shape(SeqSurface& surface, const SeqCommand& command, st
   } else if (std::find(seq_aperture_words.begin(), seq_aperture_words.end(), name) !=
              seq_aperture_words.end()) {
     apply_aperture(surface, command, first, context);
-  } else if (apply_decentre(surface, command, first, context)) {
+  } else if (apply_decentre(surface, command, first, context) ||
+             apply_grating(surface, command, first, context)) {
     return true;
   } else if (name == "PIM") {
     surface.solves_image_distance = true;
@@ -372,6 +407,8 @@ bool SeqSurfaces::apply(const SeqCommand& command, const SeqContext& context) {
   if (std::find(names.begin(), names.end(), command.name) == names.end() &&
       std::find(seq_aperture_words.begin(), seq_aperture_words.end(), command.name) ==
           seq_aperture_words.end() &&
+      std::find(seq_grating_words.begin(), seq_grating_words.end(), command.name) ==
+          seq_grating_words.end() &&
       !asphere_power(command.name))
     return false;
   std::size_t first = 0;
@@ -389,7 +426,8 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
         context.file,
         "does not enter a whole lens; it needs the object SO, at least one surface S and the image SI");
   const auto check_end = [&](const SeqSurface& end, const char* what) {
-    if (end.curvature != 0 || !end.asphere.empty() || end.glass)
+    const bool object = &end == &surfaces_.front();
+    if (end.curvature != 0 || !end.asphere.empty() || (end.glass && !object))
       context.fail(end.command,
                    fmt::format("is a curved {} surface or one with glass behind it, which is not "
                                "modelled",
@@ -397,6 +435,16 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
   };
   check_end(surfaces_.front(), "object");
   check_end(surfaces_.back(), "image");
+  const auto material_of = [&](const SeqSurface& from, const std::string& place) {
+    try {
+      return seq_glass(from.glass->words[0], private_, glasses);
+    } catch (const InputError& error) {
+      return glasses.missing(
+          InputError(context.file, from.glass->line, fmt::format("{}: {}", place, error.what())),
+          from.glass->words[0], place);
+    }
+  };
+  if (surfaces_.front().glass) lens.object_material = material_of(surfaces_.front(), "SO");
   const double object = surfaces_.front().thickness;
   lens.object_distance_mm.reset();
   if (!(std::abs(object) >= seq_infinite_distance)) lens.object_distance_mm = object * mm_per_unit;
@@ -420,15 +468,10 @@ void SeqSurfaces::put_into(Lens& lens, double mm_per_unit, const SeqContext& con
       if (const double scaled = value * mm_per_unit * std::pow(radius_mm, -power); scaled != 0)
         surface.asphere[power] = scaled;
     put_apertures(from, mm_per_unit, context, surface);
+    put_grating(from, mm_per_unit, context, surface);
     surface.stop = i == stop;
     surface.mirror = from.mirror;
-    if (from.glass && !from.mirror) try {
-        surface.material = seq_glass(from.glass->words[0], private_, glasses);
-      } catch (const InputError& error) {
-        surface.material = glasses.missing(
-            InputError(context.file, from.glass->line, fmt::format("S{}: {}", i, error.what())),
-            from.glass->words[0], fmt::format("S{}", i));
-      }
+    if (from.glass && !from.mirror) surface.material = material_of(from, fmt::format("S{}", i));
     lens.surfaces.push_back(std::move(surface));
   }
   glasses.require_all_found();

@@ -18,9 +18,13 @@ struct SeqSurface {
   SeqCommand command;  ///< that entered it
   double curvature = 0, thickness = 0, conic = 0;
   std::map<int, double> asphere;
-  bool odd_polynomial = false;      ///< SPS ODD
-  double odd_radius = 0;            ///< that r is divided by, 0 for none
-  bool mirror = false;              ///< REFL
+  bool odd_polynomial = false;  ///< SPS ODD
+  double odd_radius = 0;        ///< that r is divided by, 0 for none
+  bool mirror = false;          ///< REFL
+  /// GRT, GRO, GRS (length from line to line) and GRX GRY GRZ, the normal of the planes that cut the lines.
+  bool ruled = false;
+  double order = 0, spacing = 0;
+  std::array<double, 3> ruling_normal{0, 1, 0};
   std::optional<SeqCommand> glass;  ///< the command whose first word names it
   std::optional<double> semi_diameter;
   /// What REX REY, ELX ELY, ADX ADY and ARO say: of what passes light, and of what obscures.
@@ -63,6 +67,10 @@ class SeqSurfaces {
                      const SeqContext& context);
   void apply_coefficient(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                          const SeqContext& context);
+  bool apply_grating(SeqSurface& surface, const SeqCommand& command, std::size_t first,
+                     const SeqContext& context);
+  void put_grating(const SeqSurface& from, double mm_per_unit, const SeqContext& context,
+                   Surface& surface) const;
   void apply_aperture(SeqSurface& surface, const SeqCommand& command, std::size_t first,
                       const SeqContext& context);
   bool apply_decentre(SeqSurface& surface, const SeqCommand& command, std::size_t first,

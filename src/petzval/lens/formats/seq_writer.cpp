@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
+#include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/axis_breaks.h>
 #include <petzval/lens/formats/seq.h>
@@ -12,6 +13,7 @@
 #include <petzval/lens/surface_shape.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -148,6 +150,15 @@ std::string seq_break_text(const Frame& frame) {
   return text;
 }
 
+std::string grating_text(const Grating& grating) {
+  std::string text = fmt::format("  GRT\n  GRO {}\n  GRS {}\n", number_text(grating.order),
+                                 number_text(1 / grating.lines_per_mm));
+  if (grating.rotation_deg == 0) return text;
+  const double turn = radians(grating.rotation_deg);
+  return text +
+         fmt::format("  GRX {}\n  GRY {}\n", number_text(-std::sin(turn)), number_text(std::cos(turn)));
+}
+
 std::string surface_text(const Lens& lens, std::size_t i, std::string& private_glasses) {
   const Surface& surface = lens.surfaces[i];
   if (surface.blades.count != 0)
@@ -157,6 +168,8 @@ std::string surface_text(const Lens& lens, std::size_t i, std::string& private_g
       "S {} {}{}\n", number_text(surface.curvature_per_mm), number_text(surface.thickness_mm),
       surface.mirror ? " REFL" : std::visit(SeqGlassText{i, private_glasses}, surface.material.kind()));
   if (surface.stop) text += "  STO\n";
+  if (surface.ideal_lens) refuse(i, "ideal_lens", "an ideal lens");
+  if (surface.grating) text += grating_text(*surface.grating);
   if (surface.shape) refuse(i, "shape", fmt::format("the kind \"{}\"", surface.shape->kind));
   if (!is_spherical(surface)) text += asphere_text(surface, i);
   if (surface.semi_diameter_mm) text += fmt::format("  CIR {}\n", number_text(*surface.semi_diameter_mm));
@@ -302,6 +315,8 @@ std::string seq_text(const Lens& given) {
   if (lens.object_distance_mm && *lens.object_distance_mm >= farthest)
     throw InputError("object_distance_mm: in a .seq file a distance from 1e10 on is infinite");
   std::string private_glasses, surfaces;
+  const std::string object_glass =
+      std::visit(SeqGlassText{lens.surfaces.size(), private_glasses}, lens.object_material.kind());
   AxisBreaks axis = axis_breaks_of(lens);
   std::vector<std::string> breaks(lens.surfaces.size() + 1);
   for (AxisBreak& each : axis.breaks) {
@@ -317,7 +332,7 @@ std::string seq_text(const Lens& given) {
       fmt::format("RDM N\nLEN\nTITLE {}\nDIM M\n{}\n", title_text(lens.name), aperture_text(lens));
   text += seq_wavelengths_text(lens) + fields_text(lens.fields);
   if (!private_glasses.empty()) text += fmt::format("PRV\n{}END\n", private_glasses);
-  text += fmt::format("SO 0.0 {}\n", number_text(lens.object_distance_mm.value_or(infinity)));
+  text += fmt::format("SO 0.0 {}{}\n", number_text(lens.object_distance_mm.value_or(infinity)), object_glass);
   return text + surfaces + "SI 0.0 0.0\n" + breaks.back() + seq_zoom_text(lens) + "GO\n";
 }
 

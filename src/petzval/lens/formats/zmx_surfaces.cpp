@@ -42,7 +42,10 @@ constexpr SurfaceType surface_types[] = {{"STANDARD", 0, false},
                                          {"BICONICX", 0, false, "biconic"},
                                          {"TOROIDAL", 0, false, "toroid"},
                                          {"XPOLYNOM", 0, true, "xy_polynomial"},
-                                         {"SZERNSAG", 0, true, "zernike_sag"}};
+                                         {"SZERNSAG", 0, true, "zernike_sag"},
+                                         {"TILTSURF", 0, false, "xy_polynomial"},
+                                         {"DGRATING", 0, false},
+                                         {"PARAXIAL", 0, false}};
 /// A surface that only turns and moves the axes of what follows.
 constexpr const char* coordinate_break = "COORDBRK";
 constexpr int most_parameters = 8, most_extra_data = 300;
@@ -134,6 +137,28 @@ void read_toroid(const ZmxContext& context, const ZmxBlock& block, Surface& surf
     coefficients.push_back(parameters[i + 1] * std::pow(context.mm_per_unit, 1 - 2 * i));
   while (!coefficients.empty() && coefficients.back() == 0) coefficients.pop_back();
   if (!coefficients.empty()) shape["coefficients_mm"] = coefficients;
+}
+
+/// A plane z = x PARM 1 + y PARM 2.
+void read_tilted(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
+  auto parameters = surface_parameters(context.file, block);
+  surface.shape->parameters["normalisation_radius_mm"] = {1};
+  surface.shape->parameters["coefficients_mm"] = {parameters[1], parameters[2]};
+}
+
+/// PARM 1: lines per µm; 2: the order, which counts towards +y.
+void read_grating(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
+  constexpr double um_per_mm = 1e3;
+  auto parameters = surface_parameters(context.file, block);
+  surface.grating = Grating{parameters[1] * um_per_mm, parameters[2], 0};
+}
+
+/// PARM 1: the focal length; 2: how paths through it are found, which gives the same paths for the object.
+void read_ideal_lens(const ZmxContext& context, const ZmxBlock& block, Surface& surface) {
+  auto parameters = surface_parameters(context.file, block);
+  if (parameters[1] == 0)
+    context.file.fail(block, block.line, "a PARAXIAL surface without a focal length (PARM 1)");
+  surface.ideal_lens = IdealLens{parameters[1] * context.mm_per_unit};
 }
 
 /// XDAT 1: how many terms; 2: the radius; from 3 on the terms, a length each.
@@ -311,9 +336,15 @@ Surface read_surface(const ZmxContext& context, const ZmxBlock& block) {
       read_biconic(context, block, surface);
     else if (kind == "toroid")
       read_toroid(context, block, surface);
+    else if (!type.extended)
+      read_tilted(context, block, surface);
     else
       read_freeform(context, block, surface);
-  } else if (type.extended)
+  } else if (type.name == std::string("DGRATING"))
+    read_grating(context, block, surface);
+  else if (type.name == std::string("PARAXIAL"))
+    read_ideal_lens(context, block, surface);
+  else if (type.extended)
     read_extended_polynomial(context, block, type.power_step, surface);
   else if (type.power_step)
     read_polynomial(context, block, type.power_step, surface);
@@ -362,8 +393,7 @@ void check_end(const ZmxContext& context, const ZmxBlock& block, const char* wha
                       fmt::format("a curved {} surface is not modelled; it must be flat", what));
   const ZmxRecord* glass = block.find("GLAS");
   if (!glass) return;
-  if (&block == &context.file.surfaces.front())
-    context.file.fail(block, glass->line, fmt::format("glass behind the {} surface is not modelled", what));
+  if (&block == &context.file.surfaces.front()) return;
   context.notes.push_back(fmt::format("{}:{}: SURF {}: the glass behind the image surface does not count",
                                       context.file.name, glass->line, block.number));
 }
@@ -373,6 +403,8 @@ void check_end(const ZmxContext& context, const ZmxBlock& block, const char* wha
 void put_zmx_surfaces(const ZmxContext& context, Lens& lens) {
   const auto& blocks = context.file.surfaces;
   check_end(context, blocks.front(), "object");
+  if (const ZmxRecord* glass = blocks.front().find("GLAS"))
+    lens.object_material = read_glass(context, blocks.front(), *glass);
   check_end(context, blocks.back(), "image");
   std::vector<AxisBreak> breaks;
   for (std::size_t i = 1; i + 1 < blocks.size(); ++i) {

@@ -139,10 +139,25 @@ std::string zmx_added_shape_text(const Surface& surface) {
   return text;
 }
 
+/// Lines along x, which half a turn leaves where they are.
+std::string grating_text(const Surface& surface) {
+  constexpr double um_per_mm = 1e3, half_turn_deg = 180;
+  const double turn = surface.grating->rotation_deg;
+  if (turn != 0 && std::abs(turn) != half_turn_deg)
+    throw InputError("grating.rotation_deg: a .zmx file holds lines along x; turn the surface (tilt_z_deg)");
+  return fmt::format("  TYPE DGRATING\n  PARM 1 {}\n  PARM 2 {}\n",
+                     number_text(surface.grating->lines_per_mm / um_per_mm),
+                     number_text(turn == 0 ? surface.grating->order : -surface.grating->order));
+}
+
 /// Even powers up to 16 make an EVENASPH, higher ones an XASPHERE, any powers up to 8 an ODDASPHE, higher
 /// ones an XOSPHERE.
 std::string shape_text(const Surface& surface) {
   if (surface.shape) return zmx_added_shape_text(surface);
+  if (surface.grating) return grating_text(surface);
+  if (surface.ideal_lens)
+    return fmt::format("  TYPE PARAXIAL\n  PARM 1 {}\n  PARM 2 1\n",
+                       number_text(surface.ideal_lens->focal_length_mm));
   if (surface.asphere.empty()) return "  TYPE STANDARD\n";
   constexpr int parameters = 8;
   const bool even = std::all_of(surface.asphere.begin(), surface.asphere.end(),
@@ -347,6 +362,7 @@ std::vector<Lens> all_states(const Lens& lens) {
 
 /// The lens with the glasses of all its states.
 Lens with_all_glasses(Lens lens) {
+  if (!lens.object_material.is_air()) lens.surfaces.push_back({.material = lens.object_material});
   for (const Lens& state : all_states(lens))
     lens.surfaces.insert(lens.surfaces.end(), state.surfaces.begin(), state.surfaces.end());
   return lens;
@@ -382,6 +398,7 @@ std::string zmx_text(const Lens& lens) {
   text += fields_text(lens) + zmx_wavelengths_text(lens);
   text += fmt::format("SURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ {}\n",
                       lens.object_distance_mm ? number_text(*lens.object_distance_mm) : "INFINITY");
+  text += std::visit(ZmxGlassText{0}, lens.object_material.kind());
   const AxisBreaks axis = axis_breaks_of(lens);
   auto next = axis.breaks.begin();
   int number = 1;
