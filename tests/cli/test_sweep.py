@@ -70,7 +70,7 @@ class Sweep(ProgramTest):
         # One of three: 1 - (1 - p)^3 = 0.025, and the same from above.
         self.assertAlmostEqual(low, 1 - 0.975 ** (1 / 3), places=6)
         self.assertAlmostEqual(high ** 3 + 3 * high ** 2 * (1 - high), 0.975, places=6)
-        text = self.assert_succeeds(*board, "--accept", "corners.symmetry>=0.9")
+        text = self.assert_succeeds("sweep", "lens", "info", "cooke-triplet", "--vary", "f-number=5,8,11", "-o", "info", "--accept", "f_number<=6")
         self.assertIn("yield: 1 of 3, 33.3 % (95 % interval", text)
         self.assert_refused(*board, "--accept", "symmetry>=0.9", words=("corners.symmetry",))
         self.assert_refused(*board, "--accept", "corners.symmetry=0.9", words=("COLUMN>=VALUE",))

@@ -44,7 +44,8 @@ struct PupilDetail {
   PupilDetail with_more_rays() const {
     const PupilDetail usual;
     PupilDetail more = *this;
-    more.outline_azimuths = std::max(outline_azimuths, std::min(2 * outline_azimuths, usual.outline_azimuths));
+    more.outline_azimuths =
+        std::max(outline_azimuths, std::min(2 * outline_azimuths, usual.outline_azimuths));
     more.sample_radii = std::max(sample_radii, std::min(2 * sample_radii, usual.sample_radii));
     return more;
   }

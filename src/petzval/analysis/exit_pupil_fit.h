@@ -17,8 +17,8 @@ namespace petzval {
 class ExitPupilFit {
  public:
   /// \param sensor_shift_mm  how far the sensor stands behind the lens's own image surface; the wave is then
-  /// about the chief ray's new point. \returns nothing when no polynomial of degree 40 or less is as near as PupilDetail asks;
-  /// then ExitPupil::wave is there.
+  /// about the chief ray's new point. \returns nothing when no polynomial of degree 40 or less is as near as
+  /// PupilDetail asks; then ExitPupil::wave is there.
   static std::optional<ExitPupilFit> of(const ExitPupil& pupil, const PupilModel& model,
                                         double sensor_shift_mm = 0);
   /// One a sensor; their rays are the same and traced once.

@@ -44,9 +44,6 @@ bool is_open(const SceneRequest& scene) {
   return !scene.options.panorama && is_open_scene(scene.name);
 }
 
-/// From where PSFs spread into a frame, at most.
-constexpr double pixels_beyond = 8;
-
 /// Whether somebody says how wide it is.
 bool has_width(const SceneRequest& scene) {
   return scene.options.horizontal_angle_deg || scene.options.width_m;
@@ -95,7 +92,8 @@ double fields_image_height_mm(const Lens& lens) {
   return height_mm;
 }
 
-/// Where a chart is imaged if nobody says: on 640 × 480 pixels whose corner is the end of the lens's fields.
+/// Where a chart is imaged if nobody says: on 640 × 480 pixels whose corner lies near the end of the lens's
+/// fields.
 std::optional<Sensor> frame_of_fields(const SceneRequest& request, const Camera& camera) {
   if (camera.sensor || !is_open(request) || has_width(request) || !is_builtin_scene(request.name) ||
       is_deep_chart(request.name))
@@ -103,9 +101,11 @@ std::optional<Sensor> frame_of_fields(const SceneRequest& request, const Camera&
   constexpr int columns = 640, rows = 480;
   const double height_mm = fields_image_height_mm(camera.lens);
   if (!(height_mm > 0)) return {};
-  // What PSFs bring into the corner from beyond it lies within the fields, too.
-  const double pixels = std::hypot(columns, rows) / 2 + pixels_beyond;
-  return read_sensor(fmt::format("{}x{}@{:.4g}", columns, rows, height_mm * um_per_mm / pixels));
+  // Beyond its fields a lens may pass but a sliver of light, spread over millimetres: what PSFs bring into
+  // the corner comes from within them.
+  constexpr double share = 0.95;
+  return read_sensor(fmt::format("{}x{}@{:.4g}", columns, rows,
+                                 2 * share * height_mm * um_per_mm / std::hypot(columns, rows)));
 }
 
 Optics with_frame(const SceneRequest& request, Optics optics) {
@@ -186,6 +186,7 @@ double pixel_um(const Scene& scene, const Lens& lens, const std::optional<Sensor
 /// How far from the axis light will be wanted: to the sensor's corner, or to that of the scene's image, and a
 /// little beyond, from where PSFs spread into the corner.
 double image_height_mm(const Scene& scene, double pitch_um, const std::optional<Sensor>& sensor) {
+  constexpr double pixels_beyond = 8;
   const double half_diagonal_mm = sensor
                                       ? sensor->geometry.half_diagonal_mm()
                                       : pitch_um * mm_per_um * std::hypot(scene.columns(), scene.rows()) / 2;
@@ -194,6 +195,7 @@ double image_height_mm(const Scene& scene, double pitch_um, const std::optional<
 
 /// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
 std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
+  constexpr double pixels_beyond = 8;
   const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
   return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
 }
