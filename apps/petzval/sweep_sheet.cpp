@@ -63,9 +63,12 @@ void draw(Canvas& canvas, const PngImage& picture, int left, int top) {
     }
 }
 
-void write_label(Canvas& canvas, const std::string& text, int left, int top) {
-  const double height =
-      std::min<double>(label_height, label_height * thumbnail / text_width(text, label_height));
+/// The height at which a text fits below a thumbnail.
+double fitting_height(const std::string& text) {
+  return std::min<double>(label_height, label_height * thumbnail / text_width(text, label_height));
+}
+
+void write_label(Canvas& canvas, const std::string& text, int left, int top, double height) {
   Shape letters;
   add_text(letters, text, left, top, height);
   std::vector<double> coverage(static_cast<std::size_t>(canvas.image.columns));
@@ -87,7 +90,7 @@ void draw_failure(Canvas& canvas, int left, int top, int rows) {
     for (int column = left; column < left + thumbnail; ++column)
       for (int c = 0; c < 3; ++c) canvas.at(column, row)[c] = shade;
   const int inset = std::min(gap, rows - label_height);
-  write_label(canvas, "failed", left + gap, top + std::max(0, inset));
+  write_label(canvas, "failed", left + gap, top + std::max(0, inset), label_height);
 }
 
 /// How many thumbnails stand in a row, so that the sheet is about as wide as tall.
@@ -137,7 +140,9 @@ void brighten(PngImage& picture, double factor) {
 double write_contact_sheet(const std::string& path, const std::vector<SheetEntry>& entries, int unit) {
   std::vector<PngImage> pictures(entries.size());
   int tallest = label_height;
+  double height = label_height;  // of all labels
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    height = std::min(height, fitting_height(entries[i].label));
     if (entries[i].picture.empty()) continue;
     pictures[i] = read_png(entries[i].picture);
     tallest = std::max(tallest, static_cast<int>(std::lround(pictures[i].rows * fitting_scale(pictures[i]))));
@@ -157,7 +162,7 @@ double write_contact_sheet(const std::string& path, const std::vector<SheetEntry
       draw_failure(canvas, left, top, tallest);
     else
       draw(canvas, pictures[i], left, top);
-    write_label(canvas, entries[i].label, left, top + tallest + 6);
+    write_label(canvas, entries[i].label, left, top + tallest + 6, height);
   }
   write_png(path, canvas.image);
   return factor;
