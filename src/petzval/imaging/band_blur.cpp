@@ -65,13 +65,13 @@ void BandBlur::make_kernels() {
   if (options_.method != BlurMethod::product || sections_ || product_) return;
   const auto start = std::chrono::steady_clock::now();
   product_.emplace(*psfs_, grid_, *plan_, std::move(memory_));
-  if (plan_->exact.empty()) psfs_.reset();  // no more is wanted of them
+  if (!plan_->wants_psfs()) psfs_.reset();
   report_.kernel_seconds += seconds_since(start);
 }
 
 double BandBlur::bytes() const {
   constexpr double psf_bytes = 64e6;
-  const bool keeps_psfs = options_.method != BlurMethod::none && !(product_ && plan_->exact.empty());
+  const bool keeps_psfs = options_.method != BlurMethod::none && !(product_ && !plan_->wants_psfs());
   return (product_ ? plan_->kernel_bytes : 0) + (keeps_psfs ? psf_bytes : 0);
 }
 

@@ -20,9 +20,9 @@ constexpr int most_nodes = 6;
 /// What the mean over places may miss of the whole grid's: the estimate must stay below the tolerance by this
 /// factor. A band may come somewhat closer before the plan of its neighbour is given up.
 constexpr double caution = 0.4, caution_of_hint = 0.5;
-/// Kernels of a band should not take more memory than this; and must not take more than that, where nothing
-/// smaller serves: blended sections need no memory for theirs, but a transform for each section.
-constexpr double most_kernel_bytes = 400e6, most_kernel_bytes_at_need = 1600e6;
+/// Kernels of a band should not take more memory than this: then the transfer functions of some rows of tiles
+/// are held at a time. Those of one row must not take more than that.
+constexpr double most_kernel_bytes = 400e6, most_row_bytes = 1600e6;
 
 /// Measured on one core of an AVX-512 machine with bench/imaging [ns].
 constexpr double kernel_fixed_ns = 1700;  // of a kernel, whatever its size
@@ -40,13 +40,18 @@ double kernel_ns(const PsfField& psfs) {
   return kernel_fixed_ns + deposit_ns * (psfs.coefficients() + size * size);
 }
 
-double kernel_bytes(const PsfField& psfs, const SourceGrid& grid, const ProductPlan& plan) {
-  if (plan.direct) {
-    const double taps = 2.0 * psfs.radius() + 1;
-    return kernel_count(psfs, grid, plan) * taps * taps * sizeof(float);
-  }
-  const double side = plan.transform;
-  return kernel_count(psfs, grid, plan) * (side * side + 2 * side) * sizeof(float);
+/// Says what the transfer functions of a plan take, and how many rows of tiles are held at a time for that.
+/// \return  bytes of all of them.
+double hold_otfs(const PsfField& psfs, const SourceGrid& grid, ProductPlan& plan) {
+  const double side = plan.transform, bytes = (side * side + 2 * side) * sizeof(float);
+  const double all = plan.kernel_bytes = kernel_count(psfs, grid, plan) * bytes;
+  if (all <= most_kernel_bytes) return all;
+  const int phases = plan.nodes - 1;
+  const double row =
+      bytes * (phases * std::ceil(OutwardAxis(grid.cells.columns).count() / double(plan.tile)) + 1);
+  plan.rows_held = std::max(1, static_cast<int>((most_kernel_bytes / row - 1) / phases));
+  plan.kernel_bytes = row * (phases * plan.rows_held + 1);
+  return all;
 }
 
 /// Gathered sums that might do, and what they would cost.
@@ -64,7 +69,7 @@ ProductPlan direct_candidate(const PsfField& psfs, const SourceGrid& grid, int t
       extent * (nodes * taps * taps * product_ns + add_ns) + double(nodes) * nodes * taps * taps * mix_ns;
   plan.filter_ns = 2 * across * grid.cells.rows * per_row_and_tile;
   plan.kernels_ns = kernel_count(psfs, grid, plan) * kernel_ns(psfs);
-  plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
+  plan.kernel_bytes = kernel_count(psfs, grid, plan) * taps * taps * sizeof(float);
   return plan;
 }
 
@@ -82,10 +87,10 @@ ProductPlan candidate(const PsfField& psfs, const SourceGrid& grid, int transfor
   const double lanes = double(lane_count()), columns = transform / lanes;
   const double lines = nodes * std::ceil(tile / lanes) + (nodes * nodes + 1) * columns +
                        std::ceil((tile + 2 * psfs.radius()) / lanes);
-  plan.kernel_bytes = kernel_bytes(psfs, grid, plan);
+  const double bytes = hold_otfs(psfs, grid, plan);
   // Two quadrants at a time, where they share kernels.
   const int pairs = psfs.symmetry() == KernelSymmetry::none ? 4 : 2;
-  plan.filter_ns = pairs * across * down * lines * transform * line_ns + plan.kernel_bytes * fetch_ns;
+  plan.filter_ns = pairs * across * down * lines * transform * line_ns + bytes * fetch_ns;
   const double kernel_lines = (std::ceil((2 * psfs.radius() + 1) / lanes) + columns) / 2;
   plan.kernels_ns = kernel_count(psfs, grid, plan) *
                     (kernel_ns(psfs) + kernel_lines * transform * std::log2(transform) * kernel_line_ns);
@@ -106,9 +111,9 @@ void each_layout(int room, const ProductOptions& options, const Use& use) {
         use(tile, nodes);
 }
 
-/// Layouts whose kernels take memory within (more_than, most], the cheapest first.
+/// Layouts that hold all kernels, or those that hold some rows at a time, the cheapest first.
 std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid,
-                                    const ProductOptions& options, double more_than, double most) {
+                                    const ProductOptions& options, bool by_rows) {
   constexpr int most_direct_radius = 16;  // far beyond where transforms have won
   std::vector<ProductPlan> plans;
   const int widest = std::max(OutwardAxis(grid.cells.columns).count(), OutwardAxis(grid.cells.rows).count());
@@ -121,7 +126,8 @@ std::vector<ProductPlan> candidates(const PsfField& psfs, const SourceGrid& grid
         plans.push_back(candidate(psfs, grid, transform, tile, nodes));
       });
   std::erase_if(plans, [&](const ProductPlan& plan) {
-    return !(plan.kernel_bytes > more_than && plan.kernel_bytes <= most);
+    return (plan.rows_held != 0) != by_rows ||
+           plan.kernel_bytes > (by_rows ? most_row_bytes : most_kernel_bytes);
   });
   std::sort(plans.begin(), plans.end(), [](const ProductPlan& a, const ProductPlan& b) {
     return a.filter_ns + a.kernels_ns < b.filter_ns + b.kernels_ns;
@@ -214,8 +220,8 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
   };
   std::vector<ProductPlan> failed;
   std::optional<ProductPlan> best;
-  const auto choose = [&](double more_than, double most) {
-    for (ProductPlan& plan : candidates(psfs, grid, options, more_than, most)) {
+  const auto choose = [&](bool by_rows) {
+    for (ProductPlan& plan : candidates(psfs, grid, options, by_rows)) {
       if (best && plan.total_ns() >= best->total_ns()) break;
       // A coarser layout than one that failed fails too.
       const bool hopeless = std::any_of(failed.begin(), failed.end(), [&](const ProductPlan& other) {
@@ -228,10 +234,9 @@ std::optional<ProductPlan> plan_product(const PsfField& psfs, const SourceGrid& 
         best = plan;
     }
   };
-  choose(0, most_kernel_bytes);
-  // Many kernels of cells at the rim cost more than memory does.
-  if (!best || best->exact_ns > best->filter_ns + best->kernels_ns)
-    choose(most_kernel_bytes, most_kernel_bytes_at_need);
+  choose(false);
+  // Many kernels of cells at the rim cost more than those of more nodes do.
+  if (!best || best->exact_ns > best->filter_ns + best->kernels_ns) choose(true);
   return best;
 }
 

@@ -28,8 +28,11 @@ struct ProductPlan {
   double filter_ns = 0, kernels_ns = 0;
   double exact_ns = 0;  ///< of the cells with kernels of their own
 
-  double kernel_bytes = 0;  ///< that the kernels or their transfer functions take
+  double kernel_bytes = 0;  ///< that the kernels or their transfer functions take at a time
+  int rows_held = 0;        ///< rows of tiles whose transfer functions are held at a time; 0: all
 
+  /// The PSFs are still wanted when the blur is made.
+  bool wants_psfs() const { return !exact.empty() || rows_held != 0; }
   double total_ns() const { return filter_ns + kernels_ns + exact_ns; }
 };
 

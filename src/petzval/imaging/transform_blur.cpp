@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
 #include <petzval/base/parallel.h>
-#include <petzval/imaging/node_kernel.h>
 #include <petzval/imaging/transform_blur.h>
 
 #include <algorithm>
@@ -128,6 +127,7 @@ class TransformBlur::Light : public TileLight {
 TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, const ProductPlan& plan,
                              KernelSets memory)
     : plan_(plan),
+      psfs_(&psfs),
       grid_(grid),
       across_(grid.columns),
       down_(grid.rows),
@@ -140,8 +140,11 @@ TransformBlur::TransformBlur(const PsfField& psfs, const SensorGeometry& grid, c
   const std::vector<float> weights = cell_weights(nodes_, plan.tile);
   weights_.assign(weights.begin(), weights.end());
   sets_.resize(kernel_set_count(psfs.symmetry()));
-  for (std::size_t set = 0; set < sets_.size(); ++set)
-    make_kernels(psfs, quadrants_of_set(set, sets_.size()).front(), sets_[set]);
+  if (plan_.rows_held != 0) return;
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    sets_[set].resize(nodes_across() * nodes_down() * transform_.otf_floats());
+    make_otfs(node_kernels(psfs, set), 0, nodes_down(), sets_[set].data());
+  }
 }
 
 std::vector<TransformBlur::QuadrantPair> TransformBlur::pairs_of(std::size_t set, std::size_t set_count) {
@@ -154,17 +157,26 @@ std::vector<TransformBlur::QuadrantPair> TransformBlur::pairs_of(std::size_t set
   return pairs;
 }
 
-void TransformBlur::make_kernels(const PsfField& psfs, const Quadrant& quadrant, KernelSet& set) const {
+NodeKernels TransformBlur::node_kernels(const PsfField& psfs, std::size_t set) const {
   std::vector<double> places;
   for (std::size_t node = 0; node < std::max(nodes_across(), nodes_down()); ++node)
     places.push_back(plan_.tile * (double(node / phases()) + nodes_[node % phases()]));
-  const NodeKernels kernels(psfs, across_, down_, places, nodes_across(), nodes_down(), quadrant);
+  return {psfs,
+          across_,
+          down_,
+          places,
+          nodes_across(),
+          nodes_down(),
+          quadrants_of_set(set, sets_.size()).front()};
+}
 
+void TransformBlur::make_otfs(const NodeKernels& kernels, std::size_t first_row, std::size_t end_row,
+                              float* out) const {
   const int size = 2 * radius_ + 1;
   const auto weights = static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
   const double scale = 1 / (double(plan_.transform) * plan_.transform);  // transforms are not normalised
-  const std::size_t count = nodes_across() * nodes_down(), floats = transform_.otf_floats();
-  set.resize(count * floats);
+  const std::size_t first = first_row * nodes_across(), count = (end_row - first_row) * nodes_across(),
+                    floats = transform_.otf_floats();
   // Two kernels share a transform; a task has several of those, and one workspace.
   constexpr std::size_t kernels_a_task = 8;
   parallel_for((count + kernels_a_task - 1) / kernels_a_task, [&](std::size_t task) {
@@ -173,38 +185,39 @@ void TransformBlur::make_kernels(const PsfField& psfs, const Quadrant& quadrant,
     for (std::size_t node = task * kernels_a_task; node < end; node += 2) {
       const bool both = node + 1 < end;
       for (std::size_t i = 0; i < (both ? 2U : 1U); ++i)
-        kernels.lay((node + i) % nodes_across(), (node + i) / nodes_across(), scale,
+        kernels.lay((first + node + i) % nodes_across(), (first + node + i) / nodes_across(), scale,
                     pair.data() + i * weights);
-      float* otf = set.data() + node * floats;
+      float* otf = out + node * floats;
       transform_kernels(transform_, {pair.data(), both ? pair.data() + weights : nullptr}, size,
                         {otf, both ? otf + floats : nullptr}, workspace);
     }
   });
 }
 
-TileMixture TransformBlur::mixture_of(std::size_t set, int tile) const {
+TileMixture TransformBlur::mixture_of(const Strip& strip, std::size_t set, int tile) const {
   TileMixture mixture{plan_.tile, plan_.tile + 2 * radius_, plan_.nodes, weights_.data(), {}};
-  const auto row = static_cast<std::size_t>(tile / tiles_across_),
+  const auto row = static_cast<std::size_t>(tile / tiles_across_ - strip.first_row),
              column = static_cast<std::size_t>(tile % tiles_across_);
   for (std::size_t b = 0; b <= phases(); ++b)
     for (std::size_t a = 0; a <= phases(); ++a)
-      mixture.otfs.push_back(sets_[set].data() +
+      mixture.otfs.push_back((*strip.sets)[set].data() +
                              ((phases() * row + b) * nodes_across() + phases() * column + a) *
                                  transform_.otf_floats());
   return mixture;
 }
 
-std::vector<TransformBlur::TileRun> TransformBlur::runs() const {
+std::vector<TransformBlur::TileRun> TransformBlur::runs(std::size_t first_set, std::size_t end_set,
+                                                        const Strip& strip) const {
   // Small tiles go together, so that there is more to do than to wait for. The two halves of all runs take
   // turns: threads work apart from each other, each along tiles that share kernels.
   constexpr int elements_a_run = 1 << 16;
-  const int tiles = tiles_across_ * tiles_down_;
+  const int begin = strip.first_row * tiles_across_, end = strip.end_row * tiles_across_;
   const int length = std::max(1, elements_a_run / (plan_.transform * plan_.transform));
   std::vector<TileRun> in_rows;
-  for (std::size_t set = 0; set < sets_.size(); ++set)
-    for (int first = 0; first < tiles; first += length)
+  for (std::size_t set = first_set; set < end_set; ++set)
+    for (int first = begin; first < end; first += length)
       for (const QuadrantPair& pair : pairs_of(set, sets_.size()))
-        in_rows.push_back({set, pair, first, std::min(tiles, first + length)});
+        in_rows.push_back({set, pair, first, std::min(end, first + length)});
   std::vector<TileRun> result;
   const std::size_t half = (in_rows.size() + 1) / 2;
   for (std::size_t i = 0; i < half; ++i) {
@@ -242,10 +255,41 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
   if (source.grid.columns != grid_.columns || source.grid.rows != grid_.rows)
     throw InputError("the plane to be blurred has another grid than the blur was made for");
   CellPlane result(grown(grid_, -margin));
+  if (plan_.rows_held != 0) {
+    blur_strip_by_strip(source, margin, result);
+  } else {
+    const Strip whole{0, tiles_down_, &sets_};
+    blur_runs(runs(0, sets_.size(), whole), whole, source, margin, result);
+  }
+  return result;
+}
+
+void TransformBlur::blur_strip_by_strip(const CellPlane& source, int margin, CellPlane& result) const {
+  const std::size_t row_floats = nodes_across() * transform_.otf_floats();
+  KernelSets held(sets_.size());
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    const NodeKernels kernels = node_kernels(*psfs_, set);
+    KernelSet& otfs = held[set];
+    for (int first = 0; first < tiles_down_; first += plan_.rows_held) {
+      const Strip strip{first, std::min(tiles_down_, first + plan_.rows_held), &held};
+      const std::size_t rows = phases() * static_cast<std::size_t>(strip.end_row - first) + 1;
+      // The last row of nodes is the first of the next strip.
+      if (first > 0) std::copy_n(otfs.data() + otfs.size() - row_floats, row_floats, otfs.data());
+      otfs.resize(rows * row_floats);
+      const std::size_t made = first == 0 ? 0 : 1, first_node = phases() * static_cast<std::size_t>(first);
+      make_otfs(kernels, first_node + made, first_node + rows, otfs.data() + made * row_floats);
+      blur_runs(runs(set, set + 1, strip), strip, source, margin, result);
+    }
+    otfs = {};
+  }
+}
+
+void TransformBlur::blur_runs(const std::vector<TileRun>& all, const Strip& strip, const CellPlane& source,
+                              int margin, CellPlane& result) const {
   // Runs are blurred by whoever is free, but added to the result one after the other, so that sums are the
   // same for any number of threads.
-  const std::vector<TileRun> all = runs();
-  const std::size_t floats = blurred_floats(transform_, mixture_of(0, 0));
+  const std::size_t floats =
+      blurred_floats(transform_, mixture_of(strip, all.front().set, all.front().first));
   constexpr std::size_t waiting_a_thread = 4;
   const auto threads = std::min(all.size(), static_cast<std::size_t>(thread_count()));
   InOrder sums(waiting_a_thread * threads, [&](std::size_t ticket, const AlignedVector<float>& blurred) {
@@ -263,7 +307,7 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
       blurred.resize(floats * static_cast<std::size_t>(run.end - run.first));
       for (int tile = run.first; tile < run.end; ++tile)
         if (const Light light(*this, source, run.pair, tile); !light.is_dark())
-          blur_tile(transform_, mixture_of(run.set, tile), light, workspace,
+          blur_tile(transform_, mixture_of(strip, run.set, tile), light, workspace,
                     blurred.data() + floats * static_cast<std::size_t>(tile - run.first));
       blurred = sums.hand_in(ticket, std::move(blurred));
     }
@@ -276,7 +320,6 @@ CellPlane TransformBlur::blur(const CellPlane& source, int margin) const {
       throw;
     }
   });
-  return result;
 }
 
 }  // namespace petzval
