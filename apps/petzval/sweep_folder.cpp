@@ -8,6 +8,7 @@
 #include <petzval/base/whole_file.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace petzval::app {
@@ -18,6 +19,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr std::string_view maker = "petzval sweep";
+constexpr const char* aside_name = ".sweep-before";
 
 /// Whether a sweep writes files of such names: what a damaged sweep.json lists besides is left alone.
 bool is_name_of_sweep(const std::string& name) {
@@ -27,8 +29,8 @@ bool is_name_of_sweep(const std::string& name) {
   if (!name.starts_with(prefix)) return false;
   const std::size_t dot = name.find_first_not_of(figures, prefix.size());
   if (dot == name.npos || dot == prefix.size()) return false;
-  const std::string_view extension = std::string_view(name).substr(dot);
-  return extension == ".png" || extension == ".json" || extension == ".exr" || extension == ".npy";
+  constexpr std::array<std::string_view, 6> extensions{".png", ".json", ".exr", ".npy", ".dng", ".tif"};
+  return std::ranges::find(extensions, std::string_view(name).substr(dot)) != extensions.end();
 }
 
 /// The files that a sweep.json lists; nothing if no sweep wrote it.
@@ -85,6 +87,7 @@ SweepFolder::SweepFolder(std::string path, std::set<std::string> planned)
                                  fmt::join(strange, ", "), more ? " and more" : ""));
   made_ = topmost_missing(fs::path(path_).lexically_normal());
   make_folder(path_);
+  if (!old_.empty()) set_old_aside();
   write_unfinished();
 }
 
@@ -98,11 +101,44 @@ SweepFolder::~SweepFolder() {
       write_whole_file(path_ + "/sweep.json", before_);
   } catch (const Error&) {  // a full disk: the files are listed still
   }
+  bring_old_back();
   if (made_.empty()) return;
   for (fs::path at = fs::path(path_).lexically_normal(); !at.empty(); at = at.parent_path()) {
     if (at.has_filename() && !fs::remove(at, ignored)) return;
     if (at == made_) return;
   }
+}
+
+void SweepFolder::set_old_aside() const {
+  const fs::path folder(path_), aside = folder / aside_name;
+  std::error_code error;
+  fs::remove_all(aside, error);  // of a sweep that was killed
+  fs::create_directory(aside, error);
+  for (const std::string& name : old_) {
+    if (!planned_.contains(name) || !fs::exists(folder / name, error)) continue;
+    // Files are replaced, never written into, so a link keeps what was there.
+    fs::create_hard_link(folder / name, aside / name, error);
+    if (error) fs::copy_file(folder / name, aside / name, error);
+    if (error)
+      throw Failure(fmt::format("{}: the sweep before cannot be set aside: {}", path_, error.message()));
+  }
+}
+
+void SweepFolder::bring_old_back() const {
+  const fs::path folder(path_), aside = folder / aside_name;
+  std::error_code ignored;
+  for (const std::string& name : old_)
+    if (name != "sweep.json" && fs::exists(aside / name, ignored))
+      fs::rename(aside / name, folder / name, ignored);
+  fs::remove_all(aside, ignored);
+}
+
+void SweepFolder::keep() {
+  if (!kept_ && !old_.empty()) {
+    std::error_code ignored;
+    fs::remove_all(fs::path(path_) / aside_name, ignored);
+  }
+  kept_ = true;
 }
 
 void SweepFolder::remember_scene(Json scene) {

@@ -17,7 +17,7 @@ class SweepFolder {
   /// Makes the folder where there is none. \param planned  names of the files that may be written. \throws
   /// InputError if one of them is there and no sweep's, saying what would be right.
   SweepFolder(std::string path, std::set<std::string> planned);
-  /// Unless something was kept, an older sweep.json comes back, and a folder that was made goes.
+  /// Unless something was kept, the files of an older sweep come back, and a folder that was made goes.
   ~SweepFolder();
   SweepFolder(const SweepFolder&) = delete;
   SweepFolder& operator=(const SweepFolder&) = delete;
@@ -28,12 +28,14 @@ class SweepFolder {
   const nlohmann::ordered_json& scene() const { return scene_; }
   void remember_scene(nlohmann::ordered_json scene);
   /// There is a point to keep.
-  void keep() { kept_ = true; }
+  void keep();
   /// Writes sweep.json with the rows, and removes files of this sweep and of the one before it that are not
   /// among `written`.
   void finish(const nlohmann::ordered_json& rows, const std::set<std::string>& written);
 
  private:
+  void set_old_aside() const;
+  void bring_old_back() const;
   void write_unfinished() const;
   void write(const nlohmann::ordered_json& rows, const std::set<std::string>& files, bool finished) const;
 

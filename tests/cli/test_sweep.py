@@ -72,6 +72,13 @@ class Sweep(ProgramTest):
         self.assertAlmostEqual(high ** 3 + 3 * high ** 2 * (1 - high), 0.975, places=6)
         text = self.assert_succeeds("sweep", "lens", "info", "cooke-triplet", "--vary", "f-number=5,8,11", "-o", "info", "--accept", "f_number<=6")
         self.assertIn("yield: 1 of 3, 33.3 % (95 % interval", text)
+        # What is refused after the first point leaves the sweep before as it was.
+        before = {path.name: path.read_bytes() for path in (self.folder / "info").iterdir()}
+        again = ("sweep", "lens", "info", "cooke-triplet", "--vary", "f-number=11,8", "-o", "info")
+        self.assert_refused(*again, "--accept", "number>=6", words=("f_number",))
+        self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "info").iterdir()}, before)
+        self.assert_succeeds(*again, "--accept", "f_number>=6")
+        self.assertEqual({path.name for path in (self.folder / "info").iterdir()}, set(before) - {"point-0002.json"})
         other = ("sweep", "lens", "info", "cooke-triplet", "--vary", "f-number=5,8", "-o", "other")
         self.assert_refused(*other, "--accept", "number>=6", words=("f_number",))
         self.assert_refused(*other, "--accept", "f_number=6", words=("COLUMN>=VALUE",))
@@ -400,7 +407,8 @@ class SweepFolders(ProgramTest):
             alone = (self.folder / "alone.dng").read_bytes()
             self.assertEqual((self.folder / "out" / f"point-000{index}.dng").read_bytes(), alone, scene)
         # With --vary: each of the one with each of the other.
-        said = self.json_of(*self.SHOT, "--points", "points.csv", "--vary", "f-number=8,11", "-o", "more")
+        said = self.json_of(*self.SHOT, "--points", "points.csv", "--vary", "f-number=8,11", "-o", "out")
+        self.assertFalse([*(self.folder / "out").glob("*.dng")], "those of the sweep before go with it")
         self.assertEqual([(row["label"], row["f-number"]) for row in said["rows"]],
                          [("bright one", 8), ("bright one", 11), ("dark, other", 8), ("dark, other", 11)])
 
