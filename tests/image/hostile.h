@@ -38,10 +38,10 @@ inline void refuses_truncations(const Scratch& scratch, const std::string& bytes
 }
 
 /// Any flipped bit may pass (in a pixel) or be refused, but must do no harm. Bits are spread over the whole
-/// file, every one of the first `thorough` bytes.
+/// file, every one of the first `thorough` bytes. \param flips  so many of them at most.
 inline void survives_flips(const Scratch& scratch, const std::string& bytes, std::size_t thorough,
-                           const Read& read) {
-  const std::size_t step = std::max<std::size_t>(1, 8 * bytes.size() / 1500) | 1;
+                           const Read& read, std::size_t flips = 1500) {
+  const std::size_t step = std::max<std::size_t>(1, 8 * bytes.size() / flips) | 1;
   for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += bit < 8 * thorough ? 1 : step) {
     std::string damaged = bytes;
     damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
