@@ -38,7 +38,7 @@ inline void refuses_truncations(const Scratch& scratch, const std::string& bytes
 }
 
 /// Any flipped bit may pass (in a pixel) or be refused, but must do no harm. Bits are spread over the whole
-/// file, every one of the first `thorough` bytes. \param flips  so many of them at most.
+/// file, every one of the first `thorough` bytes. \param flips  about so many of them.
 inline void survives_flips(const Scratch& scratch, const std::string& bytes, std::size_t thorough,
                            const Read& read, std::size_t flips = 1500) {
   const std::size_t step = std::max<std::size_t>(1, 8 * bytes.size() / flips) | 1;
