@@ -47,7 +47,8 @@ void import(ImportCommand command, const Shared& shared) {
   require_extension(command.output, table_extensions(), "a lens data table");
   static const std::map<std::string, TableSource> sources{
       {"auto", TableSource::automatic}, {"iset", TableSource::iset},         {"zemax", TableSource::zemax},
-      {"codev", TableSource::codev},    {"measured", TableSource::measured}, {"hdf5", TableSource::hdf5}};
+      {"codev", TableSource::codev},    {"measured", TableSource::measured}, {"map", TableSource::map},
+      {"hdf5", TableSource::hdf5}};
   command.how.source = sources.at(command.from);
   command.how.lie = lie_of(command);
   if (command.relative_illumination == "source")
@@ -98,10 +99,11 @@ void add_optics_import(CLI::App& optics, Shared& shared) {
       ->add_option(
           "--from", options->from,
           "iset: a MAT file with ISET's rayTrace structure; zemax, codev: ISETPARMS.TXT and the files "
-          "beside it; measured: a CSV file of PSFs or MTFs; hdf5: Petzval's own layout without its checksum "
+          "beside it; measured: a CSV file of PSFs or MTFs; map: an .npz file of PSFs over the frame; hdf5: "
+          "Petzval's own layout without its checksum "
           "(HDF5 may not survive a "
           "damaged file). auto goes by the name")
-      ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "measured", "hdf5"}))
+      ->check(CLI::IsMember({"auto", "iset", "zemax", "codev", "measured", "map", "hdf5"}))
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "The table, an HDF5 file with checksum")
       ->check(output_file())

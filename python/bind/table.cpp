@@ -71,6 +71,7 @@ LensDataTable imported(const std::string& path, const std::string& source,
                                     {"zemax", TableSource::zemax},
                                     {"codev", TableSource::codev},
                                     {"measured", TableSource::measured},
+                                    {"map", TableSource::map},
                                     {"hdf5", TableSource::hdf5}});
   if (psf_away)
     how.lie.away = choice<PsfAway>(
@@ -99,7 +100,8 @@ LensDataTable imported(const std::string& path, const std::string& source,
 constexpr const char* imported_text =
     "Reads a table of another program, as `petzval optics import` does (docs/TABLES.md). `source`: auto (by "
     "the name), iset (a MAT file), zemax or codev (a folder of text files), measured (a CSV file of PSFs or "
-    "MTFs), hdf5 (the layout of a .h5 without its checksum). What the file does not say: `psf_away`, the "
+    "MTFs), map (an .npz file of PSFs over the frame), hdf5 (the layout of a .h5 without its checksum). What "
+    "the file does not say: `psf_away`, the "
     "direction in its PSFs that is away from the axis (up, down, left, right), `psf_centre`, the sample of "
     "the chief ray (row, column, from 1), `g_axis_sr`, `vertex_to_sensor_mm`; `relative_illumination` is of "
     "a wall (sensor) or of an object point (source). Of measurements: `curves`, a CSV file of distortion "

@@ -65,7 +65,9 @@ def matches(expected, printed):
 
 def run(example, folder, program):
     """Why the example fails, or None."""
-    environment = dict(os.environ, PATH=f"{pathlib.Path(program).resolve().parent}:{os.environ['PATH']}")
+    # The program, and the Python that has the packages of the tests.
+    folders = [str(pathlib.Path(program).resolve().parent), str(pathlib.Path(sys.executable).parent), os.environ["PATH"]]
+    environment = dict(os.environ, PATH=":".join(folders))
     done = subprocess.run(["bash", "-c", example.command], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
     # On a busy machine work takes longer, and tells of it every ten seconds.

@@ -6,6 +6,7 @@
 #include <petzval/base/file_extension.h>
 #include <petzval/base/units.h>
 #include <petzval/base/whole_file.h>
+#include <petzval/optics/formats/psf_map.h>
 #include <petzval/optics/formats/zemax_table.h>
 #include <petzval/optics/table_file.h>
 
@@ -22,6 +23,7 @@ TableSource source_of(const std::string& path) {
   if (extension == ".mat") return TableSource::iset;
   if (extension == ".txt") return TableSource::zemax;
   if (extension == ".csv") return TableSource::measured;
+  if (extension == ".npz") return TableSource::map;
   return TableSource::hdf5;
 }
 
@@ -56,8 +58,10 @@ void check_import(const std::string& path, const TableImport& how, TableSource s
   };
   refuse(source != TableSource::measured && (!how.curves.empty() || how.measured.clip_negative),
          "`curves` and `clip_negative`", "measurements (.csv)");
-  refuse((source == TableSource::measured || source == TableSource::hdf5) && (how.lie.away || how.lie.centre),
-         "`psf_away` and `psf_centre`", "PSFs of ISET, Zemax and CODE V");
+  const bool says_lie =
+      source == TableSource::measured || source == TableSource::map || source == TableSource::hdf5;
+  refuse(says_lie && (how.lie.away || how.lie.centre), "`psf_away` and `psf_centre`",
+         "PSFs of ISET, Zemax and CODE V");
   refuse(source == TableSource::hdf5 && how.reading.says_something(),
          "`g_axis_sr`, `relative_illumination` and `vertex_to_sensor_mm`",
          "files that do not say it themselves");
@@ -73,6 +77,7 @@ ImportedTable import_table(const std::string& path, const TableImport& how) {
   const TableSource source = how.source == TableSource::automatic ? source_of(path) : how.source;
   check_import(path, how, source);
   if (source == TableSource::hdf5) return {read_table(path, TableOrigin::elsewhere), {}};
+  if (source == TableSource::map) return read_psf_map(path, how.reading);
   if (source == TableSource::iset) return converted(read_iset_mat_table(path, how.lie), path, how);
   if (source == TableSource::measured) return converted(read_measurement(path, how), path, how);
   const ListingProgram program = source == TableSource::codev ? ListingProgram::codev : ListingProgram::zemax;

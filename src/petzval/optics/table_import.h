@@ -11,11 +11,12 @@
 namespace petzval {
 
 enum class TableSource {
-  automatic,  ///< by the name: .mat iset, .txt or a folder zemax, .csv measured, else hdf5
+  automatic,  ///< by the name: .mat iset, .txt or a folder zemax, .csv measured, .npz map, else hdf5
   iset,       ///< a MAT file with ISET's rayTrace structure
   zemax,      ///< ISETPARMS.TXT, or its folder
   codev,      ///< likewise, by CODE V's conventions
   measured,   ///< CSV of PSFs or MTFs
+  map,        ///< NumPy arrays of PSFs over the frame (read_psf_map())
   hdf5        ///< Petzval's own layout without its checksum; a damaged file may crash the program
 };
 
