@@ -94,13 +94,15 @@ std::vector<double> summed(const Scene& scene, double sample_um, double scale) {
 
 struct Case {
   double sample_um, scale, tolerance;
+  bool stars = false;
 };
 
 class PictureError : public ::testing::TestWithParam<Case> {};
 
-// A checkerboard of random squares, tilted by its samples' own steps, finer than pixels and coarser.
+// A checkerboard of random squares, tilted by its samples' own steps, finer than pixels and coarser; and
+// stars, samples apart from each other in darkness.
 TEST_P(PictureError, IsWithinTheTolerance) {
-  const auto [sample_um, scale, tolerance] = GetParam();
+  const auto [sample_um, scale, tolerance, stars] = GetParam();
   const int samples = static_cast<int>(std::ceil((pixels + 40) * pitch_um / sample_um));
   Scene scene(samples, samples, {550},
               degrees(2 * std::atan(samples * sample_um * mm_per_um / 2 / coma_focal_mm)), std::nullopt);
@@ -111,7 +113,9 @@ TEST_P(PictureError, IsWithinTheTolerance) {
       const double x = (column + 0.1 * row) * sample_um / 25, y = (row - 0.1 * column) * sample_um / 25;
       const bool white = (static_cast<int>(std::floor(x)) + static_cast<int>(std::floor(y))) % 2 == 0;
       scene.band(0)[static_cast<std::size_t>(row * samples + column)] =
-          white ? 1.0F : 0.05F + 0.1F * bright(random);
+          stars   ? float(row % 9 == 4 && column % 7 == 3)
+          : white ? 1.0F
+                  : 0.05F + 0.1F * bright(random);
     }
   ImagingOptions options;
   options.product.tolerance = tolerance;
@@ -133,7 +137,8 @@ TEST_P(PictureError, IsWithinTheTolerance) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PictureError,
                          ::testing::Values(Case{2, 1.5, 1e-2}, Case{2, 1.5, 1e-3}, Case{3.3, 1.5, 1e-3},
-                                           Case{9, 1.5, 1e-3}, Case{2, 3, 1e-3}, Case{2, 0.8, 1e-3}),
+                                           Case{9, 1.5, 1e-3}, Case{2, 3, 1e-3}, Case{2, 0.8, 1e-3},
+                                           Case{9, 2, 1e-3, true}, Case{9, 2, 1e-2, true}),
                          [](const auto& info) { return "number" + std::to_string(info.index); });
 
 }  // namespace

@@ -41,7 +41,7 @@ std::optional<Tracer> designed_tracer(const Lens& lens, const Tracer& built) {
 }
 
 /// The chief ray of a lens with poses hits the stop's centre to this share of its radius.
-constexpr double aim_tolerance = 1e-11;
+constexpr double chief_aim_tolerance = 1e-11;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ std::optional<ChiefRay> FieldTracer::chief_ray(double object_field) {
 std::optional<ChiefRay> FieldTracer::aimed_chief(const Tracer& tracer, ChiefRay chief) const {
   const Pencil pencil = Pencil::from_object(lens_, chief.object_field);
   const double scale = pupil_scale(*designed_, pencil, {0, chief.v});
-  const auto aimed = aim_at_stop(tracer, pencil, {0, 0}, {0, chief.v}, scale, aim_tolerance);
+  const auto aimed = aim_at_stop(tracer, pencil, {0, 0}, {0, chief.v}, scale, chief_aim_tolerance);
   if (!aimed) return {};
   chief.u = (*aimed)[0], chief.v = (*aimed)[1];
   chief.at_image = tracer.trace(*pencil.ray(chief.u, chief.v), Tracer::Clip::none);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/band_blur.h>
+#include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/exact_blur.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 namespace petzval {
@@ -45,12 +48,33 @@ void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int marg
   if (options_.method == BlurMethod::product) choose_product(hint);
 }
 
+/// A plan's error is estimated for noise as strong as its mean, of which any scene has so much less fine
+/// detail that the caution of the plan covers the rest. Lights in darkness do not: the factor by which errors
+/// are larger for noise of the scene's contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels.
+double BandBlur::harder_than_noise() const {
+  constexpr double covered = 2.5;
+  if (!(contrast_ > covered) || options_.is_preview()) return 1;
+  const double contrast = contrast_ / covered, corner_mm = half_diagonal_mm(grown(grid_, -margin_));
+  double squares = 0;
+  constexpr std::array<double, 3> heights{0, 0.5, 0.9};  // of the frame
+  for (const double height : heights)
+    for (const double weight : psfs_->kernel_at(0, height * corner_mm).weights)
+      squares += weight * weight / double(heights.size());
+  return std::sqrt((1 + squares) / (1 / (contrast * contrast) + squares));
+}
+
 void BandBlur::choose_product(const std::optional<ProductPlan>& hint) {
   const auto start = std::chrono::steady_clock::now();
   const SourceGrid source(grid_, margin_);
-  plan_ = plan_product(*psfs_, source, options_.product, hint);
-  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, source, options_.product);
-  keep_coarser(plan, report_.product);
+  constexpr double least_tolerance = 1e-6;
+  const double harder = harder_than_noise();
+  ProductOptions options = options_.product;
+  options.tolerance = std::max(least_tolerance, options.tolerance / harder);
+  plan_ = plan_product(*psfs_, source, options, hint);
+  const ProductPlan plan = plan_ ? *plan_ : plan_blended(*psfs_, source, options);
+  ProductPlan for_scene = plan;
+  for_scene.estimated_error *= harder;
+  keep_coarser(for_scene, report_.product);
   if (!plan_) return use_sections({plan.tile, 0, true});
   report_.transform_size = std::max(report_.transform_size, plan.transform);
   report_.kernel_seconds += seconds_since(start);

@@ -12,7 +12,7 @@ namespace petzval {
 
 /// Blurs planes of light, band by band; any number of planes of a band share its kernels.
 ///
-///     BandBlur blur(table, centres, options, report);
+///     BandBlur blur(table, centres, options, report, contrast);
 ///     blur.choose(550, source.grid, margin, {});
 ///     blur.make_kernels();
 ///     CellPlane image = blur(std::move(source));
@@ -21,9 +21,10 @@ namespace petzval {
 /// it.
 class BandBlur {
  public:
+  /// \param contrast  CellChoice::contrast of the scene.
   BandBlur(const LensDataTable& table, const LightCentres& centres, const ImagingOptions& options,
-           ImagingReport& report)
-      : table_(table), options_(options), centres_(centres), report_(report) {}
+           ImagingReport& report, double contrast)
+      : table_(table), options_(options), centres_(centres), report_(report), contrast_(contrast) {}
 
   /// Decides how a wavelength is blurred, on planes of a grid. \param margin  by which their images are
   /// smaller on every side. \param hint  the plan() of a neighbouring band.
@@ -40,11 +41,13 @@ class BandBlur {
  private:
   void choose_product(const std::optional<ProductPlan>& hint);
   void use_sections(const SectionOptions& options);
+  double harder_than_noise() const;
 
   const LensDataTable& table_;
   const ImagingOptions& options_;
   const LightCentres& centres_;
   ImagingReport& report_;
+  double contrast_;
   SensorGeometry grid_;
   int margin_ = 0;
   std::optional<PsfField> psfs_;

@@ -119,6 +119,16 @@ double samples_per_pixel(const Scene& scene, const LensDataTable& table, double 
   return map.samples_per_mm_at(pitch_mm, 0) * pitch_mm;
 }
 
+/// Of noise that has no other detail than that between neighbouring samples, over its mean: in cells of which
+/// so many make a sample.
+double contrast_of(const DetailSpectrum& detail, double cells_per_sample) {
+  // Of the variance of white noise, three quarters lie within squares of two samples a side.
+  constexpr double of_white = 0.75;
+  const std::size_t finest = detail.drawn ? steps_below_samples : 0;
+  if (detail.variances.size() <= finest || !(detail.mean > 0)) return 0;
+  return cells_per_sample * std::sqrt(detail.variances[finest] / of_white) / detail.mean;
+}
+
 }  // namespace
 
 DetailSpectrum detail_of(const Scene& scene, int band) {
@@ -198,7 +208,7 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
 CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                         const ImagingOptions& options) {
   const int asked = options.supersample;
-  if (options.method == BlurMethod::none) return {options.cells_per_pixel(), {}};
+  if (options.method == BlurMethod::none) return {options.cells_per_pixel(), {}, 0};
   const int middle = scene.bands() / 2;
   const double wavelength_nm = scene.wavelengths_nm()[static_cast<std::size_t>(middle)];
   const FrameMtf mtf(table, wavelength_nm, sensor);
@@ -206,7 +216,8 @@ CellChoice choose_cells(const Scene& scene, const LensDataTable& table, const Se
   const double samples = samples_per_pixel(scene, table, wavelength_nm, sensor, options.fit);
   const LightPath path{SourceFilter(2), true};
   const auto with = [&](int cells) {
-    return CellChoice{cells, sampling_error(detail, samples, options.photosite, cells, path, mtf)};
+    return CellChoice{cells, sampling_error(detail, samples, options.photosite, cells, path, mtf),
+                      contrast_of(detail, cells / samples)};
   };
   if (asked != 0) return with(asked);
   // One cell holds little more than what the tolerance of a preview asks for.

@@ -40,6 +40,9 @@ SamplingError sampling_error(const DetailSpectrum& detail, double samples_per_pi
 struct CellChoice {
   int cells = 1;
   SamplingError sampling = {};
+  /// Standard deviation of the light of cells over its mean, were all detail of the scene as strong as its
+  /// finest: large for lights in darkness.
+  double contrast = 0;
 };
 
 /// The cells that the options name; else the fewest whose sampling_error(), in the scene's middle band and

@@ -110,7 +110,7 @@ class DepthImaging {
     const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
     const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
     const LightCentres centres(table);
-    BandBlur blur(table, centres, options_, says());
+    BandBlur blur(table, centres, options_, says(), 0);  // of a layer most is dark
     for (int band = 0; band < scene_.bands(); ++band) {
       const BandPlan& plan = plans[static_cast<std::size_t>(band)];
       says().margin_cells = std::max(says().margin_cells, plan.margin);

@@ -79,8 +79,7 @@ std::vector<AimedLight> on_cells(std::span<const AimedLight> lights, int cells_p
 struct ImageSeries::Impl {
   /// Where bands are formed.
   struct Place {
-    Place(const LensDataTable& table, const LightCentres& centres, const ImagingOptions& options)
-        : blur(table, centres, options, says) {}
+    Place(const Impl& of) : blur(of.table, of.centres, of.options, says, of.contrast) {}
     ImagingReport says;
     BandBlur blur;
     bool chosen = false;
@@ -98,6 +97,7 @@ struct ImageSeries::Impl {
         centres(checked()) {
     const CellChoice choice = choose_cells(scene, table, sensor, options);
     options.supersample = choice.cells;
+    contrast = choice.contrast;
     of_all.sampling_error = choice.sampling.error;
     of_all.finer_detail_error = choice.sampling.finer;
     frame = options.cells_of(sensor);
@@ -126,9 +126,9 @@ struct ImageSeries::Impl {
     note_dark_corners(plans, sensor, report.notes);
     const auto start = std::chrono::steady_clock::now();
     if (places.empty()) {
-      choose(0, places.emplace_back(table, centres, options));
+      choose(0, places.emplace_back(*this));
       const std::size_t wanted = may_keep && fits(plans.size()) ? plans.size() : places_at_once();
-      while (places.size() < wanted) places.emplace_back(table, centres, options);
+      while (places.size() < wanted) places.emplace_back(*this);
     }
     BandProgress progress(scene.bands(), callback);
     double seconds = 0;  // of all bands
@@ -265,6 +265,7 @@ struct ImageSeries::Impl {
   ImagingOptions options;
   const bool may_keep;
   const LightCentres centres;
+  double contrast = 0;   ///< CellChoice::contrast
   SensorGeometry frame;  ///< of cells
   std::vector<BandPlan> plans;
   LightPath path;

@@ -14,7 +14,7 @@ namespace petzval {
 
 namespace {
 
-constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_asked = std::numeric_limits<double>::quiet_NaN();
 
 /// From the middle of an image outwards, across the field.
 std::vector<double> distances_from_image(double farthest_mm, int count) {
@@ -108,7 +108,7 @@ AnalysisResult glare_analysis(const Lens& plain, const AnalysisRequest& request,
       const double white = field.veil.white_sr + field.veil.ghosts_sr;
       table.rows.push_back({rows[i].field, wavelength_nm, rows[i].real_image_height_mm,
                             100 * field.veil.scattered_share, 100 * field.veil.scatter_sr / white,
-                            request.glare.ghosts ? 100 * field.veil.ghosts_sr / white : gap,
+                            request.glare.ghosts ? 100 * field.veil.ghosts_sr / white : not_asked,
                             100 * field.veil.index()});
       std::vector<double> values;
       for (std::size_t k = 0; k < distances.size(); ++k) {

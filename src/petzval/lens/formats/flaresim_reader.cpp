@@ -13,7 +13,7 @@ namespace petzval {
 
 namespace {
 
-constexpr std::size_t most_surfaces = 1000;
+constexpr std::size_t most_listed = 1000;
 constexpr const char* row_form = "radius, thickness, index, Abbe number, semi-aperture, coating";
 
 /// What a .lens file holds, before it is a lens.
@@ -67,8 +67,8 @@ FlareTable read_table(const std::string& text, const std::string& file) {
       surfaces = all.starts_with("surfaces:");
       continue;
     }
-    if (table.made.lens.surfaces.size() >= most_surfaces)
-      fail(file, line, fmt::format("is surface {}; a lens has {} at most", most_surfaces + 1, most_surfaces));
+    if (table.made.lens.surfaces.size() >= most_listed)
+      fail(file, line, fmt::format("is surface {}; a lens has {} at most", most_listed + 1, most_listed));
     table.made.lens.surfaces.push_back(surface_of(line, file, table));
   }
   return table;

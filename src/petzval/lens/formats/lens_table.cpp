@@ -22,7 +22,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-constexpr int most_surfaces = 1000;
+constexpr int most_rows = 1000;
 
 std::string trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\"");
@@ -246,8 +246,8 @@ class TableReader {
     if (cells.size() > columns_.size())
       fail(fmt::format("has {} columns; {} are wanted, or a line of headings that names them", cells.size(),
                        columns_.size()));
-    if (lens_.surfaces.size() >= most_surfaces)
-      fail(fmt::format("is surface {}; a lens has {} at most", most_surfaces + 1, most_surfaces));
+    if (lens_.surfaces.size() >= most_rows)
+      fail(fmt::format("is surface {}; a lens has {} at most", most_rows + 1, most_rows));
     if (!lens_.surfaces.empty() && !gap_known_)
       fail("follows a surface without a thickness; only the last one, before the sensor, can do without");
     Surface surface;

@@ -154,11 +154,11 @@ std::vector<EdgeSample> thinned_about(std::span<const EdgeSample> samples, const
 }
 
 /// A start of the fit, and the values' fifth and ninety-fifth percentile.
-struct Levels {
+struct SideLevels {
   double dark = 0, bright = 0;
 };
 
-Levels levels_of(const std::vector<EdgeSample>& samples) {
+SideLevels levels_of(const std::vector<EdgeSample>& samples) {
   std::vector<double> values;
   values.reserve(samples.size());
   for (const EdgeSample& s : samples) values.push_back(s.value);
@@ -241,7 +241,7 @@ double EdgeLine::angle_deg() const {
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
   const Overview o = overview_of(samples);
   const std::vector<EdgeSample> few = thinned(samples, 20000);
-  const Levels levels = levels_of(few);
+  const SideLevels levels = levels_of(few);
   const LogisticFit fit(few, o);
   Vector5 best = Vector5::Zero();
   double best_cost = HUGE_VAL;
@@ -259,7 +259,7 @@ EdgeGuess guess_edge(std::span<const EdgeSample> samples, double spacing) {
 EdgeGuess guess_edge(std::span<const EdgeSample> samples, const EdgeLine& start) {
   const Overview o = overview_of(samples);
   const std::vector<EdgeSample> few = thinned_about(samples, start);
-  const Levels levels = levels_of(few);
+  const SideLevels levels = levels_of(few);
   const LogisticFit fit(few, o);
   Vector5 at;
   at << -start.distance(o.x, o.y), start.normal_rad, 0, levels.dark, levels.bright;
