@@ -29,7 +29,7 @@ function(petzval_unity target)
   if(NOT PETZVAL_UNITY_BUILD)
     return()
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     # gcc takes every included file for a header, in which a class must not be made of types of this file alone.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
