@@ -179,7 +179,10 @@ Eigen::Matrix2d first_order_of(const Matrix& rows, const Matrix& wanted) {
   first << found(0, 0), found(rows.cols() / 2, 0), found(0, 1), found(rows.cols() / 2, 1);
   const double determinant = first.determinant();
   if (!(determinant > 0))
-    throw InputError("its rays are not those of a lens: near the axis, they turn space over");
+    throw InputError(
+        "the rays do not tell the first order of a lens; more heights on the film and places in the pupil "
+        "would "
+        "be right");
   return first / std::sqrt(determinant);
 }
 
