@@ -280,7 +280,7 @@ def box(phone, folder, page):
 
     def render(name, *options):
         phone.run("render", page.folder / f"{name}.pbrt", "--absolute-spectra", "--wavelengths", "450:50:650", "--size", "200x150",
-                  "--spp", 64, "-o", page.folder / f"{name}.npy", "-o", page.folder / f"{name}.png", *options)
+                  "--spp", 32, "-o", page.folder / f"{name}.npy", "-o", page.folder / f"{name}.png", *options)
         return npy(page.folder / f"{name}.npy")
 
     def write(name, text):
@@ -294,7 +294,7 @@ def box(phone, folder, page):
     for name, x in (("left", -0.1), ("middle", 0.0), ("right", 0.1)):
         write(name, box_scene(folder, x))
         column = 100 + round(x / 0.4 * 4.35 / (7.056 / 250))
-        seen[name] = mean_of(render(name, *camera), 80, 90, column - 5, column + 5)
+        seen[name] = mean_of(render(name, *camera), 94, 102, column - 5, column + 5)
         page.picture(f"{name}.png", f"The white square, {name}.")
     for name in ("left", "right"):
         ratio = [a / b for a, b in zip(seen[name], seen["middle"])]
@@ -303,16 +303,16 @@ def box(phone, folder, page):
         name: [(nm[k], seen[name][k] / seen["middle"][k] * seen["middle"][2] / seen[name][2]) for k in range(5)]
         for name in ("left", "right")}, "Left is the red wall, right the green one.")
     # A lens of glass of the same field, and what is fitted to it.
-    phone.run("lens", "transfer", "m12-4.5mm", "--bands", "450,550,650", "--tolerance", "1e-3", "-o", page.folder / "fit.json")
+    phone.run("lens", "transfer", "m12-4mm", "--bands", "450,550,650", "--tolerance", "1e-3", "-o", page.folder / "fit.json")
     for name in ("glass", "fit"):
         write(name, box_scene(folder))
     pictures = [render(name, "--lens", lens, "--focus", "0.5m")
-                for name, lens in (("glass", "m12-4.5mm"), ("fit", page.folder / "fit.json"))]
+                for name, lens in (("glass", "m12-4mm"), ("fit", page.folder / "fit.json"))]
     light = [mean_of(picture, 0, 150, 0, 200) for picture in pictures]
     off = [b / a - 1 for a, b in zip(*light)]
-    print("the box through m12-4.5mm and through a ray transfer fitted to it: light differs by "
+    print("the box through m12-4mm and through a ray transfer fitted to it: light differs by "
           + " ".join(f"{value:+.1e}" for value in off))
-    page.picture("fit.png", "The box through a ray transfer fitted to m12-4.5mm.")
+    page.picture("fit.png", "The box through a ray transfer fitted to m12-4mm.")
 
 
 class Page:
