@@ -198,10 +198,7 @@ TransferData<double> data_at(const RayTransfer& transfer, double nm) {
   data.length_mm = transfer.length_mm;
   const std::vector<Powers> all = closed(transfer.terms);
   const std::size_t outputs = outputs_of(transfer);
-  const std::size_t room = outputs == 4    ? 4
-                           : outputs <= 8  ? 8
-                           : outputs <= 12 ? 12
-                                           : 4 + 2 * most_transfer_apertures;
+  const std::size_t room = outputs == 4 ? 4 : outputs <= 8 ? 8 : 4 + 2 * most_transfer_apertures;
   data.back = made_of(transfer.variables, transfer.unit_mm, room, all);
   for (std::size_t t = 0; t < transfer.terms.size(); ++t) {
     const auto k =

@@ -174,8 +174,6 @@ HWY_INLINE CarriedRay<V> carry_back(const TransferData<T>& data, const PlaneRay<
       return carry_with<0>(data, ray);
     case 8:
       return carry_with<2>(data, ray);
-    case 12:  // with four accumulators to spare in the registers of AVX2
-      return carry_with<4>(data, ray);
     default:
       return carry_with<7>(data, ray);
   }
