@@ -176,11 +176,15 @@ def geometric_mtf(phone, folder, page):
     axis = phone.mtf([0], fine, *best[2])
     lsp = zemax_by_height(folder / "GeometricLSP.txt", 5, 0, (1,))
     at = sorted(x for height, x in lsp if height == 0)
-    spread = [1 + 2 * sum(axis[0, f][0] * math.cos(2 * math.pi * f * x / 1000) for f in fine) for x in at]
     theirs = [lsp[0, x][0] for x in at]
-    line = [(x, s / sum(spread)) for x, s in zip(at, spread)]
-    page.plot("Line spread on the axis", "place [um]", {
-        "ours": line, "design program": [(x, t / sum(theirs)) for x, t in zip(at, theirs)]}, "Shares of 0.1 um.")
+    contrast = {f: sum(t * math.cos(2 * math.pi * f * x / 1000) for x, t in zip(at, theirs)) / sum(theirs) for f in fine}
+
+    def spread(of):
+        # A window of cosine shape, the same for both: nothing beyond 400 per mm, and no ringing.
+        return [(x, 0.0025 * (1 + 2 * sum(of(f) * math.cos(math.pi * f / 800) ** 2 * math.cos(2 * math.pi * f * x / 1000)
+                                          for f in fine))) for x in at]
+    page.plot("Line spread on the axis, to 400 cycles/mm", "place [um]", {
+        "ours": spread(lambda f: axis[0, f][0]), "design program": spread(contrast.get)}, "Per um.")
     page.plot("Geometric MTF, tangential", "cycles/mm", {
         f"{'ours' if who is ours else 'design'}, {height:g} mm": [(f, who[height, f][0]) for f in frequencies]
         for height in (heights[0], heights[2], heights[4]) for who in (ours, design)},
