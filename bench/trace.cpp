@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/point_spread.h>
+#include <petzval/analysis/transfer_fit.h>
 #include <petzval/base/parallel.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/trace/exit_pupil_region.h>
@@ -11,7 +12,9 @@
 
 #include <hwy/highway.h>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "trace/plain_trace.h"
 
@@ -91,6 +94,40 @@ void batch_float(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
 }
 BENCHMARK(batch_float)->EACH_TARGET;
+
+/// Rays from the film to the scene, through glass or through a ray transfer fitted to it, single precision,
+/// all apertures.
+void from_film(benchmark::State& state, const char* name, double film_mm, bool as_transfer) {
+  Lens lens = read_lens(name).lens;
+  if (as_transfer) {
+    const TransferFit fit =
+        fit_transfer(lens, {.wavelengths_nm = {550}, .tolerance_mm = 1e-3, .film_radius_mm = film_mm});
+    lens = fit.lens;
+    state.SetLabel(std::to_string(fit.terms) + " terms");
+  }
+  const Tracer tracer(lens, 550);
+  const RadianceTracer radiance(tracer, RadianceTracer::Direction::backward, Tracer::Clip::apertures);
+  RadianceRays beam(side * side);
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k) {
+      const auto at = static_cast<std::size_t>(side * i + k);
+      const auto slope = static_cast<float>(0.1 * (2.0 * k / side - 1));
+      beam.x_mm[at] = static_cast<float>(0.7 * film_mm * (2.0 * i / side - 1));
+      beam.z_mm[at] = static_cast<float>(tracer.image_z_mm());
+      beam.m[at] = slope, beam.n[at] = -std::sqrt(1 - slope * slope);
+    }
+  RadianceRays rays = beam;
+  for (auto _ : state) {
+    rays = beam;
+    radiance.trace(rays);
+    benchmark::DoNotOptimize(rays.x_mm.data());
+  }
+  state.SetItemsProcessed(state.iterations() * side * side);
+}
+BENCHMARK_CAPTURE(from_film, dgauss_glass, "dgauss-50mm", 9, false);
+BENCHMARK_CAPTURE(from_film, dgauss_transfer, "dgauss-50mm", 9, true);
+BENCHMARK_CAPTURE(from_film, four_aspheres_glass, "m12-4.5mm", 2, false);
+BENCHMARK_CAPTURE(from_film, four_aspheres_transfer, "m12-4.5mm", 2, true);
 
 void batch_double(benchmark::State& state) {
   const TargetsGivenBack at_the_end;

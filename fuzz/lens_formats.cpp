@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lens_formats.h"
 
+#include <petzval/analysis/transfer_fit.h>
+#include <petzval/base/error.h>
 #include <petzval/base/text_lines.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/formats/flaresim.h>
@@ -137,6 +139,20 @@ bool try_flaresim(std::string_view bytes) {
 }
 bool try_iset_transfer(std::string_view bytes) {
   return try_lens(bytes, read_iset_transfer_text, iset_transfer_text);
+}
+bool try_ray_table(std::string_view bytes) {
+  try {
+    const RayTable table = ray_table_of(bytes, "rays.csv");
+    const std::string text = ray_table_text(table);
+    require(ray_table_text(ray_table_of(text, "rays.csv")) == text,
+            "a written table of rays that reads otherwise");
+    fit_transfer(table, {.tolerance_mm = 1, .degree = 1}).lens.validate();
+    return true;
+  } catch (const InputError& error) {
+    require(std::string_view(error.what()).find('\n') == std::string_view::npos,
+            "a refusal of more than one line");
+    return false;
+  }
 }
 bool try_iset(std::string_view bytes) {
   return try_lens(bytes, read_iset_text, iset_text);

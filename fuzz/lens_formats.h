@@ -18,4 +18,7 @@ bool try_flaresim(std::string_view bytes);
 bool try_iset(std::string_view bytes);
 bool try_iset_transfer(std::string_view bytes);
 
+/// Refused in one line, or written and read the same, and fitted or refused.
+bool try_ray_table(std::string_view bytes);
+
 }  // namespace petzval::fuzz

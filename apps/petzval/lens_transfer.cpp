@@ -2,8 +2,12 @@
 // petzval lens transfer.
 #include <fmt/format.h>
 #include <petzval/analysis/transfer_fit.h>
+#include <petzval/base/error.h>
+#include <petzval/base/file_extension.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/lens/lens_file.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "lens_commands.h"
@@ -25,7 +29,7 @@ void print_fit(const TransferFit& fit) {
              2 * fit.degree + 1);
   fmt::print("  {} rays held out        median {:.3g} mm, {:.3g} rad; worst {:.3g} mm, {:.3g} rad\n", of.rays,
              of.median_mm, of.median_rad, of.worst_mm, of.worst_rad);
-  fmt::print("  light on the film        within {:.3g}\n", of.worst_light);
+  if (of.worst_light) fmt::print("  light on the film        within {:.3g}\n", *of.worst_light);
   fmt::print("  paraxial determinant     1 within {:.3g}\n", fit.determinant_error);
 }
 
@@ -35,25 +39,47 @@ void print_json(const TransferFit& fit) {
       "{{\"terms\": {}, \"degree\": {}, \"rays\": {}, \"median_mm\": {}, \"worst_mm\": {}, \"median_rad\": "
       "{}, "
       "\"worst_rad\": {}, \"worst_light\": {}, \"determinant_error\": {}}}\n",
-      fit.terms, fit.degree, of.rays, of.median_mm, of.worst_mm, of.median_rad, of.worst_rad, of.worst_light,
-      fit.determinant_error);
+      fit.terms, fit.degree, of.rays, of.median_mm, of.worst_mm, of.median_rad, of.worst_rad,
+      of.worst_light ? fmt::format("{}", *of.worst_light) : "null", fit.determinant_error);
+}
+
+bool is_table(const std::string& path) {
+  return extension_of(path) == ".csv";
+}
+
+TransferFit fitted(const TransferCommand& options, Shared& shared) {
+  const std::string& from = options.lens.path_or_name;
+  if (!is_table(from)) {
+    const Lens lens = options.lens.read(shared);
+    TransferFit fit = fit_transfer(lens, options.request);
+    for (const std::string& output : options.outputs)
+      if (is_table(output)) write_whole_file(output, ray_table_text(ray_table(lens, options.request)));
+    return fit;
+  }
+  if (!options.lens.settings.empty())
+    throw InputError("--set alters lenses, and " + from + " is a table of rays");
+  if (std::any_of(options.outputs.begin(), options.outputs.end(), is_table))
+    throw InputError("rays are those of a lens, and " + from + " is a table of them");
+  return fit_transfer(read_ray_table(from), options.request);
 }
 
 }  // namespace
 
 void add_lens_transfer(CLI::App& lens, Shared& shared) {
   auto options = std::make_shared<TransferCommand>();
-  CLI::App* command = add_command(
-      lens, shared, "transfer", "Fit what a lens does to rays, and write that in place of its surfaces",
-      "petzval lens transfer dgauss-50mm -o box.json", true, [options, &shared] {
-        const TransferFit fit = fit_transfer(options->lens.read(shared), options->request);
-        for (const std::string& output : options->outputs)
-          for (const std::string& line : write_lens(fit.lens, output)) note(shared, line);
-        if (shared.json)
-          print_json(fit);
-        else if (!shared.quiet)
-          print_fit(fit);
-      });
+  CLI::App* command = add_command(lens, shared, "transfer",
+                                  "Fit what a lens does to rays, and write that in place of its surfaces",
+                                  "petzval lens transfer dgauss-50mm -o box.json", true, [options, &shared] {
+                                    const TransferFit fit = fitted(*options, shared);
+                                    for (const std::string& output : options->outputs)
+                                      if (!is_table(output))
+                                        for (const std::string& line : write_lens(fit.lens, output))
+                                          note(shared, line);
+                                    if (shared.json)
+                                      print_json(fit);
+                                    else if (!shared.quiet)
+                                      print_fit(fit);
+                                  });
   options->lens.add_to(*command);
   command
       ->add_option("--bands", options->request.wavelengths_nm,
@@ -72,8 +98,9 @@ void add_lens_transfer(CLI::App& lens, Shared& shared) {
   command->add_option("--film-radius", options->request.film_radius_mm,
                       "Light that lands within it counts [mm]; default: to the largest field");
   command
-      ->add_option("-o,--output", options->outputs,
-                   "Lens file to write: .json (native) or .raytransfer.json (ISET); repeatable")
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Lens file to write: .json (native) or .raytransfer.json (ISET); .csv: the rays; repeatable")
       ->check(output_file())
       ->required();
 }

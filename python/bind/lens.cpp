@@ -304,6 +304,20 @@ void bind_lens(nb::module_& module) {
           "held out may be off by in front, and in direction by this over the focal length. Raises "
           "InputError "
           "where no degree up to 7 meets it.")
+      .def_static(
+          "from_rays",
+          [](const std::string& path, double tolerance_mm, std::optional<int> degree,
+             std::optional<double> film_radius_mm) {
+            TransferFitRequest request;
+            request.tolerance_mm = tolerance_mm;
+            request.degree = degree;
+            request.film_radius_mm = film_radius_mm;
+            return std::make_shared<Lens>(fit_transfer(read_ray_table(path), request).lens);
+          },
+          nb::arg("path"), nb::kw_only(), nb::arg("tolerance_mm") = TransferFitRequest().tolerance_mm,
+          nb::arg("degree").none() = nb::none(), nb::arg("film_radius_mm").none() = nb::none(),
+          "The lens of a table of rays that another program traced (.csv, docs/RAY_TRANSFER.md), as "
+          "`transfer` makes it.")
       .def(
           "to_json",
           [](const Lens& self) {

@@ -35,6 +35,16 @@ def test_an_optimised_lens_is_better():
     assert len(report.tables["numbers"].rows) == 9
 
 
+def test_rays_alone_make_a_lens(program, tmp_path):
+    table = tmp_path / "rays.csv"
+    program.run("lens", "transfer", "cooke-triplet", "--set", "aperture.f_number=8", "--bands", 550, "--film-radius", 8, "-o", table)
+    box = pz.Lens.from_rays(str(table), tolerance_mm=1e-3)
+    assert box.efl_mm == pytest.approx(pz.Lens("cooke-triplet").efl_mm, rel=1e-4)
+    with pytest.raises(pz.InputError, match="rays"):
+        table.write_text("".join(table.read_text().splitlines(keepends=True)[:60]))
+        pz.Lens.from_rays(str(table))
+
+
 def test_errors_say_what_would_be_right():
     lens = pz.Lens("cooke-triplet")
     with pytest.raises(pz.InputError, match="commercial"):

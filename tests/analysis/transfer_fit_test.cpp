@@ -139,6 +139,78 @@ TEST(TransferFit, IsAHundredTimesNearerThanThePublishedOne) {
   EXPECT_LT(100 * ours.rad.back(), theirs.rad.back());
 }
 
+/// Rays of the double Gauss as another program would send them: from object points through the entrance
+/// pupil, a grid, and a little beyond the stop's rim.
+RayTable rays_of_double_gauss() {
+  const Lens lens = stopped_down();
+  const Tracer tracer(lens, 550);
+  RayTable table;
+  table.name = "Double Gauss by rays";
+  const std::size_t last = tracer.surface_count() - 1, stop = lens.stop_index();
+  table.length_mm = tracer.vertex_z_mm(last), table.film_mm = tracer.image_z_mm() - table.length_mm;
+  table.aperture_radii_mm = {3.5};
+  FieldTracer fields(lens, 550);
+  for (int degree = 0; degree <= 10; ++degree) {
+    const Pencil pencil = Pencil::from_object(lens, degree);
+    const double chief = fields.chief_ray(degree)->v;
+    for (int i = 0; i <= 11; ++i)
+      for (int k = -11; k <= 11; ++k) {
+        const Ray in = *pencil.ray(5.3 * i / 11, chief + 5.3 * k / 11);
+        std::vector<Intersection> path;
+        const Ray end = tracer.trace(in, Tracer::Clip::none, &path);
+        if (end.status != RayStatus::ok) continue;
+        const auto& at = path[stop].point_mm;
+        if (std::hypot(at[0], at[1]) > 1.04 * 3.5) continue;
+        const auto place = [](const Ray& ray, double z) {
+          const double way = (z - ray.point_mm[2]) / ray.direction[2];
+          return TransferRay{ray.point_mm[0] + way * ray.direction[0],
+                             ray.point_mm[1] + way * ray.direction[1], -ray.direction[0], -ray.direction[1]};
+        };
+        table.rows.push_back({550, place(in, 0), place(end, table.length_mm), {{at[0], at[1]}}});
+      }
+  }
+  return table;
+}
+
+TEST(TransferFit, NeedsRaysAloneAndNoLens) {
+  const Lens lens = stopped_down();
+  const RayTable table = ray_table_of(ray_table_text(rays_of_double_gauss()), "rays.csv");
+  const TransferFit fit = fit_transfer(table);
+  EXPECT_LE(fit.determinant_error, 1e-9);
+  EXPECT_LE(fit.accuracy.worst_mm, 1e-4);
+  EXPECT_FALSE(fit.accuracy.worst_light);
+  // Its power is that of rays to the tenth of a micrometre over a stop of 10 mm.
+  EXPECT_NEAR(first_order(fit.lens).efl_mm, first_order(lens).efl_mm, 1e-4 * 50);
+  const Misses of = misses_of(lens, fit.lens, 0);
+  EXPECT_LT(of.mm.back(), 2e-4);
+  Lens by_angle = fit.lens;
+  by_angle.fields = lens.fields;
+  FieldTracer real(lens, 550), box(by_angle, 550);
+  for (const double field : {0.0, 5.0, 9.0})
+    EXPECT_NEAR(box.g_sensor_sr(*box.chief_ray(field)) / real.g_sensor_sr(*real.chief_ray(field)), 1, 1e-3);
+}
+
+TEST(TransferFit, TablesThatAreWrongSayWhere) {
+  const std::string text = ray_table_text(rays_of_double_gauss());
+  const auto refused = [](const std::string& bad, const char* what) {
+    try {
+      fit_transfer(ray_table_of(bad, "rays.csv"));
+      ADD_FAILURE() << what << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  const std::size_t rows = text.find("\n550.0,") + 1;
+  refused("", "holds no rays");
+  refused(text.substr(0, rows), "holds no rays");
+  refused(text.substr(text.find("wavelength_nm")), "length_mm");
+  refused(text.substr(0, rows) + "550,1,2,3\n", "rays.csv:6: has 4 numbers for 11 columns");
+  refused(text.substr(0, rows) + "550,0,0,x,0,0,0,0,0,0,0\n", "\"x\" is not a number");
+  refused(text.substr(0, rows) + "550,0,0,1,0,0,0,0,0,0,0\n", "less than 1");
+  refused(text.substr(0, rows) + "550,0,0,0,0,0,0,0,0,0,0\n", "some hundreds");
+  refused(text.substr(0, text.find('\n', rows + 20000)), "rays");
+}
+
 TEST(TransferFit, RefusesWhatItCannotFit) {
   EXPECT_THROW(fit_transfer(fit_of_double_gauss().lens), InputError);
   TransferFitRequest request;

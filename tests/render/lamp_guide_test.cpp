@@ -129,5 +129,18 @@ TEST(LampGuide, SendsRaysToTheLamp) {
     }
 }
 
+TEST(LampGuide, HasNoEllipseOfNoSize) {
+  // In focus, light of a lamp's middle lands on one point, and that of its rim far from it.
+  const Street street;
+  const Tracer tracer(street.lens, 550);
+  const double in_focus_m = 0.8;
+  for (const double metres : {0.98 * in_focus_m, in_focus_m, 1.02 * in_focus_m})
+    for (const double radius_m : {0.002, 0.02, 0.06}) {
+      const auto disk = LampDisk::find(Lamp{{0.1, 0.05, metres}, radius_m, 1}, std::array{tracer},
+                                       {1e-3, tracer.image_z_mm()});
+      if (disk) EXPECT_GT(disk->area_sr(), 0) << metres << " " << radius_m;
+    }
+}
+
 }  // namespace
 }  // namespace petzval::render

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rays of a lens camera against rays traced one by one in double precision, at every wavelength of a group.
 #include <gtest/gtest.h>
+#include <petzval/analysis/transfer_fit.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/render/camera/lens_camera.h>
@@ -14,9 +15,10 @@ namespace {
 struct Case {
   const char* lens;
   double half_diagonal_mm;
+  bool as_transfer = false;  ///< known by its rays alone
 };
 void PrintTo(const Case& each, std::ostream* out) {
-  *out << each.lens;
+  *out << each.lens << (each.as_transfer ? " as a ray transfer" : "");
 }
 
 /// What a camera does, from the parts that it is made of: scalar traces and scalar densities.
@@ -59,7 +61,9 @@ class LensCameraRays : public testing::TestWithParam<Case> {};
 
 TEST_P(LensCameraRays, LandAndWeighAsRaysTracedOneByOne) {
   const std::vector<double> wavelengths{420, 470, 520, 590, 680};
-  const Lens lens = read_lens(GetParam().lens).lens;
+  Lens lens = read_lens(GetParam().lens).lens;
+  if (GetParam().as_transfer)
+    lens = fit_transfer(lens, {.wavelengths_nm = {400, 550, 700}, .degree = 3}).lens;
   SensorGeometry film{300, 200, 0};
   film.pitch_um = 2 * GetParam().half_diagonal_mm / std::hypot(300, 200) * um_per_mm;
   LensCameraOptions options;
@@ -114,7 +118,8 @@ TEST_P(LensCameraRays, LandAndWeighAsRaysTracedOneByOne) {
 
 INSTANTIATE_TEST_SUITE_P(Lenses, LensCameraRays,
                          testing::Values(Case{"double-gauss", 21}, Case{"edmund-54852", 3},
-                                         Case{"cooke-triplet", 18}, Case{"us-2532751", 9}));
+                                         Case{"cooke-triplet", 18}, Case{"us-2532751", 9},
+                                         Case{"cooke-triplet", 12, true}));
 
 }  // namespace
 }  // namespace petzval::render

@@ -35,6 +35,11 @@ struct Sample {
   std::vector<std::array<double, 2>> at_apertures;  ///< and on the film, last
 };
 
+std::array<double, 2> on_film(const TransferRay& rear, double film_mm) {
+  const double way = film_mm / std::sqrt(1 - rear.l * rear.l - rear.m * rear.m);
+  return {rear.x - way * rear.l, rear.y - way * rear.m};
+}
+
 std::vector<Powers> powers_up_to(int degree) {
   std::vector<Powers> list;
   for (int sum = 0; sum <= degree; ++sum)
@@ -167,9 +172,24 @@ Eigen::Matrix2d first_order_of(const Lens& lens, double wavelength_nm) {
   return back;
 }
 
-/// The coefficients of one band: of each output, of each term. The first term is 1.
+/// The same of rays alone: that of a fit, its determinant made 1.
+Eigen::Matrix2d first_order_of(const Matrix& rows, const Matrix& wanted) {
+  const Matrix found = solved(rows, wanted);
+  Eigen::Matrix2d first;
+  first << found(0, 0), found(rows.cols() / 2, 0), found(0, 1), found(rows.cols() / 2, 1);
+  const double determinant = first.determinant();
+  if (!(determinant > 0))
+    throw InputError(
+        "the rays do not tell the first order of a lens; more heights on the film and places in the pupil "
+        "would "
+        "be right");
+  return first / std::sqrt(determinant);
+}
+
+/// The coefficients of one band: of each output, of each term. The first term is 1. \param known  the first
+/// order; absent: as fitted, its determinant then made 1.
 std::vector<std::vector<double>> fitted(const std::vector<Sample>& samples, const std::vector<Powers>& terms,
-                                        double unit_mm, const Eigen::Matrix2d& first) {
+                                        double unit_mm, const std::optional<Eigen::Matrix2d>& known) {
   const Matrix rows = rows_of(samples, terms, unit_mm);
   const auto count = static_cast<Eigen::Index>(terms.size());
   const auto apertures = static_cast<Eigen::Index>(samples.front().at_apertures.size());
@@ -183,6 +203,7 @@ std::vector<std::vector<double>> fitted(const std::vector<Sample>& samples, cons
         places(row + axis, a) =
             samples[i].at_apertures[static_cast<std::size_t>(a)][static_cast<std::size_t>(axis)];
   }
+  const Eigen::Matrix2d first = known ? *known : first_order_of(rows, wanted);
   wanted -= rows.col(0) * first.col(0).transpose() + rows.col(count) * first.col(1).transpose();
   Matrix higher(rows.rows(), 2 * count - 2);
   higher << rows.middleCols(1, count - 1), rows.rightCols(count - 1);
@@ -236,8 +257,13 @@ double middle_of(std::vector<double> list) {
 struct Fitting {
   std::vector<double> wavelengths_nm;
   std::vector<std::vector<Sample>> samples, held;
-  std::vector<Eigen::Matrix2d> first;
+  std::vector<std::optional<Eigen::Matrix2d>> first;
   double unit_mm = 0;
+
+  void set_unit() {
+    for (const std::vector<Sample>& band : samples)
+      for (const Sample& sample : band) unit_mm = std::max(unit_mm, std::hypot(sample.rear.x, sample.rear.y));
+  }
 
   std::vector<std::vector<std::vector<double>>> bands(const std::vector<Powers>& terms) const {
     std::vector<std::vector<std::vector<double>>> all;
@@ -284,11 +310,7 @@ std::vector<Powers> needed(const Fitting& fitting, const std::vector<Powers>& te
 
 double film_radius_of(const Lens& lens, const TransferFitRequest& request) {
   constexpr double beyond_fields = 1.02;
-  if (request.film_radius_mm) {
-    if (!(std::isfinite(*request.film_radius_mm) && *request.film_radius_mm > 0))
-      throw InputError(fmt::format("a film radius of {} mm; it must be positive", *request.film_radius_mm));
-    return *request.film_radius_mm;
-  }
+  if (request.film_radius_mm) return *request.film_radius_mm;
   double largest = 0;
   for (const double field : lens.fields.values)
     largest =
@@ -298,7 +320,17 @@ double film_radius_of(const Lens& lens, const TransferFitRequest& request) {
   return beyond_fields * largest;
 }
 
+void check(const TransferFitRequest& request) {
+  if (!(request.tolerance_mm > 0 && std::isfinite(request.tolerance_mm)))
+    throw InputError(fmt::format("a tolerance of {} mm; it must be positive", request.tolerance_mm));
+  if (request.degree && (*request.degree < 1 || *request.degree > highest_degree))
+    throw InputError(fmt::format("a degree of {}; 1 to {} would be right", *request.degree, highest_degree));
+  if (request.film_radius_mm && !(std::isfinite(*request.film_radius_mm) && *request.film_radius_mm > 0))
+    throw InputError(fmt::format("a film radius of {} mm; it must be positive", *request.film_radius_mm));
+}
+
 void check(const Lens& lens, const TransferFitRequest& request) {
+  check(request);
   lens.validate();
   require_centred(lens, "ray transfers are those of centred lenses");
   require_glass(lens, "fitting needs");
@@ -309,10 +341,6 @@ void check(const Lens& lens, const TransferFitRequest& request) {
                      ": glass reaches up to the sensor; a lens with air behind it would be right");
   if (lens.stop_blades().count > 0)
     throw InputError(lens.name + ": its stop has blades; a round one would be right");
-  if (!(request.tolerance_mm > 0 && std::isfinite(request.tolerance_mm)))
-    throw InputError(fmt::format("a tolerance of {} mm; it must be positive", request.tolerance_mm));
-  if (request.degree && (*request.degree < 1 || *request.degree > highest_degree))
-    throw InputError(fmt::format("a degree of {}; 1 to {} would be right", *request.degree, highest_degree));
 }
 
 /// The stop, and the others that limit most.
@@ -366,58 +394,140 @@ double worst_light(const Lens& lens, const Lens& fit, double film_radius_mm) {
   return worst;
 }
 
-}  // namespace
-
-TransferFit fit_transfer(const Lens& lens, const TransferFitRequest& request) {
-  check(lens, request);
-  const double film_radius_mm = film_radius_of(lens, request);
-  Fitting fitting;
-  fitting.wavelengths_nm = request.wavelengths_nm.empty() ? lens.wavelengths_nm : request.wavelengths_nm;
-  std::sort(fitting.wavelengths_nm.begin(), fitting.wavelengths_nm.end());
-  const std::vector<std::size_t> apertures = limiting(lens, fitting, film_radius_mm);
-  for (const double nm : fitting.wavelengths_nm) {
-    const SampledLens sampled(lens, nm, film_radius_mm);
-    fitting.samples.push_back(
-        sampled.samples(fit_heights, fit_azimuths, fit_rings, beyond_rim, 0, apertures));
-    fitting.held.push_back(sampled.samples(held_heights, held_azimuths, held_rings, 1, 0.37, apertures));
-    fitting.first.push_back(first_order_of(lens, nm));
-    for (const Sample& sample : fitting.samples.back())
-      fitting.unit_mm = std::max(fitting.unit_mm, std::hypot(sample.rear.x, sample.rear.y));
+/// A lens as rays to fit to.
+struct Sampling {
+  Sampling(const Lens& lens, const TransferFitRequest& request) {
+    check(lens, request);
+    film_radius_mm = film_radius_of(lens, request);
+    fitting.wavelengths_nm = request.wavelengths_nm.empty() ? lens.wavelengths_nm : request.wavelengths_nm;
+    std::sort(fitting.wavelengths_nm.begin(), fitting.wavelengths_nm.end());
+    const std::vector<std::size_t> apertures = limiting(lens, fitting, film_radius_mm);
+    for (const double nm : fitting.wavelengths_nm) {
+      const SampledLens sampled(lens, nm, film_radius_mm);
+      fitting.samples.push_back(
+          sampled.samples(fit_heights, fit_azimuths, fit_rings, beyond_rim, 0, apertures));
+      fitting.held.push_back(sampled.samples(held_heights, held_azimuths, held_rings, 1, 0.37, apertures));
+      fitting.first.emplace_back(first_order_of(lens, nm));
+    }
+    fitting.set_unit();
+    const Tracer tracer(lens, lens.reference_wavelength_nm);
+    for (const std::size_t surface : apertures)
+      radii_mm.push_back(
+          std::sqrt(tracer.clip_radius_sq(surface, Tracer::Clip::apertures) / (1 + Tracer::rim_tolerance)));
   }
-  const double mm = request.tolerance_mm, rad = mm / std::abs(first_order(lens).efl_mm);
+
+  Fitting fitting;
+  double film_radius_mm = 0;
+  std::vector<double> radii_mm;  ///< of the apertures, without the film
+};
+
+/// Rays of a table by wavelength, every fourth of those that pass held out. \param film_radius_mm  as asked
+/// for, or that of the rays.
+Fitting fitting_of(const RayTable& table, const TransferFitRequest& request, double& film_radius_mm) {
+  constexpr std::size_t held_one_in = 4;
+  std::map<double, std::vector<Sample>> bands;
+  for (const RayTable::Row& row : table.rows) {
+    Sample sample{row.rear, row.front, row.at_apertures};
+    sample.at_apertures.push_back(on_film(row.rear, table.film_mm));
+    bands[row.wavelength_nm].push_back(std::move(sample));
+  }
+  const auto passes = [&](const Sample& sample) {
+    for (std::size_t i = 0; i < table.aperture_radii_mm.size(); ++i)
+      if (std::hypot(sample.at_apertures[i][0], sample.at_apertures[i][1]) > table.aperture_radii_mm[i])
+        return false;
+    return true;
+  };
+  const auto height = [](const Sample& sample) {
+    return std::hypot(sample.at_apertures.back()[0], sample.at_apertures.back()[1]);
+  };
+  film_radius_mm = request.film_radius_mm.value_or(0);
+  if (!request.film_radius_mm)
+    for (const auto& [nm, samples] : bands)
+      for (const Sample& sample : samples)
+        if (passes(sample)) film_radius_mm = std::max(film_radius_mm, height(sample));
+  Fitting fitting;
+  fitting.wavelengths_nm = request.wavelengths_nm;
+  if (fitting.wavelengths_nm.empty())
+    for (const auto& [nm, samples] : bands) fitting.wavelengths_nm.push_back(nm);
+  std::sort(fitting.wavelengths_nm.begin(), fitting.wavelengths_nm.end());
+  for (const double nm : fitting.wavelengths_nm) {
+    const auto band = bands.find(nm);
+    if (band == bands.end()) throw InputError(fmt::format("the table of rays has none at {:g} nm", nm));
+    fitting.samples.emplace_back(), fitting.held.emplace_back(), fitting.first.emplace_back();
+    std::size_t inside = 0;
+    for (const Sample& sample : band->second) {
+      const bool hold = passes(sample) && height(sample) <= film_radius_mm && ++inside % held_one_in == 0;
+      (hold ? fitting.held : fitting.samples).back().push_back(sample);
+    }
+    if (fitting.held.back().empty())
+      throw InputError(
+          fmt::format("the table of rays has {} at {:g} nm that reach the film; some hundreds would be right",
+                      inside, nm));
+  }
+  fitting.set_unit();
+  return fitting;
+}
+
+/// The largest degree that twice as many equations as unknowns are there for.
+int most_degree_for(const Fitting& fitting) {
+  std::size_t rays = fitting.samples.front().size();
+  for (const std::vector<Sample>& band : fitting.samples) rays = std::min(rays, band.size());
+  int degree = 0;
+  while (degree < highest_degree && 2 * powers_up_to(degree + 1).size() <= rays) ++degree;
+  return degree;
+}
+
+struct FoundTerms {
+  int degree = 0;
   std::vector<Powers> terms;
   std::vector<std::vector<std::vector<double>>> bands;
-  int degree = request.degree.value_or(1);
-  for (;; ++degree) {
-    terms = powers_up_to(degree);
-    bands = fitting.bands(terms);
-    if (request.degree || meets(fitting.errors(terms, bands), mm, rad)) break;
-    if (degree == highest_degree)
+};
+
+FoundTerms terms_for(const Fitting& fitting, const TransferFitRequest& request, double efl_mm,
+                     const std::string& name) {
+  const double mm = request.tolerance_mm, rad = mm / efl_mm;
+  const int most = most_degree_for(fitting);
+  FoundTerms found;
+  found.degree = request.degree.value_or(1);
+  for (;; ++found.degree) {
+    if (found.degree > most && most < highest_degree)
+      throw InputError(
+          fmt::format("{}: too few rays for polynomials of degree {}, and none of degree {} is within "
+                      "{:g} mm, {:g} rad of them; more rays or a larger tolerance would be right",
+                      name, found.degree, most, mm, rad));
+    found.terms = powers_up_to(found.degree);
+    found.bands = fitting.bands(found.terms);
+    if (request.degree || meets(fitting.errors(found.terms, found.bands), mm, rad)) break;
+    if (found.degree == highest_degree)
       throw InputError(
           fmt::format("{}: no ray transfer of degree {} or less is within {:g} mm, {:g} rad of its rays; a "
                       "smaller film radius, a smaller stop or a larger tolerance would be right",
-                      lens.name, highest_degree, mm, rad));
+                      name, highest_degree, mm, rad));
   }
-  const std::vector<Powers> fewer = needed(fitting, terms, bands, mm, rad);
-  if (fewer.size() < terms.size()) {
+  const std::vector<Powers> fewer = needed(fitting, found.terms, found.bands, mm, rad);
+  if (fewer.size() < found.terms.size()) {
     const auto again = fitting.bands(fewer);
-    if (request.degree || meets(fitting.errors(fewer, again), mm, rad)) terms = fewer, bands = again;
+    if (request.degree || meets(fitting.errors(fewer, again), mm, rad))
+      found.terms = fewer, found.bands = again;
   }
+  return found;
+}
 
+/// Without length and apertures.
+RayTransfer transfer_of(const Fitting& fitting, const FoundTerms& found) {
   RayTransfer transfer;
-  transfer.length_mm = lens.total_track_mm() - lens.surfaces.back().thickness_mm;
   transfer.unit_mm = transfer.largest_radius_mm = fitting.unit_mm;
-  transfer.terms = terms;
-  const Tracer tracer(lens, lens.reference_wavelength_nm);
-  for (const std::size_t surface : apertures)
-    transfer.aperture_radii_mm.push_back(
-        std::sqrt(tracer.clip_radius_sq(surface, Tracer::Clip::apertures) / (1 + Tracer::rim_tolerance)));
-  // Light that goes elsewhere than to the film was not fitted, and does not pass.
-  transfer.aperture_radii_mm.push_back(film_radius_mm);
-  for (std::size_t b = 0; b < bands.size(); ++b)
-    transfer.bands.push_back({fitting.wavelengths_nm[b], bands[b], {}});
+  transfer.terms = found.terms;
+  for (std::size_t b = 0; b < found.bands.size(); ++b)
+    transfer.bands.push_back({fitting.wavelengths_nm[b], found.bands[b], {}});
+  return transfer;
+}
+
+/// \param lens  what else than its surfaces the fit has.
+TransferFit fit_with(const Fitting& fitting, const FoundTerms& found, const Lens& lens,
+                     RayTransfer transfer) {
   TransferFit fit;
-  for (const auto& band : bands)
+  for (const auto& band : found.bands)
     fit.determinant_error =
         std::max(fit.determinant_error, std::abs(band[0][0] * band[3][0] - band[1][0] * band[2][0] - 1));
   try {
@@ -425,16 +535,74 @@ TransferFit fit_transfer(const Lens& lens, const TransferFitRequest& request) {
   } catch (const InputError& error) {
     throw InputError(lens.name + ": " + error.what());
   }
-  const Errors errors = fitting.errors(terms, bands);
-  fit.accuracy = {middle_of(errors.mm),
-                  *std::max_element(errors.mm.begin(), errors.mm.end()),
-                  middle_of(errors.rad),
-                  *std::max_element(errors.rad.begin(), errors.rad.end()),
-                  worst_light(lens, fit.lens, film_radius_mm),
-                  errors.mm.size()};
-  fit.degree = degree;
-  fit.terms = terms.size();
+  const Errors errors = fitting.errors(found.terms, found.bands);
+  fit.accuracy.median_mm = middle_of(errors.mm);
+  fit.accuracy.worst_mm = *std::max_element(errors.mm.begin(), errors.mm.end());
+  fit.accuracy.median_rad = middle_of(errors.rad);
+  fit.accuracy.worst_rad = *std::max_element(errors.rad.begin(), errors.rad.end());
+  fit.accuracy.rays = errors.mm.size();
+  fit.degree = found.degree;
+  fit.terms = found.terms.size();
   return fit;
+}
+
+}  // namespace
+
+TransferFit fit_transfer(const Lens& lens, const TransferFitRequest& request) {
+  const Sampling sampling(lens, request);
+  const FoundTerms found =
+      terms_for(sampling.fitting, request, std::abs(first_order(lens).efl_mm), lens.name);
+  RayTransfer transfer = transfer_of(sampling.fitting, found);
+  transfer.length_mm = lens.total_track_mm() - lens.surfaces.back().thickness_mm;
+  transfer.aperture_radii_mm = sampling.radii_mm;
+  // Light that goes elsewhere than to the film was not fitted, and does not pass.
+  transfer.aperture_radii_mm.push_back(sampling.film_radius_mm);
+  TransferFit fit = fit_with(sampling.fitting, found, lens, std::move(transfer));
+  fit.accuracy.worst_light = worst_light(lens, fit.lens, sampling.film_radius_mm);
+  return fit;
+}
+
+TransferFit fit_transfer(const RayTable& table, const TransferFitRequest& request) {
+  check(request);
+  const std::string name = table.name.empty() ? "a table of rays" : table.name;
+  double film_radius_mm = 0;
+  const Fitting fitting = fitting_of(table, request, film_radius_mm);
+  // The power, for what the tolerance of a place is worth in direction.
+  const auto rough = fitting.bands(powers_up_to(std::min(2, most_degree_for(fitting))));
+  const double power = std::abs(rough[rough.size() / 2][2][0]);
+  if (!(power > 0)) throw InputError(name + ": has no power");
+  const FoundTerms found = terms_for(fitting, request, 1 / power, name);
+  RayTransfer transfer = transfer_of(fitting, found);
+  transfer.length_mm = table.length_mm;
+  transfer.aperture_radii_mm = table.aperture_radii_mm;
+  transfer.aperture_radii_mm.push_back(film_radius_mm);
+  Lens lens;
+  lens.name = name;
+  lens.wavelengths_nm = fitting.wavelengths_nm;
+  lens.reference_wavelength_nm = fitting.wavelengths_nm[fitting.wavelengths_nm.size() / 2];
+  lens.fields = {Fields::Kind::paraxial_image_height_mm,
+                 {0, 0.5 * film_radius_mm, 0.7 * film_radius_mm, 0.95 * film_radius_mm}};
+  Surface last;
+  last.thickness_mm = table.film_mm;
+  lens.surfaces = {last};
+  return fit_with(fitting, found, lens, std::move(transfer));
+}
+
+RayTable ray_table(const Lens& lens, const TransferFitRequest& request) {
+  const Sampling sampling(lens, request);
+  RayTable table;
+  table.name = lens.name;
+  table.length_mm = lens.total_track_mm() - lens.surfaces.back().thickness_mm;
+  table.film_mm = lens.surfaces.back().thickness_mm;
+  table.aperture_radii_mm = sampling.radii_mm;
+  for (std::size_t b = 0; b < sampling.fitting.wavelengths_nm.size(); ++b)
+    for (const auto* samples : {&sampling.fitting.samples[b], &sampling.fitting.held[b]})
+      for (const Sample& sample : *samples)
+        table.rows.push_back({sampling.fitting.wavelengths_nm[b],
+                              sample.front,
+                              sample.rear,
+                              {sample.at_apertures.begin(), sample.at_apertures.end() - 1}});
+  return table;
 }
 
 }  // namespace petzval

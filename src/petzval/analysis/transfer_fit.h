@@ -2,6 +2,7 @@
 // A ray transfer of a lens that is traced.
 #pragma once
 
+#include <petzval/analysis/ray_table.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/ray_transfer.h>
 
@@ -11,14 +12,15 @@
 namespace petzval {
 
 struct TransferFitRequest {
-  std::vector<double> wavelengths_nm = {};  ///< a band each; empty: the lens's own
+  std::vector<double> wavelengths_nm = {};  ///< a band each; empty: the lens's own, or all of the table
   /// What rays held out may be off by on the front plane [mm], and in direction by this over the focal
   /// length.
   double tolerance_mm = 1e-4;
   /// Invariants multiplied, at most: rays to the power 2·degree + 1; absent: the least that meets the
   /// tolerance.
   std::optional<int> degree = {};
-  /// Light that lands within it counts; absent: the largest of the lens's fields, and 2 % more.
+  /// Light that lands within it counts; absent: the largest of the lens's fields, and 2 % more; of a table,
+  /// that of its rays.
   std::optional<double> film_radius_mm = {};
 };
 
@@ -26,8 +28,9 @@ struct TransferFitRequest {
 struct TransferAccuracy {
   double median_mm = 0, worst_mm = 0;    ///< front place
   double median_rad = 0, worst_rad = 0;  ///< front direction
-  /// By how much the light that a film point collects is off, at the worst of some heights, as a share of it.
-  double worst_light = 0;
+  /// By how much the light that a film point collects is off, at the worst of some heights, as a share of it;
+  /// a table does not tell.
+  std::optional<double> worst_light;
   std::size_t rays = 0;
 };
 
@@ -48,5 +51,17 @@ struct TransferFit {
 /// InputError for a lens with poses, blades at the stop, glass up to the film, and where no degree meets the
 /// tolerance.
 TransferFit fit_transfer(const Lens& lens, const TransferFitRequest& request = {});
+
+/// Fits one to rays that another program traced; every fourth ray of a wavelength is held out. The first
+/// order is that of a fit to the rays, its determinant then made 1. \throws InputError where there are too
+/// few rays, and where no degree meets the tolerance.
+///
+///     const TransferFit box = fit_transfer(read_ray_table("rays.csv"));
+///     write_lens(box.lens, "box.json");
+///
+TransferFit fit_transfer(const RayTable& table, const TransferFitRequest& request = {});
+
+/// The rays that fit_transfer() fits a lens to, and those that it holds out.
+RayTable ray_table(const Lens& lens, const TransferFitRequest& request = {});
 
 }  // namespace petzval

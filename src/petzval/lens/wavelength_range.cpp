@@ -28,4 +28,13 @@ LensWavelengths wavelength_range(const Lens& lens) {
   return range;
 }
 
+bool disperses(const Lens& lens, const std::vector<double>& wavelengths_nm) {
+  return std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [&](const Surface& surface) {
+    if (surface.transfer) return surface.transfer->bands.size() > 1 && wavelengths_nm.size() > 1;
+    return !surface.mirror && std::any_of(wavelengths_nm.begin(), wavelengths_nm.end(), [&](double nm) {
+      return surface.material.index(nm) != surface.material.index(wavelengths_nm.front());
+    });
+  });
+}
+
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <petzval/lens/lens.h>
 
 #include <limits>
+#include <vector>
 
 namespace petzval {
 
@@ -16,5 +17,8 @@ struct LensWavelengths {
 /// Where the indices of all its glasses are known: catalogues say from where to where, tables by their ends;
 /// an index given by itself, or by nd and Vd, ends nowhere.
 LensWavelengths wavelength_range(const Lens& lens);
+
+/// Whether rays of these wavelengths part in it.
+bool disperses(const Lens& lens, const std::vector<double>& wavelengths_nm);
 
 }  // namespace petzval

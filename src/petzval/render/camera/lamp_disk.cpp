@@ -14,6 +14,8 @@ namespace {
 constexpr double rim_margin = 1.05, error_margin = 2;
 /// Larger ones find the lamp too seldom to be worth it.
 constexpr double most_larger = 6;
+/// An image of the lamp that is wider than the light of its middle by more is seen through all of the pupil.
+constexpr double most_wider = 3;
 
 /// A light ray on the film.
 struct Landed {
@@ -146,7 +148,7 @@ class LampDisk::Fit {
     for (const auto& [right, up] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}})
       for (const Landed& ray : light_of(tracers_.front(), right, up))
         disk_.reach_mm_ = std::max(disk_.reach_mm_, from_middle_mm(ray));
-    return disk_.radius_mm_ > 0;
+    return disk_.reach_mm_ < most_wider * disk_.radius_mm_;
   }
   double from_middle_mm(const Landed& ray) const {
     return std::hypot(ray.x_mm - disk_.x_mm_, ray.y_mm - disk_.y_mm_);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/wavelength_range.h>
 #include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/camera/light_probe.h>
 
@@ -15,14 +16,6 @@ namespace {
 
 /// Radii of the pupil table reach a little beyond the corner.
 constexpr double corner_margin = 1 + 1e-9;
-
-bool any_dispersion(const Lens& lens, const std::vector<double>& wavelengths_nm) {
-  for (const Surface& surface : lens.surfaces)
-    for (const double nm : wavelengths_nm)
-      if (!surface.mirror && surface.material.index(nm) != surface.material.index(wavelengths_nm.front()))
-        return true;
-  return false;
-}
 
 InputError no_light(const Lens& lens, double corner_mm) {
   return InputError(
@@ -47,7 +40,7 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
                     lens.name, lens.image_distance_mm()));
   const double stop_radius = stop_radius_mm(lens);
   const std::vector<double>& nm = groups.wavelengths_nm();
-  disperses_ = any_dispersion(lens, nm);
+  disperses_ = petzval::disperses(lens, nm);
   for (std::size_t i = 0; i < (disperses_ ? nm.size() : 1); ++i)
     tracers_.push_back(Tracer(lens, nm[i], stop_radius).with_blades({}));
 

@@ -7,6 +7,7 @@
 #include <petzval/base/units.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/pose.h>
+#include <petzval/lens/wavelength_range.h>
 #include <petzval/render/camera/wave_image.h>
 
 #include <algorithm>
@@ -94,13 +95,6 @@ std::vector<std::size_t> bands_with_nodes(std::size_t bands) {
   return result;
 }
 
-bool any_dispersion(const Lens& lens, const std::vector<double>& nm) {
-  for (const Surface& surface : lens.surfaces)
-    for (const double each : nm)
-      if (!surface.mirror && surface.material.index(each) != surface.material.index(nm.front())) return true;
-  return false;
-}
-
 }  // namespace
 
 /// In the lens's own terms.
@@ -141,7 +135,7 @@ WaveImage::WaveImage(const Lens& lens, const SensorGeometry& film, std::vector<d
 
   // Rays that land within the margin may belong to points as far beyond it.
   const double reach_mm = film_.half_diagonal_mm() + 2 * margin_pixels_ * pitch_mm;
-  const std::size_t optics = any_dispersion(lens_, nm) ? nm.size() : 1;
+  const std::size_t optics = petzval::disperses(lens_, nm) ? nm.size() : 1;
   std::vector<std::optional<ChiefImage>> chiefs(optics);
   parallel_tasks(optics,
                  [&](std::size_t i) { chiefs[i].emplace(lens_, nm[i], Tracer::Clip::apertures, reach_mm); });
