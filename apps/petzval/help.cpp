@@ -63,7 +63,7 @@ const std::vector<HelpGroup>& help_groups() {
       {"Sensor", {"--sensor", "--sensor-set", "--film-diagonal"}},
       {"Output",
        {"--output", "--picture", "--bits", "--plot", "--csv", "--depth", "--normals", "--albedo", "--layers",
-        "--white", "--display", "--preview", "--json"}}};
+        "--light-groups", "--white", "--display", "--preview", "--json"}}};
   return groups;
 }
 

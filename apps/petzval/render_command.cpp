@@ -66,6 +66,7 @@ RenderRequest read_request(const RenderCommand& command, const Shared& shared) {
     throw InputError(fmt::format("--focus {} and autofocus both place the film; one of them would be right",
                                  choice.camera.focus));
   request.first_surfaces = command.outputs.first_surfaces();
+  request.light_groups = !command.outputs.light_groups.empty();
   return request;
 }
 

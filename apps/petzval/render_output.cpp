@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 
 #include "command.h"
 #include "field_option.h"
@@ -22,6 +23,24 @@
 namespace petzval::app {
 
 namespace {
+
+constexpr std::size_t most_groups_checked = 1000;
+
+/// "lamp-3.exr" of "lamp.exr".
+std::string group_path(const std::string& pattern, std::size_t light) {
+  const std::filesystem::path path(pattern);
+  return (path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), light, path.extension().string()))
+      .string();
+}
+
+/// Whether `path` may be one of these.
+bool is_group_name(const std::string& pattern, const std::string& path) {
+  for (std::size_t i = 0; i < most_groups_checked; ++i)
+    if (std::filesystem::path(group_path(pattern, i)).lexically_normal() ==
+        std::filesystem::path(path).lexically_normal())
+      return true;
+  return false;
+}
 
 /// Planes of bands as numbers of pixels, the order that irradiance is written in.
 std::vector<float> bands_last(const std::vector<float>& planes, std::size_t bands) {
@@ -121,6 +140,11 @@ void RenderOutputs::add_to(CLI::App& command) {
           "from the beginning of its exposure to the end, with --camera-move or --look-move: rows x columns "
           "x 2 [pixels] (.npy)")
       ->check(output_file());
+  command
+      .add_option("--light-groups", light_groups,
+                  "Also write what each light gives of the light; the sum is the whole. lamp.exr becomes "
+                  "lamp-0.exr, lamp-1.exr, ..., by the numbers that --light has (.exr, .npy)")
+      ->check(output_file());
   command.add_flag(
       "--layers", layers,
       "Every .exr of the light also has depth (Z), normals (N.X, N.Y, N.Z) and reflectance (T.550,0nm)");
@@ -146,6 +170,17 @@ OutputOptions RenderOutputs::checked(const std::optional<Sensor>& sensor, const 
     require_extension(path, {".exr", ".npy", ".dng", ".png", ".tif", ".tiff"}, "a rendering");
   if (layers && std::ranges::none_of(pictures, [](const auto& path) { return extension_of(path) == ".exr"; }))
     throw InputError("--layers are written beside the light: -o picture.exr would be right");
+  if (!light_groups.empty()) {
+    require_extension(light_groups, {".exr", ".npy"}, "the light of one lamp");
+    if (flare.options().any())
+      throw InputError(
+          "--light-groups: ghosts, suns and starbursts belong to no light of the scene; one of them without "
+          "the other "
+          "would be right");
+    for (const std::string& path : pictures)
+      if (is_group_name(light_groups, path))
+        throw InputError(fmt::format("-o {} and --light-groups {} write the same file", path, light_groups));
+  }
   for (const std::string* path : {&depth, &normals, &albedo, &segments, &flow})
     if (!path->empty()) require_extension(*path, {".npy"}, "a picture of first surfaces");
   return shot.checked(sensor, pictures, command);
@@ -160,6 +195,10 @@ void RenderOutputs::keep_off(const std::vector<std::string>& files_of_scene,
         NamedFile{"--segments", segments}, NamedFile{"--flow", flow},
         NamedFile{"--ghost-layer", flare.ghost_layer}, NamedFile{"--scatter-layer", flare.scatter_layer}})
     if (!path.empty()) outputs.push_back({option, path});
+  // Only what is there already can be a file of the scene.
+  for (std::size_t i = 0; !light_groups.empty() && i < most_groups_checked; ++i)
+    if (const std::string path = group_path(light_groups, i); std::filesystem::exists(path))
+      outputs.push_back({"--light-groups", path});
   for (const auto& [option, path] : others)
     if (!path.empty()) outputs.push_back({option, path});
   for (const std::string& path : files_of_scene) inputs.push_back({"scene", path});
@@ -175,6 +214,8 @@ Outputs RenderOutputs::write(const Rendering& picture, const PreparedScene& scen
   all.layers = beside.planes();
   Outputs made = write_outputs(picture.irradiance, pictures, sensor, all, files, context);
   write_first_surfaces(*this, picture, files);
+  for (std::size_t i = 0; !light_groups.empty() && i < picture.light_groups.size(); ++i)
+    write_outputs(picture.light_groups[i], {group_path(light_groups, i)}, {}, {}, files, context);
   if (!segments.empty()) write_segments(segments, segments_seen(scene, context), files);
   if (!flow.empty())
     write_npy(files.stage(flow),

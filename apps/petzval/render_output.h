@@ -19,6 +19,7 @@ struct RenderOutputs {
   std::string depth, normals, albedo;  ///< of the first surfaces
   std::string segments;                ///< which things they are of
   std::string flow;                    ///< of a camera that moves
+  std::string light_groups;            ///< what each light gives, with its number before the extension
   bool layers = false;                 ///< these in every .exr of the light, too
   ShotChoice shot;
   FlareChoice flare;

@@ -39,7 +39,8 @@ RenderRequest request_of(
     Maybe<double> field_of_view_deg, double light_scale, Maybe<std::array<double, 3>> camera_move,
     Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
     Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
-    Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights, double scene_time) {
+    Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights, double scene_time,
+    bool light_groups) {
   RenderRequest r;
   for (const std::string& text : lights) r.light_changes.push_back(render::parse_light_change(text));
   r.scene = scene, r.camera = camera.value();
@@ -63,6 +64,7 @@ RenderRequest request_of(
       {{"film", RenderRequest::Origin::film}, {"front", RenderRequest::Origin::front}});
   r.near_distance = near_distance, r.far_distance = far_distance;
   r.region = region, r.sample_range = sample_range, r.scene_time = scene_time;
+  r.light_groups = light_groups;
   return r;
 }
 #define PETZVAL_RENDER_ARGUMENTS                                                                            \
@@ -82,7 +84,8 @@ RenderRequest request_of(
       nb::arg("rolling_shutter") = 0.0, nb::arg("camera_origin") = "film",                                  \
       nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
       nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),                   \
-      nb::arg("lights") = std::vector<std::string>(), nb::arg("scene_time") = 0.0
+      nb::arg("lights") = std::vector<std::string>(), nb::arg("scene_time") = 0.0,                          \
+      nb::arg("light_groups") = false
 
 std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
   std::vector<std::int32_t> values;
@@ -103,6 +106,10 @@ auto render_function(RenderRequest (*)(const CameraInPython&, OfRender...), Flar
       throw InputError(
           "a piece of a picture is its light alone; `suns`, `ghosts`, `segments` and `flow` of the whole "
           "picture would be right");
+    if (asked.light_groups && flare.any())
+      throw InputError(
+          "suns, ghosts and starbursts belong to no light of the scene; without `light_groups`, or "
+          "without them, would be right");
     Call call({threads, seed, progress});
     return call([&](const Context& context) {
       PreparedScene scene = prepare_scene(asked, context);
@@ -199,7 +206,7 @@ constexpr const char* render_text =
     "as "
     "of `image`; the rendering's `flare` has their layers. `first_surfaces`, `segments` and `flow` add what "
     "is "
-    "known of each pixel. Raises InputError; Cancelled.";
+    "known of each pixel, `light_groups` what each light gives. Raises InputError; Cancelled.";
 
 }  // namespace
 
@@ -208,6 +215,16 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       .def_prop_ro(
           "light", [](RenderingInPython& r) -> SpectralImage& { return r.irradiance; },
           nb::rv_policy::reference_internal, "The irradiance on the sensor.")
+      .def_prop_ro(
+          "light_groups",
+          [](nb::handle self) {
+            nb::list lights;
+            for (SpectralImage& each : nb::cast<RenderingInPython&>(self).light_groups)
+              lights.append(nb::cast(each, nb::rv_policy::reference_internal, self));
+            return lights;
+          },
+          "What each light of the scene gives, by the numbers that `lights` has; the sum is `light`. Empty "
+          "unless asked for.")
       .def_prop_ro(
           "depth", [](nb::handle self) { return first_surface<&render::FirstSurfaces::depth>(self, 0); },
           "Distance from the film along the axis [scene units], (row, column), infinity where nothing is "

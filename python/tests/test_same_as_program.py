@@ -156,11 +156,17 @@ def test_rendering(program, tmp_path):
 def test_rendering_of_a_camera_that_moves(program, tmp_path):
     program.run("render", "spheres", "--lens", "dgauss-50mm", "--focus", "1.2m", "--size", "30x20", "--wavelengths", 550, "--spp", 2,
                 "--camera-move", "0.02,0,0", "--rolling-shutter", 0.5, "--near", 0.5, "--far", 20, "--camera-origin", "front",
-                "--segments", "segments.npy", "--flow", "flow.npy", "-o", "light.npy")
+                "--segments", "segments.npy", "--flow", "flow.npy", "--light-groups", "lamp.npy", "-o", "light.npy")
     rendering = pz.Camera("dgauss-50mm", focus="1.2m").render(
         "spheres", size=(30, 20), wavelengths_nm=[550], samples_per_pixel=2, camera_move=(0.02, 0, 0), rolling_shutter=0.5,
-        near_distance=0.5, far_distance=20, camera_origin="front", segments=True, flow=True)
+        near_distance=0.5, far_distance=20, camera_origin="front", segments=True, flow=True,
+        light_groups=True)
     assert np.array_equal(np.load(tmp_path / "light.npy"), rendering.light.values)
+    assert len(rendering.light_groups) > 1
+    for number, light in enumerate(rendering.light_groups):
+        assert np.array_equal(np.load(tmp_path / f"lamp-{number}.npy"), light.values)
+    with pytest.raises(pz.InputError, match="light_groups"):
+        pz.Camera("dgauss-50mm").render("spheres", light_groups=True, ghosts=True)
     assert np.array_equal(np.load(tmp_path / "segments.npy"), rendering.segments) and rendering.segments.max() > 0
     assert np.array_equal(np.load(tmp_path / "flow.npy"), rendering.flow, equal_nan=True)
     assert rendering.flare is None

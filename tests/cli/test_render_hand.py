@@ -53,6 +53,26 @@ class RenderHand(ProgramTest):
             self.assertEqual(picture.shape, (72, 96, 2))
             self.assertGreater((picture > 0).mean(), 0.1)
 
+    def test_light_groups_add_up_through_pieces(self):
+        whole = ["render", "s.pbrt", *LENS, "--size", "24x16", "--spp", "8", "--wavelengths", "500,600", "--diffraction", "--quiet"]
+        self.assert_succeeds(*whole, "-o", "plain.npy")
+        groups = [*whole, "-o", "p.npy", "--light-groups", "lamp.npy"]
+        self.assert_succeeds(*groups)
+        once = [numpy.load(self.folder / f"{name}.npy") for name in ("plain", "p", "lamp-0", "lamp-1")]
+        self.assertTrue(numpy.array_equal(once[0], once[1]))
+        numpy.testing.assert_allclose(once[2] + once[3], once[1], 1e-5, 1e-9)
+        self.assertGreater(min(once[2].sum(), once[3].sum()), 0.01 * once[1].sum())
+        self.assert_succeeds(*groups, "--region", "0,0,10,16", "--checkpoint", "left")
+        self.assert_succeeds(*groups, "--region", "10,0,14,16", "--checkpoint", "right")
+        self.assert_succeeds("merge", "left", "right", "-o", "both", "--quiet")
+        self.assert_succeeds(*groups, "--checkpoint", "both")
+        for before, name in zip(once[1:], ("p", "lamp-0", "lamp-1")):
+            self.assertTrue(numpy.array_equal(before, numpy.load(self.folder / f"{name}.npy")), name)
+        self.assert_refused(*whole, "--checkpoint", "both", "-o", "p.npy", words=["another picture", "light-groups"])
+        self.assert_refused(*groups, "--ghosts", words=["--light-groups", "ghosts"])
+        self.assert_refused(*whole, "-o", "lamp-1.npy", "--light-groups", "lamp.npy", words=["lamp-1.npy", "same file"])
+        self.assert_refused(*whole, "-o", "p.npy", "--light-groups", "lamp.png", words=[".exr", ".npy"])
+
     def test_resumes_to_the_same_bytes_wherever_it_is_stopped(self):
         whole = ["render", "s.pbrt", *LENS, "--size", "96x72", "--spp", "120", "--wavelengths", "500,600", "--quiet"]
         self.assert_succeeds(*whole, "-o", "whole.npy")

@@ -48,6 +48,67 @@ TEST(GltfMaterials, PaintGivesBackItsBaseColourOfWhatItsCoatingLetsIn) {
       }
 }
 
+/// A coat of lacquer on half of a metal: its mirror over the metal's, as light goes through them to and fro.
+TEST(GltfMaterials, AClearCoatLiesOnAsMuchAsItsFactorSays) {
+  for (const double factor : {1.0, 0.5})
+    for (const double cos : {1.0, 0.3}) {
+      GltfText gltf;
+      const int metal = gltf.add_material(
+          {{"pbrMetallicRoughness", {{"roughnessFactor", 0}, {"baseColorFactor", {0.5, 0.5, 0.5, 1}}}},
+           {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", factor}}}}}});
+      gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(metal))}});
+      Unsupported unsupported;
+      const auto world = build_world(read_gltf(gltf.text()), WavelengthGroups({550}), {}, unsupported);
+      const Vector3 wo{std::sqrt(1 - cos * cos), 0, cos};
+      double sum = 0;
+      for (int i = 0; i < 100; ++i)
+        sum +=
+            static_cast<double>(material_at(world->materials, static_cast<int>(world->materials.size()) - 1,
+                                            {}, 0, (i + 0.5) / 100)
+                                    .bsdf({}, 0, 0)
+                                    .sample(wo, 0.5, 0.5, 0.5)
+                                    ->weight[0]) /
+            100;
+      // Half at normal incidence: n = 1, k = 2 (pbrt-v4).
+      const double front = dielectric_reflectance(cos, 1.5);
+      const double base = conductor_reflectance(std::sqrt(1 - (1 - cos * cos) / 2.25), 1 / 1.5, 2 / 1.5);
+      const double coated = front + (1 - front) * (1 - front) * base / (1 - front * base);
+      EXPECT_NEAR(sum, factor * coated + (1 - factor) * conductor_reflectance(cos, 1.0, 2.0), 5e-3);
+    }
+}
+
+TEST(GltfMaterials, AClearCoatHasItsOwnRoughnessAndTextures) {
+  GltfText gltf;
+  const int texture = gltf.add_texture(png_of(1, 1, 3, {51, 102, 0}));
+  const int paint =
+      gltf.add_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.9}}},
+                         {"extensions",
+                          {{"KHR_materials_clearcoat",
+                            {{"clearcoatFactor", 0.5},
+                             {"clearcoatTexture", {{"index", texture}}},
+                             {"clearcoatRoughnessFactor", 0.5},
+                             {"clearcoatRoughnessTexture", {{"index", texture}}}}}}}});
+  gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(paint))}});
+  Unsupported unsupported;
+  const auto world = build_world(read_gltf(gltf.text()), WavelengthGroups({550}), {}, unsupported);
+  const Material& mix = world->materials.back();
+  ASSERT_EQ(mix.kind, Material::Kind::mix);
+  EXPECT_NEAR(mix.mix_amount->at({}, 0), 0.5 * 51 / 255, 1e-6);
+  EXPECT_NEAR(world->materials[static_cast<std::size_t>(mix.mixed[0])].roughness_u->at({}, 0), 0.81, 1e-6);
+  EXPECT_NEAR(world->materials[static_cast<std::size_t>(mix.mixed[1])].roughness_u->at({}, 0),
+              std::pow(0.5 * 102 / 255, 2), 1e-6);
+  gltf.json["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatNormalTexture"] = {
+      {"index", texture}};
+  Unsupported list(true);
+  parse_gltf_scene(gltf.text(), "s.gltf", list);
+  ASSERT_EQ(list.list().size(), 1u);
+  EXPECT_EQ(list.list()[0].at.text() + ": " + list.list()[0].what,
+            "s.gltf: materials[0].extensions.KHR_materials_clearcoat.clearcoatNormalTexture: a coat whose "
+            "normals are not those of what it covers");
+  gltf.json["materials"][0]["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatTexture", 3}};
+  EXPECT_THROW(read_gltf(gltf.text()), InputError);
+}
+
 TEST(GltfMaterials, MetalnessAndRoughnessComeFromBlueAndGreen) {
   GltfText gltf;
   const int texture = gltf.add_texture(png_of(1, 1, 3, {9, 128, 64}));

@@ -70,6 +70,37 @@ TEST(Renderer, GivesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_NE(one, values(small.render(other)));
 }
 
+TEST(Renderer, LightGroupsAddUpToThePicture) {
+  const SmallPicture small;
+  const test::Scratch scratch;
+  RenderOptions options;
+  const std::vector<float> plain = values(small.render(options));
+  options.light_groups = true;
+  options.checkpoint = scratch.path("checkpoint");
+  options.after_pass = [](int done, int) { return done < 2; };
+  small.render(options);
+  options.after_pass = nullptr;
+  const Rendering picture = small.render(options);  // which goes on from there
+  EXPECT_EQ(values(picture), plain);
+  ASSERT_EQ(picture.light_groups.size(), 2u);
+  EXPECT_EQ(small.world->lights.sources, (std::vector<std::string>{"0 infinite", "1 area diffuse"}));
+  const std::span<const float> sky = picture.light_groups[0].values(),
+                               lamp = picture.light_groups[1].values();
+  double of_sky = 0, of_lamp = 0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    // Roundings of floats along a path.
+    EXPECT_NEAR(sky[i] + lamp[i], plain[i], 1e-5f * plain[i] + 1e-9f) << i;
+    of_sky += static_cast<double>(sky[i]), of_lamp += static_cast<double>(lamp[i]);
+  }
+  // And each is the picture of that light alone, whose paths ask for no other: 1 % of scatter in the sum.
+  std::string dark = scene;
+  dark.replace(dark.find("\"float scale\" 5"), 15, "\"float scale\" 0");
+  double alone = 0;
+  for (const float value : values(SmallPicture(dark.c_str()).render())) alone += static_cast<double>(value);
+  EXPECT_NEAR(of_sky, alone, 0.02 * alone);
+  EXPECT_GT(of_lamp, 0.1 * of_sky);
+}
+
 TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   const SmallPicture small;
   const test::Scratch scratch;

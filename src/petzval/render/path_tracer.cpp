@@ -31,14 +31,32 @@ struct PathTracer::Path {
   int hero = 0, depth = 0;
   double index_scale = 1;  ///< what refraction has done to radiance so far, undone for Russian roulette
   LightPlan plan;          ///< of the last surface that is no mirror
+  std::span<SourceLight> of_sources;
   PathLight light;
 };
 
-void PathTracer::add(Path& path, const Lanes& light) const {
-  if (path.alone)
-    path.light.alone += path.throughput[path.hero] * light[path.hero];
-  else
-    path.light.shared += path.throughput * light;
+void PathTracer::add(Path& path, const Lanes& light, int source) const {
+  const auto add_to = [&](auto& sum) {
+    if (path.alone)
+      sum.alone += path.throughput[path.hero] * light[path.hero];
+    else
+      sum.shared += path.throughput * light;
+  };
+  add_to(path.light);
+  if (source >= 0 && !path.of_sources.empty()) add_to(path.of_sources[static_cast<std::size_t>(source)]);
+}
+
+/// What each of the skies has of light from all of them, which is asked for as one.
+void PathTracer::tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const {
+  if (path.of_sources.empty()) return;
+  for (std::size_t i = 0; i < world_.lights.environments.size(); ++i) {
+    SourceLight& sum = path.of_sources[static_cast<std::size_t>(world_.lights.environment_sources[i])];
+    const Lanes light = path.throughput * (weight * world_.lights.environments[i].radiance(direction, group));
+    if (path.alone)
+      sum.alone += light[path.hero];
+    else
+      sum.shared += light;
+  }
 }
 
 void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const {
@@ -53,7 +71,7 @@ void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& poi
     if (options_.lights == PathOptions::Lights::both)
       weight = balanced(path.pdf, world_.lights.area_pdf(world_.geometries, area, path.plan, point));
   }
-  add(path, weight * radiance);
+  add(path, weight * radiance, world_.lights.areas[area].source);
   if (path.depth == 0) path.light.straight += radiance;
 }
 
@@ -65,7 +83,8 @@ void PathTracer::add_sky(Path& path, int group) const {
     if (options_.lights == PathOptions::Lights::both)
       weight = balanced(path.pdf, world_.lights.sky_pdf(path.plan, path.direction));
   }
-  add(path, weight * world_.lights.sky(path.direction, group));
+  add(path, weight * world_.lights.sky(path.direction, group), -1);
+  tell_skies(path, weight * Lanes::all(1), path.direction, group);
 }
 
 void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
@@ -91,7 +110,8 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   if (path.depth == 1) path.light.arriving += weight * light->light;
   if (!light->small && options_.lights == PathOptions::Lights::both)
     weight *= balanced(light->pdf, bsdf.pdf(wo, wi));
-  add(path, weight * (f * light->light));
+  add(path, weight * (f * light->light), light->source);
+  if (light->source < 0) tell_skies(path, weight * f, light->direction, group);
 }
 
 bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
@@ -118,9 +138,10 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
 }
 
 PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
-                            double limit, FirstSurface* first) const {
+                            double limit, FirstSurface* first, std::span<SourceLight> of_sources) const {
   Path path;
   path.origin = origin, path.direction = direction, path.hero = hero;
+  path.of_sources = of_sources;
   int interfaces = 0;
   bool mirrored = true;  // so far there were only mirrors
   for (;;) {

@@ -6,6 +6,7 @@
 #include <petzval/render/world.h>
 
 #include <limits>
+#include <span>
 
 namespace petzval::render {
 
@@ -28,6 +29,12 @@ struct PathLight {
   double distance = 0;
 };
 
+/// The part of a PathLight that one light of the scene has sent.
+struct SourceLight {
+  Lanes shared = Lanes::all(0);
+  float alone = 0;
+};
+
 /// The first surface along a ray, as pictures of depth, normals and albedo need it.
 struct FirstSurface {
   bool met = false;
@@ -43,13 +50,15 @@ class PathTracer {
   PathTracer(const World& world, const PathOptions& options) : world_(world), options_(options) {}
 
   /// \param limit  far clipping distance. \param first  if given, is told of the first surface.
+  /// \param of_sources  if not empty, one for each of Lights::sources, to which its light is added.
   PathLight trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
-                  double limit = std::numeric_limits<double>::infinity(),
-                  FirstSurface* first = nullptr) const;
+                  double limit = std::numeric_limits<double>::infinity(), FirstSurface* first = nullptr,
+                  std::span<SourceLight> of_sources = {}) const;
 
  private:
   struct Path;
-  void add(Path& path, const Lanes& light) const;
+  void add(Path& path, const Lanes& light, int source) const;
+  void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
   void add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,

@@ -78,12 +78,17 @@ Rendering picture_so_far(const Film& film, const WavelengthGroups& groups, const
   result.irradiance.lamps = lamps_of(film);
   result.irradiance.illuminant = illuminant_of(film, groups, passes);
   const std::size_t pixels = film.window.size();
-  for (int band = 0; band < result.irradiance.bands(); ++band) {
-    const std::span<float> plane = result.irradiance.band(band);
-    const double samples = std::max(1, samples_of(film, passes, band % groups.count()));
-    for (std::size_t i = 0; i < pixels; ++i)
-      plane[i] =
-          static_cast<float>(film.light[static_cast<std::size_t>(band) * pixels + i].value() / samples);
+  const auto put = [&](SpectralImage& image, const ExactSum* sums) {
+    for (int band = 0; band < image.bands(); ++band) {
+      const std::span<float> plane = image.band(band);
+      const double samples = std::max(1, samples_of(film, passes, band % groups.count()));
+      for (std::size_t i = 0; i < pixels; ++i) plane[i] = static_cast<float>((sums++)->value() / samples);
+    }
+  };
+  put(result.irradiance, film.light.data());
+  for (std::size_t source = 0; source < film.sources(); ++source) {
+    SpectralImage& image = result.light_groups.emplace_back(result.irradiance);
+    put(image, film.of_sources.data() + source * film.light.size());
   }
   result.samples_per_pixel = passes.taken(film.end_pass()) - passes.taken(film.first_pass);
   result.rays = film.rays, result.passed = film.passed;
@@ -106,16 +111,19 @@ Rendering cropped(Rendering picture, const PixelWindow& window, const PixelWindo
       }
     return result;
   };
-  const SpectralImage& all = picture.irradiance;
-  SpectralImage image(part.columns(), part.rows(), all.wavelengths_nm(), all.pitch_um(),
-                      all.pixel_aperture());
-  image.photosite = all.photosite, image.illuminant = all.illuminant;
-  image.lamps = crop(all.lamps, 1);
-  for (int band = 0; band < all.bands(); ++band) {
-    const std::span<const float> plane = all.band(band);
-    image.store_band(band, crop(std::vector<float>(plane.begin(), plane.end()), 1));
-  }
-  picture.irradiance = std::move(image);
+  const auto crop_image = [&](SpectralImage& all) {
+    SpectralImage image(part.columns(), part.rows(), all.wavelengths_nm(), all.pitch_um(),
+                        all.pixel_aperture());
+    image.photosite = all.photosite, image.illuminant = all.illuminant;
+    image.lamps = crop(all.lamps, 1);
+    for (int band = 0; band < all.bands(); ++band) {
+      const std::span<const float> plane = all.band(band);
+      image.store_band(band, crop(std::vector<float>(plane.begin(), plane.end()), 1));
+    }
+    all = std::move(image);
+  };
+  crop_image(picture.irradiance);
+  for (SpectralImage& each : picture.light_groups) crop_image(each);
   if (std::optional<FirstSurfaces>& first = picture.first_surfaces)
     first = FirstSurfaces{crop(first->depth, 1), crop(first->normal, 3), crop(first->albedo, 1),
                           crop(first->share, 1)};
@@ -127,14 +135,15 @@ void add_strays(std::span<const TileResult> results, std::size_t groups, bool ha
   parallel_for(groups, [&](std::size_t group) {
     for (const TileResult& tile : results)
       if (tile.done && !tile.strays.empty())
-        for (const Stray& stray : tile.strays[group]) film.light[stray.at] += stray.light;
+        for (const Stray& stray : tile.strays[group]) film.at(stray.at) += stray.light;
   });
   for (const TileResult& tile : results) {
     if (tile.done)
       for (const Stray& stray : tile.outside) film.outside[stray.at] += stray.light;
     if (half)
       for (const std::vector<Stray>& strays : tile.strays)
-        for (const Stray& stray : strays) film.half[stray.at % film.half.size()] += stray.light;
+        for (const Stray& stray : strays)
+          if (stray.at < film.light.size()) film.half[stray.at % film.half.size()] += stray.light;
     for (std::size_t band = 0; band < tile.arriving.size(); ++band)
       film.arriving[band] += tile.arriving[band];
     film.rays += tile.rays, film.passed += tile.passed;
@@ -157,12 +166,16 @@ std::optional<Rendering> picture_of_stopped_pass(const std::vector<PixelWindow>&
     const int before = std::max(1, samples_of(film, passes, group));
     const int now = passes.taken(group, film.end_pass() + 1) - passes.taken(group, film.first_pass);
     const float share = static_cast<float>(before) / static_cast<float>(std::max(1, now));
-    const std::span<float> plane = picture.irradiance.band(band);
-    for (std::size_t i = 0; i < tiles.size(); ++i)
-      if (results[i].done)
-        for (int row = tiles[i].top; row < tiles[i].bottom; ++row)
-          for (int column = tiles[i].left; column < tiles[i].right; ++column)
-            plane[film.window.index(column, row)] *= share;
+    const auto scale = [&](SpectralImage& image) {
+      const std::span<float> plane = image.band(band);
+      for (std::size_t i = 0; i < tiles.size(); ++i)
+        if (results[i].done)
+          for (int row = tiles[i].top; row < tiles[i].bottom; ++row)
+            for (int column = tiles[i].left; column < tiles[i].right; ++column)
+              plane[film.window.index(column, row)] *= share;
+    };
+    scale(picture.irradiance);
+    for (SpectralImage& each : picture.light_groups) scale(each);
   }
   return picture;
 }

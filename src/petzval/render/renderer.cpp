@@ -153,7 +153,8 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   const int margin = camera.waves() ? camera.waves()->margin_pixels() : 0;
   const PixelWindow window = with_margin(wanted, wanted, margin);
   Film film(with_margin(shown, wanted, margin), static_cast<int>(world.groups.wavelengths_nm().size()),
-            world.groups.count(), options.first_surfaces, options.noise > 0);
+            world.groups.count(), options.first_surfaces, options.noise > 0,
+            options.light_groups ? world.lights.sources.size() : 0);
   film.whole = window, film.first_pass = first_pass;
   const FilmSampling gathering(window, options.photosite);
   const FilmSampling everywhere = gathering.without_gaps();

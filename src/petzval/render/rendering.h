@@ -21,6 +21,8 @@ struct FirstSurfaces {
 
 struct Rendering {
   SpectralImage irradiance;  ///< [W·m⁻²·nm⁻¹], of the window; of its pixel aperture
+  /// What each light of the scene gives of `irradiance`, if that was asked for; by Lights::sources.
+  std::vector<SpectralImage> light_groups;
   std::optional<FirstSurfaces> first_surfaces;
   std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
   bool complete = true;

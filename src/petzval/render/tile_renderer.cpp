@@ -2,6 +2,7 @@
 #include <petzval/base/stop.h>
 #include <petzval/render/tile_renderer.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace petzval::render {
@@ -31,7 +32,8 @@ class TileRenderer {
         tile_(tile),
         half_(half),
         whole_(film),
-        film_(film.part(tile)) {}
+        film_(film.part(tile)),
+        of_sources_(film.sources()) {}
 
   TileResult run(const std::vector<SampleRange>& of_group) {
     result_.strays.resize(of_group.size());
@@ -103,29 +105,38 @@ class TileRenderer {
     const Vector3 origin = place.point(ray.origin + part.from * ray.direction);
     const Vector3 along = place.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
-    const PathLight light =
-        tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
-                      (part.to - part.from) * length(along), film_.has_first_surfaces() ? &first : nullptr);
+    std::ranges::fill(of_sources_, SourceLight());
+    const PathLight light = tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
+                                          (part.to - part.from) * length(along),
+                                          film_.has_first_surfaces() ? &first : nullptr, of_sources_);
     const SeenPoint seen{ray.origin, ray.direction, part.from + light.distance / length(along)};
-    add_light(i, group, light, seen);
+    const int places = light.straight.is_black() ? 1 : places_of_lamp;
+    if (!light.straight.is_black()) add_lamp(pixel_of(i), light.straight, ray);
+    add_light(i, group, light.shared, light.alone, seen, places, 0);
+    std::size_t bands = task_.world.groups.wavelengths_nm().size(), plane = bands;
+    for (const SourceLight& each : of_sources_) {
+      add_light(i, group, each.shared, each.alone, seen, places, plane);
+      plane += bands;
+    }
     if (!light.arriving.is_black())
       for (int lane = 0; lane < lanes_; ++lane)
         result_.arriving[band(group, lane)] += static_cast<double>(light.arriving[lane]);
     if (first.met) add_first(i, group, first, place);
   }
 
-  void add_light(std::size_t i, int group, const PathLight& light, const SeenPoint& seen) {
+  /// \param first_plane  of the light that it is a part of (Film::at).
+  void add_light(std::size_t i, int group, const Lanes& shared, float alone, const SeenPoint& seen,
+                 int places, std::size_t first_plane) {
     const CameraRay& ray = rays_[i];
     const int hero = places_[i].hero;
     const Pixel own = pixel_of(i);
-    if (!light.straight.is_black()) add_lamp(own, light.straight, ray);
-    const int places = light.straight.is_black() ? 1 : places_of_lamp;
     const bool own_gathers = &task_.gathering == &task_.sampling;
     for (int lane = 0; lane < lanes_; ++lane) {
-      double value = static_cast<double>(light.shared[lane] * ray.weight[lane]);
-      if (lane == hero) value += static_cast<double>(light.alone * ray.weight_alone);
+      double value = static_cast<double>(shared[lane] * ray.weight[lane]);
+      if (lane == hero) value += static_cast<double>(alone * ray.weight_alone);
       if (value == 0) continue;
-      if (waves_) value = add_waves(i, group, lane, value, seen, places);
+      const std::size_t plane = first_plane + band(group, lane);
+      if (waves_) value = add_waves(i, group, lane, value, seen, places, plane);
       if (value == 0) continue;
       std::optional<Pixel> pixel = own;
       if (ray.spread && lane != hero)
@@ -134,12 +145,13 @@ class TileRenderer {
                                          static_cast<double>(ray.row[static_cast<std::size_t>(lane)]));
       else if (!own_gathers)
         pixel = task_.gathering.pixel_at(places_[i], places_[i].column, places_[i].row);
-      if (pixel) add(*pixel, group, lane, value);
+      if (pixel) add(*pixel, group, plane, value);
     }
   }
 
   /// The share of waves, at places that wavelengths do not have in common. \returns what is left to rays.
-  double add_waves(std::size_t i, int group, int lane, double value, const SeenPoint& seen, int places) {
+  double add_waves(std::size_t i, int group, int lane, double value, const SeenPoint& seen, int places,
+                   std::size_t plane) {
     const auto& [u, v, lot, turn] = numbers_[i];
     value /= task_.gathering.site_share();
     const WaveImage::Spread spread =
@@ -148,7 +160,7 @@ class TileRenderer {
     for (int k = lane * places; k < (lane + 1) * places; ++k) {
       const auto [column, row] = spread.place(turned(u, k * even_places[0]), turned(v, k * even_places[1]));
       if (const auto pixel = task_.gathering.pixel_at(places_[i], column, row))
-        add(*pixel, group, lane, value * spread.share / places);
+        add(*pixel, group, plane, value * spread.share / places);
     }
     return value * (1 - spread.share);
   }
@@ -165,20 +177,19 @@ class TileRenderer {
     return static_cast<std::size_t>(group + lane * task_.world.groups.count());
   }
 
-  void add(Pixel pixel, int group, int lane, double value) {
-    const std::size_t band = this->band(group, lane);
+  void add(Pixel pixel, int group, std::size_t plane, double value) {
     const PixelWindow& all = whole_.window;
     if (!all.contains(pixel.column, pixel.row)) {
       const PixelWindow& picture = whole_.whole;
       return result_.outside.push_back(
-          {band * picture.size() + picture.index(pixel.column, pixel.row), value});
+          {plane * picture.size() + picture.index(pixel.column, pixel.row), value});
     }
     if (!tile_.contains(pixel.column, pixel.row))
       return result_.strays[static_cast<std::size_t>(group)].push_back(
-          {band * all.size() + all.index(pixel.column, pixel.row), value});
+          {plane * all.size() + all.index(pixel.column, pixel.row), value});
     const std::size_t within = tile_.index(pixel.column, pixel.row);
-    film_.light[band * tile_.size() + within] += value;
-    if (half_) film_.half[within] += value;
+    film_.at(plane * tile_.size() + within) += value;
+    if (half_ && plane < whole_.arriving.size()) film_.half[within] += value;
   }
 
   void add_first(std::size_t i, int group, const FirstSurface& first, const Transform& place) {
@@ -202,7 +213,8 @@ class TileRenderer {
   int lanes_ = 0;             ///< of the group whose samples are taken
   std::uint32_t stream_ = 0;  ///< of its random numbers
   Film& whole_;
-  Film film_;  ///< of the tile
+  Film film_;                            ///< of the tile
+  std::vector<SourceLight> of_sources_;  ///< of one path, if wanted
   TileResult result_;
   std::vector<SobolSample> samples_;
   std::vector<FilmSample> places_;

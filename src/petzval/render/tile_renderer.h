@@ -29,7 +29,7 @@ struct SampleRange {
 
 /// Light that landed outside of the tile that found it.
 struct Stray {
-  std::size_t at;  ///< into Film::light
+  std::size_t at;  ///< as Film::at() has it
   double light;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/stop.h>
+#include <petzval/render/lights/alter_lights.h>
 #include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
 
@@ -82,7 +83,8 @@ class WorldBuilder {
     lights.area_spectra.push_back(area_radiance(entity, area, world_.groups, options_, unsupported_));
     geometry.first_light = static_cast<int>(lights.areas.size());
     for (std::size_t i = 0; i < geometry.primitives(); ++i)
-      lights.areas.push_back({static_cast<int>(world_.geometries.size()), i, spectrum, two_sided});
+      lights.areas.push_back({static_cast<int>(world_.geometries.size()), i, spectrum, two_sided,
+                              static_cast<int>(scene_.lights.size()) + description.area_light});
   }
 
   const SceneDescription& scene_;
@@ -105,10 +107,16 @@ std::unique_ptr<const World> build_world(const SceneDescription& scene, const Wa
   for (const auto& shapes : scene.objects) objects.push_back(builder.add(shapes));
   for (const InstanceDescription& instance : scene.instances)
     world->placed.push_back({instance.object, instance.world_from_instance});
-  for (const LightDescription& light : scene.lights)
-    add_light(light, world->groups, options, unsupported, world->lights);
+  Lights& lights = world->lights;
+  lights.sources = lights_of(scene);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const std::size_t smalls = lights.smalls.size();
+    add_light(scene.lights[i], world->groups, options, unsupported, lights);
+    for (std::size_t k = smalls; k < lights.smalls.size(); ++k) lights.smalls[k].source = static_cast<int>(i);
+    lights.environment_sources.resize(lights.environments.size(), static_cast<int>(i));
+  }
   world->intersector = std::make_unique<Intersector>(world->geometries, standing, objects, world->placed);
-  world->lights.prepare(world->geometries);
+  lights.prepare(world->geometries);
   return world;
 }
 

@@ -89,6 +89,7 @@ struct RenderRequest {
   /// RMS error over mean light.
   double noise = 0;
   bool first_surfaces = false;  ///< depth, normals and albedo, too
+  bool light_groups = false;    ///< what each light gives of the picture, too
   /// A file to go on from and to save to, on the way, when the picture is done and when it is stopped; more
   /// samples may then be asked for. Empty: none.
   std::string checkpoint = {};

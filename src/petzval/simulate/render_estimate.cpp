@@ -30,9 +30,12 @@ double bytes_of(const PreparedScene& scene) {
   const bool layers = scene.request.first_surfaces, kept = !scene.request.checkpoint.empty();
   const double sums =
       bands + 1 + (scene.request.noise > 0 ? 1 : 0) + (layers ? bands + groups.count() + 4 : 0);
-  const double picture = bands + (layers ? bands + 5 : 0);
+  const double lights =
+      scene.request.light_groups ? static_cast<double>(scene.world->world->lights.sources.size()) : 0;
+  const double picture = bands * (1 + lights) + (layers ? bands + 5 : 0);
   const double pixels = static_cast<double>(scene.film.columns) * scene.film.rows;
-  return pixels * (sums * sizeof(render::ExactSum) * (kept ? 2 : 1) + picture * sizeof(float));
+  return pixels *
+         ((sums + bands * lights) * sizeof(render::ExactSum) * (kept ? 2 : 1) + picture * sizeof(float));
 }
 
 }  // namespace
@@ -47,7 +50,7 @@ RenderEstimate estimate_render(const PreparedScene& scene, const Context& contex
   const int groups = scene.world->world->groups.count();
   request.checkpoint.clear();
   request.region.reset(), request.sample_range.reset();
-  request.first_surfaces = false;
+  request.first_surfaces = request.light_groups = false;
   request.samples_per_pixel = probe_samples_a_group * groups;
   const double wanted = request.noise;
   request.noise = wanted > 0 ? 1e-9 : 0;  // all samples are taken, and the noise is told

@@ -19,17 +19,17 @@ namespace petzval::render {
 
 namespace {
 
-constexpr std::string_view magic = "petzval-render-checkpoint/5\n";
+constexpr std::string_view magic = "petzval-render-checkpoint/6\n";
 constexpr std::size_t most_checkpoint_bytes = std::size_t{1} << 36;
 
 struct CheckpointHead {
   std::uint64_t fingerprint_size, rays, passed;
   PixelWindow window, whole;
   std::int32_t first_pass, passes;
-  std::array<std::uint64_t, 8> sizes;  ///< of the sums
+  std::array<std::uint64_t, 9> sizes;  ///< of the sums
   std::uint64_t outside;
 };
-static_assert(sizeof(CheckpointHead) == 136, "without bytes that nobody writes");
+static_assert(sizeof(CheckpointHead) == 144, "without bytes that nobody writes");
 
 struct OutsideSum {
   std::uint64_t at = 0, unused = 0;
@@ -44,8 +44,8 @@ std::uint32_t checksum(std::uint32_t so_far, const void* bytes, std::size_t coun
 
 template <typename AnyFilm>
 auto all_sums_of(AnyFilm& film) {
-  return std::array{&film.light, &film.half,   &film.lamps,  &film.met,
-                    &film.depth, &film.normal, &film.albedo, &film.arriving};
+  return std::array{&film.light, &film.of_sources, &film.half,   &film.lamps,   &film.met,
+                    &film.depth, &film.normal,     &film.albedo, &film.arriving};
 }
 
 InputError damaged(const std::string& path, const char* how) {
@@ -119,7 +119,7 @@ class CheckpointReader {
     for (std::uint64_t i = 0; i < head_.outside; ++i) {
       OutsideSum each;
       take(&each, sizeof each);
-      if (each.at >= film.arriving.size() * whole.size())
+      if (each.at >= film.arriving.size() * (1 + film.sources()) * whole.size())
         throw damaged(path_, "it has light beyond the picture");
       film.outside.emplace_hint(film.outside.end(), each.at, each.light);
     }
@@ -138,7 +138,8 @@ class CheckpointReader {
       return sums.size() == count * pixels;
     };
     const bool first = !film.met.empty();
-    if (!planes(film.light, bands) || !planes(film.lamps, 1) ||
+    if (!planes(film.light, bands) ||
+        film.of_sources.size() % std::max<std::size_t>(1, film.light.size()) != 0 || !planes(film.lamps, 1) ||
         !(film.half.empty() || planes(film.half, 1)) || film.met.size() % pixels != 0 ||
         !planes(film.depth, first ? 1 : 0) || !planes(film.normal, first ? 3 : 0) ||
         !planes(film.albedo, first ? bands : 0))
@@ -277,10 +278,11 @@ MergeReport merge_checkpoints(const std::vector<std::string>& pieces, const std:
     if (!piece.half.empty()) throw InputError(each, "was rendered to a noise, which pieces are not");
     if (!sum) {
       sum.emplace(piece.whole, static_cast<int>(piece.arriving.size()),
-                  static_cast<int>(piece.met.size() / piece.window.size()), !piece.met.empty(), false);
+                  static_cast<int>(piece.met.size() / piece.window.size()), !piece.met.empty(), false,
+                  piece.sources());
     }
     if (sum->whole != piece.whole) throw InputError(each, "is a piece of another rectangle of the film");
-    if (piece.arriving.size() != sum->arriving.size() ||
+    if (piece.arriving.size() != sum->arriving.size() || piece.sources() != sum->sources() ||
         piece.met.size() * sum->window.size() != sum->met.size() * piece.window.size())
       throw damaged(each, "its sums are not those of this picture");
     boxes.push_back({each, piece.window, piece.first_pass, piece.end_pass()});

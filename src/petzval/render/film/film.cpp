@@ -15,7 +15,8 @@ constexpr double most_values = 1073741824.0;
 /// Of a film or a const one.
 template <typename AnyFilm>
 auto sums_of(AnyFilm& film) {
-  return std::array{&film.light, &film.half, &film.lamps, &film.met, &film.depth, &film.normal, &film.albedo};
+  return std::array{&film.light, &film.of_sources, &film.half,   &film.lamps,
+                    &film.met,   &film.depth,      &film.normal, &film.albedo};
 }
 
 /// Row by row, where a tile's sums stand in those of a window that holds it.
@@ -30,16 +31,18 @@ void each_row(const PixelWindow& window, const PixelWindow& tile, std::size_t pl
 
 }  // namespace
 
-Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces, bool noise)
+Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces, bool noise,
+           std::size_t sources)
     : window(pixels), whole(pixels) {
-  const double values =
-      static_cast<double>(pixels.size()) * (bands * (first_surfaces ? 2.0 : 1.0) + groups + 6);
+  const double values = static_cast<double>(pixels.size()) *
+                        (bands * ((first_surfaces ? 2.0 : 1.0) + static_cast<double>(sources)) + groups + 6);
   if (values > most_values)
     throw InputError(
         fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
                     "pixels or bands would fit",
                     pixels.columns(), pixels.rows(), bands, values * sizeof(ExactSum) / 1073741824));
   light.assign(pixels.size() * static_cast<std::size_t>(bands), ExactSum());
+  of_sources.assign(sources * light.size(), ExactSum());
   arriving.assign(static_cast<std::size_t>(bands), ExactSum());
   lamps.assign(pixels.size(), ExactSum());
   if (noise) half.assign(pixels.size(), ExactSum());
@@ -87,11 +90,11 @@ void Film::add(const Film& piece) {
              });
   for (std::size_t band = 0; band < arriving.size(); ++band) arriving[band] += piece.arriving[band];
   for (const auto& [at, light_there] : piece.outside) {
-    const std::size_t pixel = at % whole.size(), band = at / whole.size();
+    const std::size_t pixel = at % whole.size(), plane = at / whole.size();
     const int column = whole.left + static_cast<int>(pixel % static_cast<std::size_t>(whole.columns())),
               row = whole.top + static_cast<int>(pixel / static_cast<std::size_t>(whole.columns()));
     if (window.contains(column, row))
-      light[band * window.size() + window.index(column, row)] += light_there;
+      this->at(plane * window.size() + window.index(column, row)) += light_there;
     else
       outside[at] += light_there;
   }

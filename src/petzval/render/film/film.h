@@ -16,22 +16,30 @@ namespace petzval::render {
 /// Sums over samples, the same bits in whatever order they are gathered.
 struct Film {
   PixelWindow window;
-  std::vector<ExactSum> light;  ///< sums over samples, [band][pixel]
+  std::vector<ExactSum> light;       ///< sums over samples, [band][pixel]
+  std::vector<ExactSum> of_sources;  ///< the same of each light of the scene, if wanted, [light][band][pixel]
   std::vector<ExactSum> half;  ///< of every second pass, summed over bands: tells the noise if that is wanted
   std::vector<ExactSum> lamps;  ///< light that comes straight from a lamp, summed over bands
   /// Of first surfaces, if wanted: how many rays of each group of wavelengths met one, and sums over them.
   std::vector<ExactSum> met, depth, normal, albedo;  ///< [group][pixel], [pixel], [3][pixel], [band][pixel]
   std::vector<ExactSum> arriving;  ///< light that comes straight to what is seen, summed over rays, [band]
   std::map<std::uint64_t, ExactSum>
-      outside;        ///< of `light`, beyond the window: by band · whole.size() + pixel of `whole`
+      outside;        ///< beyond the window: by plane · whole.size() + pixel of `whole`
   PixelWindow whole;  ///< the picture that the window is a piece of
   std::uint64_t rays = 0, passed = 0;
   int first_pass = 0;  ///< of the rounds of samples that are in the sums
   int passes = 0;      ///< how many of them are
 
   /// \throws InputError if it would not fit into memory.
-  Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, bool noise);
+  /// \param sources  lights whose light is kept apart, too.
+  Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, bool noise,
+       std::size_t sources = 0);
   int end_pass() const { return first_pass + passes; }
+  std::size_t sources() const { return light.empty() ? 0 : of_sources.size() / light.size(); }
+  /// The sums of a pixel in a plane: the bands of all light, then those of each source.
+  ExactSum& at(std::size_t index) {
+    return index < light.size() ? light[index] : of_sources[index - light.size()];
+  }
   bool has_first_surfaces() const { return !met.empty(); }
 
   /// The sums of a window within this one; and how they are put back.

@@ -65,6 +65,26 @@ std::vector<double> GltfExtension::numbers(const char* member, std::vector<doubl
   return result;
 }
 
+tinygltf::TextureInfo GltfExtension::texture(const char* member) {
+  tinygltf::TextureInfo result;
+  const tinygltf::Value* value = ask(member);
+  if (!value) return result;
+  const auto whole = [&](const char* name, int otherwise) {
+    if (!value->IsObject() || (!value->Has(name) && otherwise < 0))
+      throw scene_error(file_.at(path_ + "." + member), "an object with an index would be right");
+    if (!value->Has(name)) return otherwise;
+    const tinygltf::Value& number = value->Get(name);
+    if (!number.IsInt() || number.GetNumberAsInt() < 0)
+      throw scene_error(file_.at(fmt::format("{}.{}.{}", path_, member, name)),
+                        "a whole number, 0 or more, would be right");
+    return number.GetNumberAsInt();
+  };
+  result.index = whole("index", -1), result.texCoord = whole("texCoord", 0);
+  if (value->Has("extensions") && value->Get("extensions").IsObject())
+    result.extensions = value->Get("extensions").Get<tinygltf::Value::Object>();
+  return result;
+}
+
 void GltfExtension::report_rest(Unsupported& unsupported) const {
   if (!members_) return;
   for (const std::string& key : members_->Keys())

@@ -29,6 +29,7 @@ class GltfExtension {
   double number(const char* member, double otherwise, double least, double most);
   int index(const char* member);                                                   ///< −1: absent
   std::vector<double> numbers(const char* member, std::vector<double> otherwise);  ///< as many as these
+  tinygltf::TextureInfo texture(const char* member);                               ///< index −1: absent
   /// Reports the members that nobody asked for.
   void report_rest(Unsupported& unsupported) const;
 

@@ -24,10 +24,11 @@ bool is_white(const std::vector<double>& rgb) {
 struct GltfMaterials::Reading {
   const tinygltf::Material& material;
   std::string path;  ///< "materials[2]"
-  GltfExtension transmission, volume, ior, specular, strength;
-  GltfTexture base{}, metal_and_roughness{}, emission{}, lean{};
-  std::string colour{}, metallic{}, alpha{}, normals{};  ///< names of textures; empty: the factors alone
-  double index_of_refraction = 1.5, specular_factor = 1;
+  GltfExtension transmission, volume, ior, specular, strength, clearcoat;
+  GltfTexture base{}, metal_and_roughness{}, emission{}, lean{}, coat{}, coat_roughness{};
+  /// Names of textures; empty: the factors alone.
+  std::string colour{}, metallic{}, alpha{}, normals{}, coat_share{}, coat_alpha{};
+  double index_of_refraction = 1.5, specular_factor = 1, coat_factor = 0, coat_roughness_factor = 0;
 
   Reading(const GltfFile& file, const tinygltf::Material& of, std::string at)
       : material(of),
@@ -36,7 +37,8 @@ struct GltfMaterials::Reading {
         volume(file, of.extensions, "KHR_materials_volume", path),
         ior(file, of.extensions, "KHR_materials_ior", path),
         specular(file, of.extensions, "KHR_materials_specular", path),
-        strength(file, of.extensions, "KHR_materials_emissive_strength", path) {}
+        strength(file, of.extensions, "KHR_materials_emissive_strength", path),
+        clearcoat(file, of.extensions, "KHR_materials_clearcoat", path) {}
 
   const tinygltf::PbrMetallicRoughness& pbr() const { return material.pbrMetallicRoughness; }
   std::array<double, 3> base_factor() const {
@@ -44,7 +46,7 @@ struct GltfMaterials::Reading {
     return {f[0], f[1], f[2]};
   }
   int uv_set() const {
-    for (const GltfTexture* texture : {&base, &metal_and_roughness, &lean})
+    for (const GltfTexture* texture : {&base, &metal_and_roughness, &lean, &coat, &coat_roughness})
       if (*texture) return texture->uv_set;
     return -1;
   }
@@ -57,12 +59,18 @@ struct GltfMaterials::Reading {
     else
       maker.texture("reflectance", colour);
   }
-  void with_roughness(EntityMaker& maker) const {
+  void with_roughness(EntityMaker& maker, const char* name = "roughness") const {
     maker.flag("remaproughness", false);
     if (alpha.empty())
-      maker.number("roughness", pbr().roughnessFactor * pbr().roughnessFactor);
+      maker.number(name, pbr().roughnessFactor * pbr().roughnessFactor);
     else
-      maker.texture("roughness", alpha);
+      maker.texture(name, alpha);
+  }
+  void with_coat(EntityMaker& maker, const char* name) const {
+    if (coat_alpha.empty())
+      maker.number(name, coat_roughness_factor * coat_roughness_factor);
+    else
+      maker.texture(name, coat_alpha);
   }
 };
 
@@ -104,27 +112,40 @@ GltfSurface GltfMaterials::read(int index, bool tinted) {
   if (tinted && reading.colour.empty())
     reading.colour = textures_.add_flat(reading.base_factor(), file_.at(reading.path));
 
-  const double metallic = reading.pbr().metallicFactor;
   GltfSurface surface;
   read_alpha(reading, surface);
   surface.uv_set = reading.uv_set();
   surface.area_light = add_emission(reading);
-  if (metallic == 0) {
-    surface.material = add_body(reading);
-  } else if (metallic == 1 && reading.metallic.empty()) {
-    surface.material = add_metal(reading);
+  if (reading.coat_factor == 0) {
+    surface.material = add_surface(reading, false);
+  } else if (reading.coat_factor == 1 && reading.coat_share.empty()) {
+    surface.material = add_surface(reading, true);
   } else {
-    const int body = add_body(reading), metal = add_metal(reading);
-    EntityMaker mix("mix", file_.at(pbr));
-    mix.text("materials", {fmt::format("gltf {}", body), fmt::format("gltf {}", metal)});
-    if (reading.metallic.empty())
-      mix.number("amount", metallic);
-    else
-      mix.texture("amount", reading.metallic);
-    surface.material = add(mix.made());
+    const int bare = add_surface(reading, false), coated = add_surface(reading, true);
+    surface.material =
+        add_mix(bare, coated, reading.coat_factor, reading.coat_share, reading.clearcoat.path());
   }
   report_rest(reading);
   return surface;
+}
+
+int GltfMaterials::add_surface(const Reading& reading, bool under_coat) {
+  const double metallic = reading.pbr().metallicFactor;
+  if (metallic == 0) return add_body(reading, under_coat);
+  if (metallic == 1 && reading.metallic.empty()) return add_metal(reading, under_coat);
+  const int body = add_body(reading, under_coat), metal = add_metal(reading, under_coat);
+  return add_mix(body, metal, metallic, reading.metallic, reading.path + ".pbrMetallicRoughness");
+}
+
+int GltfMaterials::add_mix(int first, int second, double amount, const std::string& texture,
+                           const std::string& path) {
+  EntityMaker mix("mix", file_.at(path));
+  mix.text("materials", {fmt::format("gltf {}", first), fmt::format("gltf {}", second)});
+  if (texture.empty())
+    mix.number("amount", amount);
+  else
+    mix.texture("amount", texture);
+  return add(mix.made());
 }
 
 void GltfMaterials::read_textures(Reading& reading) {
@@ -141,7 +162,9 @@ void GltfMaterials::read_textures(Reading& reading) {
   const tinygltf::NormalTextureInfo& fourth = reading.material.normalTexture;
   reading.lean =
       textures_.reference(fourth.index, fourth.texCoord, fourth.extensions, reading.path + ".normalTexture");
-  for (const GltfTexture* each : {&reading.metal_and_roughness, &reading.lean})
+  if (reading.clearcoat.is_there()) read_coat(reading);
+  for (const GltfTexture* each :
+       {&reading.metal_and_roughness, &reading.lean, &reading.coat, &reading.coat_roughness})
     if (*each && each->uv_set != reading.uv_set())
       unsupported_.report(file_.at(each->path + ".texCoord"),
                           "another set of texture coordinates than that of the first texture");
@@ -153,6 +176,29 @@ void GltfMaterials::read_textures(Reading& reading) {
   if (roughness > 0)
     reading.alpha = textures_.add_square(textures_.add_channel(reading.metal_and_roughness, 1, roughness),
                                          file_.at(reading.metal_and_roughness.path));
+}
+
+void GltfMaterials::read_coat(Reading& reading) {
+  GltfExtension& coat = reading.clearcoat;
+  const auto texture = [&](const char* member) {
+    const tinygltf::TextureInfo info = coat.texture(member);
+    return textures_.reference(info.index, info.texCoord, info.extensions, coat.path() + "." + member);
+  };
+  reading.coat_factor = coat.number("clearcoatFactor", 0, 0, 1);
+  reading.coat_roughness_factor = coat.number("clearcoatRoughnessFactor", 0, 0, 1);
+  reading.coat = texture("clearcoatTexture");
+  reading.coat_roughness = texture("clearcoatRoughnessTexture");
+  const GltfTexture lean = texture("clearcoatNormalTexture");
+  coat.report_rest(unsupported_);
+  if (reading.coat_factor == 0) return;
+  if (lean.index != reading.lean.index)
+    unsupported_.report(file_.at(coat.path() + ".clearcoatNormalTexture"),
+                        "a coat whose normals are not those of what it covers");
+  if (reading.coat) reading.coat_share = textures_.add_channel(reading.coat, 0, reading.coat_factor);
+  if (reading.coat_roughness && reading.coat_roughness_factor > 0)
+    reading.coat_alpha =
+        textures_.add_square(textures_.add_channel(reading.coat_roughness, 1, reading.coat_roughness_factor),
+                             file_.at(reading.coat_roughness.path));
 }
 
 void GltfMaterials::read_alpha(const Reading& reading, GltfSurface& surface) {
@@ -179,23 +225,26 @@ int GltfMaterials::add(Entity entity) {
   return index;
 }
 
-int GltfMaterials::add_metal(const Reading& reading) {
-  EntityMaker metal("conductor", file_.at(reading.path));
+int GltfMaterials::add_metal(const Reading& reading, bool under_coat) {
+  EntityMaker metal(under_coat ? "coatedconductor" : "conductor", file_.at(reading.path));
   reading.with_colour(metal);
-  reading.with_roughness(metal);
+  reading.with_roughness(metal, under_coat ? "conductor.roughness" : "roughness");
+  if (under_coat) reading.with_coat(metal, "interface.roughness");
   reading.with_normals(metal);
   return add(metal.made());
 }
 
-int GltfMaterials::add_opaque(const Reading& reading) {
-  const bool coated = reading.specular_factor > 0 && reading.index_of_refraction > 1;
+int GltfMaterials::add_opaque(const Reading& reading, bool under_coat) {
+  const bool coated = under_coat || (reading.specular_factor > 0 && reading.index_of_refraction > 1);
   EntityMaker body(coated ? "coateddiffuse" : "diffuse", file_.at(reading.path));
   reading.with_colour(body);
   reading.with_normals(body);
-  if (coated) {
+  if (under_coat)
+    reading.with_coat(body.flag("remaproughness", false), "roughness");
+  else if (coated)
     reading.with_roughness(body);
-    body.number("eta", reading.index_of_refraction).flag("throughcoating", true);
-  }
+  // The coat has the index of lacquer and fills the facets of what it covers.
+  if (coated) body.number("eta", under_coat ? 1.5 : reading.index_of_refraction).flag("throughcoating", true);
   return add(body.made());
 }
 
@@ -215,16 +264,14 @@ int GltfMaterials::add_glass(const Reading& reading) {
   return add(glass.made());
 }
 
-int GltfMaterials::add_body(const Reading& reading) {
+int GltfMaterials::add_body(const Reading& reading, bool under_coat) {
   GltfExtension transmission = reading.transmission;
   const double share = transmission.number("transmissionFactor", 0, 0, 1);
-  if (share == 0) return add_opaque(reading);
+  if (share == 0) return add_opaque(reading, under_coat);
+  if (under_coat) unsupported_.report(file_.at(reading.clearcoat.path()), "a clear coat on glass");
   if (share == 1) return add_glass(reading);
-  const int opaque = add_opaque(reading), glass = add_glass(reading);
-  return add(EntityMaker("mix", file_.at(transmission.path()))
-                 .text("materials", {fmt::format("gltf {}", opaque), fmt::format("gltf {}", glass)})
-                 .number("amount", share)
-                 .made());
+  const int opaque = add_opaque(reading, under_coat), glass = add_glass(reading);
+  return add_mix(opaque, glass, share, "", transmission.path());
 }
 
 int GltfMaterials::add_emission(const Reading& reading) {
@@ -271,10 +318,11 @@ void GltfMaterials::report_rest(const Reading& reading) {
   strength.number("emissiveStrength", 1, 0, unbounded);
   for (const GltfExtension* each : {&transmission, &volume, &ior, &specular, &strength})
     each->report_rest(unsupported_);
-  report_gltf_extensions(file_, reading.material.extensions, reading.path,
-                         {"KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior",
-                          "KHR_materials_specular", "KHR_materials_emissive_strength"},
-                         unsupported_);
+  report_gltf_extensions(
+      file_, reading.material.extensions, reading.path,
+      {"KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior", "KHR_materials_specular",
+       "KHR_materials_emissive_strength", "KHR_materials_clearcoat"},
+      unsupported_);
 }
 
 }  // namespace petzval::render

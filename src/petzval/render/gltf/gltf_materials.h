@@ -23,8 +23,9 @@ struct GltfSurface {
 /// the rest a coateddiffuse of its index of refraction, whose base looks like the base colour through its
 /// coating; both with facets of alpha = roughness² (glTF 2.0, appendix B). What light the coating lets in,
 /// the base colour's share of it comes out again, as B.3.5 has it. KHR_materials_transmission puts glass in
-/// the place of the base: a thin sheet, or with KHR_materials_volume a body. Opacity is a matter of the shape
-/// (Geometry::opacity).
+/// the place of the base: a thin sheet, or with KHR_materials_volume a body. KHR_materials_clearcoat is a
+/// coat of index 1.5 on as much of the surface as its factor says: coateddiffuse and coatedconductor. Opacity
+/// is a matter of the shape (Geometry::opacity).
 class GltfMaterials {
  public:
   GltfMaterials(const GltfFile& file, SceneDescription& scene, Unsupported& unsupported)
@@ -38,12 +39,16 @@ class GltfMaterials {
   struct Reading;
   GltfSurface read(int index, bool tinted);
   void read_textures(Reading& reading);
+  void read_coat(Reading& reading);
   void report_rest(const Reading& reading);
   void read_alpha(const Reading& reading, GltfSurface& surface);
-  int add_body(const Reading& reading);
-  int add_opaque(const Reading& reading);
+  int add_body(const Reading& reading, bool under_coat);
+  int add_opaque(const Reading& reading, bool under_coat);
+  int add_surface(const Reading& reading, bool under_coat);
   int add_glass(const Reading& reading);
-  int add_metal(const Reading& reading);
+  int add_metal(const Reading& reading, bool under_coat);
+  /// The first material to the share 1 − amount, the second to the share `amount`, or to that of a texture.
+  int add_mix(int first, int second, double amount, const std::string& texture, const std::string& path);
   int add_emission(const Reading& reading);
   int add(Entity entity);
 

@@ -19,10 +19,9 @@ namespace {
 
 /// What a file may require of its reader.
 constexpr std::initializer_list<const char*> known_extensions{
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_volume",
-    "KHR_mesh_quantization",      "KHR_texture_transform"};
+    "KHR_lights_punctual",  "KHR_materials_emissive_strength", "KHR_materials_clearcoat",
+    "KHR_materials_ior",    "KHR_materials_specular",          "KHR_materials_transmission",
+    "KHR_materials_volume", "KHR_mesh_quantization",           "KHR_texture_transform"};
 
 void report_file(const GltfFile& file, Unsupported& unsupported) {
   const tinygltf::Model& model = file.model;

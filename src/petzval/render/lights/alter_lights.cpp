@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/render/lights/alter_lights.h>
@@ -21,16 +22,9 @@ struct Named {
 constexpr std::array<Named, 3> kinds = {Named{"scale", 0, 1e12}, Named{"turn_deg", -1e6, 1e6},
                                         Named{"kelvin", 100, 1e6}};
 
-std::string lights_of(const SceneDescription& scene) {
-  std::string text;
-  std::size_t number = 0;
-  const auto add = [&](const Entity& light, const char* what) {
-    text += fmt::format("{}{} {}{}", number == 0 ? "" : ", ", number, what, light.type);
-    ++number;
-  };
-  for (const LightDescription& light : scene.lights) add(light.entity, "");
-  for (const Entity& light : scene.area_lights) add(light, "area ");
-  return text.empty() ? "none" : text;
+std::string lights_text(const SceneDescription& scene) {
+  const std::vector<std::string> lights = lights_of(scene);
+  return lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", "));
 }
 
 /// The axis of the world nearest to the camera's up.
@@ -55,6 +49,16 @@ Parameter number(const Parameters& of, const char* type, const char* name, doubl
 }
 
 }  // namespace
+
+std::vector<std::string> lights_of(const SceneDescription& scene) {
+  std::vector<std::string> lights;
+  const auto add = [&](const Entity& light, const char* what) {
+    lights.push_back(fmt::format("{} {}{}", lights.size(), what, light.type));
+  };
+  for (const LightDescription& light : scene.lights) add(light.entity, "");
+  for (const Entity& light : scene.area_lights) add(light, "area ");
+  return lights;
+}
 
 std::string LightChange::text() const {
   return fmt::format("{}@{}={}", kinds[static_cast<std::size_t>(kind)].name, light, value);
@@ -85,7 +89,7 @@ void alter_lights(std::span<const LightChange> changes, SceneDescription& scene)
   for (const LightChange& change : changes) {
     if (change.light >= sources + scene.area_lights.size())
       throw InputError(fmt::format("{}: there is no light {}; the scene has {}", change.text(), change.light,
-                                   lights_of(scene)));
+                                   lights_text(scene)));
     const bool is_source = change.light < sources;
     Entity& light = is_source ? scene.lights[change.light].entity : scene.area_lights[change.light - sources];
     Parameters& parameters = light.parameters;
@@ -101,7 +105,7 @@ void alter_lights(std::span<const LightChange> changes, SceneDescription& scene)
         if (!is_source)
           throw InputError(
               fmt::format("{}: is a surface that shines, which stands where it is; the scene has {}",
-                          change.text(), lights_of(scene)));
+                          change.text(), lights_text(scene)));
         Transform& place = scene.lights[change.light].world_from_light;
         place = Transform::rotation(change.value, upright(scene)) * place;
         break;

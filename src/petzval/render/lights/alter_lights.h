@@ -9,6 +9,9 @@
 
 namespace petzval::render {
 
+/// The lights of a scene by the numbers that LightChange has: "0 infinite", "1 area diffuse".
+std::vector<std::string> lights_of(const SceneDescription& scene);
+
 /// \throws InputError for a light that the scene has not, naming those that it has, and a surface to be
 /// turned.
 void alter_lights(std::span<const LightChange> changes, SceneDescription& scene);

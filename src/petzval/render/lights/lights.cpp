@@ -182,7 +182,8 @@ std::optional<LightSample> Lights::sample_far(const LightPlan& plan, double choi
 
 std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3 to, int group) const {
   const Lanes& strength = light.strength[static_cast<std::size_t>(group)];
-  if (light.kind == SmallLight::Kind::distant) return LightSample{-light.direction, {}, strength, 1, true};
+  if (light.kind == SmallLight::Kind::distant)
+    return LightSample{-light.direction, {}, strength, 1, true, light.source};
   const Vector3 away = light.position - to;
   const double distance = length(away);
   if (!(distance > 0)) return {};
@@ -190,10 +191,10 @@ std::optional<LightSample> Lights::sample_small(const SmallLight& light, Vector3
   double share = 1 / (distance * distance);
   if (light.kind == SmallLight::Kind::spot) share *= spot_share(light, -dot(direction, light.direction));
   if (!(share > 0)) return {};
-  if (!light.pattern) return LightSample{direction, light.position, share * strength, 1, true};
+  if (!light.pattern) return LightSample{direction, light.position, share * strength, 1, true, light.source};
   const Lanes sent = strength * light.pattern->share(-direction, group);
   if (sent.is_black()) return {};
-  return LightSample{direction, light.position, share * sent, 1, true};
+  return LightSample{direction, light.position, share * sent, 1, true, light.source};
 }
 
 std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geometries, std::size_t index,
@@ -233,7 +234,7 @@ std::optional<LightSample> Lights::sample_area(const std::vector<Geometry>& geom
   const Vector3 direction = 1 / distance * away;
   const Lanes radiance = emitted(index, point, -direction, group);
   if (radiance.is_black()) return {};
-  return LightSample{direction, point.origin_towards(-direction), radiance, pdf};
+  return LightSample{direction, point.origin_towards(-direction), radiance, pdf, false, light.source};
 }
 
 Lanes Lights::emitted(std::size_t area, const SurfacePoint& point, Vector3 wo, int group) const {

@@ -11,6 +11,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace petzval::render {
@@ -21,6 +22,7 @@ struct AreaLight {
   std::size_t primitive = 0;
   int spectrum = 0;  ///< into Lights::area_spectra
   bool two_sided = false;
+  int source = 0;  ///< the light of the scene that it is of: those of its file, then its area lights
 };
 
 /// A light without extent.
@@ -31,6 +33,7 @@ struct SmallLight {
   Vector3 position, direction;                  ///< direction in which spot and distant lights shine; unit
   double cos_begin = 1, cos_end = 1;            ///< of a spot: where its edge begins and ends
   std::shared_ptr<const LightPattern> pattern;  ///< of a point light that shines by a picture
+  int source = 0;                               ///< as in AreaLight
 };
 
 /// How light arrives at a point.
@@ -41,6 +44,7 @@ struct LightSample {
   Lanes light;         ///< radiance, or for small lights what stands for radiance / pdf times pdf
   double pdf = 0;      ///< over solid angle, with the choice of the light
   bool small = false;  ///< no other way of sampling finds it
+  int source = -1;     ///< the light of the scene; −1: the skies
 };
 
 /// How likely each light is asked from one point.
@@ -59,6 +63,8 @@ class Lights {
   std::vector<AreaLight> areas;
   std::vector<SmallLight> smalls;
   std::vector<Environment> environments;
+  std::vector<int> environment_sources;  ///< as in AreaLight
+  std::vector<std::string> sources;      ///< the lights of the scene, as notes call them: "2 area diffuse"
 
   /// Builds what choosing takes; call when the lists are complete.
   void prepare(const std::vector<Geometry>& geometries);

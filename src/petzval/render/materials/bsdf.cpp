@@ -75,6 +75,8 @@ Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
     }
     case Kind::dielectric:
       return dielectric_value(wo, wi);
+    case Kind::layered:
+      return layered_value(wo, wi);
     case Kind::thin:
       break;
   }
@@ -103,6 +105,8 @@ double Bsdf::pdf(Vector3 wo, Vector3 wi) const {
     }
     case Kind::dielectric:
       return dielectric_pdf(wo, wi);
+    case Kind::layered:
+      return same_side ? layered_pdf(wo, wi) : 0;
     case Kind::thin:
       break;
   }
@@ -120,6 +124,8 @@ std::optional<BsdfSample> Bsdf::sample(Vector3 wo, double choice, double u, doub
       return sample_conductor(wo, u, v);
     case Kind::dielectric:
       return sample_dielectric(wo, choice, u, v);
+    case Kind::layered:
+      return sample_layered(wo, choice, u, v);
     case Kind::thin:
       break;
   }
@@ -129,6 +135,7 @@ std::optional<BsdfSample> Bsdf::sample(Vector3 wo, double choice, double u, doub
 Lanes Bsdf::albedo() const {
   if (kind_ == Kind::diffuse || kind_ == Kind::coated) return first_;
   if (kind_ == Kind::conductor) return conductor_at(1);
+  if (kind_ == Kind::layered) return layering_->metal ? layered_mirror(1) : first_;
   return Lanes::all(1);
 }
 

@@ -23,6 +23,15 @@ struct BsdfSample {
 /// What a coating reflects as a whole from one direction; see coating_albedo.h.
 class CoatingAlbedo;
 
+/// How a clear dielectric lies over an opaque base.
+struct Layering {
+  double eta = 1.5;      ///< of the dielectric, against the outside
+  double thickness = 0;  ///< its optical depth straight through; 0: it absorbs nothing
+  int max_depth = 0;     ///< of light between its two sides, in boundaries met; 0: any
+  int walks = 1;         ///< that value() is the mean of
+  bool metal = false;    ///< the base: a conductor, or else Lambert's
+};
+
 /// Scattering at one point for one group of wavelengths. Everything in the frame of the shading normal, z its
 /// axis; wo and wi point away from the surface. Radiance is what travels: transmission carries the factor
 /// (near/far index)².
@@ -34,6 +43,12 @@ class Bsdf {
   static Bsdf coated_diffuse(const Lanes& reflectance, double eta, Microfacets facets,
                              const CoatingAlbedo& coating);
   static Bsdf conductor(const Lanes& eta, const Lanes& k, Microfacets facets);
+  /// A clear dielectric over a base, with all that is reflected between them, by random walks through the two
+  /// (Guo, Hasan and Zhao 2018). value() is a draw whose mean is f, the same for the same directions; pdf()
+  /// is near the density of sample(), near enough to weigh two ways of sampling.
+  /// \param first  of the base: its reflectance, or eta in air. \param second  k in air, of a metal.
+  static Bsdf layered(const Lanes& first, const Lanes& second, Microfacets coat, Microfacets base,
+                      const Layering& layering);
   /// `eta`: inside / outside for each lane; `hero`: the lane that decides where the light goes.
   static Bsdf dielectric(const Lanes& eta, int hero, Microfacets facets);
   static Bsdf thin_dielectric(const Lanes& eta);
@@ -55,7 +70,8 @@ class Bsdf {
   Lanes albedo() const;
 
  private:
-  enum class Kind { diffuse, coated, conductor, dielectric, thin };
+  enum class Kind { diffuse, coated, conductor, dielectric, thin, layered };
+  class LayerWalk;
   Bsdf(Kind kind, Microfacets facets) : kind_(kind), facets_(facets) {}
 
   double coat_share(double cos_out) const;
@@ -63,11 +79,15 @@ class Bsdf {
   Lanes conductor_at(double cos) const;
   Lanes dielectric_value(Vector3 wo, Vector3 wi) const;
   double dielectric_pdf(Vector3 wo, Vector3 wi) const;
+  Lanes layered_value(Vector3 wo, Vector3 wi) const;
+  double layered_pdf(Vector3 wo, Vector3 wi) const;
+  Lanes layered_mirror(double cos) const;
   std::optional<BsdfSample> sample_diffuse(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_coated(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_conductor(Vector3 wo, double u, double v) const;
   std::optional<BsdfSample> sample_dielectric(Vector3 wo, double choice, double u, double v) const;
   std::optional<BsdfSample> sample_thin(Vector3 wo, double choice) const;
+  std::optional<BsdfSample> sample_layered(Vector3 wo, double choice, double u, double v) const;
 
   Kind kind_;
   Microfacets facets_;
@@ -77,6 +97,8 @@ class Bsdf {
   int hero_ = 0;
   bool mirror_ = false, disperses_ = false;
   const CoatingAlbedo* coating_ = nullptr;
+  const Layering* layering_ = nullptr;
+  Microfacets base_facets_{0, 0};  ///< below the coat
 };
 
 /// A direction over the hemisphere with density cos/π, from a point of the unit square (Shirley & Chiu 1997).

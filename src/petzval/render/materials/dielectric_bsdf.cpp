@@ -9,14 +9,6 @@ namespace petzval::render {
 
 namespace {
 
-/// The direction behind a boundary of relative index `eta` (far/near) with normal m on wo's side; nothing at
-/// total reflection.
-std::optional<Vector3> refracted(Vector3 wo, Vector3 m, double eta) {
-  const double cos = dot(wo, m), sin2_far = (1 - cos * cos) / (eta * eta);
-  if (sin2_far >= 1) return {};
-  return (cos / eta - std::sqrt(1 - sin2_far)) * m - (1 / eta) * wo;
-}
-
 /// The facet that takes wo to wi, facing +z; nothing if none does.
 std::optional<Vector3> facet_between(Vector3 wo, Vector3 wi, double eta) {
   const bool same_side = wo.z * wi.z > 0;

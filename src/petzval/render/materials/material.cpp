@@ -21,23 +21,35 @@ std::string name_now(const std::string& material) {
   return found == now.end() ? "" : fmt::format(" of pbrt before version 4 (now \"{}\")", found->second);
 }
 
-void read_roughness(const Parameters& parameters, const TextureLibrary& textures, double otherwise,
-                    Material& material) {
-  FloatTexture both = textures.float_parameter(parameters, "roughness", otherwise);
-  material.roughness_u = textures.float_parameter(parameters, "uroughness");
-  material.roughness_v = textures.float_parameter(parameters, "vroughness");
-  if (!material.roughness_u) material.roughness_u = both;
-  if (!material.roughness_v) material.roughness_v = both;
+/// \param layer  "conductor." and the like: what the names of its parameters begin with.
+std::array<FloatTexture, 2> read_roughness(const Parameters& parameters, const TextureLibrary& textures,
+                                           const std::string& layer = "") {
+  const FloatTexture both = textures.float_parameter(parameters, layer + "roughness", 0);
+  std::array result{textures.float_parameter(parameters, layer + "uroughness"),
+                    textures.float_parameter(parameters, layer + "vroughness")};
+  for (FloatTexture& each : result)
+    if (!each) each = both;
+  return result;
+}
+
+void read_roughness(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
+  const auto [u, v] = read_roughness(parameters, textures);
+  material.roughness_u = u, material.roughness_v = v;
   material.remap_roughness = parameters.boolean("remaproughness", true);
 }
 
-Microfacets facets_at(const Material& material, const TexturePoint& point, int group) {
+Microfacets facets_at(const FloatTexture& roughness_u, const FloatTexture& roughness_v, bool remap,
+                      const TexturePoint& point, int group) {
   const auto alpha = [&](const FloatTexture& roughness) {
     const double value = std::clamp(roughness->at(point, group), 0.0, 1.0);
-    return material.remap_roughness ? std::sqrt(value) : value;
+    return remap ? std::sqrt(value) : value;
   };
-  const double u = alpha(material.roughness_u);
-  return {u, material.roughness_v == material.roughness_u ? u : alpha(material.roughness_v)};
+  const double u = alpha(roughness_u);
+  return {u, roughness_v == roughness_u ? u : alpha(roughness_v)};
+}
+
+Microfacets facets_at(const Material& material, const TexturePoint& point, int group) {
+  return facets_at(material.roughness_u, material.roughness_v, material.remap_roughness, point, group);
 }
 
 Lanes clamped_albedo(Lanes value) {
@@ -67,34 +79,53 @@ void read_diffuse_transmission(const Parameters& parameters, const TextureLibrar
 /// By index: what materials share.
 using Coatings = std::map<double, std::shared_ptr<const CoatingAlbedo>>;
 
+/// What a clear coat is: pbrt-v4's parameters of coateddiffuse and coatedconductor.
+const Layering& read_layering(const Parameters& parameters, Unsupported& unsupported, const char* eta,
+                              Material& material) {
+  Layering& layering = material.layering;
+  layering.eta = parameters.number(eta, 1.5);
+  if (!(layering.eta > 1 && layering.eta < 4))
+    throw scene_error(parameters.location_of(eta),
+                      fmt::format("a coating of index {}; above 1 and below 4 would be right", layering.eta));
+  layering.thickness = parameters.number("thickness", 0);
+  if (!(layering.thickness >= 0))
+    throw scene_error(parameters.location_of("thickness"), "0 or more would be right");
+  const auto count = [&](const char* name, int otherwise) {
+    const int value = parameters.integer(name, otherwise);
+    if (parameters.find(name) && !(value >= 1 && value <= 1000))
+      throw scene_error(parameters.location_of(name), "a number from 1 to 1000 would be right");
+    return value;
+  };
+  layering.max_depth = count("maxdepth", 0);
+  layering.walks = count("nsamples", 1);
+  parameters.find("g");  // of a medium, which there is none of
+  if (const Parameter* albedo = parameters.find("albedo"))
+    if (std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
+      unsupported.report(albedo->at, "a medium inside a coating");
+  return layering;
+}
+
 void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures,
                          Unsupported& unsupported, Coatings& coatings, Material& material) {
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
-  read_roughness(parameters, textures, 0, material);
-  const double eta = parameters.number("eta", 1.5);
-  if (!(eta > 1 && eta < 4))
-    throw scene_error(parameters.location_of("eta"),
-                      fmt::format("a coating of index {}; above 1 and below 4 would be right", eta));
+  read_roughness(parameters, textures, material);
+  const double eta = read_layering(parameters, unsupported, "eta", material).eta;
+  material.reflectance_through_coating = parameters.boolean("throughcoating", false);
+  // The closed form has all orders of reflection and nothing that is absorbed.
+  if (material.layering.thickness > 0 || material.layering.max_depth > 0)
+    material.kind = Material::Kind::layered;
   std::shared_ptr<const CoatingAlbedo>& coating = coatings[eta];
   if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
   material.coating = coating;
-  material.reflectance_through_coating = parameters.boolean("throughcoating", false);
-  // A clear coating without thickness: how its light is scattered at random, and how far it travels, do not
-  // matter.
-  for (const char* ignored : {"thickness", "maxdepth", "nsamples", "g"}) parameters.find(ignored);
-  if (const Parameter* albedo = parameters.find("albedo"))
-    if (std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
-      unsupported.report(albedo->at, "a medium inside a coating");
 }
 
-void read_conductor(const Parameters& parameters, const TextureLibrary& textures, Material& material,
-                    const Location& at) {
-  material.kind = Material::Kind::conductor;
-  read_roughness(parameters, textures, 0, material);
+/// \param layer  as for read_roughness().
+void read_metal(const Parameters& parameters, const TextureLibrary& textures, Material& material,
+                const Location& at, const std::string& layer = "") {
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo);
-  material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded);
-  material.k = textures.spectrum_parameter(parameters, "k", SpectrumRole::unbounded);
+  material.eta = textures.spectrum_parameter(parameters, layer + "eta", SpectrumRole::unbounded);
+  material.k = textures.spectrum_parameter(parameters, layer + "k", SpectrumRole::unbounded);
   if (material.reflectance && (material.eta || material.k))
     throw scene_error(at, "a conductor has either a reflectance or eta and k");
   if (material.reflectance || (material.eta && material.k)) return;
@@ -105,6 +136,26 @@ void read_conductor(const Parameters& parameters, const TextureLibrary& textures
   copper.add({"spectrum", "k", at, {}, {"metal-Cu-k"}, {}});
   material.eta = textures.spectrum_parameter(copper, "eta", SpectrumRole::unbounded);
   material.k = textures.spectrum_parameter(copper, "k", SpectrumRole::unbounded);
+}
+
+void read_conductor(const Parameters& parameters, const TextureLibrary& textures, Material& material,
+                    const Location& at) {
+  material.kind = Material::Kind::conductor;
+  read_roughness(parameters, textures, material);
+  read_metal(parameters, textures, material, at);
+}
+
+void read_coated_conductor(const Parameters& parameters, const TextureLibrary& textures,
+                           Unsupported& unsupported, Material& material, const Location& at) {
+  material.kind = Material::Kind::layered;
+  read_layering(parameters, unsupported, "interface.eta", material);
+  material.layering.metal = true;
+  const auto [u, v] = read_roughness(parameters, textures, "interface.");
+  material.roughness_u = u, material.roughness_v = v;
+  const auto [base_u, base_v] = read_roughness(parameters, textures, "conductor.");
+  material.base_roughness_u = base_u, material.base_roughness_v = base_v;
+  material.remap_roughness = parameters.boolean("remaproughness", true);
+  read_metal(parameters, textures, material, at, "conductor.");
 }
 
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
@@ -122,6 +173,25 @@ void read_mix(const SceneDescription& scene, const Parameters& parameters, const
   }
 }
 
+/// Of a metal, against air: its index, real and imaginary.
+std::array<Lanes, 2> metal_at(const Material& metal, const TexturePoint& point, int group) {
+  if (!metal.reflectance) return {metal.eta->at(point, group), metal.k->at(point, group)};
+  // The k at eta = 1 that reflects as much at normal incidence (pbrt-v4).
+  const Lanes r = clamped_albedo(metal.reflectance->at(point, group));
+  return {Lanes::all(1), mapped(r, [](float each) {
+            const double value = std::min(static_cast<double>(each), 0.9999);
+            return 2 * std::sqrt(value / (1 - value));
+          })};
+}
+
+/// The reflectance of Lambert's surface under a coat.
+Lanes base_at(const Material& material, const Microfacets& coat, const TexturePoint& point, int group) {
+  const Lanes base = clamped_albedo(material.reflectance->at(point, group));
+  return material.reflectance_through_coating
+             ? below_coating(base, material.coating->inside_mean(coat.mean_alpha()))
+             : base;
+}
+
 Material make_material(const SceneDescription& scene, const Entity& entity, const TextureLibrary& textures,
                        Unsupported& unsupported, Coatings& coatings) {
   const Parameters& parameters = entity.parameters;
@@ -132,12 +202,14 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     read_diffuse_transmission(parameters, textures, material);
   } else if (entity.type == "coateddiffuse") {
     read_coated_diffuse(parameters, textures, unsupported, coatings, material);
+  } else if (entity.type == "coatedconductor") {
+    read_coated_conductor(parameters, textures, unsupported, material, entity.location());
   } else if (entity.type == "conductor") {
     read_conductor(parameters, textures, material, entity.location());
   } else if (entity.type == "dielectric") {
     material.kind = Material::Kind::dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
-    read_roughness(parameters, textures, 0, material);
+    read_roughness(parameters, textures, material);
   } else if (entity.type == "thindielectric") {
     material.kind = Material::Kind::thin_dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
@@ -182,22 +254,21 @@ Bsdf Material::bsdf(const TexturePoint& point, int group, int hero) const {
     }
     case Kind::coated_diffuse: {
       const Microfacets facets = facets_at(*this, point, group);
-      Lanes base = clamped_albedo(reflectance->at(point, group));
-      if (reflectance_through_coating) base = below_coating(base, coating->inside_mean(facets.mean_alpha()));
-      return Bsdf::coated_diffuse(base, coating->eta(), facets, *coating);
+      return Bsdf::coated_diffuse(base_at(*this, facets, point, group), coating->eta(), facets, *coating);
+    }
+    case Kind::layered: {
+      const Microfacets coat = facets_at(*this, point, group);
+      if (layering.metal) {
+        const auto [n, absorption] = metal_at(*this, point, group);
+        return Bsdf::layered(n, absorption, coat,
+                             facets_at(base_roughness_u, base_roughness_v, remap_roughness, point, group),
+                             layering);
+      }
+      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering);
     }
     case Kind::conductor: {
-      const Microfacets facets = facets_at(*this, point, group);
-      if (!reflectance) return Bsdf::conductor(eta->at(point, group), k->at(point, group), facets);
-      // The k at eta = 1 that reflects as much at normal incidence (pbrt-v4).
-      const Lanes r = clamped_albedo(reflectance->at(point, group));
-      return Bsdf::conductor(Lanes::all(1),
-                             mapped(r,
-                                    [](float each) {
-                                      const double value = std::min(static_cast<double>(each), 0.9999);
-                                      return 2 * std::sqrt(value / (1 - value));
-                                    }),
-                             facets);
+      const auto [n, absorption] = metal_at(*this, point, group);
+      return Bsdf::conductor(n, absorption, facets_at(*this, point, group));
     }
     case Kind::dielectric:
       return Bsdf::dielectric(eta->at(point, group), hero, facets_at(*this, point, group));
@@ -227,7 +298,8 @@ bool varies(const std::vector<Material>& materials, int index) {
   for (const SpectrumTexture* each :
        {&material.reflectance, &material.transmittance, &material.eta, &material.k})
     if (*each && !(*each)->is_constant()) return true;
-  for (const FloatTexture* each : {&material.roughness_u, &material.roughness_v, &material.mix_amount})
+  for (const FloatTexture* each : {&material.roughness_u, &material.roughness_v, &material.base_roughness_u,
+                                   &material.base_roughness_v, &material.mix_amount})
     if (*each && !(*each)->is_constant()) return true;
   if (material.normal_map) return true;
   return material.kind == Material::Kind::mix &&

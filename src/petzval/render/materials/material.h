@@ -19,6 +19,7 @@ struct Material {
     diffuse,
     diffuse_transmission,
     coated_diffuse,
+    layered,
     conductor,
     dielectric,
     thin_dielectric,
@@ -30,7 +31,9 @@ struct Material {
   double transmittance_scale = 1;
   SpectrumTexture eta, k;
   FloatTexture roughness_u, roughness_v;
-  bool remap_roughness = true;  ///< alpha = √roughness
+  FloatTexture base_roughness_u, base_roughness_v;  ///< of a metal under a coat
+  bool remap_roughness = true;                      ///< alpha = √roughness
+  Layering layering;
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;

@@ -4,6 +4,8 @@
 
 #include <petzval/render/vector3.h>
 
+#include <optional>
+
 namespace petzval::render {
 
 /// The distribution of Trowbridge & Reitz (GGX), with Smith's masking: everything in the frame of the
@@ -33,6 +35,14 @@ class Microfacets {
 
 inline Vector3 reflected(Vector3 w, Vector3 normal) {
   return 2 * dot(w, normal) * normal - w;
+}
+
+/// The direction behind a boundary of relative index `eta` (far/near) with normal m on w's side; nothing at
+/// total reflection.
+inline std::optional<Vector3> refracted(Vector3 w, Vector3 m, double eta) {
+  const double cos = dot(w, m), sin2_far = (1 - cos * cos) / (eta * eta);
+  if (sin2_far >= 1) return {};
+  return (cos / eta - std::sqrt(1 - sin2_far)) * m - (1 / eta) * w;
 }
 
 }  // namespace petzval::render
