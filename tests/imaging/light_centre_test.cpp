@@ -12,7 +12,7 @@ using namespace testing;
 /// The centre of the light lies bend·h³ beyond the chief ray at h.
 constexpr double bend_per_mm2 = 0.002;
 
-LensDataTable bent_table() {
+LensDataTable leaning_table() {
   TableRecipe recipe;
   recipe.fields.clear();
   for (int i = 0; i <= 20; ++i) recipe.fields.push_back(i);
@@ -26,7 +26,7 @@ LensDataTable bent_table() {
 
 // The same flux on the ring about the centres as on that about the chief rays: from the formulas.
 TEST(LightCentre, KeepsTheFluxOfEveryRing) {
-  const LensDataTable table = bent_table();
+  const LensDataTable table = leaning_table();
   const LightProfile light(RadialProfiles(table).at_wavelength(550), table, LightCentres(table), 550);
   for (const double chief_mm : {0.02, 0.3, 0.9, 1.5, 2.1}) {
     const double centre_mm = chief_mm * (1 + bend_per_mm2 * chief_mm * chief_mm);

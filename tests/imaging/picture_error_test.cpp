@@ -16,7 +16,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double coma_focal_mm = 6, g_source_sr = 0.25, pitch_um = 6;
+constexpr double coma_focal_mm = 6, g_source_sr = 0.25, pixel_um = 6;
 constexpr int pixels = 48;
 
 /// A comatic PSF of three round spots that grows with height: positions and widths are cubics of it, which a
@@ -58,7 +58,7 @@ std::vector<double> summed(const Scene& scene, double sample_um, double scale) {
   // No wider than a seventh of the narrowest spot.
   const int parts = std::max(6, 2 * static_cast<int>(std::ceil(sample_um / 0.6)));
   std::vector<double> light(static_cast<std::size_t>(pixels) * pixels);
-  const double middle = pixels * pitch_um / 2, edge_um = scene.columns() * sample_um / 2;
+  const double middle = pixels * pixel_um / 2, edge_um = scene.columns() * sample_um / 2;
   const double part_um = sample_um / parts;
   const auto sample = [&](int row, int column) {
     return double(
@@ -74,19 +74,19 @@ std::vector<double> summed(const Scene& scene, double sample_um, double scale) {
       const double radiance =
           std::lerp(std::lerp(sample(row, column), sample(row, column + 1), u - column),
                     std::lerp(sample(row + 1, column), sample(row + 1, column + 1), u - column), v - row);
-      const double flux = g_source_sr * radiance * part_um * part_um / (pitch_um * pitch_um);
+      const double flux = g_source_sr * radiance * part_um * part_um / (pixel_um * pixel_um);
       const double height_um = std::hypot(right, down);
       const double out_right = height_um > 0 ? right / height_um : 0,
                    out_down = height_um > 0 ? down / height_um : 1;
       for (const Spot& spot : coma_spots(height_um * mm_per_um, scale)) {
         const double x = middle + right + spot.t_um * out_right, y = middle + down + spot.t_um * out_down;
         const double reach_um = 6 * spot.sigma_s_um;
-        const auto pixel = [](double um) { return static_cast<int>(std::floor(um / pitch_um)); };
+        const auto pixel = [](double um) { return static_cast<int>(std::floor(um / pixel_um)); };
         for (int r = std::max(0, pixel(y - reach_um)); r <= std::min(pixels - 1, pixel(y + reach_um)); ++r)
           for (int c = std::max(0, pixel(x - reach_um)); c <= std::min(pixels - 1, pixel(x + reach_um)); ++c)
             light[static_cast<std::size_t>(r * pixels + c)] +=
-                flux * spot.weight * within(c * pitch_um - x, (c + 1) * pitch_um - x, spot.sigma_s_um) *
-                within(r * pitch_um - y, (r + 1) * pitch_um - y, spot.sigma_s_um);
+                flux * spot.weight * within(c * pixel_um - x, (c + 1) * pixel_um - x, spot.sigma_s_um) *
+                within(r * pixel_um - y, (r + 1) * pixel_um - y, spot.sigma_s_um);
       }
     }
   return light;
@@ -103,7 +103,7 @@ class PictureError : public ::testing::TestWithParam<Case> {};
 // stars, samples apart from each other in darkness.
 TEST_P(PictureError, IsWithinTheTolerance) {
   const auto [sample_um, scale, tolerance, stars] = GetParam();
-  const int samples = static_cast<int>(std::ceil((pixels + 40) * pitch_um / sample_um));
+  const int samples = static_cast<int>(std::ceil((pixels + 40) * pixel_um / sample_um));
   Scene scene(samples, samples, {550},
               degrees(2 * std::atan(samples * sample_um * mm_per_um / 2 / coma_focal_mm)), std::nullopt);
   std::mt19937 random(1843);
@@ -121,7 +121,7 @@ TEST_P(PictureError, IsWithinTheTolerance) {
   options.product.tolerance = tolerance;
   ImagingReport report;
   const SpectralImage image =
-      form_image(scene, coma_table(scale), {pixels, pixels, pitch_um}, options, {}, &report);
+      form_image(scene, coma_table(scale), {pixels, pixels, pixel_um}, options, {}, &report);
   const std::vector<double> wanted = summed(scene, sample_um, scale);
   double error = 0, light = 0;
   for (int row = 0; row < pixels; ++row)

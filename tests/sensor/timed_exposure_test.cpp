@@ -14,13 +14,13 @@
 namespace petzval {
 namespace {
 
-constexpr int columns = 160, rows = 90;
+constexpr int frame_columns = 160, frame_rows = 90;
 constexpr double bright = 2000;  // e/s
 
 PhotoCurrent frame_of(const std::function<double(int row, int column)>& current) {
-  PhotoCurrent frame{columns, rows, 0, 0, {}};
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) frame.e_per_s.push_back(static_cast<float>(current(r, c)));
+  PhotoCurrent frame{frame_columns, frame_rows, 0, 0, {}};
+  for (int r = 0; r < frame_rows; ++r)
+    for (int c = 0; c < frame_columns; ++c) frame.e_per_s.push_back(static_cast<float>(current(r, c)));
   return frame;
 }
 
@@ -35,7 +35,7 @@ PhotoCurrent bar_at(double left, double width) {
 PhotoCurrent exposed(const FrameTiming& timing, const LampFlicker& flicker, double step_s,
                      const std::function<PhotoCurrent(double t_s)>& light) {
   TimedExposure exposure(timing, flicker);
-  const double end_s = timing.end_s(rows);
+  const double end_s = timing.end_s(frame_rows);
   const auto steps = static_cast<int>(std::ceil((end_s - timing.start_s) / step_s));
   double t0 = timing.start_s;
   PhotoCurrent before = light(t0);
@@ -51,8 +51,8 @@ PhotoCurrent exposed(const FrameTiming& timing, const LampFlicker& flicker, doub
 
 double centroid(const PhotoCurrent& frame, int row) {
   double sum = 0, moment = 0;
-  for (int c = 0; c < columns; ++c) {
-    const double value = frame.e_per_s[static_cast<std::size_t>(row * columns + c)];
+  for (int c = 0; c < frame_columns; ++c) {
+    const double value = frame.e_per_s[static_cast<std::size_t>(row * frame_columns + c)];
     sum += value;
     moment += value * (c + 0.5);
   }
@@ -66,12 +66,12 @@ TEST(TimedExposure, SlantsAMovingBarByItsSpeedTimesTheRowTime) {
   const FrameTiming timing{0.01, exposure, {Shutter::Kind::rolling, row_time}};
   const PhotoCurrent frame =
       exposed(timing, {}, row_time, [&](double t) { return bar_at(20 + speed * (t - 0.01), 12); });
-  for (int r = 0; r < rows; ++r)
+  for (int r = 0; r < frame_rows; ++r)
     EXPECT_NEAR(centroid(frame, r), 26 + speed * (r * row_time + exposure / 2), 1e-5) << r;
 
   const PhotoCurrent global = exposed({0.01, exposure, {}}, {}, row_time,
                                       [&](double t) { return bar_at(20 + speed * (t - 0.01), 12); });
-  for (int r = 0; r < rows; ++r) EXPECT_NEAR(centroid(global, r), 26 + speed * exposure / 2, 1e-5) << r;
+  for (int r = 0; r < frame_rows; ++r) EXPECT_NEAR(centroid(global, r), 26 + speed * exposure / 2, 1e-5) << r;
 }
 
 // A row that opens at t for T under 1 + d cos(ωt + φ) collects T + (d/ω)(sin(ω(t + T) + φ) − sin(ωt + φ)).
@@ -82,10 +82,10 @@ TEST(TimedExposure, BandsAsTheMainsFlicker) {
   const PhotoCurrent grey = frame_of([](int, int) { return bright; });
   const PhotoCurrent frame = exposed(timing, flicker, 1, [&](double) { return grey; });
   const double w = 2 * M_PI * 100;
-  for (int r = 0; r < rows; ++r) {
+  for (int r = 0; r < frame_rows; ++r) {
     const double t = timing.start_s + r * row_time, begin = w * t + 2 * M_PI * phase;
     const double expected = 1 + depth / (w * exposure) * (std::sin(begin + w * exposure) - std::sin(begin));
-    EXPECT_NEAR(frame.e_per_s[static_cast<std::size_t>(r * columns)] / bright, expected, 1e-6) << r;
+    EXPECT_NEAR(frame.e_per_s[static_cast<std::size_t>(r * frame_columns)] / bright, expected, 1e-6) << r;
   }
 }
 
@@ -100,11 +100,11 @@ TEST(TimedExposure, BandsOfASwitchedLampHaveItsFrequencyAndPhase) {
   constexpr int period = 20;  // rows: 1/(500 Hz · 100 µs)
   double sum = 0;
   for (int r = 0; r < period; ++r) {
-    const double value = frame.e_per_s[static_cast<std::size_t>(r * columns)];
+    const double value = frame.e_per_s[static_cast<std::size_t>(r * frame_columns)];
     sum += value;
     // In windows that begin later by whole row times, in each of which the lamp is on or off for whole row
     // times.
-    EXPECT_NEAR(value, frame.e_per_s[static_cast<std::size_t>((r + period) * columns)], 1e-3) << r;
+    EXPECT_NEAR(value, frame.e_per_s[static_cast<std::size_t>((r + period) * frame_columns)], 1e-3) << r;
     // Closed form: the overlap of the window with the lamp's on-times.
     double lit = 0;
     for (int k = -2; k < 4; ++k) {
@@ -119,7 +119,7 @@ TEST(TimedExposure, BandsOfASwitchedLampHaveItsFrequencyAndPhase) {
 // A bar that moves by 6 pixels, against 256 still exposures of a 256th of the time each. The electrons of the
 // two differ by shot noise alone: of 14,400 pixels the sum of squared differences over variances is χ².
 TEST(TimedExposure, MotionBlurIsTheSumOfManyStills) {
-  Sensor sensor = test::mono_sensor(columns, rows);
+  Sensor sensor = test::mono_sensor(frame_columns, frame_rows);
   sensor.electronics->gain_modes[0].dn_per_e = 1;  // electrons are counted without rounding
   const double speed = 600, exposure = 10e-3, scale = 1000;
   const auto light = [&](double t) {
@@ -162,9 +162,9 @@ TEST(TimedExposure, LosesWhatIsStatedToItsSteps) {
   for (const double h : {1.0, 0.5, 0.25}) {
     const PhotoCurrent frame = exposed({0, exposure, {}}, {}, h / speed, light);
     std::complex<double> sum = 0;
-    for (int c = 0; c < columns; ++c)  // whole periods
+    for (int c = 0; c < frame_columns; ++c)  // whole periods
       sum += double(frame.e_per_s[static_cast<std::size_t>(c)]) * std::polar(1.0, -2 * M_PI * f * c);
-    const double contrast = std::abs(sum) / columns / (bright * 0.25);
+    const double contrast = std::abs(sum) / frame_columns / (bright * 0.25);
     const double length = speed * exposure;
     const double true_motion = std::abs(std::sin(M_PI * f * length) / (M_PI * f * length));
     EXPECT_NEAR(contrast / true_motion, M_PI * f * h / std::tan(M_PI * f * h), 1e-5) << h;
@@ -193,7 +193,7 @@ TEST(TimedExposure, RefusesFramesThatDoNotFollow) {
 
 // Temporal noise of two frames differs, the fixed pattern does not: the mean of many tells it.
 TEST(Clip, NoiseIsNewInEachFrameAndTheFixedPatternStays) {
-  Sensor sensor = test::mono_sensor(columns, rows);
+  Sensor sensor = test::mono_sensor(frame_columns, frame_rows);
   sensor.electronics->dsnu_e = 20;
   const PhotoCurrent dim = frame_of([](int, int) { return 10000.0; });  // 100 e, shot noise 10 e
   CaptureOptions options;
