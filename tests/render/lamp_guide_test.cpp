@@ -138,7 +138,9 @@ TEST(LampGuide, HasNoEllipseOfNoSize) {
     for (const double radius_m : {0.002, 0.02, 0.06}) {
       const auto disk = LampDisk::find(Lamp{{0.1, 0.05, metres}, radius_m, 1}, std::array{tracer},
                                        {1e-3, tracer.image_z_mm()});
-      if (disk) EXPECT_GT(disk->area_sr(), 0) << metres << " " << radius_m;
+      if (disk) {
+        EXPECT_GT(disk->area_sr(), 0) << metres << " " << radius_m;
+      }
     }
 }
 

@@ -14,7 +14,7 @@ namespace petzval {
 namespace {
 
 /// A pinhole that looks along +z, y up.
-constexpr const char* camera =
+constexpr const char* view_text =
     "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
     "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 4 \"float diagonal\" 20\nWorldBegin\n";
 
@@ -36,7 +36,7 @@ constexpr const char* sunlit =
 std::vector<double> light(const std::string& text, const std::vector<std::string>& changes, int column,
                           const std::vector<double>& wavelengths_nm = {450, 550, 650}) {
   const test::Scratch scratch;
-  RenderRequest request{.scene = scratch.with("scene.pbrt", camera + text), .focus_as_in_scene = true};
+  RenderRequest request{.scene = scratch.with("scene.pbrt", view_text + text), .focus_as_in_scene = true};
   request.wavelengths_nm = wavelengths_nm;
   request.samples_per_pixel = 4;
   request.max_depth = 1;

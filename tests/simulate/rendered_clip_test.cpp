@@ -54,7 +54,7 @@ ClipOptions quiet_options() {
   return options;
 }
 
-double centroid(const RawImage& raw, int row) {
+double bar_centre(const RawImage& raw, int row) {
   double sum = 0, moment = 0;
   for (int c = 0; c < raw.columns; ++c) {
     const double value = raw.pixel(row, c) - raw.black_level;
@@ -67,7 +67,7 @@ double centroid(const RawImage& raw, int row) {
 /// Mean place of the bar over rows.
 double place(const RawImage& raw, int first, int end) {
   double sum = 0;
-  for (int row = first; row < end; ++row) sum += centroid(raw, row);
+  for (int row = first; row < end; ++row) sum += bar_centre(raw, row);
   return sum / (end - first);
 }
 
