@@ -94,15 +94,13 @@ std::vector<double> summed(const Scene& scene, double sample_um, double scale) {
 
 struct Case {
   double sample_um, scale, tolerance;
-  bool stars = false;
 };
 
 class PictureError : public ::testing::TestWithParam<Case> {};
 
-// A checkerboard of random squares, tilted by its samples' own steps, finer than pixels and coarser; and
-// stars, samples apart from each other in darkness.
+// A checkerboard of random squares, tilted by its samples' own steps, finer than pixels and coarser.
 TEST_P(PictureError, IsWithinTheTolerance) {
-  const auto [sample_um, scale, tolerance, stars] = GetParam();
+  const auto [sample_um, scale, tolerance] = GetParam();
   const int samples = static_cast<int>(std::ceil((pixels + 40) * pixel_um / sample_um));
   Scene scene(samples, samples, {550},
               degrees(2 * std::atan(samples * sample_um * mm_per_um / 2 / coma_focal_mm)), std::nullopt);
@@ -113,9 +111,7 @@ TEST_P(PictureError, IsWithinTheTolerance) {
       const double x = (column + 0.1 * row) * sample_um / 25, y = (row - 0.1 * column) * sample_um / 25;
       const bool white = (static_cast<int>(std::floor(x)) + static_cast<int>(std::floor(y))) % 2 == 0;
       scene.band(0)[static_cast<std::size_t>(row * samples + column)] =
-          stars   ? float(row % 9 == 4 && column % 7 == 3)
-          : white ? 1.0F
-                  : 0.05F + 0.1F * bright(random);
+          white ? 1.0F : 0.05F + 0.1F * bright(random);
     }
   ImagingOptions options;
   options.product.tolerance = tolerance;
@@ -137,9 +133,44 @@ TEST_P(PictureError, IsWithinTheTolerance) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PictureError,
                          ::testing::Values(Case{2, 1.5, 1e-2}, Case{2, 1.5, 1e-3}, Case{3.3, 1.5, 1e-3},
-                                           Case{9, 1.5, 1e-3}, Case{2, 3, 1e-3}, Case{2, 0.8, 1e-3},
-                                           Case{9, 2, 1e-3, true}, Case{9, 2, 1e-2, true}),
+                                           Case{9, 1.5, 1e-3}, Case{2, 3, 1e-3}, Case{2, 0.8, 1e-3}),
                          [](const auto& info) { return "number" + std::to_string(info.index); });
+
+// Stars in darkness, through PSFs of two spots that move apart slowly over the frame: noise as strong as its
+// mean would not show that. Against PSFs of every cell's own, on the same cells.
+TEST(PictureOfLights, InDarknessIsWithinTheTolerance) {
+  TableRecipe recipe;
+  recipe.fields.clear();
+  for (int i = 0; i <= 40; ++i) recipe.fields.push_back(0.1 * i);
+  recipe.height_mm = [](double field, double) { return height_of(field); };
+  recipe.g_source_sr = [](double) { return g_source_sr; };
+  recipe.psf = [](double field, double) {
+    const double apart_um = 6 * pixel_um * height_of(field) / height_of(4);
+    return psf_of_spots({{0, 0, pixel_um, pixel_um, 0.5}, {0, apart_um, pixel_um, pixel_um, 0.5}}, 101,
+                        pixel_um / 5);
+  };
+  const LensDataTable table = make_table(recipe);
+  constexpr int side = 32, samples = 84;
+  Scene scene(samples, samples, {550}, degrees(2 * std::atan(samples * 5e-3 / 2 / coma_focal_mm)),
+              std::nullopt);
+  for (int row = 4; row < samples; row += 9)
+    for (int column = 3; column < samples; column += 7)
+      scene.band(0)[static_cast<std::size_t>(samples * row + column)] = 1;
+  ImagingOptions options;
+  options.supersample = 5;
+  const SensorGeometry sensor{side, side, pixel_um};
+  const SpectralImage product = form_image(scene, table, sensor, options);
+  options.method = BlurMethod::exact;
+  const SpectralImage exact = form_image(scene, table, sensor, options);
+  double error = 0, light = 0;
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      error += std::pow(double(product.at(0, row, column)) - double(exact.at(0, row, column)), 2);
+      light += std::pow(double(exact.at(0, row, column)), 2);
+    }
+  std::printf("error %.1e\n", std::sqrt(error / light));
+  EXPECT_LE(std::sqrt(error / light), options.product.tolerance);
+}
 
 }  // namespace
 }  // namespace petzval

@@ -48,19 +48,19 @@ void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int marg
   if (options_.method == BlurMethod::product) choose_product(hint);
 }
 
-/// A plan's error is estimated for noise as strong as its mean, of which any scene has so much less fine
-/// detail that the caution of the plan covers the rest. Lights in darkness do not: the factor by which errors
-/// are larger for noise of the scene's contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels.
+/// A plan's error is estimated for noise as strong as its mean, with a caution that covers what scenes have
+/// beyond. Of lights in darkness it does not: the factor by which errors are larger for noise of the scene's
+/// contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels.
 double BandBlur::harder_than_noise() const {
   constexpr double covered = 2.5;
   if (!(contrast_ > covered) || options_.is_preview()) return 1;
-  const double contrast = contrast_ / covered, corner_mm = half_diagonal_mm(grown(grid_, -margin_));
+  const double corner_mm = half_diagonal_mm(grown(grid_, -margin_));
   double squares = 0;
   constexpr std::array<double, 3> heights{0, 0.5, 0.9};  // of the frame
   for (const double height : heights)
     for (const double weight : psfs_->kernel_at(0, height * corner_mm).weights)
       squares += weight * weight / double(heights.size());
-  return std::sqrt((1 + squares) / (1 / (contrast * contrast) + squares));
+  return std::sqrt((1 + squares) / (1 / (contrast_ * contrast_) + squares));
 }
 
 void BandBlur::choose_product(const std::optional<ProductPlan>& hint) {
