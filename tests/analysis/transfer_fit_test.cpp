@@ -190,6 +190,14 @@ TEST(TransferFit, NeedsRaysAloneAndNoLens) {
     EXPECT_NEAR(box.g_sensor_sr(*box.chief_ray(field)) / real.g_sensor_sr(*real.chief_ray(field)), 1, 1e-3);
 }
 
+// Nothing beyond the first order is wanted of a fit that may miss by a decimetre.
+TEST(TransferFit, OfTheFirstOrderHasOneTerm) {
+  const RayTable table = ray_table_of(ray_table_text(rays_of_double_gauss()), "rays.csv");
+  const TransferFit fit = fit_transfer(table, {.tolerance_mm = 100});
+  EXPECT_EQ(fit.lens.surfaces.front().transfer->terms.size(), 1U);
+  EXPECT_LE(fit.determinant_error, 1e-9);
+}
+
 TEST(TransferFit, TablesThatAreWrongSayWhere) {
   const std::string text = ray_table_text(rays_of_double_gauss());
   const auto refused = [](const std::string& bad, const char* what) {

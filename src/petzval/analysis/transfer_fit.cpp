@@ -154,6 +154,7 @@ Matrix rows_of(const std::vector<Sample>& samples, const std::vector<Powers>& te
 
 /// Least squares with columns of one size.
 Matrix solved(Matrix rows, const Matrix& wanted) {
+  if (rows.cols() == 0) return Matrix(0, wanted.cols());  // which Eigen's solver does not survive
   Eigen::VectorXd scale = rows.colwise().norm();
   for (Eigen::Index c = 0; c < rows.cols(); ++c) {
     if (scale(c) == 0) scale(c) = 1;
