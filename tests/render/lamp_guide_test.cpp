@@ -129,19 +129,21 @@ TEST(LampGuide, SendsRaysToTheLamp) {
     }
 }
 
-TEST(LampGuide, HasNoEllipseOfNoSize) {
+TEST(LampGuide, HasNoEllipseInFocus) {
   // In focus, light of a lamp's middle lands on one point, and that of its rim far from it.
   const Street street;
   const Tracer tracer(street.lens, 550);
   const double in_focus_m = 0.8;
+  const auto disk_at = [&](double metres, double radius_m) {
+    return LampDisk::find(Lamp{{0.1, 0.05, metres}, radius_m, 1}, std::array{tracer},
+                          {1e-3, tracer.image_z_mm()});
+  };
   for (const double metres : {0.98 * in_focus_m, in_focus_m, 1.02 * in_focus_m})
-    for (const double radius_m : {0.002, 0.02, 0.06}) {
-      const auto disk = LampDisk::find(Lamp{{0.1, 0.05, metres}, radius_m, 1}, std::array{tracer},
-                                       {1e-3, tracer.image_z_mm()});
-      if (disk) {
-        EXPECT_GT(disk->area_sr(), 0) << metres << " " << radius_m;
-      }
-    }
+    for (const double radius_m : {0.002, 0.02, 0.06})
+      EXPECT_FALSE(disk_at(metres, radius_m)) << metres << " " << radius_m;
+  const auto blurred = disk_at(4 * in_focus_m, 0.002);
+  ASSERT_TRUE(blurred);
+  EXPECT_GT(blurred->area_sr(), 0);
 }
 
 }  // namespace
