@@ -256,7 +256,7 @@ class Reader {
         throw InputError(path_, "is not a sound PNG: the file ends within a chunk");
       const std::string_view chunk = rest_.substr(bytes_.size() - left + 4, 4 + length);
       if (CodePoints points; chunk.starts_with("cICP") && length == points.size()) {
-        std::ranges::copy(chunk.substr(4), points.begin());
+        std::copy_n(chunk.substr(4).data(), points.size(), points.begin());
         code_points_ = points;
       }
       left -= framing + length;
