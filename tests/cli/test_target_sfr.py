@@ -182,7 +182,7 @@ class Target(ProgramTest):
                 ([*rectangle, "--blades", 2, *out], ["3 to 1000"]),
                 (["--text", "caf\u00e9", *out], ["no shape", "A to Z"]),
                 (["--text", "A", "--text-height", "0", *out], ["positive height"]),
-                ([*rectangle, "--sensor", "third-inch-vga", *out], ["only its pixels"]),
+                ([*rectangle, "--sensor", "640x480@7.5", *out], ["only its pixels"]),
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--noise", 0.1, *out], ["--noise", "--sensor"]),
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--without", "shott", *out], ["shott", "shot, "]),
                 ([*rectangle, "--sensor", "third-inch-1280x960", "--size", "1281x64", *out], ["1280 x 960"]),

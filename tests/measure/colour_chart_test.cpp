@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <petzval/base/error.h>
 #include <petzval/colour/display.h>
@@ -8,6 +9,7 @@
 #include <petzval/numeric/random.h>
 
 #include <cmath>
+#include <random>
 
 namespace petzval {
 namespace {
@@ -59,6 +61,22 @@ TEST(FindChart, FindsDrawnCharts) {
       const ChartDifference difference = compare_chart(picture, corners, illuminant("D65"));
       EXPECT_LT(difference.max_delta_e_2000, 1e-6) << angle;
       EXPECT_NEAR(difference.exposure, 1 / exposure, 1e-9);
+    }
+}
+
+// A patch is 40 px wide: its centre is to be told from its quarter.
+TEST(FindChart, FindsChartsInTheDarkAndInNoise) {
+  std::mt19937 random(7);
+  for (const double exposure : {1.0, 0.01})
+    for (const double deviation : {0.0, 0.005, 0.01}) {
+      ViewedPicture picture = drawn_chart(640, 480, 195, 165, 50, 0, exposure);
+      std::normal_distribution<double> noise(0, deviation * exposure);
+      for (Xyz& colour : picture.pixels) colour = colour + Xyz{noise(random), noise(random), noise(random)};
+      SCOPED_TRACE(fmt::format("exposure {}, noise {}", exposure, deviation));
+      ChartCorners corners;
+      ASSERT_NO_THROW(corners = find_chart(picture, illuminant("D65")));
+      EXPECT_NEAR(corners.xy[2][0], 445, 10);
+      EXPECT_NEAR(corners.xy[2][1], 315, 10);
     }
 }
 

@@ -24,8 +24,19 @@ struct SmallPicture {
   }
 };
 
-SmallPicture small_picture(const ViewedPicture& picture) {
-  constexpr int most_columns = 480;
+/// What brings an underexposed picture to where differences of colour have their usual size; else 1.
+double brightening(const std::vector<Xyz>& colours) {
+  constexpr double share = 0.99, dark = 0.3;
+  std::vector<double> luminance;
+  for (const Xyz& colour : colours) luminance.push_back(colour.y);
+  if (luminance.empty()) return 1;
+  const auto bright = luminance.begin() + static_cast<std::ptrdiff_t>(share * (luminance.size() - 1.0));
+  std::ranges::nth_element(luminance, bright);
+  return *bright > 0 && *bright < dark ? 1 / *bright : 1;
+}
+
+/// \param most_columns  that it has, or rows.
+SmallPicture small_picture(const ViewedPicture& picture, int most_columns) {
   const int step = std::max(1, (std::max(picture.columns, picture.rows) + most_columns - 1) / most_columns);
   SmallPicture small;
   small.columns = picture.columns / step;
@@ -37,8 +48,12 @@ SmallPicture small_picture(const ViewedPicture& picture) {
       for (int r = 0; r < step; ++r)
         for (int c = 0; c < step; ++c) sum = sum + picture.at(row * step + r, column * step + c);
       small.xyz.push_back((1.0 / (step * step)) * sum);
-      small.lab.push_back(cielab(small.xyz.back(), display_white()));
     }
+  const double brighter = brightening(small.xyz);
+  for (Xyz& colour : small.xyz) {
+    colour = brighter * colour;
+    small.lab.push_back(cielab(colour, display_white()));
+  }
   return small;
 }
 
@@ -153,14 +168,16 @@ Grid refined(const Grid& grid, const std::vector<Spot>& spots) {
   return {solve(bx, 0), solve(by, 0), solve(bx, 1), solve(by, 1), solve(bx, 2), solve(by, 2)};
 }
 
-}  // namespace
+struct FoundChart {
+  ChartCorners corners;
+  double difference = 1e300;  ///< mean ΔE*ab of its patches
+};
 
-ChartCorners find_chart(const ViewedPicture& picture, const Spectrum& light) {
-  const SmallPicture small = small_picture(picture);
+/// What looks most like a chart, if anything does.
+FoundChart chart_in(const SmallPicture& small, const std::vector<Xyz>& wanted) {
   std::vector<Spot> spots = even_spots(small);
   constexpr std::size_t most_spots = 300;
   if (spots.size() > most_spots) spots.resize(most_spots);
-  const std::vector<Xyz> wanted = chart_colours(light);
   double best = 1e300;
   Grid best_grid;
   for (const Spot& a : spots)
@@ -178,19 +195,32 @@ ChartCorners find_chart(const ViewedPicture& picture, const Spectrum& light) {
           if (how_far && *how_far < best) best = *how_far, best_grid = grid;
         }
     }
-  constexpr double acceptable = 25;
-  if (!(best < acceptable))
-    throw InputError(
-        "no ColorChecker is found in the picture; `corners` gives the centres of its corner patches");
+  FoundChart found{{}, best};
   const Grid grid = refined(refined(best_grid, spots), spots);
-  ChartCorners corners;
   const double places[4][2] = {
       {0, 0}, {0, chart_columns - 1}, {chart_rows - 1, chart_columns - 1}, {chart_rows - 1, 0}};
   for (std::size_t i = 0; i < 4; ++i) {
     const auto at = grid.at(places[i][0], places[i][1]);
-    corners.xy[i] = {at[0] * small.scale, at[1] * small.scale};
+    found.corners.xy[i] = {at[0] * small.scale, at[1] * small.scale};
   }
-  return corners;
+  return found;
+}
+
+}  // namespace
+
+ChartCorners find_chart(const ViewedPicture& picture, const Spectrum& light) {
+  const std::vector<Xyz> wanted = chart_colours(light);
+  constexpr double sure = 5, acceptable = 25;
+  FoundChart best;
+  for (const int columns : {480, 240, 120}) {  // the smaller, the quieter
+    const FoundChart found = chart_in(small_picture(picture, columns), wanted);
+    if (found.difference < best.difference) best = found;
+    if (best.difference < sure) break;
+  }
+  if (!(best.difference < acceptable))
+    throw InputError(
+        "no ColorChecker is found in the picture; `corners` gives the centres of its corner patches");
+  return best.corners;
 }
 
 }  // namespace petzval
