@@ -111,6 +111,14 @@ class SensorChain(ProgramTest):
 
     IMAGE = ("image", "colorchecker", "--lens", "edmund-54852", "--method", "none", "--wavelengths", "400:20:700")
 
+    def test_a_chart_is_found_seven_stops_below_its_exposure(self):
+        self.assert_succeeds(*self.IMAGE, "--sensor", "third-inch-1280x960", "--exposure-compensation", "-7",
+                             "-o", "dark.dng", "--quiet")
+        for brightness in ("0", "auto"):
+            self.assert_succeeds("develop", "dark.dng", "--brightness", brightness, "-o", "dark.png", "--quiet")
+            with self.subTest(brightness=brightness):
+                self.assertLess(self.json_of("measure", "colour", "dark.png")["mean_delta_e_2000"], 5)
+
     def test_image_runs_the_lot_as_by_halves(self):
         self.write("small.json", SMALL_BAYER)
         exposing = ("--exposure", "0.004", "--gain", "1", "--frames", "2", "--without", "prnu", "--seed", "7")
