@@ -4,6 +4,7 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/field_of_view.h>
+#include <petzval/imaging/psf_tails.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,9 @@ double covering_angle_deg(const Scene& scene, const SeenExtent& seen) {
 double covering_angle_deg(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                           const ImagingOptions& options) {
   const SensorGeometry frame = options.cells_of(sensor);
-  return covering_angle_deg(scene, seen_extent(plan_bands(scene, table, frame, options), frame));
+  const std::optional<TailSplit> split = split_table(table, sensor, options);
+  return covering_angle_deg(
+      scene, seen_extent(plan_bands(scene, split ? split->sharp : table, frame, options), frame));
 }
 
 double natural_pitch_um(const Scene& scene, const FirstOrder& lens) {
@@ -63,8 +66,10 @@ SensorGeometry natural_sensor(const Scene& scene, const LensDataTable& table, co
     throw InputError("a panorama ends nowhere, and so would its image: a `sensor` is needed");
   const double pitch_um = natural_pitch_um(scene, table.first_order);
   const SensorGeometry whole = frame_like(scene, scene.columns(), pitch_um);
+  const std::optional<TailSplit> split = split_table(table, whole, options);
   const auto frame = largest_covered_frame(
-      scene, pitch_um, plan_bands(scene, table, options.cells_of(whole), options), options);
+      scene, pitch_um, plan_bands(scene, split ? split->sharp : table, options.cells_of(whole), options),
+      options);
   if (!frame)
     throw InputError(
         fmt::format("the PSF alone is larger than the image of the scene, {} × {} pixels of {:.4g} µm: a "

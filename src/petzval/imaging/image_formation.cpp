@@ -9,6 +9,7 @@
 #include <petzval/imaging/image_frame.h>
 #include <petzval/imaging/lens_corrections.h>
 #include <petzval/imaging/positive_light.h>
+#include <petzval/imaging/psf_tails.h>
 #include <petzval/sensor/lens_facts.h>
 
 #include <algorithm>
@@ -73,13 +74,11 @@ std::vector<AimedLight> on_cells(std::span<const AimedLight> lights, int cells_p
   return on_cells;
 }
 
-}  // namespace
-
-/// What all images of a scene share, and the bands that are formed at a time.
-struct ImageSeries::Impl {
+/// What all images of a scene through one table share, and the bands that are formed at a time.
+struct Formation {
   /// Where bands are formed.
   struct Place {
-    Place(const Impl& of) : blur(of.table, of.centres, of.options, says, of.contrast) {}
+    Place(const Formation& of) : blur(of.table, of.centres, of.options, says, of.contrast) {}
     ImagingReport says;
     BandBlur blur;
     bool chosen = false;
@@ -87,8 +86,8 @@ struct ImageSeries::Impl {
     double seconds = 0;
   };
 
-  Impl(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
-       const ImagingOptions& asked, bool keeps)
+  Formation(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
+            const ImagingOptions& asked, bool keeps)
       : scene(of_scene),
         table(of_table),
         sensor(of_sensor),
@@ -275,6 +274,71 @@ struct ImageSeries::Impl {
   std::optional<ProductPlan> last_plan;
 };
 
+}  // namespace
+
+/// The picture, or its sharp part and the light that lands far away.
+struct ImageSeries::Impl {
+  Impl(const Scene& scene, const LensDataTable& table, const SensorGeometry& of_sensor,
+       const ImagingOptions& options, bool keeps)
+      : sensor(of_sensor),
+        split(split_table(table, sensor, options)),
+        picture(scene, split ? split->sharp : table, sensor, options, keeps) {
+    if (split)
+      tails = std::make_unique<Impl>(scene, split->tails,
+                                     coarse_frame(sensor, tail_coarseness(options.tail_pixels)),
+                                     of_tails(options), keeps);
+  }
+
+  static ImagingOptions of_tails(ImagingOptions options) {
+    options.photosite = {};
+    options.supersample = 2;
+    // Far light is smooth, so errors of its kernels do not average out.
+    options.product.tolerance = std::max(1e-6, options.product.tolerance / 10);
+    // What the frame needs of the scene is there; a part of a coarse pixel may lie beyond.
+    if (options.surround == Surround::error) options.surround = Surround::extend;
+    return options;
+  }
+
+  void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
+            ImagingReport& report, const BandShare& share = {}) {
+    if (!split) return picture.form(lights, take, callback, report, share);
+    const std::vector<std::vector<float>> far = far_light(lights, share);
+    std::vector<float> whole;
+    std::size_t plane = 0;
+    picture.form(
+        lights,
+        [&](std::span<const float> pixels) {
+          whole.assign(pixels.begin(), pixels.end());
+          const std::vector<float>& coarse = far[plane];
+          add_coarse(coarse, tails->sensor, tail_coarseness(picture.options.tail_pixels),
+                     lights[plane % lights.size()].rows, sensor, whole);
+          ++plane;
+          take(whole);
+        },
+        callback, report, share);
+    report.tail_pixels = picture.options.tail_pixels;
+  }
+
+  /// On coarse pixels, in the order in which the picture's planes come.
+  std::vector<std::vector<float>> far_light(std::span<const AimedLight> lights, BandShare share) {
+    std::vector<AimedLight> all_rows(lights.begin(), lights.end());
+    for (AimedLight& light : all_rows) light.rows = {};
+    if (share.known)  // it has all of its light
+      share.known = [](int, std::span<float> pixels) { std::ranges::fill(pixels, 0.0F); };
+    std::vector<std::vector<float>> planes;
+    ImagingReport unwanted;
+    tails->form(
+        all_rows, [&](std::span<const float> pixels) { planes.emplace_back(pixels.begin(), pixels.end()); },
+        {}, unwanted, share);
+    return planes;
+  }
+
+  const SensorGeometry sensor;
+  const std::optional<TailSplit> split;
+  Formation picture;
+  std::unique_ptr<Impl> tails;  ///< which may be split again
+};
+
 ImageSeries::ImageSeries(const Scene& scene, const LensDataTable& table, const SensorGeometry& sensor,
                          const ImagingOptions& options)
     : impl_(std::make_unique<Impl>(scene, table, sensor, options, true)) {}
@@ -283,18 +347,18 @@ ImageSeries::~ImageSeries() = default;
 
 std::vector<SpectralImage> ImageSeries::form(std::span<const AimedLight> lights, ImagingReport* report) {
   ImagingReport unwanted;
+  const Formation& of = impl_->picture;
   std::vector<SpectralImage> images;
   std::size_t planes = 0;
   const auto put = [&](std::span<const float> pixels) {
-    if (images.empty())
-      images.assign(lights.size(), blank_image(impl_->scene, impl_->sensor, impl_->options));
+    if (images.empty()) images.assign(lights.size(), blank_image(of.scene, of.sensor, of.options));
     images[planes % lights.size()].store_band(static_cast<int>(planes / lights.size()), pixels);
     ++planes;
   };
   impl_->form(lights, put, {}, report != nullptr ? *report : unwanted);
   for (SpectralImage& image : images) {
-    image.lens = lens_facts(impl_->table.lens_name, impl_->table.first_order);
-    add_corrections(*image.lens, impl_->table, impl_->sensor);
+    image.lens = lens_facts(of.table.lens_name, of.table.first_order);
+    add_corrections(*image.lens, of.table, of.sensor);
   }
   return images;
 }
@@ -318,6 +382,8 @@ void ImagingOptions::validate() const {
   constexpr int most = 16;
   if (supersample < 0 || supersample > most)
     throw InputError(fmt::format("supersampling of {}: 1 to {} is right, or 0 to choose", supersample, most));
+  if (tail_pixels < 0)
+    throw InputError(fmt::format("tails from {} pixels on: 0 or more would be right", tail_pixels));
   check_photosite(photosite);
   product.validate();
   if (by_sections()) transform_size({sections.section, 0, method == BlurMethod::blended}, 0);

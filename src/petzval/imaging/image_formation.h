@@ -44,6 +44,9 @@ struct ImagingOptions {
   int supersample = 0;
   Surround surround = Surround::error;
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
+  /// Of `product`: where a PSF reaches farther than twice so many pixels, the light beyond that many is
+  /// formed by itself, on pixels that are wider (tail_coarseness()); 0: nowhere.
+  int tail_pixels = 64;
 
   /// S; as long as it is not chosen 1, with which a frame needs the widest margin; without blur what the
   /// photosite needs.
@@ -82,6 +85,8 @@ struct ImagingReport {
   int scene_points_per_cell = 1;  ///< parts of a cell whose means over the scene are taken: this squared
   double sampling_error = 0;      ///< of the cells, estimated for the middle band
   double finer_detail_error = 0;  ///< what finer detail of a chart than pixels can hold adds
+  /// Light farther from its chief ray than this was formed on coarser pixels [pixels]; 0: none was.
+  int tail_pixels = 0;
   /// Relative L2 error of the picture, of cells and blur together: ProductPlan::estimated_error.
   double estimated_error() const { return std::hypot(sampling_error, product.estimated_error); }
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
@@ -111,7 +116,9 @@ struct BandShare {
 /// blur_sections() or blur_exact(). Light may come in from outside the frame; light that leaves it is lost.
 /// 4. The cells in and about a pixel share in it (PixelTaps): the pixel's aperture is the photosite's, and
 /// what source filter and window took off below the pixels' frequency is given back.
-/// 5. Where weights of either sign leave less than no light, the pixels about it make it good
+/// 5. Light that lands far from its chief ray is formed by itself, on coarser pixels, and added
+/// (ImagingOptions::tail_pixels).
+/// 6. Where weights of either sign leave less than no light, the pixels about it make it good
 /// (without_negative_light).
 ///
 /// \param scene  radiance; its bands must lie within the table's wavelengths, its distance must be the

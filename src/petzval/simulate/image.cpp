@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/base/version.h>
+#include <petzval/imaging/psf_tails.h>
 #include <petzval/sensor/lens_facts.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/image_pieces.h>
@@ -22,9 +23,13 @@ std::string product_text(const ImagingOptions& options, const ImagingReport& rep
                               ? ""
                               : fmt::format("every cell its own PSF {:.0f} to {:.0f} cells from the axis, ",
                                             plan.exact.from, plan.exact.to);
+  const std::string far = report.tail_pixels == 0
+                              ? ""
+                              : fmt::format("light beyond {} pixels on pixels {} times as wide, ",
+                                            report.tail_pixels, tail_coarseness(report.tail_pixels));
   const std::string error = fmt::format(
-      "{} x {} cells a pixel, {}estimated error {:.1e} of {:g}; {} interpolated", report.cells_per_pixel,
-      report.cells_per_pixel, rim, report.estimated_error(), options.product.tolerance, between);
+      "{} x {} cells a pixel, {}{}estimated error {:.1e} of {:g}; {} interpolated", report.cells_per_pixel,
+      report.cells_per_pixel, rim, far, report.estimated_error(), options.product.tolerance, between);
   if (plan.direct)
     return fmt::format("product, {0} x {0} nodes in tiles of {1} x {1} cells, gathered, {2}", plan.nodes,
                        plan.tile, error);
