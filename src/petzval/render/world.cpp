@@ -51,6 +51,9 @@ class WorldBuilder {
     geometry.material = description.material;
     geometry.is_interface =
         world_.materials[static_cast<std::size_t>(description.material)].kind == Material::Kind::none;
+    geometry.parts_media = description.media.differ();
+    geometry.inside = description.media.inside, geometry.outside = description.media.outside;
+    world_.media_end_openly = world_.media_end_openly || (geometry.is_interface && geometry.parts_media);
     geometry.needs_coordinates = varies(world_.materials, description.material);
     geometry.reversed = description.reverse_orientation;
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
@@ -98,9 +101,11 @@ class WorldBuilder {
 
 std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
                                          const LightOptions& options, Unsupported& unsupported) {
-  auto world = std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, nullptr});
+  auto world =
+      std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, scene.camera_medium, false, {}, nullptr});
   const TextureLibrary textures(scene, world->groups, unsupported);
   world->materials = make_materials(scene, textures, unsupported);
+  world->media = make_media(scene, world->groups, unsupported);
   WorldBuilder builder(scene, options, textures, unsupported, *world);
   const GeometryRange standing = builder.add(scene.shapes);
   std::vector<GeometryRange> objects;
