@@ -2,25 +2,15 @@
 // What fills space and dims or scatters light: fog, smoke, coloured glass.
 #pragma once
 
+#include <petzval/render/media/density_grid.h>
 #include <petzval/render/pbrt/scene_description.h>
 #include <petzval/render/spectra/wavelength_groups.h>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace petzval::render {
-
-/// Numbers in [0, 1), as many as a walk takes.
-class Lots {
- public:
-  /// \param first  in [0, 1): the first of them, which all others depend on.
-  explicit Lots(double first) : first_(first) {}
-  double next();
-
- private:
-  double first_;
-  std::uint32_t count_ = 0;
-};
 
 /// What a straight way through media does, wavelength by wavelength; everything up to one common factor.
 /// (The path integral of null scattering: Miller, Georgiev & Jarosz, ACM Trans. Graph. 38 (2019) 4.)
@@ -45,9 +35,10 @@ struct Flight {
 
 /// A medium, its coefficients at the bands of a picture.
 struct Medium {
-  BandSpectrum absorption, scattering;  ///< [group], per scene unit; none negative
-  double g = 0;                         ///< of Henyey and Greenstein's phase function
-  bool scatters = false;                ///< else light only becomes less
+  BandSpectrum absorption, scattering;         ///< [group], per scene unit; none negative
+  double g = 0;                                ///< of Henyey and Greenstein's phase function
+  bool scatters = false;                       ///< else light only becomes less
+  std::shared_ptr<const DensityGrid> density;  ///< that the coefficients are times; null: 1 everywhere
 
   Lanes extinction(int group) const {
     return absorption[static_cast<std::size_t>(group)] + scattering[static_cast<std::size_t>(group)];
@@ -57,6 +48,9 @@ struct Medium {
   Flight fly(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const;
   /// What comes through from a light.
   Passage pass(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const;
+
+ private:
+  Passage passage_of(const DensityGrid::Walk& walk, int group, int hero) const;
 };
 
 /// All media of a scene, in the order of its description. \throws InputError with file, line and column, and

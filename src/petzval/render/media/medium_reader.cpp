@@ -4,6 +4,8 @@
 #include <petzval/render/spectra/named_spectra.h>
 
 #include <algorithm>
+#include <array>
+#include <memory>
 
 namespace petzval::render {
 
@@ -41,12 +43,73 @@ double read_g(const Parameters& parameters) {
   return g;
 }
 
+/// A collision costs time, and so many on a way are enough for any cloud.
+constexpr double most_collisions = 1e5;
+
+/// pbrt-v4's "uniformgrid".
+std::shared_ptr<const DensityGrid> read_grid(const MediumDescription& description, Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const Parameter* given = parameters.find("density");
+  if (!given) throw scene_error(parameters.location(), "a uniformgrid needs \"float density\", its samples");
+  std::array<int, 3> size;
+  double cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const char* name = std::array{"nx", "ny", "nz"}[axis];
+    size[axis] = parameters.integer(name, 1);
+    if (size[axis] < 1) throw scene_error(parameters.location_of(name), "1 or more would be right");
+    cells *= size[axis];
+  }
+  if (given->type == "rgb") {
+    unsupported.report(given->at, "a density in colours");
+    return nullptr;
+  }
+  const std::vector<double> numbers = parameters.numbers("density", {"float", "integer"});
+  if (static_cast<double>(numbers.size()) != cells)
+    throw scene_error(given->at,
+                      fmt::format("{} samples of the density; nx × ny × nz = {} x {} x {} would be right",
+                                  numbers.size(), size[0], size[1], size[2]));
+  std::vector<float> values;
+  values.reserve(numbers.size());
+  for (const double each : numbers) {
+    if (!(each >= 0 && each <= densest))
+      throw scene_error(given->at, fmt::format("a density of {:g}; 0 to {:g} would be right", each, densest));
+    values.push_back(static_cast<float>(each));
+  }
+  const auto corner = [&](const char* name, double otherwise) {
+    const auto p = parameters.triple(name);
+    return p ? Vector3{(*p)[0], (*p)[1], (*p)[2]} : Vector3{otherwise, otherwise, otherwise};
+  };
+  if (!description.world_from_medium.is_affine())
+    throw scene_error(parameters.location(), "a medium in a transformation that is not affine");
+  const Vector3 p0 = corner("p0", 0), p1 = corner("p1", 1);
+  const Vector3 low{std::min(p0.x, p1.x), std::min(p0.y, p1.y), std::min(p0.z, p1.z)},
+      high{std::max(p0.x, p1.x), std::max(p0.y, p1.y), std::max(p0.z, p1.z)};
+  try {
+    return std::make_shared<const DensityGrid>(size, std::move(values), low, high,
+                                               description.world_from_medium);
+  } catch (const InputError&) {
+    throw scene_error(parameters.location_of("p1"),
+                      "a box without volume; p0 and p1 are opposite corners of it");
+  }
+}
+
+void check_depth(const Medium& medium, const Location& at) {
+  double most = 0;
+  for (std::size_t group = 0; group < medium.absorption.size(); ++group)
+    most = std::max(most, static_cast<double>(medium.extinction(static_cast<int>(group)).largest()));
+  const double collisions = most * medium.density->greatest() * medium.density->diagonal();
+  if (!(collisions <= most_collisions))
+    throw scene_error(at, fmt::format("{:g} mean free paths across this medium; up to {:g} would be right",
+                                      collisions, most_collisions));
+}
+
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
                    Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
+  const std::string& type = description.entity.type;
   Medium medium;
-  if (description.entity.type != "homogeneous") {
-    unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", description.entity.type));
+  if (type != "homogeneous" && type != "uniformgrid") {
+    unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
     medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
     return medium;
   }
@@ -58,6 +121,8 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   medium.g = read_g(parameters);
   medium.scatters =
       std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
+  if (type == "uniformgrid") medium.density = read_grid(description, unsupported);
+  if (medium.density) check_depth(medium, parameters.location());
   parameters.find("type");
   unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
   return medium;
