@@ -502,6 +502,9 @@ TEST(Media, RefusesWhatIsNoMedium) {
             "test.pbrt:4:1: a coefficient of -1 at 450 nm; 0 to 1e+12 would be right");
   EXPECT_NE(with("\"rgb sigma_a\" [ 1 -1 1 ]").find("test.pbrt:4:1: \"rgb sigma_a\" takes three numbers"),
             std::string::npos);
+  EXPECT_EQ(with("\"rgb attenuation\" [ 1 .5 0 ] \"float attenuationdistance\" 0"),
+            "test.pbrt:4:30: a distance above 0 would be right");
+  EXPECT_EQ(with("\"rgb attenuation\" [ 1 .5 0 ] \"float attenuationdistance\" 2"), "nothing");
   EXPECT_NE(with("\"string preset\" \"Wholemilk\"").find("test.pbrt:4:1: a medium by \"preset\""),
             std::string::npos);
   EXPECT_NE(with("\"spectrum Le\" [ 400 1 700 1 ]")

@@ -14,6 +14,17 @@ inline double balanced(double pdf, double other) {
 /// Paths through surfaces that are no boundary do not count as scattered; this many are enough for any scene.
 inline constexpr int most_interfaces = 1000;
 
+/// The way that must be open for light to come from a lamp. Between two places, each just in front of its
+/// surface: at grazing angles a direction alone would miss by much.
+inline Vector3 way_to(const LightSample& light, Vector3 from) {
+  return light.place ? *light.place - from : light.direction;
+}
+/// The share of it on which it may be blocked: to the last roundings of a float.
+inline double end_of_way(const LightSample& light) {
+  constexpr double shadow_end = 1 - 0x1p-20;
+  return light.place ? shadow_end : std::numeric_limits<double>::infinity();
+}
+
 /// The medium on the side of a surface that a direction leads to. \param now  that in which it is met.
 inline int medium_towards(const Geometry& geometry, const SurfacePoint& point, Vector3 direction, int now) {
   if (!geometry.parts_media) return now;
@@ -34,12 +45,12 @@ struct PathTracer::Path {
   // Through media wavelengths lead differently. Light is divided by the mean of the densities with which each
   // would have led the path here (balance heuristic over the hero: Wilkie et al., Comput. Graph. Forum 33
   // (2014) 4), of which these are the single ones, over their mean.
-  int medium = -1;               ///< that the path is in, into World::media; −1: none
-  int lanes = lane_count;        ///< of the group, any of which might have led
-  Lanes led_by = Lanes::all(1);  ///< density with this wavelength as hero
-  Lanes asked = Lanes::all(1);   ///< the same had the last stretch been that to a light that was asked
-  double asked_mean = 1;         ///< of the lanes, or of the hero alone
-  double hero_share = 1;         ///< of the hero, when the path began
+  int medium = -1;        ///< that the path is in, into World::media; −1: none
+  int lanes = 0;          ///< of the group, any of which might have led; 0: the world has no media
+  Lanes led_by;           ///< density with this wavelength as hero
+  Lanes asked;            ///< the same had the last stretch been that to a light that was asked
+  double asked_mean = 1;  ///< of the lanes, or of the hero alone
+  double hero_share = 1;  ///< of the hero, when the path began
 
   double mean(const Lanes& of) const {
     if (alone) return static_cast<double>(of[hero]);
@@ -59,8 +70,15 @@ struct PathTracer::Path {
   void leave_others() {
     if (alone) return;
     alone = true;
-    if (led_by[hero] != hero_share) throughput *= hero_share / static_cast<double>(led_by[hero]);
+    if (lanes == 0) return;
+    throughput *= hero_share / static_cast<double>(led_by[hero]);
     led_by = only(hero, 1);
+  }
+  /// Light that is asked for from now on is asked for from here.
+  void begin_stretch() {
+    if (lanes == 0) return;
+    asked = led_by;
+    asked_mean = 1;
   }
 };
 

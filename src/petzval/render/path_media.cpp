@@ -20,21 +20,17 @@ std::optional<double> PathTracer::fly(Path& path, double distance, int group, So
 
 std::optional<Passage> PathTracer::open_way(Vector3 origin, const LightSample& light, int medium, int group,
                                             int hero, SobolSample& sample) const {
-  // Between two places, each just in front of its surface: at grazing angles a direction alone would miss by
-  // much. The share of the way on which it may be blocked: to the last roundings of a float.
-  constexpr double shadow_end = 1 - 0x1p-20, infinity = std::numeric_limits<double>::infinity();
-  const auto way_from = [&](Vector3 from) { return light.place ? *light.place - from : light.direction; };
-  const double end = light.place ? shadow_end : infinity;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!world_.media_end_openly && medium < 0) {
-    if (world_.intersector->blocked(origin, way_from(origin), end)) return {};
+    if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return {};
     return Passage();
   }
   Lots lots(sample.next1());
   Passage passage;
   for (int i = 0; i < most_interfaces; ++i) {
-    const Vector3 way = way_from(origin);
+    const Vector3 way = way_to(light, origin);
     const double length_of_way = light.place ? length(way) : 1;
-    const std::optional<Hit> hit = world_.intersector->nearest(origin, way, end);
+    const std::optional<Hit> hit = world_.intersector->nearest(origin, way, end_of_way(light));
     const Geometry* geometry = hit ? &world_.geometries[static_cast<std::size_t>(hit->geometry)] : nullptr;
     if (geometry && !geometry->is_interface) return {};
     if (medium >= 0) {

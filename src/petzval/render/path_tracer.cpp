@@ -72,15 +72,17 @@ void PathTracer::add_sky(Path& path, int group) const {
 template <class Pdf>
 void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int medium, const Lanes& f,
                            double cos, const Pdf& scatter_pdf, int group, SobolSample& sample) const {
-  const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
-  if (!way) return;
-  Lanes dimmed = f;
+  std::optional<Lanes> kept;  // by media
   double asked = 1, flown = 1;
-  if (!world_.media.empty()) {
+  if (world_.media.empty()) {
+    if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return;
+  } else {
+    const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
+    if (!way) return;
     asked = path.mean(path.led_by * way->asked), flown = path.mean(path.led_by * way->flown);
     if (!(asked > 0)) return;
-    const Lanes kept = 1 / asked * way->light;
-    light.light *= kept, dimmed *= kept;
+    kept = 1 / asked * way->light;
+    light.light *= *kept;
   }
   double weight = cos / light.pdf;
   // In a medium, what a small ball gets: a quarter of the light from all around.
@@ -89,7 +91,7 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
   if (!light.small && options_.lights == PathOptions::Lights::both)
     weight *= balanced(asked * light.pdf, flown * scatter_pdf());
   add(path, weight * (f * light.light), light.source);
-  if (light.source < 0) tell_skies(path, weight * dimmed, light.direction, group);
+  if (light.source < 0) tell_skies(path, weight * (kept ? f * *kept : f), light.direction, group);
 }
 
 void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
@@ -126,7 +128,7 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
   path.direction = normalised(direction);
   path.origin = point.origin_towards(path.direction);
   path.medium = medium_towards(geometry, point, path.direction, path.medium);
-  path.asked = path.led_by, path.asked_mean = 1;
+  path.begin_stretch();
   return goes_on(path, roulette);
 }
 
@@ -146,7 +148,7 @@ bool PathTracer::scatter_in_medium(Path& path, double distance, int group, Sobol
   const Vector3 way = normalised(sample_henyey_greenstein(path.direction, g, u, v));
   path.pdf = henyey_greenstein(dot(path.direction, way), g);
   path.direction = way;
-  path.asked = path.led_by, path.asked_mean = 1;
+  path.begin_stretch();
   return goes_on(path, roulette);
 }
 

@@ -14,11 +14,11 @@ namespace {
 /// Far above any medium, far below what a float holds.
 constexpr double densest = 1e12;
 
-/// The coefficient `name`, 1 if there is none (pbrt-v4), times `scale`.
-BandSpectrum read_coefficient(const Parameters& parameters, const char* name, double scale,
+/// The coefficient `name` times `scale`.
+BandSpectrum read_coefficient(const Parameters& parameters, const char* name, double otherwise, double scale,
                               const WavelengthGroups& groups, Unsupported& unsupported) {
   const auto given = spectrum_parameter(parameters, name, SpectrumRole::unbounded, unsupported);
-  const SceneSpectrum spectrum = given ? *given : constant_spectrum(1);
+  const SceneSpectrum spectrum = given ? *given : constant_spectrum(otherwise);
   return groups.sampled([&](double nm) {
     const double value = scale * spectrum.at(nm);
     if (!(value >= 0 && value <= densest))
@@ -26,6 +26,19 @@ BandSpectrum read_coefficient(const Parameters& parameters, const char* name, do
           parameters.location_of(name),
           fmt::format("a coefficient of {:g} at {:g} nm; 0 to {:g} would be right", value, nm, densest));
     return value;
+  });
+}
+
+/// Petzval's own: what is left of light after a distance, as KHR_materials_volume of glTF has it.
+BandSpectrum read_attenuation(const Parameters& parameters, double scale, const WavelengthGroups& groups,
+                              Unsupported& unsupported) {
+  const auto left = spectrum_parameter(parameters, "attenuation", SpectrumRole::albedo, unsupported);
+  const double distance = parameters.number("attenuationdistance", 1);
+  if (!(distance > 0 && std::isfinite(scale / distance)))
+    throw scene_error(parameters.location_of("attenuationdistance"), "a distance above 0 would be right");
+  return groups.sampled([&](double nm) {
+    constexpr double least = 1e-6;  // black has no logarithm
+    return -scale / distance * std::log(std::clamp(left->at(nm), least, 1.0));
   });
 }
 
@@ -116,8 +129,10 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
   const double scale = read_scale(parameters);
   if (const Parameter* preset = parameters.find("preset"))
     unsupported.report(preset->at, "a medium by \"preset\" (\"sigma_a\" and \"sigma_s\" say what it is)");
-  medium.absorption = read_coefficient(parameters, "sigma_a", scale, groups, unsupported);
-  medium.scattering = read_coefficient(parameters, "sigma_s", scale, groups, unsupported);
+  const bool attenuates = parameters.find("attenuation", {"rgb", "spectrum", "float"}) != nullptr;
+  medium.absorption = attenuates ? read_attenuation(parameters, scale, groups, unsupported)
+                                 : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
+  medium.scattering = read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
   medium.g = read_g(parameters);
   medium.scatters =
       std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
