@@ -3,7 +3,9 @@
 // form, Chandrasekhar's H-functions; and against each other.
 #include <gtest/gtest.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/lens_file.h>
 #include <petzval/numeric/quadrature.h>
+#include <petzval/render/camera/lens_camera.h>
 #include <petzval/render/media/phase_function.h>
 
 #include <array>
@@ -450,6 +452,42 @@ TEST(Media, KeepTheLightInAGrid) {
   const Estimate found = seen(*dark, {0, 0, -5}, {0, 0, 1}, 1 << 14);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(found.mean[i], std::exp(-2 * std::array{0.1, 0.5, 2.0}[i]), 4.5 * found.deviation[i]) << i;
+}
+
+/// Through a lens that disperses, wavelengths do not lead to a ray alike: at the border of what it lets in
+/// some do not at all. With coloured fog before it, which only scatters, the light of a furnace is what it
+/// was.
+TEST(Media, LeaveTheLightOfALensThatDisperses) {
+  const std::vector<double> wavelengths{420, 460, 500, 540, 580, 620, 660, 700};
+  const auto picture = [&](const std::string& before) {
+    Unsupported unsupported;
+    const auto world = build_world(
+        parse_scene_description(before + "Camera \"perspective\"\nWorldBegin\n" + white_furnace +
+                                    "Material \"interface\"\nReverseOrientation\nShape \"sphere\" "
+                                    "\"float radius\" 3\n",
+                                "test.pbrt", unsupported),
+        WavelengthGroups(wavelengths), {true}, unsupported);
+    const SensorGeometry film{2, 2, 20};  // not wider than the colours that the lens spreads
+    const LensCamera camera(read_lens("edmund-54852").lens, film, world->groups);
+    RenderOptions options;
+    options.samples_per_pixel = 1 << 15;
+    options.path.max_depth = 200;
+    return render_picture(*world, camera, Transform(), film, options);
+  };
+  const Rendering clear = picture(""),
+                  foggy = picture(
+                      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" " + flat("sigma_a", 0) +
+                      "\"spectrum sigma_s\" [ 400 2 550 .2 700 2 ]\nMediumInterface \"\" \"fog\"\n");
+  const std::size_t pixels = clear.irradiance.values().size() / wavelengths.size();
+  for (std::size_t band = 0; band < wavelengths.size(); ++band) {
+    double with = 0, without = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+      without += static_cast<double>(clear.irradiance.values()[band * pixels + i]);
+      with += static_cast<double>(foggy.irradiance.values()[band * pixels + i]);
+    }
+    // As many paths, each of a scatter of its mean.
+    EXPECT_NEAR(with / without, 1, 4.5 / std::sqrt(4 << 15)) << wavelengths[band];
+  }
 }
 
 /// Pictures of first surfaces look through media as if they were clear.

@@ -25,6 +25,9 @@ inline double end_of_way(const LightSample& light) {
   return light.place ? shadow_end : std::numeric_limits<double>::infinity();
 }
 
+/// Below, a density has nearly left the range of floats, and the light with it is nothing.
+inline constexpr double least_density = 1e-30;
+
 /// The medium on the side of a surface that a direction leads to. \param now  that in which it is met.
 inline int medium_towards(const Geometry& geometry, const SurfacePoint& point, Vector3 direction, int now) {
   if (!geometry.parts_media) return now;

@@ -12,7 +12,7 @@ std::optional<double> PathTracer::fly(Path& path, double distance, int group, So
   path.led_by *= flight.passage.flown, path.asked *= flight.passage.asked;
   path.throughput *= flight.passage.light;
   const double flown = path.mean(path.led_by);
-  const double over = flown > 0 ? 1 / flown : 0;
+  const double over = flown > least_density ? 1 / flown : 0;
   path.led_by *= over, path.asked *= over, path.throughput *= over;
   path.asked_mean = path.mean(path.asked);
   return flight.scattered_at;

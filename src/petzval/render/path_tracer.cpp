@@ -80,7 +80,7 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
     const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
     if (!way) return;
     asked = path.mean(path.led_by * way->asked), flown = path.mean(path.led_by * way->flown);
-    if (!(asked > 0)) return;
+    if (!(asked > least_density)) return;
     kept = 1 / asked * way->light;
     light.light *= *kept;
   }

@@ -5,6 +5,9 @@ namespace petzval::render {
 
 namespace {
 
+/// No float has places beyond.
+constexpr double farthest = 1e18;
+
 /// exp(−coefficient · distance), also over an infinite distance.
 Lanes transmittance(const Lanes& coefficient, double distance) {
   return mapped(coefficient,
@@ -21,8 +24,8 @@ Passage Medium::passage_of(const DensityGrid::Walk& walk, int group, int hero) c
   Passage passage;
   for (int lane = 0; lane < lane_count; ++lane) {
     const auto each = static_cast<double>(all[lane]);
-    const double collided = walk.collisions > 0 ? std::pow(each / leading, walk.collisions) : 1;
-    passage.asked[lane] = static_cast<float>(collided * std::exp((leading - each) * walk.bound_depth));
+    const double collided = walk.collisions > 0 ? walk.collisions * std::log(each / leading) : 0;
+    passage.asked[lane] = static_cast<float>(std::exp(collided + (leading - each) * walk.bound_depth));
   }
   passage.light = walk.survived * passage.asked;
   passage.flown = scatters ? passage.light : passage.asked;
@@ -44,9 +47,9 @@ Flight Medium::fly(Vector3 origin, Vector3 way, double distance, int group, int 
   if (!scatters || !(leading > 0)) return {pass(origin, way, distance, group, hero, lots), {}};
   const double free = -std::log1p(-lots.next()) / leading;
   Flight flight;
-  flight.passage.flown = transmittance(all, std::min(free, distance));
+  flight.passage.flown = transmittance(all, free < farthest ? std::min(free, distance) : distance);
   flight.passage.light = flight.passage.flown;
-  if (!(free < distance)) return flight;
+  if (!(free < std::min(distance, farthest))) return flight;
   flight.scattered_at = free;
   flight.passage.light *= back;
   flight.passage.flown *= all;
