@@ -512,6 +512,28 @@ TEST(Media, ShowTheFirstSurfaceBehindThem) {
   EXPECT_NEAR(through, 64 * std::exp(-2), 2);
 }
 
+/// pbrt-v4's material is a boundary and a medium.
+TEST(Media, LieBelowSubsurfaceMaterials) {
+  const std::string coefficients = coloured("sigma_a", 0.05, 0.3, 1) + coloured("sigma_s", 3, 2, 1.2);
+  const std::string ball = "Shape \"sphere\" \"float radius\" 1\n",
+                    rough = "\"float roughness\" 0.1 \"float eta\" 1.4 ";
+  const auto two = world_of(white_furnace + medium(coefficients, 0.3) +
+                            "MediumInterface \"fog\" \"\"\nMaterial \"dielectric\" " + rough + "\n" + ball),
+             one = world_of(white_furnace + ("Material \"subsurface\" " + rough + "\"float g\" 0.3 ") +
+                            coefficients + "\n" + ball);
+  const Estimate expected = seen(*two, {0, 0.3, -5}, {0, 0, 1}, 1 << 10),
+                 found = seen(*one, {0, 0.3, -5}, {0, 0, 1}, 1 << 10);
+  EXPECT_EQ(found.mean, expected.mean);
+  EXPECT_LT(found.mean[2], 0.9);
+  // Milk, 50 mean free paths thick: white, and a little yellow.
+  const auto milk =
+      world_of(std::string(white_furnace) + "Material \"subsurface\" \"float scale\" 10\n" + ball);
+  const Estimate white = seen(*milk, {0, 0.3, -5}, {0, 0, 1}, 1 << 9);
+  EXPECT_GT(white.mean[2], 0.85);
+  EXPECT_LT(white.mean[2], 1);
+  EXPECT_LT(white.mean[0], white.mean[2]);
+}
+
 std::string media_message(const std::string& text) {
   try {
     world_of(text);
@@ -549,6 +571,20 @@ TEST(Media, RefusesWhatIsNoMedium) {
                 .find("test.pbrt:4:1: the parameter \"spectrum Le\" of medium \"a\""),
             std::string::npos);
   EXPECT_NE(media_message("MakeNamedMedium \"a\" \"string type\" \"nanovdb\"").find("a medium \"nanovdb\""),
+            std::string::npos);
+}
+
+TEST(Media, RefusesWhatIsNoSubsurface) {
+  const auto with = [](const std::string& parameter) {
+    return media_message("Material \"subsurface\"\n" + parameter + "\nShape \"sphere\"");
+  };
+  EXPECT_EQ(with("\"float g\" 1"), "test.pbrt:4:1: a mean cosine of 1; above -1 and below 1 would be right");
+  EXPECT_NE(with("\"rgb mfp\" [ 1 2 3 ]").find("test.pbrt:4:1: a subsurface material by \"mfp\""),
+            std::string::npos);
+  EXPECT_NE(with("\"float scale\" -1").find("test.pbrt:4:1"), std::string::npos);
+  EXPECT_NE(media_message("MakeNamedMaterial \"a\" \"string type\" \"subsurface\"\nMaterial \"mix\" \"string "
+                          "materials\" [ \"a\" \"a\" ]")
+                .find("test.pbrt:4:16: a mix with a subsurface material"),
             std::string::npos);
 }
 

@@ -53,6 +53,10 @@ struct Medium {
   Passage passage_of(const DensityGrid::Walk& walk, int group, int hero) const;
 };
 
+/// What is below the boundary of a material "subsurface" of pbrt-v4. \throws InputError; through
+/// `unsupported`.
+Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported);
+
 /// All media of a scene, in the order of its description. \throws InputError with file, line and column, and
 /// through `unsupported`.
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,

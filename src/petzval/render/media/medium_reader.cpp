@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/render/media/medium.h>
+#include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
 
 #include <algorithm>
@@ -116,6 +117,10 @@ void check_depth(const Medium& medium, const Location& at) {
                                       collisions, most_collisions));
 }
 
+bool scatters(const Medium& medium) {
+  return std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
+}
+
 Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
                    Unsupported& unsupported) {
   const Parameters& parameters = description.entity.parameters;
@@ -134,8 +139,7 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
                                  : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
   medium.scattering = read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
   medium.g = read_g(parameters);
-  medium.scatters =
-      std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
+  medium.scatters = scatters(medium);
   if (type == "uniformgrid") medium.density = read_grid(description, unsupported);
   if (medium.density) check_depth(medium, parameters.location());
   parameters.find("type");
@@ -144,6 +148,24 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
 }
 
 }  // namespace
+
+Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported) {
+  // Whole milk (Jensen, Marschner, Levoy & Hanrahan, SIGGRAPH 2001) [1/mm], as in pbrt-v4.
+  const Entity milk = EntityMaker("", material.location())
+                          .rgb("sigma_a", {0.0011, 0.0024, 0.014})
+                          .rgb("sigma_s", {2.55, 3.21, 3.77})
+                          .made();
+  const Parameters& parameters = material.parameters;
+  const bool own = parameters.find("sigma_a") || parameters.find("sigma_s");
+  const Parameters& coefficients = own ? parameters : milk.parameters;
+  const double scale = read_scale(parameters);
+  Medium medium;
+  medium.absorption = read_coefficient(coefficients, "sigma_a", 0, scale, groups, unsupported);
+  medium.scattering = read_coefficient(coefficients, "sigma_s", 0, scale, groups, unsupported);
+  medium.g = read_g(parameters);
+  medium.scatters = scatters(medium);
+  return medium;
+}
 
 std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,
                                Unsupported& unsupported) {
