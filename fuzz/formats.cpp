@@ -206,6 +206,7 @@ const std::vector<Format>& formats() {
         "Material \"conductor\"\n",
         "Material \"coateddiffuse\"\n",
         "Material \"interface\"\n",
+        "Material \"subsurface\"\n",
         "MediumInterface \"m\" \"\"\n",
         "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n",
         "\"float g\" -0.9",
