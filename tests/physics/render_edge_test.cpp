@@ -93,7 +93,7 @@ TEST(RenderedEdge, HasTheContrastOfPhotositeAndLowPassFilter) {
   EdgePicture edge{{80, 80, 5}, {0, 0, 80, 80}, {}};
   PerspectiveOptions perspective;
   perspective.columns = perspective.rows = 80;
-  const PerspectiveCamera camera(perspective);
+  const PerspectiveCamera camera(perspective, world->groups);
   using Shape = Photosite::Shape;
   for (const Photosite& site :
        {Photosite{}, site_of(Shape::rectangle, 0.7, 0.7, 0), site_of(Shape::rectangle, 1, 1, 0.5),

@@ -3,6 +3,7 @@
 #include "gltf_scenes.h"
 
 #include <petzval/render/materials/fresnel.h>
+#include <petzval/render/pbrt/entity_maker.h>
 
 #include <cmath>
 
@@ -140,6 +141,53 @@ TEST(GltfMaterials, GlassIsASheetOrABody) {
   const SceneDescription body = read_gltf(gltf.text());
   EXPECT_EQ(body.materials.back().type, "dielectric");
   EXPECT_EQ(body.materials.back().parameters.number("eta", 0), 1.7);
+}
+
+/// A pane of index 1, two squares that look away from each other, `thick` apart, before an even sky.
+PathLight through_pane(json volume, double thick, double ior = 1) {
+  GltfText gltf;
+  const int glass =
+      gltf.add_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+                         {"extensions",
+                          {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                           {"KHR_materials_ior", {{"ior", ior}}},
+                           {"KHR_materials_volume", std::move(volume)}}}});
+  const int square = gltf.add_mesh(gltf.square(glass));
+  // Twice as large than written: distances are those of the world.
+  gltf.add_node({{"mesh", square}, {"scale", {2, 2, 2}}, {"translation", {0, 0, thick / 2}}});
+  gltf.add_node({{"mesh", square}, {"rotation", {1, 0, 0, 0}}, {"translation", {0, 0, -thick / 2}}});
+  SceneDescription scene = read_gltf(gltf.text());
+  scene.lights.push_back({EntityMaker("infinite", {}).made(), {}});
+  Unsupported unsupported;
+  const auto world = build_world(scene, WavelengthGroups({450, 550, 650}), {}, unsupported);
+  SobolSample sample(1, 0);
+  PathLight light = PathTracer(*world, {}).trace({0.1, 0.2, 5}, {0, 0, -1}, 0, 0, sample);
+  const Lanes sky = world->lights.sky({0, 0, -1}, 0);
+  for (int lane = 0; lane < lane_count; ++lane) light.shared[lane] /= sky[lane];
+  return light;
+}
+
+TEST(GltfMaterials, ABodyTakesLightByItsDepth) {
+  constexpr double smooth_grey = 5e-3;  // of the spectrum that stands for a grey
+  const auto grey = [](double distance, double thick, double factor = 0.1) {
+    return static_cast<double>(through_pane({{"thicknessFactor", factor},
+                                             {"attenuationColor", {0.5, 0.5, 0.5}},
+                                             {"attenuationDistance", distance}},
+                                            thick)
+                                   .shared[1]);
+  };
+  EXPECT_NEAR(grey(2, 2), 0.5, smooth_grey);
+  EXPECT_NEAR(grey(2, 1), std::sqrt(0.5), smooth_grey);
+  EXPECT_NEAR(grey(0.5, 1), 0.25, smooth_grey);
+  EXPECT_NEAR(grey(2, 2, 0), 1, 1e-6);  // a sheet without thickness
+  const PathLight amber = through_pane(
+      {{"thicknessFactor", 1}, {"attenuationColor", {0.9, 0.5, 0.05}}, {"attenuationDistance", 1}}, 1);
+  EXPECT_GT(amber.shared[2], 0.8f);
+  EXPECT_LT(amber.shared[0], 0.15f);
+  EXPECT_NEAR(static_cast<double>(
+                  through_pane({{"thicknessFactor", 1}, {"attenuationColor", {0.5, 0.5, 0.5}}}, 1).shared[1]),
+              1,
+              1e-6);  // an infinite distance
 }
 
 TEST(GltfMaterials, TexturesLieWhereTheirTransformPutsThem) {

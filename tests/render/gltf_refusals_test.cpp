@@ -146,5 +146,21 @@ TEST(GltfTextures, AreTurnedAsTheExtensionSays) {
     }
 }
 
+TEST(GltfRefusals, ABodyNeedsAColourAndADistance) {
+  const auto message = [](nlohmann::json volume) {
+    GltfText gltf;
+    gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(gltf.add_material(
+                                {{"extensions",
+                                  {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                   {"KHR_materials_volume", std::move(volume)}}}})))}});
+    return refusal(gltf.text());
+  };
+  const std::string at = "materials[0].extensions.KHR_materials_volume.";
+  expect_refused(message({{"attenuationColor", {0.5, 2, 0.5}}}), at + "attenuationColor",
+                 "3 numbers from 0 to 1");
+  expect_refused(message({{"attenuationDistance", 0}}), at + "attenuationDistance", "a number above 0");
+  expect_refused(message({{"thicknessFactor", -1}}), at + "thicknessFactor", "a number from 0");
+}
+
 }  // namespace
 }  // namespace petzval::render

@@ -273,7 +273,7 @@ TEST(Renderer, KnowsTheLampsAndTheLightOfItsScene) {
   perspective.columns = 40, perspective.rows = 30;
   RenderOptions options;
   options.samples_per_pixel = 64;
-  const Rendering picture = render_picture(*world, PerspectiveCamera(perspective),
+  const Rendering picture = render_picture(*world, PerspectiveCamera(perspective, world->groups),
                                            Transform::translation({0, 0, -1}), film, options);
   const std::vector<std::uint8_t>& lamps = picture.irradiance.lamps;
   ASSERT_EQ(lamps.size(), 1200u);
@@ -390,7 +390,7 @@ TEST(Renderer, LambertsWallHasTheRadianceThatPhotometrySays) {
   PerspectiveOptions perspective;
   perspective.columns = perspective.rows = 8;
   perspective.field_of_view_deg = 40;
-  const PerspectiveCamera camera(perspective);
+  const PerspectiveCamera camera(perspective, world->groups);
   RenderOptions options;
   options.first_surfaces = true;
   const Rendering picture = render_picture(*world, camera, Transform(), {8, 8, 10}, options);
@@ -415,7 +415,7 @@ TEST(Renderer, SeesWhatLiesBetweenTheClippingPlanes) {
   PerspectiveOptions perspective;
   perspective.columns = perspective.rows = 8;
   perspective.field_of_view_deg = 100;  // corners lie 59 degrees off the axis, where z = 2 is 3.9 away
-  const PerspectiveCamera camera(perspective);
+  const PerspectiveCamera camera(perspective, world->groups);
   const auto seen = [&](double near, double far) {
     RenderOptions options;
     options.samples_per_pixel = 4;
@@ -463,6 +463,29 @@ TEST(Renderer, LightsGiveTheIrradianceOfTheirClosedForms) {
   expect(area + "Shape \"sphere\" \"float radius\" 0.5\n", pi * 3 * 0.25 / 4);
   expect("LightSource \"point\"" + intensity + "\n", 3.0 / 4);
   expect("LightSource \"spot\"" + intensity + " \"point3 to\" [ 0 0 2 ]\n", 3.0 / 4);
+}
+
+/// One wavelength alone stands for as many as might have led: three here, where eight would fit.
+TEST(Renderer, SeesGlassThatDispersesAsBrightAsItIs) {
+  const auto world =
+      world_of(std::string(white_furnace) +
+               "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\"\nTranslate 0 0 3\nShape "
+               "\"sphere\" \"float radius\" 1\n");
+  PerspectiveOptions perspective;
+  perspective.columns = perspective.rows = 4;
+  perspective.field_of_view_deg = 10;
+  RenderOptions options;
+  options.samples_per_pixel = 2048;
+  options.path.max_depth = 100;
+  const Rendering picture = render_picture(*world, PerspectiveCamera(perspective, world->groups), Transform(),
+                                           SensorGeometry{4, 4, 10}, options);
+  // 32768 paths a band; of the third that a band leads, each counts three times: √2 of scatter.
+  for (std::size_t band = 0; band < 3; ++band) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 16; ++i)
+      sum += static_cast<double>(picture.irradiance.values()[16 * band + i]) / 16;
+    EXPECT_NEAR(sum, 1, 4.5 * std::sqrt(2.0 / 32768)) << band;
+  }
 }
 
 }  // namespace

@@ -155,13 +155,13 @@ TEST(SceneReader, ListsEverythingThatIsNotSupported) {
       "WorldBegin\nMaterial \"hair\"\nShape \"nurbs\"\nShape \"sphere\" \"float "
       "alpha\" "
       "0.5\n"
-      "LightSource \"portal\"\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\n",
+      "LightSource \"portal\"\nMakeNamedMedium \"fog\" \"string type\" \"cloud\"\n",
       "s.pbrt", unsupported);
   build_world(scene, WavelengthGroups({550}), {}, unsupported);
   std::vector<std::string> list;
   for (const Complaint& each : unsupported.list()) list.push_back(each.at.text() + " " + each.what);
-  EXPECT_EQ(list, (std::vector<std::string>{"s.pbrt:6:1 a participating medium",
-                                            "s.pbrt:2:1 Material \"hair\"", "s.pbrt:3:1 Shape \"nurbs\"",
+  EXPECT_EQ(list, (std::vector<std::string>{"s.pbrt:2:1 Material \"hair\"", "s.pbrt:6:1 a medium \"cloud\"",
+                                            "s.pbrt:3:1 Shape \"nurbs\"",
                                             "s.pbrt:4:16 the parameter \"float alpha\" of Shape \"sphere\"",
                                             "s.pbrt:5:1 LightSource \"portal\""}));
 }

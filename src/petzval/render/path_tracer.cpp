@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <petzval/render/path_tracer.h>
+#include <petzval/render/media/phase_function.h>
+#include <petzval/render/path.h>
 
 #include <algorithm>
 
@@ -8,32 +9,11 @@ namespace petzval::render {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Paths through surfaces that are no boundary do not count as scattered; this many are enough for any scene.
-constexpr int most_interfaces = 1000;
-/// Share of a shadow ray's way on which it may be blocked: to the last roundings of a float.
-constexpr double shadow_end = 1 - 0x1p-20;
 /// Path length after which weak paths are ended at random.
 constexpr int roulette_depth = 2;
 constexpr double roulette_floor = 0.05;
 
-/// Share of one of two ways of sampling that could both have found a path (balance heuristic, Veach 1997).
-double balanced(double pdf, double other) {
-  return pdf / (pdf + other);
-}
-
 }  // namespace
-
-struct PathTracer::Path {
-  Vector3 origin, direction;
-  Lanes throughput = Lanes::all(1);
-  double pdf = 0;      ///< of the last scattering; 0 after a mirror or at the camera
-  bool alone = false;  ///< dispersed: only the hero wavelength is left
-  int hero = 0, depth = 0;
-  double index_scale = 1;  ///< what refraction has done to radiance so far, undone for Russian roulette
-  LightPlan plan;          ///< of the last surface that is no mirror
-  std::span<SourceLight> of_sources;
-  PathLight light;
-};
 
 void PathTracer::add(Path& path, const Lanes& light, int source) const {
   const auto add_to = [&](auto& sum) {
@@ -69,10 +49,11 @@ void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& poi
   if (path.pdf > 0) {
     if (options_.lights == PathOptions::Lights::sampled) return;
     if (options_.lights == PathOptions::Lights::both)
-      weight = balanced(path.pdf, world_.lights.area_pdf(world_.geometries, area, path.plan, point));
+      weight = balanced(path.pdf,
+                        path.asked_mean * world_.lights.area_pdf(world_.geometries, area, path.plan, point));
   }
   add(path, weight * radiance, world_.lights.areas[area].source);
-  if (path.depth == 0) path.light.straight += radiance;
+  if (path.depth == 0) path.light.straight += path.throughput * radiance;
 }
 
 void PathTracer::add_sky(Path& path, int group) const {
@@ -81,19 +62,45 @@ void PathTracer::add_sky(Path& path, int group) const {
   if (path.pdf > 0) {
     if (options_.lights == PathOptions::Lights::sampled) return;
     if (options_.lights == PathOptions::Lights::both)
-      weight = balanced(path.pdf, world_.lights.sky_pdf(path.plan, path.direction));
+      weight = balanced(path.pdf, path.asked_mean * world_.lights.sky_pdf(path.plan, path.direction));
   }
   add(path, weight * world_.lights.sky(path.direction, group), -1);
   tell_skies(path, weight * Lanes::all(1), path.direction, group);
 }
 
+/// What an open way has left of a light that was asked. \param scatter_pdf  of the direction to it.
+template <class Pdf>
+void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int medium, const Lanes& f,
+                           double cos, const Pdf& scatter_pdf, int group, SobolSample& sample) const {
+  std::optional<Lanes> kept;  // by media
+  double asked = 1, flown = 1;
+  if (world_.media.empty()) {
+    if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return;
+  } else {
+    const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
+    if (!way) return;
+    asked = path.mean(path.led_by * way->asked), flown = path.mean(path.led_by * way->flown);
+    if (!(asked > least_density)) return;
+    kept = 1 / asked * way->light;
+    light.light *= *kept;
+  }
+  double weight = cos / light.pdf;
+  // In a medium, what a small ball gets: a quarter of the light from all around.
+  if (path.depth == 1)
+    path.light.arriving += (path.plan.to.all_around ? 0.25 / light.pdf : weight) * light.light;
+  if (!light.small && options_.lights == PathOptions::Lights::both)
+    weight *= balanced(asked * light.pdf, flown * scatter_pdf());
+  add(path, weight * (f * light.light), light.source);
+  if (light.source < 0) tell_skies(path, weight * (kept ? f * *kept : f), light.direction, group);
+}
+
 void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
-                                   const Bsdf& bsdf, Vector3 wo, int group, SobolSample& sample) const {
+                                   const Bsdf& bsdf, Vector3 wo, const Geometry& geometry, int group,
+                                   SobolSample& sample) const {
   if (bsdf.is_mirror()) return sample.skip();
   const auto [choice, u, v] = sample.next3();
   path.plan = world_.lights.plan({point.position, wo.z < 0 ? -frame.z : frame.z, bsdf.transmits()});
-  const std::optional<LightSample> light =
-      world_.lights.sample(world_.geometries, path.plan, choice, u, v, group);
+  std::optional<LightSample> light = world_.lights.sample(world_.geometries, path.plan, choice, u, v, group);
   if (!light || !(light->pdf > 0)) return;
   if (options_.lights == PathOptions::Lights::by_chance && !light->small) return;
   const Vector3 wi = frame.to_local(light->direction);
@@ -101,33 +108,52 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   if ((dot(point.normal, light->direction) > 0) != (wi.z > 0)) return;
   const Lanes f = bsdf.value(wo, wi);
   if (f.is_black()) return;
-  const Vector3 origin = point.origin_towards(light->direction);
-  // Between two places, each just in front of its surface: at grazing angles a direction alone would miss by
-  // much.
-  const Vector3 way = light->place ? *light->place - origin : light->direction;
-  if (world_.intersector->blocked(origin, way, light->place ? shadow_end : infinity)) return;
-  double weight = std::abs(wi.z) / light->pdf;
-  if (path.depth == 1) path.light.arriving += weight * light->light;
-  if (!light->small && options_.lights == PathOptions::Lights::both)
-    weight *= balanced(light->pdf, bsdf.pdf(wo, wi));
-  add(path, weight * (f * light->light), light->source);
-  if (light->source < 0) tell_skies(path, weight * f, light->direction, group);
+  add_asked(
+      path, *light, point.origin_towards(light->direction),
+      medium_towards(geometry, point, light->direction, path.medium), f, std::abs(wi.z),
+      [&] { return bsdf.pdf(wo, wi); }, group, sample);
 }
 
 bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
-                         Vector3 wo, int hero, SobolSample& sample) const {
+                         Vector3 wo, const Geometry& geometry, SobolSample& sample) const {
   const auto [choice, u, v, roulette] = sample.next4();
   const std::optional<BsdfSample> chosen = bsdf.sample(wo, choice, u, v);
   if (!chosen || chosen->weight.is_black()) return false;
   const Vector3 direction = frame.from_local(chosen->wi);
   if ((dot(point.normal, direction) > 0) != (chosen->wi.z > 0)) return false;
-  if (chosen->transmitted && bsdf.disperses() && !path.alone) path.alone = true;
-  path.hero = hero;
+  if (chosen->transmitted && bsdf.disperses()) path.leave_others();
   path.throughput *= chosen->weight;
   path.pdf = chosen->mirror ? 0 : chosen->pdf;
   if (chosen->transmitted) path.index_scale *= chosen->index_ratio * chosen->index_ratio;
   path.direction = normalised(direction);
   path.origin = point.origin_towards(path.direction);
+  path.medium = medium_towards(geometry, point, path.direction, path.medium);
+  path.begin_stretch();
+  return goes_on(path, roulette);
+}
+
+bool PathTracer::scatter_in_medium(Path& path, double distance, int group, SobolSample& sample) const {
+  const double g = world_.media[static_cast<std::size_t>(path.medium)].g;
+  path.origin = path.origin + distance * path.direction;
+  const auto [choice, light_u, light_v] = sample.next3();
+  path.plan = world_.lights.plan({.position = path.origin, .normal = path.direction, .all_around = true});
+  std::optional<LightSample> light =
+      world_.lights.sample(world_.geometries, path.plan, choice, light_u, light_v, group);
+  if (light && light->pdf > 0 && (options_.lights != PathOptions::Lights::by_chance || light->small)) {
+    const double phase = henyey_greenstein(dot(path.direction, light->direction), g);
+    add_asked(
+        path, *light, path.origin, path.medium, Lanes::all(phase), 1, [&] { return phase; }, group, sample);
+  }
+  const auto [u, v, roulette] = sample.next3();
+  const Vector3 way = normalised(sample_henyey_greenstein(path.direction, g, u, v));
+  path.pdf = henyey_greenstein(dot(path.direction, way), g);
+  path.direction = way;
+  path.begin_stretch();
+  return goes_on(path, roulette);
+}
+
+/// Ends weak paths at random.
+bool PathTracer::goes_on(Path& path, double roulette) const {
   const double left = static_cast<double>(path.throughput.largest()) * path.index_scale;
   if (left < 1 && path.depth > roulette_depth) {
     const double survive = std::max(roulette_floor, left);
@@ -137,16 +163,44 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
   return true;
 }
 
+const Material& PathTracer::material_met(const Geometry& geometry, const TexturePoint& point, int group,
+                                         SobolSample& sample) const {
+  const Material& material = world_.materials[static_cast<std::size_t>(geometry.material)];
+  if (material.kind != Material::Kind::mix) return material;
+  return material_at(world_.materials, geometry.material, point, group, sample.next1());
+}
+
 PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
-                            double limit, FirstSurface* first, std::span<SourceLight> of_sources) const {
+                            double limit, FirstSurface* first, std::span<SourceLight> of_sources,
+                            const Lanes& led_by) const {
   Path path;
   path.origin = origin, path.direction = direction, path.hero = hero;
   path.of_sources = of_sources;
+  if (!world_.media.empty()) {
+    path.medium = world_.camera_medium;
+    path.begin_with(led_by, world_.groups.lanes(group));
+  }
   int interfaces = 0;
   bool mirrored = true;  // so far there were only mirrors
   for (;;) {
     const std::optional<Hit> hit =
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
+    if (path.medium >= 0) {
+      const std::optional<double> scattered = fly(path, hit ? hit->distance : infinity, group, sample);
+      const bool lost = path.throughput.is_black();
+      if (first && !first->met && (scattered || lost)) {
+        *first = first_beyond(path, path.depth == 0 ? limit : infinity, group, sample);
+        first = nullptr;
+      }
+      if (lost) break;
+      if (scattered) {
+        if (mirrored) path.light.distance += *scattered;
+        mirrored = false;
+        if (path.depth++ >= options_.max_depth) break;
+        if (!scatter_in_medium(path, *scattered, group, sample)) break;
+        continue;
+      }
+    }
     if (!hit) {
       add_sky(path, group);
       if (mirrored) path.light.distance = infinity;
@@ -157,13 +211,11 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     if (mirrored) path.light.distance += length(point.position - path.origin);
     add_emitted(path, *hit, point, group);
     const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
-    const Material& material =
-        world_.materials[static_cast<std::size_t>(geometry.material)].kind == Material::Kind::mix
-            ? material_at(world_.materials, geometry.material, texture_point, group, sample.next1())
-            : world_.materials[static_cast<std::size_t>(geometry.material)];
+    const Material& material = material_met(geometry, texture_point, group, sample);
     if (material.kind == Material::Kind::none) {
       if (++interfaces > most_interfaces) break;
       path.origin = point.origin_towards(path.direction);
+      path.medium = medium_towards(geometry, point, path.direction, path.medium);
       continue;
     }
     if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
@@ -172,12 +224,12 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
     mirrored = mirrored && bsdf.is_mirror();
     // A rough surface that disperses sends each wavelength its own way from here on.
-    if (bsdf.disperses() && !bsdf.is_mirror()) path.alone = true;
+    if (bsdf.disperses() && !bsdf.is_mirror()) path.leave_others();
     if (path.depth++ >= options_.max_depth) break;
     const Frame frame(point.shading_normal, point.along_u);
     const Vector3 wo = frame.to_local(-path.direction);
-    add_sampled_light(path, point, frame, bsdf, wo, group, sample);
-    if (!scatter(path, point, frame, bsdf, wo, hero, sample)) break;
+    add_sampled_light(path, point, frame, bsdf, wo, geometry, group, sample);
+    if (!scatter(path, point, frame, bsdf, wo, geometry, sample)) break;
   }
   return path.light;
 }

@@ -11,7 +11,8 @@
 namespace petzval::render {
 
 struct PathOptions {
-  int max_depth = 5;  ///< surfaces met after the first (pbrt-v4's maxdepth)
+  /// Surfaces met after the first, and places where media scatter (pbrt-v4's maxdepth).
+  int max_depth = 5;
   /// How light sources are found: by asking them, by chance, or both with weights that make the best of it.
   enum class Lights { both, sampled, by_chance };
   Lights lights = Lights::both;
@@ -25,7 +26,8 @@ struct PathLight {
   /// Irradiance of the first surface straight from the lights [W·m⁻²·nm⁻¹].
   Lanes arriving = Lanes::all(0);
   float alone = 0;  ///< of the hero wavelength, over paths through dispersing glass, which only it takes
-  /// To the first surface that is no mirror, along the path; infinite where none is met.
+  /// To the first surface that is no mirror, or where a medium scatters, along the path; infinite where none
+  /// is met.
   double distance = 0;
 };
 
@@ -35,7 +37,8 @@ struct SourceLight {
   float alone = 0;
 };
 
-/// The first surface along a ray, as pictures of depth, normals and albedo need it.
+/// The first surface along a ray, as pictures of depth, normals and albedo need it: seen through media as if
+/// they were clear.
 struct FirstSurface {
   bool met = false;
   Vector3 position, normal;
@@ -51,20 +54,37 @@ class PathTracer {
 
   /// \param limit  far clipping distance. \param first  if given, is told of the first surface.
   /// \param of_sources  if not empty, one for each of Lights::sources, to which its light is added.
+  /// \param led_by  how likely each wavelength would have led to this ray, up to a factor
+  /// (CameraRay::density).
   PathLight trace(Vector3 origin, Vector3 direction, int group, int hero, SobolSample& sample,
                   double limit = std::numeric_limits<double>::infinity(), FirstSurface* first = nullptr,
-                  std::span<SourceLight> of_sources = {}) const;
+                  std::span<SourceLight> of_sources = {}, const Lanes& led_by = Lanes::all(1)) const;
 
  private:
   struct Path;
+  const Material& material_met(const Geometry& geometry, const TexturePoint& point, int group,
+                               SobolSample& sample) const;
   void add(Path& path, const Lanes& light, int source) const;
   void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
   void add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
-                         Vector3 wo, int group, SobolSample& sample) const;
+                         Vector3 wo, const Geometry& geometry, int group, SobolSample& sample) const;
+  template <class Pdf>
+  void add_asked(Path& path, LightSample& light, Vector3 origin, int medium, const Lanes& f, double cos,
+                 const Pdf& scatter_pdf, int group, SobolSample& sample) const;
   bool scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo,
-               int hero, SobolSample& sample) const;
+               const Geometry& geometry, SobolSample& sample) const;
+  bool goes_on(Path& path, double roulette) const;
+
+  // Through media: path_media.cpp.
+  /// To what is met next, at a distance, or to where the medium scatters before: the distance to there.
+  std::optional<double> fly(Path& path, double distance, int group, SobolSample& sample) const;
+  bool scatter_in_medium(Path& path, double distance, int group, SobolSample& sample) const;
+  /// The straight way to a light; absent where something stands in it.
+  std::optional<Passage> open_way(Vector3 origin, const LightSample& light, int medium, int group, int hero,
+                                  SobolSample& sample) const;
+  FirstSurface first_beyond(const Path& path, double limit, int group, SobolSample& sample) const;
 
   const World& world_;
   PathOptions options_;

@@ -106,9 +106,9 @@ class TileRenderer {
     const Vector3 along = place.direction(ray.direction), direction = normalised(along);
     FirstSurface first;
     std::ranges::fill(of_sources_, SourceLight());
-    const PathLight light = tracer_.trace(origin, direction, group, places_[i].hero, samples_[i],
-                                          (part.to - part.from) * length(along),
-                                          film_.has_first_surfaces() ? &first : nullptr, of_sources_);
+    const PathLight light = tracer_.trace(
+        origin, direction, group, places_[i].hero, samples_[i], (part.to - part.from) * length(along),
+        film_.has_first_surfaces() ? &first : nullptr, of_sources_, ray.density);
     const SeenPoint seen{ray.origin, ray.direction, part.from + light.distance / length(along)};
     const int places = light.straight.is_black() ? 1 : places_of_lamp;
     if (!light.straight.is_black()) add_lamp(pixel_of(i), light.straight, ray);

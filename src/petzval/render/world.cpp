@@ -5,6 +5,8 @@
 #include <petzval/render/shapes/ribbon_mesh.h>
 #include <petzval/render/world.h>
 
+#include <map>
+
 namespace petzval::render {
 
 namespace {
@@ -20,7 +22,13 @@ class WorldBuilder {
  public:
   WorldBuilder(const SceneDescription& scene, const LightOptions& options, const TextureLibrary& textures,
                Unsupported& unsupported, World& world)
-      : scene_(scene), options_(options), textures_(textures), unsupported_(unsupported), world_(world) {}
+      : scene_(scene), options_(options), textures_(textures), unsupported_(unsupported), world_(world) {
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+      if (scene.materials[i].type != "subsurface") continue;
+      below_surface_[static_cast<int>(i)] = static_cast<int>(world.media.size());
+      world.media.push_back(make_subsurface(scene.materials[i], world.groups, unsupported));
+    }
+  }
 
   GeometryRange add(const std::vector<ShapeDescription>& shapes) {
     const std::size_t first = world_.geometries.size();
@@ -51,6 +59,12 @@ class WorldBuilder {
     geometry.material = description.material;
     geometry.is_interface =
         world_.materials[static_cast<std::size_t>(description.material)].kind == Material::Kind::none;
+    MediaDescription media = description.media;
+    if (const auto below = below_surface_.find(description.material); below != below_surface_.end())
+      media.inside = below->second;
+    geometry.parts_media = media.differ();
+    geometry.inside = media.inside, geometry.outside = media.outside;
+    world_.media_end_openly = world_.media_end_openly || (geometry.is_interface && geometry.parts_media);
     geometry.needs_coordinates = varies(world_.materials, description.material);
     geometry.reversed = description.reverse_orientation;
     geometry.swaps_handedness = description.world_from_object.swaps_handedness();
@@ -92,15 +106,18 @@ class WorldBuilder {
   const TextureLibrary& textures_;
   Unsupported& unsupported_;
   World& world_;
+  std::map<int, int> below_surface_;  ///< media of materials
 };
 
 }  // namespace
 
 std::unique_ptr<const World> build_world(const SceneDescription& scene, const WavelengthGroups& groups,
                                          const LightOptions& options, Unsupported& unsupported) {
-  auto world = std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, nullptr});
+  auto world =
+      std::unique_ptr<World>(new World{groups, {}, {}, {}, {}, scene.camera_medium, false, {}, nullptr});
   const TextureLibrary textures(scene, world->groups, unsupported);
   world->materials = make_materials(scene, textures, unsupported);
+  world->media = make_media(scene, world->groups, unsupported);
   WorldBuilder builder(scene, options, textures, unsupported, *world);
   const GeometryRange standing = builder.add(scene.shapes);
   std::vector<GeometryRange> objects;

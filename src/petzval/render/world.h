@@ -4,6 +4,7 @@
 
 #include <petzval/render/lights/light_reader.h>
 #include <petzval/render/materials/material.h>
+#include <petzval/render/media/medium.h>
 #include <petzval/render/shapes/intersector.h>
 
 #include <memory>
@@ -17,6 +18,9 @@ struct World {
   std::vector<Geometry> geometries;
   std::vector<PlacedObject> placed;
   std::vector<Material> materials;
+  std::vector<Medium> media;
+  int camera_medium = -1;         ///< into media; −1: none
+  bool media_end_openly = false;  ///< somewhere two media meet at a surface that light passes as it is
   Lights lights;
   std::unique_ptr<Intersector> intersector;
 

@@ -20,6 +20,9 @@ struct CameraRay {
   Lanes weight = Lanes::all(0);
   /// The same for the hero wavelength when it alone takes the path.
   float weight_alone = 0;
+  /// How likely each wavelength would have led to this ray, up to a factor; lanes without a band do not
+  /// count.
+  Lanes density = Lanes::all(1);
   /// Where each wavelength lands [pixels]; all at the film sample unless `spread`.
   bool spread = false;
   std::array<float, lane_count> column{}, row{};

@@ -292,6 +292,7 @@ void LensCamera::share_among_wavelengths(const Led& led) const {
     rays[k] = &led.rays[led.which[passing[k]]];
     rays[k]->spread = true;
     sum[k] = static_cast<float>(led.density[passing[k]]);
+    rays[k]->density = only(led.hero, sum[k]);
   }
   const RadianceRays from_scene = turned_round(led.batch, passing);
   RadianceRays landed;
@@ -315,7 +316,7 @@ void LensCamera::share_among_wavelengths(const Led& led) const {
       const bool passes = landed.passes[k] != 0;
       if (passes && led.sampling.pixel_at(led.samples[led.which[passing[k]]], static_cast<double>(column),
                                           static_cast<double>(row)))
-        sum[k] += density[k];
+        sum[k] += rays[k]->density[lane] = density[k];
       rays[k]->weight[lane] = passes ? through(led, lane, landed, k) : 0;
       rays[k]->column[at] = column;
       rays[k]->row[at] = row;

@@ -6,7 +6,8 @@
 
 namespace petzval::render {
 
-PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : options_(options) {
+PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options, WavelengthGroups groups)
+    : options_(options), groups_(std::move(groups)) {
   if (!(options.field_of_view_deg > 0 && options.field_of_view_deg < 180))
     throw InputError("the field of view of a perspective camera lies between 0 and 180 degrees");
   if (options.columns < 1 || options.rows < 1) throw InputError("a picture has at least one pixel");
@@ -22,7 +23,7 @@ PerspectiveCamera::PerspectiveCamera(const PerspectiveOptions& options) : option
     left_ = window[0], right_ = window[1], bottom_ = window[2], top_ = window[3];
 }
 
-void PerspectiveCamera::trace(int, const FilmSampling&, std::span<const FilmSample> samples,
+void PerspectiveCamera::trace(int group, const FilmSampling&, std::span<const FilmSample> samples,
                               std::span<CameraRay> rays) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const FilmSample& sample = samples[i];
@@ -32,7 +33,7 @@ void PerspectiveCamera::trace(int, const FilmSampling&, std::span<const FilmSamp
     ray = {};
     ray.passes = true;
     ray.weight = Lanes::all(1);
-    ray.weight_alone = lane_count;
+    ray.weight_alone = static_cast<float>(groups_.lanes(group));  // any of which may lead
     const Vector3 focus{x * slope_ * options_.focal_distance, y * slope_ * options_.focal_distance,
                         options_.focal_distance};
     if (options_.lens_radius > 0) {

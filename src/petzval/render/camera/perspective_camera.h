@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/render/camera/film_camera.h>
+#include <petzval/render/spectra/wavelength_groups.h>
 
 namespace petzval::render {
 
@@ -20,12 +21,13 @@ struct PerspectiveOptions {
 class PerspectiveCamera final : public FilmCamera {
  public:
   /// \throws InputError for a field of view outside (0°, 180°) or sizes that are not positive.
-  explicit PerspectiveCamera(const PerspectiveOptions& options);
+  PerspectiveCamera(const PerspectiveOptions& options, WavelengthGroups groups);
   void trace(int group, const FilmSampling& film, std::span<const FilmSample> samples,
              std::span<CameraRay> rays) const override;
 
  private:
   PerspectiveOptions options_;
+  WavelengthGroups groups_;
   double left_, right_, bottom_, top_, slope_;
 };
 

@@ -235,7 +235,7 @@ SceneCamera SceneCamera::with_film_distance_mm(double distance_mm) const {
 
 std::unique_ptr<const FilmCamera> SceneCamera::make(const WavelengthGroups& groups) const {
   if (lens) return std::make_unique<const LensCamera>(*lens, film, groups, options);
-  return std::make_unique<const PerspectiveCamera>(perspective);
+  return std::make_unique<const PerspectiveCamera>(perspective, groups);
 }
 
 }  // namespace petzval::render

@@ -3,6 +3,7 @@
 #include <petzval/colour/observer.h>
 #include <petzval/render/gltf/gltf_extensions.h>
 #include <petzval/render/gltf/gltf_materials.h>
+#include <petzval/render/gltf/gltf_volume.h>
 #include <petzval/render/pbrt/entity_maker.h>
 
 #include <algorithm>
@@ -116,6 +117,8 @@ GltfSurface GltfMaterials::read(int index, bool tinted) {
   read_alpha(reading, surface);
   surface.uv_set = reading.uv_set();
   surface.area_light = add_emission(reading);
+  const int filling = add_gltf_volume(file_, reading.volume, scene_);
+  if (reading.transmission.number("transmissionFactor", 0, 0, 1) > 0) surface.medium = filling;
   if (reading.coat_factor == 0) {
     surface.material = add_surface(reading, false);
   } else if (reading.coat_factor == 1 && reading.coat_share.empty()) {
@@ -250,7 +253,7 @@ int GltfMaterials::add_opaque(const Reading& reading, bool under_coat) {
 
 int GltfMaterials::add_glass(const Reading& reading) {
   GltfExtension volume = reading.volume;
-  const bool thin = !(volume.number("thicknessFactor", 0, 0, unbounded) > 0);
+  const bool thin = !is_gltf_body(volume);
   if (!reading.colour.empty() || reading.base_factor() != std::array<double, 3>{1, 1, 1})
     unsupported_.report(file_.at(reading.transmission.path()), "light that is coloured by passing a surface");
   EntityMaker glass(thin ? "thindielectric" : "dielectric", file_.at(reading.transmission.path()));
@@ -303,7 +306,7 @@ void GltfMaterials::report_rest(const Reading& reading) {
   GltfExtension transmission = reading.transmission, volume = reading.volume, ior = reading.ior,
                 specular = reading.specular, strength = reading.strength;
   transmission.number("transmissionFactor", 0, 0, 1);
-  volume.number("thicknessFactor", 0, 0, unbounded);
+  is_gltf_body(volume);
   ior.number("ior", 1.5, 0, 4);
   const double shine = specular.number("specularFactor", 1, 0, 1);
   report(shine > 0 && shine < 1, specular.path() + ".specularFactor",
@@ -312,9 +315,6 @@ void GltfMaterials::report_rest(const Reading& reading) {
     specular.numbers("specularColorFactor", {1, 1, 1});
   else
     report(true, specular.path() + ".specularColorFactor", "a coating that colours what it reflects");
-  report(!is_white(volume.numbers("attenuationColor", {1, 1, 1})), volume.path() + ".attenuationColor",
-         "glass that absorbs");
-  volume.number("attenuationDistance", 1, 0, unbounded);
   strength.number("emissiveStrength", 1, 0, unbounded);
   for (const GltfExtension* each : {&transmission, &volume, &ior, &specular, &strength})
     each->report_rest(unsupported_);

@@ -10,6 +10,7 @@ namespace petzval::render {
 struct GltfSurface {
   int material = 0;          ///< into SceneDescription::materials
   int area_light = -1;       ///< into SceneDescription::area_lights; −1: does not shine
+  int medium = -1;           ///< that it encloses, into SceneDescription::media; −1: none
   int uv_set = -1;           ///< that its textures use; −1: it has none
   bool see_through = false;  ///< its opacity, times that of the vertices, counts
   double opacity = 1;

@@ -76,6 +76,7 @@ class MeshPlacer {
       ShapeDescription shape;
       shape.entity = mesh_entity(surface, tinted, path);
       shape.material = surface.material, shape.area_light = surface.area_light;
+      shape.media.inside = surface.medium;
       shape.mesh = read_gltf_triangles(file_, primitive, path, std::max(surface.uv_set, 0), unsupported_,
                                        scene_.notes);
       if (!shape.mesh) continue;

@@ -183,6 +183,10 @@ Lanes Environment::radiance(Vector3 direction, int group) const {
   return result;
 }
 
+double Environment::fluence() const {
+  return 4 * pi * mean_;
+}
+
 double Environment::irradiance(Vector3 normal) const {
   const double even = pi * mean_;
   if (!sky_) return even;
@@ -194,6 +198,10 @@ double Environment::irradiance(Vector3 normal) const {
 }
 
 Environment::Sample Environment::sample(const LightReceiver& to, double u, double v) const {
+  if (!sky_ && to.all_around) {
+    const Vector3 direction = sphere_from_square(u, v);
+    return {direction, pdf(to, direction)};
+  }
   if (!sky_) {
     const bool behind = to.both_sides && u < 0.5;
     if (to.both_sides) u = behind ? 2 * u : 2 * u - 1;
@@ -208,6 +216,7 @@ Environment::Sample Environment::sample(const LightReceiver& to, double u, doubl
 }
 
 double Environment::pdf(const LightReceiver& to, Vector3 direction) const {
+  if (!sky_ && to.all_around) return 1 / (4 * pi);
   if (!sky_) {
     const double cos = dot(to.normal, direction);
     return to.both_sides ? std::abs(cos) / (2 * pi) : std::max(0.0, cos) / pi;

@@ -49,12 +49,15 @@ class Environment {
     Vector3 direction;
     double pdf = 0;  ///< over solid angle
   };
-  /// A picture by its luminance; an even light over the cosine of a surface, which is how it arrives there.
+  /// A picture by its luminance; an even light over the cosine of a surface, which is how it arrives there,
+  /// or evenly at a point that has none.
   Sample sample(const LightReceiver& to, double u, double v) const;
   double pdf(const LightReceiver& to, Vector3 direction) const;
   /// Nearly what a plane gets of it in the open, of all wavelengths, from its spherical harmonics of order 2
   /// (Ramamoorthi & Hanrahan 2001); at least a twentieth of what it would get if the light were even.
   double irradiance(Vector3 normal) const;
+  /// What a point gets of it in the open, of all wavelengths: ∫ radiance over the sphere.
+  double fluence() const;
   /// 0 for light that is the same from everywhere, near 1 for light that comes from few directions: 1 −
   /// mean² / mean square of the radiance.
   double unevenness() const { return unevenness_; }

@@ -223,6 +223,7 @@ double LightTree::importance(const Node& node, const LightReceiver& to) {
   const double cos_out = cos_of_difference(sine(beyond), beyond, sin_ball, cos_ball);
   constexpr double roundings = 1e-12;
   if (cos_out < node.cos_reach - roundings) return 0;
+  if (to.all_around) return std::max(0.0, about * cos_out);
   double cos_normal = one * dot(to.normal, way);
   if (to.both_sides) cos_normal = std::abs(cos_normal);
   const double cos_in = cos_of_difference(sine(cos_normal), cos_normal, sin_ball, cos_ball);

@@ -17,6 +17,7 @@ struct LightReceiver {
   Vector3 position;
   Vector3 normal;           ///< unit, on the side that is seen
   bool both_sides = false;  ///< whether light from behind counts, too
+  bool all_around = false;  ///< a point of a medium, which has no normal: all directions count alike
 };
 
 /// Where some lights stand, and where they shine to.

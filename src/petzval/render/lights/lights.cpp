@@ -114,7 +114,7 @@ void Lights::prepare(const std::vector<Geometry>& geometries) {
 }
 
 double Lights::weight_of(const Environment& environment, const LightReceiver& to) const {
-  double irradiance = environment.irradiance(to.normal);
+  double irradiance = to.all_around ? environment.fluence() : environment.irradiance(to.normal);
   if (to.both_sides) irradiance += environment.irradiance(-to.normal);
   // An even sky is found as well by the directions that the surface scatters to: asking for it saves little,
   // where asking for a lamp saves much. 0.1 to 0.4 are alike in a room with a window and on open floors.
@@ -125,6 +125,7 @@ double Lights::weight_of(const Environment& environment, const LightReceiver& to
 namespace {
 
 double weight_of_distant(const SmallLight& light, const LightReceiver& to) {
+  if (to.all_around) return mean_of(light.strength);
   const double cos = -dot(light.direction, to.normal);
   return mean_of(light.strength) * (to.both_sides ? std::abs(cos) : std::max(0.0, cos));
 }

@@ -158,8 +158,24 @@ void read_coated_conductor(const Parameters& parameters, const TextureLibrary& t
   read_metal(parameters, textures, material, at, "conductor.");
 }
 
+/// The boundary of pbrt-v4's "subsurface"; what is below it is a medium (make_subsurface()).
+void read_subsurface(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
+                     Material& material) {
+  material.kind = Material::Kind::dielectric;
+  material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.33);
+  read_roughness(parameters, textures, material);
+  for (const char* name : {"sigma_a", "sigma_s", "scale", "g"})
+    if (const Parameter* parameter = parameters.find(name); parameter && parameter->type == "texture")
+      unsupported.report(parameter->at, "a subsurface material that varies over its surface");
+  for (const char* name : {"name", "reflectance", "mfp"})
+    if (const Parameter* parameter = parameters.find(name))
+      unsupported.report(parameter->at, fmt::format("a subsurface material by \"{}\" (\"sigma_a\" and "
+                                                    "\"sigma_s\" say what it is)",
+                                                    name));
+}
+
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
-              Material& material) {
+              Unsupported& unsupported, Material& material) {
   material.kind = Material::Kind::mix;
   material.mix_amount = textures.float_parameter(parameters, "amount", 0.5);
   const Parameter* names = parameters.find("materials", {"string"});
@@ -170,6 +186,8 @@ void read_mix(const SceneDescription& scene, const Parameters& parameters, const
     if (found == scene.named_materials.end())
       throw scene_error(names->at, fmt::format("there is no material \"{}\" to mix", names->strings[i]));
     material.mixed[i] = found->second;
+    if (scene.materials[static_cast<std::size_t>(found->second)].type == "subsurface")
+      unsupported.report(names->at, "a mix with a subsurface material");
   }
 }
 
@@ -210,13 +228,15 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     material.kind = Material::Kind::dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
     read_roughness(parameters, textures, material);
+  } else if (entity.type == "subsurface") {
+    read_subsurface(parameters, textures, unsupported, material);
   } else if (entity.type == "thindielectric") {
     material.kind = Material::Kind::thin_dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
   } else if (entity.type == "interface" || entity.type.empty() || entity.type == "none") {
     material.kind = Material::Kind::none;
   } else if (entity.type == "mix") {
-    read_mix(scene, parameters, textures, material);
+    read_mix(scene, parameters, textures, unsupported, material);
   } else {
     unsupported.report(entity.location(),
                        fmt::format("Material \"{}\"{}", entity.type, name_now(entity.type)));

@@ -38,10 +38,15 @@ std::vector<double> SceneReader::numbers(Tokens& tokens, const Location& at, std
 Entity SceneReader::entity(Tokens& tokens, const Location& at, const char* what, const char* defaults) {
   Entity result;
   result.type = quoted(tokens, at, what);
-  result.parameters = read_parameters(tokens, at);
+  result.parameters = parameters(tokens, at, defaults);
+  return result;
+}
+
+Parameters SceneReader::parameters(Tokens& tokens, const Location& at, const char* defaults) {
+  Parameters result = read_parameters(tokens, at);
   const auto found = state_.defaults.find(defaults);
   if (found != state_.defaults.end())
-    for (const Parameter& parameter : found->second) result.parameters.add(parameter);
+    for (const Parameter& parameter : found->second) result.add(parameter);
   return result;
 }
 

@@ -34,6 +34,7 @@ bool SceneReader::follow_option(const std::string& word, Tokens& tokens, const L
 void SceneReader::camera(Tokens& tokens, const Location& at) {
   scene_.camera = entity(tokens, at, "camera");
   scene_.camera_from_world = world_from_object(at);
+  scene_.camera_medium = state_.media.outside;
   const MovingTransform& now = state_.world_from_object;
   coordinate_systems_["camera"] = {now.start.inverse(), now.end.inverse()};
 }

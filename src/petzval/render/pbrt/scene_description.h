@@ -55,6 +55,21 @@ struct LightDescription {
   Transform world_from_light;
 };
 
+/// What MakeNamedMedium says.
+struct MediumDescription {
+  std::string name;
+  Entity entity;
+  Transform world_from_medium;
+};
+
+/// The media on the two sides of a surface, or of where the camera stands; into SceneDescription::media, −1:
+/// none.
+struct MediaDescription {
+  int inside = -1, outside = -1;
+
+  bool differ() const { return inside != outside; }
+};
+
 struct ShapeDescription {
   Entity entity;
   Transform world_from_object;
@@ -62,6 +77,7 @@ struct ShapeDescription {
   int material = 0;                            ///< into SceneDescription::materials
   int area_light = -1;                         ///< into SceneDescription::area_lights; −1: does not shine
   std::shared_ptr<const TriangleMesh> mesh{};  ///< of type "mesh", in the space of the object
+  MediaDescription media{};  ///< where both are the same, light stays in the medium that it is in
 };
 
 struct InstanceDescription {
@@ -81,6 +97,8 @@ struct SceneDescription {
   std::vector<TextureDescription> textures;  ///< a later one of the same name replaces an earlier one
   std::vector<Entity> materials;             ///< the first is pbrt's default, grey diffuse
   std::map<std::string, int> named_materials;
+  std::vector<MediumDescription> media;
+  int camera_medium = -1;  ///< into media; −1: none
   std::vector<Entity> area_lights;
   std::vector<LightDescription> lights;
   std::vector<ShapeDescription> shapes;

@@ -101,6 +101,7 @@ void SceneReader::finish() {
   if (!saved_.empty())
     throw scene_error(saved_.back().at, fmt::format("this block is not ended by {}", saved_.back().ended_by));
   if (!in_world_) throw InputError(scene_.file, "has no WorldBegin; what the scene holds stands after it");
+  check_media();
   if (is_old_) translate_old_scene(scene_);
 }
 

@@ -24,6 +24,7 @@ struct GraphicsState {
   bool start_active = true, end_active = true;  ///< ActiveTransform: which of the two directives alter
   bool reverse_orientation = false;
   int material = 0, area_light = -1;
+  MediaDescription media;
   std::map<std::string, std::vector<Parameter>> defaults;  ///< of Attribute "shape" …, by target
 };
 
@@ -62,6 +63,10 @@ class SceneReader {
   void place_object(Tokens& tokens, const Location& at);
   void texture(Tokens& tokens, const Location& at);
   void named_material(Tokens& tokens, const Location& at);
+  void named_medium(Tokens& tokens, const Location& at);
+  /// By name; it may be made later. \param name  empty: none.
+  int medium_called(const std::string& name, const Location& at);
+  void check_media() const;
   void shape(Tokens& tokens, const Location& at);
   void attribute(Tokens& tokens, const Location& at);
   void save(const char* ended_by, const Location& at) { saved_.push_back({state_, ended_by, at}); }
@@ -70,6 +75,7 @@ class SceneReader {
   std::string quoted(Tokens& tokens, const Location& at, const char* what);
   std::vector<double> numbers(Tokens& tokens, const Location& at, std::size_t count);
   Entity entity(Tokens& tokens, const Location& at, const char* what, const char* defaults = "");
+  Parameters parameters(Tokens& tokens, const Location& at, const char* defaults);
   void transform(const Location& at, const std::function<Transform()>& make);
   void set(const Location& at, const std::function<Transform()>& make);
 
@@ -80,6 +86,12 @@ class SceneReader {
   std::vector<std::string> open_files_;
   std::map<std::string, MovingTransform> coordinate_systems_;  ///< world (or camera) from the named system
   std::map<std::string, int> objects_;
+  struct NamedMedium {
+    int index;  ///< into SceneDescription::media
+    Location at;
+    bool made;
+  };
+  std::map<std::string, NamedMedium> media_;
   int open_object_ = -1;
   Location object_at_;
   double time_, start_time_ = 0, end_time_ = 1;

@@ -31,13 +31,12 @@ bool SceneReader::follow_world(const std::string& word, Tokens& tokens, const Lo
   else if (word == "Attribute")
     attribute(tokens, at);
   else if (word == "MakeNamedMedium") {
-    quoted(tokens, at, "medium");
-    read_parameters(tokens, at);
-    unsupported_.report(at, "a participating medium");
+    named_medium(tokens, at);
   } else if (word == "MediumInterface") {
-    std::string inside = quoted(tokens, at, "medium"), outside;
-    if (tokens.peek() && tokens.peek()->kind == Token::Kind::quoted) outside = quoted(tokens, at, "medium");
-    if (!inside.empty() || !outside.empty()) unsupported_.report(at, "a participating medium");
+    const std::string inside = quoted(tokens, at, "medium");
+    const bool two = tokens.peek() && tokens.peek()->kind == Token::Kind::quoted;
+    const std::string outside = two ? quoted(tokens, at, "medium") : inside;
+    state_.media = {medium_called(inside, at), medium_called(outside, at)};
   } else
     return false;
   return true;
@@ -66,10 +65,43 @@ void SceneReader::named_material(Tokens& tokens, const Location& at) {
   scene_.named_materials[name] = static_cast<int>(scene_.materials.size()) - 1;
 }
 
+void SceneReader::named_medium(Tokens& tokens, const Location& at) {
+  const std::string name = quoted(tokens, at, "medium's name");
+  if (name.empty()) throw scene_error(at, "a medium without a name");
+  const auto index = static_cast<std::size_t>(medium_called(name, at));
+  NamedMedium& named = media_.at(name);
+  if (named.made) throw scene_error(at, fmt::format("there is a medium \"{}\" already", name));
+  named.made = true;
+  MediumDescription& medium = scene_.media[index];
+  medium.entity.parameters = parameters(tokens, at, "medium");
+  medium.entity.type = medium.entity.parameters.string("type", "");
+  medium.world_from_medium = world_from_object(at);
+  if (medium.entity.type.empty())
+    throw scene_error(at, fmt::format("medium \"{}\" has no \"string type\"", name));
+}
+
+int SceneReader::medium_called(const std::string& name, const Location& at) {
+  if (name.empty()) return -1;
+  const auto [found, is_new] = media_.insert({name, {static_cast<int>(scene_.media.size()), at, false}});
+  if (is_new) scene_.media.push_back({name, {}, {}});
+  return found->second.index;
+}
+
+void SceneReader::check_media() const {
+  for (const auto& [name, named] : media_)
+    if (!named.made)
+      throw scene_error(named.at, fmt::format("there is no medium \"{}\"; MakeNamedMedium makes one", name));
+}
+
 void SceneReader::shape(Tokens& tokens, const Location& at) {
   if (!in_world_) throw scene_error(at, "a Shape before WorldBegin");
-  ShapeDescription shape{entity(tokens, at, "shape", "shape"), world_from_object(at),
-                         state_.reverse_orientation, state_.material, state_.area_light};
+  ShapeDescription shape{entity(tokens, at, "shape", "shape"),
+                         world_from_object(at),
+                         state_.reverse_orientation,
+                         state_.material,
+                         state_.area_light,
+                         {},
+                         state_.media};
   if (open_object_ < 0) return scene_.shapes.push_back(std::move(shape));
   if (shape.area_light >= 0) {
     unsupported_.report(at, "a light in an object that is placed with ObjectInstance");
@@ -79,7 +111,7 @@ void SceneReader::shape(Tokens& tokens, const Location& at) {
 }
 
 void SceneReader::attribute(Tokens& tokens, const Location& at) {
-  const std::string target = quoted(tokens, at, "target (shape, light, material, texture)");
+  const std::string target = quoted(tokens, at, "target (shape, light, material, medium, texture)");
   std::vector<Parameter>& defaults = state_.defaults[target];
   const Parameters given = read_parameters(tokens, at);
   for (Parameter parameter : given.list()) {

@@ -29,6 +29,8 @@ struct Geometry {
   int material = 0;
   bool reversed = false;          ///< ReverseOrientation
   bool swaps_handedness = false;  ///< its transformation is a mirror image
+  bool parts_media = false;       ///< else light stays in the medium that it is in
+  int inside = -1, outside = -1;  ///< media of the scene; −1: none
   int first_light = -1;           ///< of its primitives, which shine one by one; −1: none do
 
   std::size_t primitives() const;

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/render/media/medium.h>
+
+namespace petzval::render {
+
+namespace {
+
+/// No float has places beyond.
+constexpr double farthest = 1e18;
+
+/// exp(−coefficient · distance), also over an infinite distance.
+Lanes transmittance(const Lanes& coefficient, double distance) {
+  return mapped(coefficient,
+                [&](float each) { return each > 0 ? std::exp(-static_cast<double>(each) * distance) : 1.0; });
+}
+
+}  // namespace
+
+/// The coefficients of all wavelengths are in the same proportion everywhere, so that collisions tell them
+/// apart by their number and the depth of the bound alone. Everything over what the hero has.
+Passage Medium::passage_of(const DensityGrid::Walk& walk, int group, int hero) const {
+  const Lanes all = extinction(group);
+  const auto leading = static_cast<double>(all[hero]);
+  Passage passage;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const auto each = static_cast<double>(all[lane]);
+    const double collided = walk.collisions > 0 ? walk.collisions * std::log(each / leading) : 0;
+    passage.asked[lane] = static_cast<float>(std::exp(collided + (leading - each) * walk.bound_depth));
+  }
+  passage.light = walk.survived * passage.asked;
+  passage.flown = scatters ? passage.light : passage.asked;
+  return passage;
+}
+
+Flight Medium::fly(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const {
+  const Lanes all = extinction(group);
+  const auto leading = static_cast<double>(all[hero]);
+  const Lanes& back = scattering[static_cast<std::size_t>(group)];
+  if (density) {
+    const DensityGrid::Walk walk = density->walk(origin, way, distance, leading, scatters, lots);
+    Flight flight{passage_of(walk, group, hero), walk.stopped_at};
+    if (walk.stopped_at)
+      for (int lane = 0; lane < lane_count; ++lane)
+        flight.passage.light[lane] *= all[lane] > 0 ? back[lane] / all[lane] : 0;
+    return flight;
+  }
+  if (!scatters || !(leading > 0)) return {pass(origin, way, distance, group, hero, lots), {}};
+  const double free = -std::log1p(-lots.next()) / leading;
+  Flight flight;
+  flight.passage.flown = transmittance(all, free < farthest ? std::min(free, distance) : distance);
+  flight.passage.light = flight.passage.flown;
+  if (!(free < std::min(distance, farthest))) return flight;
+  flight.scattered_at = free;
+  flight.passage.light *= back;
+  flight.passage.flown *= all;
+  return flight;
+}
+
+Passage Medium::pass(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const {
+  if (density) {
+    const auto leading = static_cast<double>(extinction(group)[hero]);
+    return passage_of(density->walk(origin, way, distance, leading, false, lots), group, hero);
+  }
+  Passage passage;
+  passage.light = transmittance(extinction(group), distance);
+  if (scatters) passage.flown = passage.light;
+  return passage;
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <petzval/render/media/medium.h>
+#include <petzval/render/pbrt/entity_maker.h>
+#include <petzval/render/spectra/named_spectra.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+namespace petzval::render {
+
+namespace {
+
+/// Far above any medium, far below what a float holds.
+constexpr double densest = 1e12;
+
+/// The coefficient `name` times `scale`.
+BandSpectrum read_coefficient(const Parameters& parameters, const char* name, double otherwise, double scale,
+                              const WavelengthGroups& groups, Unsupported& unsupported) {
+  const auto given = spectrum_parameter(parameters, name, SpectrumRole::unbounded, unsupported);
+  const SceneSpectrum spectrum = given ? *given : constant_spectrum(otherwise);
+  return groups.sampled([&](double nm) {
+    const double value = scale * spectrum.at(nm);
+    if (!(value >= 0 && value <= densest))
+      throw scene_error(
+          parameters.location_of(name),
+          fmt::format("a coefficient of {:g} at {:g} nm; 0 to {:g} would be right", value, nm, densest));
+    return value;
+  });
+}
+
+/// Petzval's own: what is left of light after a distance, as KHR_materials_volume of glTF has it.
+BandSpectrum read_attenuation(const Parameters& parameters, double scale, const WavelengthGroups& groups,
+                              Unsupported& unsupported) {
+  const auto left = spectrum_parameter(parameters, "attenuation", SpectrumRole::albedo, unsupported);
+  const double distance = parameters.number("attenuationdistance", 1);
+  if (!(distance > 0 && std::isfinite(scale / distance)))
+    throw scene_error(parameters.location_of("attenuationdistance"), "a distance above 0 would be right");
+  return groups.sampled([&](double nm) {
+    constexpr double least = 1e-6;  // black has no logarithm
+    return -scale / distance * std::log(std::clamp(left->at(nm), least, 1.0));
+  });
+}
+
+double read_scale(const Parameters& parameters) {
+  const double scale = parameters.number("scale", 1);
+  if (!(scale >= 0)) throw scene_error(parameters.location_of("scale"), "0 or more would be right");
+  return scale;
+}
+
+double read_g(const Parameters& parameters) {
+  const double g = parameters.number("g", 0);
+  if (!(std::abs(g) < 1))
+    throw scene_error(parameters.location_of("g"),
+                      fmt::format("a mean cosine of {:g}; above -1 and below 1 would be right", g));
+  return g;
+}
+
+/// A collision costs time, and so many on a way are enough for any cloud.
+constexpr double most_collisions = 1e5;
+
+/// pbrt-v4's "uniformgrid".
+std::shared_ptr<const DensityGrid> read_grid(const MediumDescription& description, Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const Parameter* given = parameters.find("density");
+  if (!given) throw scene_error(parameters.location(), "a uniformgrid needs \"float density\", its samples");
+  std::array<int, 3> size;
+  double cells = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const char* name = std::array{"nx", "ny", "nz"}[axis];
+    size[axis] = parameters.integer(name, 1);
+    if (size[axis] < 1) throw scene_error(parameters.location_of(name), "1 or more would be right");
+    cells *= size[axis];
+  }
+  if (given->type == "rgb") {
+    unsupported.report(given->at, "a density in colours");
+    return nullptr;
+  }
+  const std::vector<double> numbers = parameters.numbers("density", {"float", "integer"});
+  if (static_cast<double>(numbers.size()) != cells)
+    throw scene_error(given->at,
+                      fmt::format("{} samples of the density; nx × ny × nz = {} x {} x {} would be right",
+                                  numbers.size(), size[0], size[1], size[2]));
+  std::vector<float> values;
+  values.reserve(numbers.size());
+  for (const double each : numbers) {
+    if (!(each >= 0 && each <= densest))
+      throw scene_error(given->at, fmt::format("a density of {:g}; 0 to {:g} would be right", each, densest));
+    values.push_back(static_cast<float>(each));
+  }
+  const auto corner = [&](const char* name, double otherwise) {
+    const auto p = parameters.triple(name);
+    return p ? Vector3{(*p)[0], (*p)[1], (*p)[2]} : Vector3{otherwise, otherwise, otherwise};
+  };
+  if (!description.world_from_medium.is_affine())
+    throw scene_error(parameters.location(), "a medium in a transformation that is not affine");
+  const Vector3 p0 = corner("p0", 0), p1 = corner("p1", 1);
+  const Vector3 low{std::min(p0.x, p1.x), std::min(p0.y, p1.y), std::min(p0.z, p1.z)},
+      high{std::max(p0.x, p1.x), std::max(p0.y, p1.y), std::max(p0.z, p1.z)};
+  try {
+    return std::make_shared<const DensityGrid>(size, std::move(values), low, high,
+                                               description.world_from_medium);
+  } catch (const InputError&) {
+    throw scene_error(parameters.location_of("p1"),
+                      "a box without volume; p0 and p1 are opposite corners of it");
+  }
+}
+
+void check_depth(const Medium& medium, const Location& at) {
+  double most = 0;
+  for (std::size_t group = 0; group < medium.absorption.size(); ++group)
+    most = std::max(most, static_cast<double>(medium.extinction(static_cast<int>(group)).largest()));
+  const double collisions = most * medium.density->greatest() * medium.density->diagonal();
+  if (!(collisions <= most_collisions))
+    throw scene_error(at, fmt::format("{:g} mean free paths across this medium; up to {:g} would be right",
+                                      collisions, most_collisions));
+}
+
+bool scatters(const Medium& medium) {
+  return std::ranges::any_of(medium.scattering, [](const Lanes& each) { return !each.is_black(); });
+}
+
+Medium make_medium(const MediumDescription& description, const WavelengthGroups& groups,
+                   Unsupported& unsupported) {
+  const Parameters& parameters = description.entity.parameters;
+  const std::string& type = description.entity.type;
+  Medium medium;
+  if (type != "homogeneous" && type != "uniformgrid") {
+    unsupported.report(parameters.location(), fmt::format("a medium \"{}\"", type));
+    medium.absorption = medium.scattering = groups.sampled([](double) { return 0; });
+    return medium;
+  }
+  const double scale = read_scale(parameters);
+  if (const Parameter* preset = parameters.find("preset"))
+    unsupported.report(preset->at, "a medium by \"preset\" (\"sigma_a\" and \"sigma_s\" say what it is)");
+  const bool attenuates = parameters.find("attenuation", {"rgb", "spectrum", "float"}) != nullptr;
+  medium.absorption = attenuates ? read_attenuation(parameters, scale, groups, unsupported)
+                                 : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
+  medium.scattering = read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
+  medium.g = read_g(parameters);
+  medium.scatters = scatters(medium);
+  if (type == "uniformgrid") medium.density = read_grid(description, unsupported);
+  if (medium.density) check_depth(medium, parameters.location());
+  parameters.find("type");
+  unsupported.report_unused(parameters, fmt::format("medium \"{}\"", description.name));
+  return medium;
+}
+
+}  // namespace
+
+Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported) {
+  // Whole milk (Jensen, Marschner, Levoy & Hanrahan, SIGGRAPH 2001) [1/mm], as in pbrt-v4.
+  const Entity milk = EntityMaker("", material.location())
+                          .rgb("sigma_a", {0.0011, 0.0024, 0.014})
+                          .rgb("sigma_s", {2.55, 3.21, 3.77})
+                          .made();
+  const Parameters& parameters = material.parameters;
+  const bool own = parameters.find("sigma_a") || parameters.find("sigma_s");
+  const Parameters& coefficients = own ? parameters : milk.parameters;
+  const double scale = read_scale(parameters);
+  Medium medium;
+  medium.absorption = read_coefficient(coefficients, "sigma_a", 0, scale, groups, unsupported);
+  medium.scattering = read_coefficient(coefficients, "sigma_s", 0, scale, groups, unsupported);
+  medium.g = read_g(parameters);
+  medium.scatters = scatters(medium);
+  return medium;
+}
+
+std::vector<Medium> make_media(const SceneDescription& scene, const WavelengthGroups& groups,
+                               Unsupported& unsupported) {
+  std::vector<Medium> media;
+  for (const MediumDescription& description : scene.media)
+    media.push_back(make_medium(description, groups, unsupported));
+  return media;
+}
+
+}  // namespace petzval::render

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ways of paths through media.
+#include <petzval/render/path.h>
+
+namespace petzval::render {
+
+std::optional<double> PathTracer::fly(Path& path, double distance, int group, SobolSample& sample) const {
+  if (path.alone) path.throughput = only(path.hero, path.throughput[path.hero]);
+  Lots lots(sample.next1());
+  const Flight flight = world_.media[static_cast<std::size_t>(path.medium)].fly(
+      path.origin, path.direction, distance, group, path.hero, lots);
+  path.led_by *= flight.passage.flown, path.asked *= flight.passage.asked;
+  path.throughput *= flight.passage.light;
+  const double flown = path.mean(path.led_by);
+  const double over = flown > least_density ? 1 / flown : 0;
+  path.led_by *= over, path.asked *= over, path.throughput *= over;
+  path.asked_mean = path.mean(path.asked);
+  return flight.scattered_at;
+}
+
+std::optional<Passage> PathTracer::open_way(Vector3 origin, const LightSample& light, int medium, int group,
+                                            int hero, SobolSample& sample) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!world_.media_end_openly && medium < 0) {
+    if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return {};
+    return Passage();
+  }
+  Lots lots(sample.next1());
+  Passage passage;
+  for (int i = 0; i < most_interfaces; ++i) {
+    const Vector3 way = way_to(light, origin);
+    const double length_of_way = light.place ? length(way) : 1;
+    const std::optional<Hit> hit = world_.intersector->nearest(origin, way, end_of_way(light));
+    const Geometry* geometry = hit ? &world_.geometries[static_cast<std::size_t>(hit->geometry)] : nullptr;
+    if (geometry && !geometry->is_interface) return {};
+    if (medium >= 0) {
+      const double distance = hit ? hit->distance * length_of_way : light.place ? length_of_way : infinity;
+      passage *= world_.media[static_cast<std::size_t>(medium)].pass(origin, normalised(way), distance, group,
+                                                                     hero, lots);
+    }
+    if (!geometry) return passage;
+    const SurfacePoint point = surface_point(*geometry, *hit, origin, way, world_.place_of(*hit));
+    medium = medium_towards(*geometry, point, way, medium);
+    origin = point.origin_towards(light.direction);
+  }
+  return {};
+}
+
+FirstSurface PathTracer::first_beyond(const Path& path, double limit, int group, SobolSample& sample) const {
+  Vector3 origin = path.origin;
+  for (int i = 0; i < most_interfaces; ++i) {
+    const std::optional<Hit> hit = world_.intersector->nearest(origin, path.direction, limit);
+    if (!hit) return {};
+    const Geometry& geometry = world_.geometries[static_cast<std::size_t>(hit->geometry)];
+    SurfacePoint point = surface_point(geometry, *hit, origin, path.direction, world_.place_of(*hit));
+    const TexturePoint texture_point{point.position, point.u, point.v, point.tint};
+    const Material& material = material_met(geometry, texture_point, group, sample);
+    if (material.kind != Material::Kind::none) {
+      if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
+      return {true, point.position, facing(point.shading_normal, -path.direction),
+              material.bsdf(texture_point, group, path.hero).albedo()};
+    }
+    origin = point.origin_towards(path.direction);
+  }
+  return {};
+}
+
+}  // namespace petzval::render
