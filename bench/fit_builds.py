@@ -3,7 +3,7 @@
 """Lenses built by known amounts, found again from noisy pictures: for each of twenty builds a triplet with its sensor out of focus and
 tilted and its middle element set aside, a board of slanted squares through it, exposed on a sensor with noise, measured by `petzval sfr` and given
 to `petzval lens fit-build`. Prints every number with its truth, and the pulls: error over stated deviation, whose mean should be 0 and
-whose standard deviation 1. `bench/fit_builds.py build/release/bin/petzval [--builds 20] [--photographs 1] [--json]`"""
+whose standard deviation 1. A build takes about a minute of CPU. `bench/fit_builds.py build/release/bin/petzval [--builds 20] [--photographs 1] [--json]`"""
 
 import argparse
 import json

@@ -6,380 +6,42 @@
 
 FOLDER holds the files of Lyu, Goossens, Wandell and Farrell, "Accurate smartphone camera simulation using 3D scenes"
 (2022), from their repository isetcornellbox, and their Cornell box from iset3d-v3; they are not part of Petzval:
-pixel4a-rearcamera-ellipse-raytransfer.json, RI.txt, GeometricMTF.txt, GeometricLSP.txt, box_spectra.csv,
-CornellBoxReference_geometry.pbrt. Prints every comparison as numbers; --page DIR also writes DIR/index.html with all
-curves. Measured numbers are facts, read off the published figures 5 and 7 to about 0.005.
+pixel4a-rearcamera-ellipse-raytransfer.json, RI.txt, GeometricMTF.txt, GeometricLSP.txt, sensor_qe.csv, box_spectra.csv,
+measured_radiances.csv, CornellBoxReference_geometry.pbrt. Prints every comparison as numbers. With --page DIR, it also
+exposes the sensor (gain, noise, a colour chart under three lights), renders the box (interreflection) and writes
+DIR/index.html with all curves. Measured numbers are facts, read off the published figures 5 and 7 to about 0.005.
 """
 import argparse
-import ast
-import csv
-import json
-import math
-import re
-import struct
-import subprocess
 from pathlib import Path
 
-PITCH_MM = 0.0014  # IMX363
-FILM_MM = 0.465 - 0.464135918  # behind the input plane, as the authors set it
-# The authors tried films 0.465136 mm behind the last surface and on in steps of 0.2/9 mm; these are the ones taken.
-THEIR_FILM_MM = {0.5: 0.001 + 0.2 / 9, 0.3: 0.001 + 5 * 0.2 / 9}
-LENGTH_MM = 6.771  # from the front plane to the input plane
-
-ILLUMINATION = {0.5: 0.952, 1: 0.840, 1.5: 0.711, 2: 0.586, 2.5: 0.472, 3: 0.387, 3.5: 0.302}
-
-# Focus [m], edge [m], field height [mm]: frequency [1/mm] -> (measured, published simulation).
-EDGES = {
-    (0.5, 0.5, 0.8): {25: (0.919, 0.955), 50: (0.777, 0.835), 75: (0.609, 0.658), 100: (0.451, 0.466),
-                      125: (0.335, 0.292), 150: (0.226, 0.144), 175: (0.148, 0.065), 200: (0.103, 0.064)},
-    (0.5, 0.3, 0.7): {25: (0.744, 0.818), 50: (0.394, 0.433), 75: (0.131, 0.100), 100: (0.062, 0.089)},
-    (0.3, 0.3, 0.7): {25: (0.826, 0.911), 50: (0.618, 0.695), 75: (0.441, 0.430), 100: (0.250, 0.202),
-                      125: (0.138, 0.095), 150: (0.090, 0.078)},
-    (0.3, 0.5, 0.8): {25: (0.671, 0.744), 50: (0.203, 0.267), 75: (0.025, 0.042)},
-}
-
-
-class Telephone:
-    def __init__(self, folder, petzval):
-        self.lens = str(folder / "pixel4a-rearcamera-ellipse-raytransfer.json")
-        self.petzval = petzval
-
-    def run(self, *words):
-        return subprocess.run([self.petzval, *map(str, words), "--quiet"], check=True, capture_output=True, text=True).stdout
-
-    def ask(self, command, *options):
-        return json.loads(self.run("lens", command, self.lens, "--json", *options))
-
-    def at_heights(self, command, heights, *options):
-        return self.ask(command, "--field-type", "real_image_height_mm", "--fields", ",".join(f"{h:g}" for h in heights),
-                        *options)["rows"]
-
-    def illumination(self, heights):
-        rows = self.at_heights("illumination", heights, "--set", f"surfaces[1].thickness_mm={FILM_MM}")
-        return [row["relative_illumination"] for row in rows]
-
-    def chief_ray_angles(self, heights):
-        return [row["chief_ray_angle_deg"] for row in self.at_heights("chief-ray-angle", heights)]
-
-    def mtf(self, heights, frequencies, *options):
-        """(tangential, sagittal) by height and frequency: of the rays alone with --geometric, else of waves."""
-        rows = self.at_heights("mtf", heights, "--frequencies", ",".join(f"{f:g}" for f in frequencies), *options)
-        return {(row["field"], row["frequency_cpmm"]): (row["tangential"], row["sagittal"]) for row in rows}
-
-    def edge_mtf(self, edge_m, height, film_mm, frequencies, *how):
-        """Of an edge between tangential and sagittal, with pixels and the green channel demosaiced bilinearly."""
-        ours = self.mtf([height], frequencies, "--set", f"object_distance_mm={1000 * edge_m - film_mm - LENGTH_MM:.6f}",
-                        "--set", f"surfaces[1].thickness_mm={film_mm:.9f}", *how)
-        return {f: abs(sum(ours[height, f])) / 2 * pixel(f) * green(f) for f in frequencies}
-
-
-def pixel(frequency):
-    x = math.pi * frequency * PITCH_MM
-    return math.sin(x) / x
-
-
-def green(frequency):
-    """Half of the pixels are green, the others the mean of their four neighbours, across an upright edge."""
-    return 0.75 + 0.25 * math.cos(2 * math.pi * frequency * PITCH_MM)
-
-
-def words_of(path):
-    for line in path.read_text(encoding="latin-1").splitlines():
-        yield line, line.split()
-
-
-def zemax_illumination(path):
-    return [(float(words[0]), float(words[1])) for _, words in words_of(path)
-            if len(words) == 3 and words[0][0].isdigit() and all("." in word for word in words)]
-
-
-def zemax_by_height(path, columns, key, values):
-    height, curves = None, {}
-    for line, words in words_of(path):
-        if line.startswith("Field:"):
-            height = float(words[1])
-        elif height is not None and len(words) == columns and words[0].lstrip("-")[0].isdigit():
-            curves[height, float(words[key])] = tuple(float(words[k]) for k in values)
-    return curves
-
-
-def interpolated(table, positions, at):
-    step = positions[1] - positions[0]
-    below = min(int(at / step), len(table) - 2)
-    return table[below] + (table[below + 1] - table[below]) * (at / step - below)
-
-
-def light_of_ellipse(file, height):
-    """What a point of the input plane sees through the file's ellipse [sr], by a sum over it: no part of Petzval."""
-    bands = file["polynomials"]
-    what = (bands[0] if isinstance(bands, list) else bands)["passnopass"]
-    a, b, c = (interpolated(what[key], what["positions"], height) for key in ("radiiX", "radiiY", "centersY"))
-    distance, total, rings = what["intersectPlaneDistance"], 0.0, 100
-    for i in range(rings):
-        for k in range(rings):
-            r, angle = (i + 0.5) / rings, 2 * math.pi * (k + 0.5) / rings
-            x, y = a * r * math.cos(angle), c + b * r * math.sin(angle) - height
-            total += r * distance**2 / (x * x + y * y + distance**2) ** 2
-    return total * a * b * 2 * math.pi / rings**2
-
-
-def illumination(phone, folder, page):
-    rows = zemax_illumination(folder / "RI.txt")
-    heights = [height for height, _ in rows]
-    file = json.loads(Path(phone.lens).read_text())
-    ours, axis = phone.illumination(heights), light_of_ellipse(file, 0)
-    own = [light_of_ellipse(file, height) / axis for height in heights]
-    print("relative illumination    height [mm]  ours    file's ellipses  design")
-    for k in range(0, len(rows), 4):
-        print(f"                         {heights[k]:11.3f}  {ours[k]:.4f}  {own[k]:15.4f}  {rows[k][1]:.4f}")
-    print(f"  ours from the file's ellipses: {max(abs(a - b) for a, b in zip(ours, own)):.4f} at most; "
-          f"these from the design: {max(abs(a - row[1]) for a, row in zip(own, rows)):.4f}")
-    # A sensor whose pixels take cos^k of the light at a chief-ray angle; k by least squares in the logarithm.
-    places = list(ILLUMINATION)
-    cosines = [math.cos(math.radians(angle)) for angle in phone.chief_ray_angles(places)]
-    design = [min(rows, key=lambda row: abs(row[0] - place))[1] for place in places]
-    kept = [ILLUMINATION[place] / d for place, d in zip(places, design)]
-    power = sum(math.log(c) * math.log(s) for c, s in zip(cosines, kept)) / sum(math.log(c) ** 2 for c in cosines)
-    with_sensor = [d * c**power for d, c in zip(design, cosines)]
-    print(f"  measured: the sensor keeps cos^{power:.2f} of the chief-ray angle (microlens, in a sensor's description)")
-    print("                         height [mm]  angle  measured  design  with the sensor")
-    for place, c, d, w in zip(places, cosines, design, with_sensor):
-        print(f"                         {place:11.2f}  {math.degrees(math.acos(c)):5.1f}  {ILLUMINATION[place]:8.3f}  {d:.3f}   {w:.3f}")
-    before = max(abs(d - ILLUMINATION[p]) for d, p in zip(design, places))
-    after = max(abs(w - ILLUMINATION[p]) for w, p in zip(with_sensor, places))
-    print(f"  largest difference from the telephone: {before:.3f} by the design, {after:.3f} with the sensor")
-    page.plot("Relative illumination", "height on the film [mm]", {
-        "ours": list(zip(heights, ours)), "design program": rows, "telephone, measured": list(ILLUMINATION.items()),
-        "design with the sensor's angles": list(zip(places, with_sensor))},
-        f"Ours is within {max(abs(a - b) for a, b in zip(ours, own)):.4f} of a sum over the file's own ellipses, which differ "
-        f"from the design by {max(abs(a - r[1]) for a, r in zip(own, rows)):.4f}.")
-
-
-def geometric_mtf(phone, folder, page):
-    design = zemax_by_height(folder / "GeometricMTF.txt", 3, 0, (1, 2))
-    heights, frequencies = sorted({height for height, _ in design}), list(range(25, 201, 25))
-    best = None
-    # The exit distance of the design's film is not in the file: the one at which the axis agrees best.
-    for film_um in range(0, 10):
-        option = ["--geometric", "--set", f"surfaces[1].thickness_mm={film_um / 1000 + 1e-9}"]
-        axis = phone.mtf([0], frequencies, *option)
-        worst = max(abs(axis[0, f][0] - design[0, f][0]) for f in frequencies)
-        if best is None or worst < best[0]:
-            best = worst, film_um, option
-    ours = phone.mtf(heights, frequencies, *best[2])
-    print(f"geometric MTF to 200/mm, film {best[1]} um behind the input plane: largest difference from the design's")
-    for height in heights:
-        off = [max(abs(ours[height, f][k] - design[height, f][k]) for f in frequencies) for k in (0, 1)]
-        print(f"                         {height:11.3f}  tangential {off[0]:.3f}  sagittal {off[1]:.3f}")
-    # The line spread of the axis, which is even: the cosine transform of the MTF.
-    fine = [2.5 * k for k in range(1, 161)]
-    axis = phone.mtf([0], fine, *best[2])
-    lsp = zemax_by_height(folder / "GeometricLSP.txt", 5, 0, (1,))
-    at = sorted(x for height, x in lsp if height == 0)
-    theirs = [lsp[0, x][0] for x in at]
-    contrast = {f: sum(t * math.cos(2 * math.pi * f * x / 1000) for x, t in zip(at, theirs)) / sum(theirs) for f in fine}
-
-    def spread(of):
-        # A window of cosine shape, the same for both: nothing beyond 400 per mm, and no ringing.
-        return [(x, 0.0025 * (1 + 2 * sum(of(f) * math.cos(math.pi * f / 800) ** 2 * math.cos(2 * math.pi * f * x / 1000)
-                                          for f in fine))) for x in at]
-    page.plot("Line spread on the axis, to 400 cycles/mm", "place [um]", {
-        "ours": spread(lambda f: axis[0, f][0]), "design program": spread(contrast.get)}, "Per um.")
-    page.plot("Geometric MTF, tangential", "cycles/mm", {
-        f"{'ours' if who is ours else 'design'}, {height:g} mm": [(f, who[height, f][0]) for f in frequencies]
-        for height in (heights[0], heights[2], heights[4]) for who in (ours, design)},
-        "The file's polynomials of the fourth degree hold the axis, and off it other aberrations than the design's.")
-    edge_of_symmetry(json.loads(Path(phone.lens).read_text()))
-
-
-def edge_of_symmetry(file):
-    """By how much the file's polynomials break what every round lens has: on the axis, x by dx is y by dy."""
-    bands = file["polynomials"]
-    slope = {}
-    for each in (bands[0] if isinstance(bands, list) else bands)["poly"]:
-        for powers in zip(each["termr"], each["termdx"], each["termdy"], each["coeff"]):
-            slope[(each["outputname"], *powers[:3])] = powers[3]
-    off = slope["outdx", 0, 1, 0] - slope["outdy", 0, 0, 1]
-    power, sine = abs(slope["outdy", 1, 0, 0]), 0.1467
-    print(f"  the file itself: on the axis directions by dx and by dy differ, as much as {1000 * abs(off) * sine / power:.2f} um "
-          "on the film at the rim of the pupil, where a round lens has 0")
-
-
-def edges(phone, page):
-    print("MTF of slanted edges: mean absolute difference of curves, pixels and bilinear green included")
-    for focus_m in (0.5, 0.3):
-        which = [key for key in EDGES if key[0] == focus_m]
-
-        def differences(film_mm, column, *how):
-            result = []
-            for key in which:
-                ours = phone.edge_mtf(key[1], key[2], film_mm, EDGES[key], *how)
-                result.append(sum(abs(ours[f] - EDGES[key][f][column]) for f in ours) / len(ours))
-            return result
-
-        near = round(1000 * THEIR_FILM_MM[focus_m])
-        films = [um / 1000 for um in range(near - 1, near + 8)]
-        # One number a focus setting: the film at which the worse of its two edges is best.
-        rays = min((max(d), film, d) for film in films for d in [differences(film, 1, "--geometric")])
-        waves = min((max(d), film, d) for film in films for d in [differences(film, 0)])
-        there = differences(THEIR_FILM_MM[focus_m], 1, "--geometric")
-        for k, key in enumerate(which):
-            published = sum(abs(s - m) for m, s in EDGES[key].values()) / len(EDGES[key])
-            print(f"  focus {key[0]} m, edge {key[1]} m  rays from the published simulation: {there[k]:.3f} on its film, "
-                  f"{rays[2][k]:.3f} {1000 * (rays[1] - THEIR_FILM_MM[focus_m]):+.1f} um from it; "
-                  f"from the telephone: waves {waves[2][k]:.3f} (film {1000 * waves[1]:.0f} um), published {published:.3f}")
-            page.plot(f"Slanted edge at {key[1]} m, focus at {key[0]} m", "cycles/mm", {
-                "ours, waves": list(phone.edge_mtf(key[1], key[2], waves[1], EDGES[key]).items()),
-                "ours, rays": list(phone.edge_mtf(key[1], key[2], rays[1], EDGES[key], "--geometric").items()),
-                "telephone, measured": [(f, m) for f, (m, _) in EDGES[key].items()],
-                "published simulation": [(f, s) for f, (_, s) in EDGES[key].items()]},
-                f"Mean difference from the telephone: ours {waves[2][k]:.3f}, published {published:.3f}.")
-
-
-def spectra_of(path):
-    rows = [row for row in csv.reader(line for line in path.read_text().splitlines() if not line.startswith("#"))]
-    return {name: [(float(row[0]), float(row[k])) for row in rows[1:]] for k, name in enumerate(rows[0]) if k}
-
-
-def box_scene(folder, patch_x=None):
-    """The Cornell box with its measured lamp and walls; a white square of 5 cm at x on the floor, or the two blocks."""
-    spectra = spectra_of(folder / "box_spectra.csv")
-
-    def words(name):
-        return " ".join(f"{nm:g} {value:.6g}" for nm, value in spectra[name] if 390 <= nm <= 720)
-    walls = {"LeftWall": "red_wall", "RightWall": "green_wall"}
-    scene = ["LookAt 0 0.105 -0.4  0 0.105 0.6  0 1 0", 'Camera "perspective" "float fov" 50',
-             'Film "rgb" "integer xresolution" 400 "integer yresolution" 300 "float diagonal" 7.056',
-             'Integrator "path" "integer maxdepth" 12', "WorldBegin"]
-    text = (folder / "CornellBoxReference_geometry.pbrt").read_text()
-    for name in sorted(set(re.findall(r'NamedMaterial "(\w+)"', text))):
-        scene.append(f'MakeNamedMaterial "{name}" "string type" "diffuse" "spectrum reflectance" [ {words(walls.get(name, "white_wall"))} ]')
-    scene.append('NamedMaterial "TopWall"')
-    text = re.sub(r"(#ObjectName AreaLight[^\n]*\n\s*)", rf'\1AreaLightSource "diffuse" "spectrum L" [ {words("lamp")} ] Translate 0 -0.006 0 ', text)
-    text = re.sub(r"(#ObjectName CubeLarge[^\n]*\n\s*)", r"\1Translate 0.005 0 0 ", text)
-    if patch_x is not None:
-        parts = re.split(r"(?=AttributeBegin\s*#ObjectName)", text)
-        text = "".join(part for part in parts if "#ObjectName Cube" not in part)
-        text += (f'NamedMaterial "BackWall"\nShape "bilinearmesh" "point3 P" [ {patch_x - 0.025} 0.02 0 {patch_x + 0.025} 0.02 0 '
-                 f"{patch_x - 0.025} 0.07 0 {patch_x + 0.025} 0.07 0 ]\n")
-    return "\n".join(scene) + "\n" + text
-
-
-def npy(path):
-    """Rows of columns of bands of a NumPy file of floats."""
-    data = path.read_bytes()
-    length = struct.unpack("<H", data[8:10])[0]
-    rows, columns, bands = ast.literal_eval(data[10 : 10 + length].decode())["shape"]
-    numbers = struct.unpack(f"<{rows * columns * bands}f", data[10 + length :])
-    return [[numbers[(r * columns + c) * bands : (r * columns + c + 1) * bands] for c in range(columns)] for r in range(rows)]
-
-
-def mean_of(picture, top, bottom, left, right):
-    cells = [picture[r][c] for r in range(top, bottom) for c in range(left, right)]
-    return [sum(values) / len(cells) for values in zip(*cells)]
-
-
-def box(phone, folder, page):
-    nm = (450, 500, 550, 600, 650)
-
-    def render(name, *options):
-        phone.run("render", page.folder / f"{name}.pbrt", "--absolute-spectra", "--wavelengths", "450:50:650", "--size", "200x150",
-                  "--spp", 32, "-o", page.folder / f"{name}.npy", "-o", page.folder / f"{name}.png", *options)
-        return npy(page.folder / f"{name}.npy")
-
-    def write(name, text):
-        (page.folder / f"{name}.pbrt").write_text(text)
-    camera = ["--lens", phone.lens, "--focus", "0.5m"]
-    write("box", box_scene(folder))
-    render("box", *camera)
-    page.picture("box.png", "The box through the telephone's ray transfer.")
-    print("white square beside coloured walls, light at 450 to 650 nm over that in the middle of the box")
-    seen = {}
-    for name, x in (("left", -0.1), ("middle", 0.0), ("right", 0.1)):
-        write(name, box_scene(folder, x))
-        column = 100 + round(x / 0.4 * 4.35 / (7.056 / 250))
-        seen[name] = mean_of(render(name, *camera), 94, 102, column - 5, column + 5)
-        page.picture(f"{name}.png", f"The white square, {name}.")
-    for name in ("left", "right"):
-        ratio = [a / b for a, b in zip(seen[name], seen["middle"])]
-        print(f"  {name:6} " + " ".join(f"{nm[k]}: {ratio[k] / ratio[2]:.3f}" for k in range(5)))
-    page.plot("White square beside coloured walls, over the middle, 1 at 550 nm", "wavelength [nm]", {
-        name: [(nm[k], seen[name][k] / seen["middle"][k] * seen["middle"][2] / seen[name][2]) for k in range(5)]
-        for name in ("left", "right")}, "Left is the red wall, right the green one.")
-    # A lens of glass of the same field, and what is fitted to it.
-    phone.run("lens", "transfer", "m12-4mm", "--bands", "450,550,650", "--tolerance", "1e-3", "-o", page.folder / "fit.json")
-    for name in ("glass", "fit"):
-        write(name, box_scene(folder))
-    pictures = [render(name, "--lens", lens, "--focus", "0.5m")
-                for name, lens in (("glass", "m12-4mm"), ("fit", page.folder / "fit.json"))]
-    light = [mean_of(picture, 0, 150, 0, 200) for picture in pictures]
-    off = [b / a - 1 for a, b in zip(*light)]
-    print("the box through m12-4mm and through a ray transfer fitted to it: light differs by "
-          + " ".join(f"{value:+.1e}" for value in off))
-    page.picture("fit.png", "The box through a ray transfer fitted to m12-4mm.")
-
-
-class Page:
-    """Curves as SVG in one HTML file."""
-    COLOURS = ("#1b6ca8", "#c0392b", "#2e8b57", "#8e5aa8", "#b8860b", "#555555")
-
-    def __init__(self, folder):
-        self.folder, self.parts = folder, []
-
-    def plot(self, title, axis, curves, note=""):
-        xs = [x for curve in curves.values() for x, _ in curve]
-        ys = [y for curve in curves.values() for _, y in curve]
-        low, high, top, bottom = min(xs), max(xs), max(max(ys), 1e-9), min(0, min(ys))
-
-        def at(x, y):
-            return f"{50 + 420 * (x - low) / (high - low):.1f},{20 + 220 * (top - y) / (top - bottom):.1f}"
-        lines = [f'<text x="260" y="275" text-anchor="middle">{axis}</text>',
-                 '<path d="M50 20V240H470" fill="none" stroke="#888"/>']
-        for share in (0, 0.5, 1):
-            x, y = low + share * (high - low), bottom + share * (top - bottom)
-            lines.append(f'<text x="{50 + 420 * share}" y="256" text-anchor="middle">{x:.3g}</text>')
-            lines.append(f'<text x="45" y="{244 - 220 * share}" text-anchor="end">{y:.3g}</text>')
-        for k, (name, curve) in enumerate(curves.items()):
-            colour = self.COLOURS[k % len(self.COLOURS)]
-            points = " ".join(at(*point) for point in curve)
-            dash = ' stroke-dasharray="5 3"' if k % 2 else ""
-            lines.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.6"{dash}/>')
-            lines.append(f'<text x="490" y="{32 + 18 * k}" fill="{colour}">{name}</text>')
-        self.parts.append(f'<h2>{title}</h2><svg viewBox="0 0 720 285" width="720" font-size="12" font-family="sans-serif">'
-                          + "".join(lines) + f"</svg><p>{note}</p>")
-
-    def picture(self, name, note):
-        self.parts.append(f'<figure><img src="{name}" width="400"><figcaption>{note}</figcaption></figure>')
-
-    def write(self):
-        (self.folder / "index.html").write_text(
-            '<!doctype html><meta charset="utf-8"><title>The telephone of 2022</title>'
-            '<body style="font-family:sans-serif;max-width:60em;margin:auto"><h1>The telephone of 2022</h1>' + "\n".join(self.parts))
-
-
-class NoPage:
-    folder = None
-
-    def plot(self, *_):
-        pass
+from telephone import box as boxes
+from telephone import lens, sensor
+from telephone.page import NoPage, Page
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("petzval", nargs="?", default="petzval")
-    parser.add_argument("--page", type=Path, help="folder for a page with all curves and the box")
+    parser.add_argument("--page", type=Path, help="folder for a page with all curves, the sensor and the box")
     options = parser.parse_args()
-    phone = Telephone(options.folder, options.petzval)
+    phone = lens.Telephone(options.folder, options.petzval)
     page = NoPage()
     if options.page:
         options.page.mkdir(parents=True, exist_ok=True)
         page = Page(options.page)
-    illumination(phone, options.folder, page)
-    geometric_mtf(phone, options.folder, page)
-    edges(phone, page)
+    lens.illumination(phone, options.folder, page)
+    lens.geometric_mtf(phone, options.folder, page)
+    lens.edges(phone, page)
     if options.page:
-        box(phone, options.folder, page)
+        imx363 = sensor.write_sensor(page.folder / "imx363.json", "IMX363, calibrated", 200, 200, sensor.calibrated(options.folder))
+        sensor.gain(phone, imx363, page)
+        sensor.noise(phone, imx363, page)
+        sensor.colour(phone, options.folder, page)
+        box = boxes.Box(phone, options.folder, page)
+        boxes.white_back_wall(box)
+        boxes.patch_beside_walls(box)
+        boxes.glass_and_fit(box)
         page.write()
 
 

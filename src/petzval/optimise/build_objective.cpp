@@ -18,8 +18,13 @@ namespace petzval {
 
 namespace {
 
-/// Contrast that ruler and model do not share: edges of exact pictures measure to this (docs/SFR.md).
+/// Contrast of one edge that ruler and model do not share: edges of exact pictures measure to this
+/// (docs/SFR.md).
 constexpr double unshared_contrast = 0.003;
+/// Errors of all edges together, standard deviations. Light that is spread farther than an edge is looked at
+/// takes a share of all contrast; blur that the model does not hold takes 2 pi² times its variance times the
+/// square of the frequency, here that of 6 % of a square pixel's variance [cycles/pixel]^-2.
+constexpr double far_light = 0.01, unknown_blur = 0.1;
 /// Steps of differences, in BuildNumber::scale(): the wave follows them as a straight line.
 constexpr double difference_step = 0.02;
 constexpr std::size_t most_edges_fitted = 2000, most_photographs = 50;
@@ -156,6 +161,23 @@ void BuildObjective::take_edges(const std::vector<SfrMap>& photographs, const Fi
                     unknowns(), data_));
 }
 
+/// Differences of variance 1 and covariance B Bᵀ beside it, of columns B, become ones of variance 1 by
+/// (I + B Bᵀ)^(-1/2), which shortens the directions of B alone.
+void BuildObjective::count_shared_errors() {
+  Eigen::MatrixXd errors(data_, 2);
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const EdgeData& edge = edges_[i];
+    const auto n = edge.contrast.size();
+    const Eigen::Map<const Eigen::ArrayXd> f(edge.edge->frequencies_cpp.data(), n);
+    errors.middleRows(first_row_[i], n).col(0) = edge.whitening * (far_light * edge.contrast);
+    errors.middleRows(first_row_[i], n).col(1) =
+        edge.whitening * (unknown_blur * f.square() * edge.contrast.array()).matrix();
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> solved(errors, Eigen::ComputeThinU);
+  shared_directions_ = solved.matrixU();
+  shortened_by_ = 1 - (1 + solved.singularValues().array().square()).rsqrt();
+}
+
 void BuildObjective::look(const EdgeDetail& detail) {
   const bool other = detail.places != detail_.places;
   detail_ = detail;
@@ -232,6 +254,13 @@ void BuildObjective::evaluate(const Eigen::VectorXd& steps, Eigen::VectorXd& res
       slopes->middleRows(first_row_[i], n) =
           edge.whitening * edge.photosite.asDiagonal() * transfer->slopes / difference_step;
   });
+  const auto shorten = [&](auto&& differences) {
+    if (shortened_by_.size() == 0) return;
+    differences -= shared_directions_ *
+                   (shortened_by_.asDiagonal() * (shared_directions_.transpose() * differences)).eval();
+  };
+  shorten(residuals.head(data_));
+  if (slopes) shorten(slopes->topRows(data_));
   Eigen::Index row = data_;
   for (Eigen::Index k = 0; k < unknowns(); ++k) {
     const BuildNumber& number = numbers_[static_cast<std::size_t>(k)];

@@ -36,6 +36,9 @@ class BuildObjective {
   Eigen::Index rows() const { return data_ + priors_; }
   const EdgeDetail& detail() const { return detail_; }
   void look(const EdgeDetail& detail);
+  /// From here on residuals know that errors of all edges together are likely; far from the truth they are
+  /// better not counted, as minima are less deep then.
+  void count_shared_errors();
 
   /// The lens with its numbers, the sensor where a photograph had it.
   Lens lens_at(const Eigen::VectorXd& steps, int photograph) const;
@@ -59,6 +62,10 @@ class BuildObjective {
   std::vector<EdgeData> edges_;
   std::vector<Eigen::Index> first_row_;
   Eigen::Index data_ = 0, priors_ = 0;
+  /// Once counted: directions among whitened differences of contrast that errors of all edges together take,
+  /// orthonormal, and by how much they are shortened so that variances are 1 there too.
+  Eigen::MatrixXd shared_directions_;
+  Eigen::VectorXd shortened_by_;
   EdgeDetail detail_ = EdgeDetail::quick();
   std::vector<EdgeObjects> objects_;  ///< of the lens as given
 };

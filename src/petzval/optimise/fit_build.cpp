@@ -18,6 +18,8 @@ namespace petzval {
 namespace {
 
 constexpr int first_evaluations = 4, quick_evaluations = 12, fine_evaluations = 25;
+/// Descents end where chi² or steps change by less than these shares: hundreds of times less than deviations.
+constexpr double enough_of_chi_squared = 1e-6, enough_of_steps = 1e-4;
 /// So many of the builds that the first steps lead to are followed further.
 constexpr std::size_t followed = 2;
 /// The sensor is sought so many depths of focus, λN², on both sides.
@@ -68,7 +70,7 @@ Candidate descend_from(const BuildObjective& of, Eigen::VectorXd steps, int eval
   Functor functor(of);
   Eigen::LevenbergMarquardt<Functor> search(functor);
   search.setMaxfev(evaluations);
-  search.setFtol(1e-7), search.setXtol(1e-6), search.setFactor(1);
+  search.setFtol(enough_of_chi_squared), search.setXtol(enough_of_steps), search.setFactor(1);
   search.minimize(steps);
   return {steps, chi_squared(of, steps)};
 }
@@ -307,6 +309,7 @@ FitBuildResult fit(const Lens& lens, const std::vector<SfrMap>& photographs, con
   // Looked at more finely: the best, and what comes near it.
   const double near = reached.front().chi_squared * 1.1 + 10 * as_good;
   of.look({});
+  of.count_shared_errors();
   std::vector<Candidate> fine;
   for (const Candidate& each : reached) {
     if (each.chi_squared > near || fine.size() == 4) break;

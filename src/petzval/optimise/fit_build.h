@@ -69,9 +69,11 @@ struct FitBuildResult {
 ///
 /// The numbers that best explain the contrast of all edges at MTF80, MTF50 and MTF20 (or at MTF50 alone), by
 /// Levenberg and Marquardt (Moré's MINPACK, as Eigen has it) from starts on both sides of focus and with
-/// tilts of all signs. Contrast is that of edge_transfer() times the photosite's; deviations are the stated
-/// ones with their correlations, and 0.003 of contrast for what ruler and model do not share. The covariance
-/// is the inverse of the normal matrix, scaled by chi² over the degrees of freedom where that is above 1.
+/// tilts of all signs. Contrast is that of edge_transfer() times the photosite's. Deviations are the stated
+/// ones with their correlations, 0.003 of contrast for what ruler and model do not share at each edge, and
+/// two errors of all edges together: 1 % of contrast, for light that is spread far, and blur of 6 % of the
+/// variance of a square pixel. The covariance is the inverse of the normal matrix, scaled by chi² over the
+/// degrees of freedom where that is above 1.
 /// After the fit every number and all of them together are turned round and fitted again: what fits as well
 /// within four of chi² is named, and so are numbers that only together are known. The same request gives the
 /// same result on any number of threads.
