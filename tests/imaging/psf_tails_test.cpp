@@ -20,10 +20,10 @@ LensDataTable halo_table(bool grows, const std::vector<double>& wavelengths_nm =
   recipe.wavelengths_nm = wavelengths_nm;
   recipe.g_source_sr = [](double field) { return 0.25 - 0.005 * field; };
   recipe.psf = [grows](double field, double nm) {
-    const double halo = grows ? field / 40 : 0.3;
-    return psf_of_spots({{0, 0, 15, 15, 15 * 15 * (1 - halo) / 225},
-                         {0, grows ? 2 * field : 0, 200, 200 + 0.1 * (nm - 550) * field, halo}},
-                        201, 8);
+    const double halo = grows ? field / 40 : 0.3, wide_um = 200 + 0.2 * (nm - 550);
+    return psf_of_spots(
+        {{0, 0, 15, 15, 15 * 15 * (1 - halo) / 225}, {0, grows ? 2 * field : 0, wide_um, wide_um, halo}}, 201,
+        8);
   };
   return make_table(recipe);
 }
@@ -72,12 +72,24 @@ TEST(SplitTails, PartsAddUp) {
       EXPECT_NEAR(sharp * double(split->sharp.psf[entry].values[i]) +
                       tail * double(split->tails.psf[entry].values[i]),
                   table.g_source_sr[entry] * double(whole.values[i]), 1e-6 * peak);
+    for (const LensDataTable* part : {&split->sharp, &split->tails}) EXPECT_NO_THROW(part->validate());
     for (const Psf* part : {&split->sharp.psf[entry], &split->tails.psf[entry]})
       EXPECT_NEAR(std::accumulate(part->values.begin(), part->values.end(), 0.0), 1, 1e-5);
   }
   // The halo alone reaches so far: a window of 160 µm leaves most of its light outside.
   EXPECT_GT(split->tails.g_source_sr.back(), 0.25 * table.g_source_sr.back());
   EXPECT_LT(split->tails.g_source_sr.back(), 0.5 * table.g_source_sr.back());
+}
+
+// Where the window ends upon a sample, rounding must not make its light less than none.
+TEST(SplitTails, AreSoundForWindowsOfAnySize) {
+  const LensDataTable table = halo_table(true);
+  for (int step = 0; step < 200; ++step) {
+    const std::optional<TailSplit> split = split_tails(table, 8 * std::hypot(13, 20) * (1 + 1e-6 * step));
+    ASSERT_TRUE(split);
+    ASSERT_NO_THROW(split->sharp.validate()) << step;
+    ASSERT_NO_THROW(split->tails.validate()) << step;
+  }
 }
 
 TEST(SplitTails, LeaveNarrowTablesAlone) {

@@ -15,7 +15,7 @@ namespace {
 /// 1 to half of the radius, 0 from the radius on, with two continuous derivatives.
 double window_at(double distance, double radius) {
   const double x = std::clamp(2 * distance / radius - 1, 0.0, 1.0);
-  return 1 - x * x * x * (10 + x * (6 * x - 15));
+  return std::clamp(1 - x * x * x * (10 + x * (6 * x - 15)), 0.0, 1.0);
 }
 
 /// A PSF in two, each of sum 1. \returns the share of the light within the window.
