@@ -109,8 +109,7 @@ TEST(DepthImage, OfAWallOfAnyDepthsIsTheWall) {
   fine.product.tolerance = 1e-4;  // RMS, where single pixels are held against each other below
   Scene scene = blank_scene(1.0);
   fill(scene, [](double, double) { return 2.0; });
-  const SpectralImage wall =
-      form_image(scene, build_lens_data_table(camera.lens, camera.table), frame, fine);
+  const SpectralImage wall = form_image(scene, build_lens_data_table(camera.lens, camera.table), frame, fine);
   std::mt19937 random(7);
   const auto any = [&](double, double) { return 0.6 + 3 * std::generate_canonical<double, 32>(random); };
   const auto blocks = [](double x, double y) {
