@@ -44,6 +44,13 @@ class Dataset(ProgramTest):
         self.assertIn("6 of 6 parts are there and whole: 12 items",
                       self.assert_succeeds("dataset", "verify", "shared"))
 
+    def test_what_a_killed_worker_was_writing_is_cleared_away(self):
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "shared")
+        (self.folder / "shared" / "part-00001.json").rename(self.folder / "shared" / ".part-00001.19788-5.json")
+        self.assert_succeeds("dataset", "make", "recipe.json", "-o", "shared")
+        self.assertEqual(self.files("shared"), self.files("alone"))
+
     def test_an_interrupted_run_keeps_whole_parts(self):
         self.assert_succeeds("dataset", "make", "recipe.json", "-o", "alone")
         worker = subprocess.Popen([PROGRAM, "dataset", "make", "recipe.json", "-o", "set"], cwd=self.folder,

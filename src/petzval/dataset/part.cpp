@@ -99,6 +99,17 @@ MadeItem make_item(const Recipe& recipe, ItemMaker& maker, std::size_t number) {
   return made;
 }
 
+/// What a process that was killed was about to write. \pre  the part's lock is held.
+void remove_unfinished(const std::string& folder, std::size_t number) {
+  const std::string begins = fmt::format(".part-{:05}.", number);
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (const std::string name = entry.path().filename(); name.starts_with(begins) && name != begins + "lock")
+      found.push_back(entry.path());
+  std::error_code ignored;
+  for (const fs::path& path : found) fs::remove(path, ignored);
+}
+
 /// Adds an item's files to the archive and its line to the others.
 void store(MadeItem& item, TarWriter& archive, std::string& lines) {
   json line = item.facts;
@@ -155,6 +166,7 @@ std::optional<PartSums> DatasetPart::make(const Recipe& recipe, ItemMaker& maker
                                           const std::function<void()>& made) const {
   const PartLock lock(fmt::format("{}/.part-{:05}.lock", folder_, number_));
   if (!lock.is_held() || is_done()) return {};
+  remove_unfinished(folder_, number_);
   const auto [first, last] = recipe.items_of(number_);
   PartFile archive_file(path("tar")), lines_file(path("jsonl"));
   TarWriter archive(archive_file.making());
