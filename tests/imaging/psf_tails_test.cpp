@@ -82,7 +82,7 @@ TEST(SplitTails, PartsAddUp) {
 }
 
 // Where the window ends upon a sample, rounding must not make its light less than none.
-TEST(SplitTails, AreSoundForWindowsOfAnySize) {
+TEST(SplitTails, AreSoundWhereTheWindowEndsOnASample) {
   const LensDataTable table = halo_table(true);
   for (int step = 0; step < 200; ++step) {
     const std::optional<TailSplit> split = split_tails(table, 8 * std::hypot(13, 20) * (1 + 1e-6 * step));

@@ -49,7 +49,7 @@ bool reaches_beyond(const LensDataTable& table, double reach_um) {
   });
 }
 
-/// Of places without a PSF the shares of the light: those of the nearest with one, by number.
+/// Shares of the light at places without a PSF: on a straight line between the nearest that have one.
 void fill_shares(const LensDataTable& table, std::vector<double>& shares) {
   for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
     for (std::size_t place = 0; place < table.places(); ++place) {
