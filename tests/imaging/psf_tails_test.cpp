@@ -5,6 +5,7 @@
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/psf_tails.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -15,12 +16,12 @@ namespace {
 using namespace testing;
 
 /// A sharp spot and a halo: of a share that is the same everywhere, or grows from nothing on the axis.
-LensDataTable halo_table(bool grows, const std::vector<double>& wavelengths_nm = {550}) {
+LensDataTable halo_table(bool grows, const std::vector<double>& wavelengths_nm = {550}, double share = 0.3) {
   TableRecipe recipe;
   recipe.wavelengths_nm = wavelengths_nm;
   recipe.g_source_sr = [](double field) { return 0.25 - 0.005 * field; };
-  recipe.psf = [grows](double field, double nm) {
-    const double halo = grows ? field / 40 : 0.3, wide_um = 200 + 0.2 * (nm - 550);
+  recipe.psf = [grows, share](double field, double nm) {
+    const double halo = grows ? field / 40 : share, wide_um = 200 + 0.2 * (nm - 550);
     return psf_of_spots(
         {{0, 0, 15, 15, 15 * 15 * (1 - halo) / 225}, {0, grows ? 2 * field : 0, wide_um, wide_um, halo}}, 201,
         8);
@@ -92,6 +93,17 @@ TEST(SplitTails, AreSoundWhereTheWindowEndsOnASample) {
   }
 }
 
+TEST(SplitTails, AreAsStrongAsTheirShareOfTheLight) {
+  for (const double share : {0.3, 0.02}) {
+    const std::optional<TailSplit> split = split_tails(halo_table(false, {550}, share), 160);
+    ASSERT_TRUE(split);
+    const double tail = split->tails.g_source_sr[0];
+    EXPECT_NEAR(tail_strength(*split), tail / (tail + split->sharp.g_source_sr[0]), 1e-9);
+    EXPECT_LT(tail_strength(*split), share);
+    EXPECT_GT(tail_strength(*split), 0.5 * share);
+  }
+}
+
 TEST(SplitTails, LeaveNarrowTablesAlone) {
   EXPECT_FALSE(split_tails(halo_table(true), 600));
 }
@@ -130,16 +142,21 @@ TEST(AddCoarse, FollowsParabolasAndKeepsTheLight) {
 // The bound is the tolerance: the picture of whole kernels is made to a hundredth of it. Where the halo's
 // share changes from field to field, tables are not interpolated like their parts; here it does not.
 TEST(FarLight, AddsUpToThePictureOfWholeKernels) {
-  const LensDataTable table = halo_table(false);
   const Scene scene = noise_scene({550});
-  ImagingReport report;
-  const SpectralImage whole = form_image(scene, table, sensor, from_pixels(0, 1e-5), {}, &report);
-  EXPECT_EQ(report.tail_pixels, 0);
-  const SpectralImage parts = form_image(scene, table, sensor, from_pixels(32), {}, &report);
-  EXPECT_EQ(report.tail_pixels, 32);
-  EXPECT_LT(report.margin_cells, 80);
-  EXPECT_LT(difference(parts, whole, 0), 1e-3);
-  EXPECT_LT(difference(form_image(scene, table, sensor, from_pixels(32, 1e-4)), whole, 0), 3e-4);
+  for (const double share : {0.3, 0.02}) {
+    const LensDataTable table = halo_table(false, {550}, share);
+    ImagingReport report;
+    const SpectralImage whole = form_image(scene, table, sensor, from_pixels(0, 1e-5), {}, &report);
+    EXPECT_EQ(report.tail_pixels, 0);
+    const SpectralImage parts = form_image(scene, table, sensor, from_pixels(32), {}, &report);
+    EXPECT_EQ(report.tail_pixels, 32);
+    EXPECT_LT(report.margin_cells, 80);
+    EXPECT_EQ(report.brightest, double(std::ranges::max(parts.band(0))));
+    EXPECT_LT(difference(parts, whole, 0), 1e-3) << share;
+    if (share == 0.3) {
+      EXPECT_LT(difference(form_image(scene, table, sensor, from_pixels(32, 1e-4)), whole, 0), 3e-4);
+    }
+  }
 }
 
 TEST(FarLight, IsInEveryRowAndBandThatIsAskedFor) {

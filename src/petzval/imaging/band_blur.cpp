@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/band_blur.h>
-#include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/exact_blur.h>
 
 #include <algorithm>
@@ -33,41 +32,45 @@ void add_report(const ImagingReport& band, ImagingReport& all) {
   all.kernel_seconds += band.kernel_seconds;
 }
 
-void BandBlur::choose(double wavelength_nm, const SensorGeometry& grid, int margin,
+void BandBlur::choose(const BandPlan& band, double wavelength_nm, const SensorGeometry& frame,
                       const std::optional<ProductPlan>& hint) {
   // The next kernels go where the last ones were: those of two bands need not be kept at a time.
   if (product_) memory_ = std::move(*product_).take_memory();
   product_.reset();
   sections_.reset();
-  grid_ = grid;
-  margin_ = margin;
+  grid_ = grown(frame, band.margin);
+  margin_ = band.margin;
   if (options_.method == BlurMethod::none) return;
-  psfs_.emplace(table_, wavelength_nm, grid.pitch_um, options_.interpolation, centres_,
+  psfs_.emplace(table_, wavelength_nm, frame.pitch_um, options_.interpolation, centres_,
                 options_.is_preview() ? LatticeSteps::coarse : LatticeSteps::fine);
   if (options_.by_sections()) use_sections(options_.section_options());
-  if (options_.method == BlurMethod::product) choose_product(hint);
+  if (options_.method == BlurMethod::product) choose_product(band.map.look(), hint);
 }
 
 /// A plan's error is estimated for noise as strong as its mean, with a caution that covers what scenes have
 /// beyond. Of lights in darkness it does not: the factor by which errors are larger for noise of the scene's
-/// contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels.
-double BandBlur::harder_than_noise() const {
+/// contrast c, √((1 + Σh²)/(1/c² + Σh²)), h the kernels, where the lens lets light fall.
+double BandBlur::harder_than_noise(const SceneLook& look) const {
   constexpr double covered = 2.5;
   if (!(contrast_ > covered) || options_.is_preview()) return 1;
-  const double corner_mm = half_diagonal_mm(grown(grid_, -margin_));
-  double squares = 0;
-  constexpr std::array<double, 3> heights{0, 0.5, 0.9};  // of the frame
-  for (const double height : heights)
-    for (const double weight : psfs_->kernel_at(0, height * corner_mm).weights)
-      squares += weight * weight / double(heights.size());
+  const double lit_mm = std::min(half_diagonal_mm(grown(grid_, -margin_)), look.last_height_mm());
+  double squares = 0, lights = 0;
+  constexpr std::array<double, 3> heights{0, 0.5, 0.9};  // of what is lit
+  for (const double height : heights) {
+    const double light = std::pow(look.place(0, height * lit_mm).g_source_sr, 2);
+    lights += light;
+    for (const double weight : psfs_->kernel_at(0, height * lit_mm).weights)
+      squares += light * weight * weight;
+  }
+  if (lights > 0) squares /= lights;
   return std::sqrt((1 + squares) / (1 / (contrast_ * contrast_) + squares));
 }
 
-void BandBlur::choose_product(const std::optional<ProductPlan>& hint) {
+void BandBlur::choose_product(const SceneLook& look, const std::optional<ProductPlan>& hint) {
   const auto start = std::chrono::steady_clock::now();
-  const SourceGrid source(grid_, margin_);
+  const SourceGrid source(grid_, margin_, &look);
   constexpr double least_tolerance = 1e-6;
-  const double harder = harder_than_noise();
+  const double harder = harder_than_noise(look);
   ProductOptions options = options_.product;
   options.tolerance = std::max(least_tolerance, options.tolerance / harder);
   plan_ = plan_product(*psfs_, source, options, hint);

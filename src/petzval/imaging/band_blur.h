@@ -2,6 +2,7 @@
 // The blur of one band after the other, by the method that was asked for.
 #pragma once
 
+#include <petzval/imaging/band_plan.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/product_blur.h>
 
@@ -13,7 +14,7 @@ namespace petzval {
 /// Blurs planes of light, band by band; any number of planes of a band share its kernels.
 ///
 ///     BandBlur blur(table, centres, options, report, contrast);
-///     blur.choose(550, source.grid, margin, {});
+///     blur.choose(plan, 550, frame, {});
 ///     blur.make_kernels();
 ///     CellPlane image = blur(std::move(source));
 ///
@@ -26,9 +27,9 @@ class BandBlur {
            ImagingReport& report, double contrast)
       : table_(table), options_(options), centres_(centres), report_(report), contrast_(contrast) {}
 
-  /// Decides how a wavelength is blurred, on planes of a grid. \param margin  by which their images are
-  /// smaller on every side. \param hint  the plan() of a neighbouring band.
-  void choose(double wavelength_nm, const SensorGeometry& grid, int margin,
+  /// Decides how a wavelength is blurred. \param band  its plan. \param frame  of the images [cells]; planes
+  /// of light are larger by the plan's margin on every side. \param hint  the plan() of a neighbouring band.
+  void choose(const BandPlan& band, double wavelength_nm, const SensorGeometry& frame,
               const std::optional<ProductPlan>& hint);
   /// Makes its kernels; nothing if they are made.
   void make_kernels();
@@ -39,9 +40,9 @@ class BandBlur {
   CellPlane operator()(CellPlane source, const ProgressCallback& progress = {}) const;
 
  private:
-  void choose_product(const std::optional<ProductPlan>& hint);
+  void choose_product(const SceneLook& look, const std::optional<ProductPlan>& hint);
   void use_sections(const SectionOptions& options);
-  double harder_than_noise() const;
+  double harder_than_noise(const SceneLook& look) const;
 
   const LensDataTable& table_;
   const ImagingOptions& options_;

@@ -118,8 +118,7 @@ class DepthImaging {
       const double wavelength_nm = scene_.wavelengths_nm()[static_cast<std::size_t>(band)];
       const auto start = std::chrono::steady_clock::now();
       // All bands are planned, for the plan of one follows that of the one before.
-      blur.choose(wavelength_nm, grown(frame_, plan.margin), plan.margin,
-                  band == 0 ? hint_of_last_layer(plan.margin) : blur.plan());
+      blur.choose(plan, wavelength_nm, frame_, band == 0 ? hint_of_last_layer(plan.margin) : blur.plan());
       if (band == 0) keep_plan(blur.plan(), plan.margin);
       if (share_.has(static_cast<std::size_t>(band))) add_band(planar, band, plan, blur, stack);
       says().blur_seconds += seconds_since(start);
@@ -209,7 +208,7 @@ void form_depth_bands(const Scene& scene, const DepthCamera& camera, const Senso
     } else {
       continue;
     }
-    note_extremes(pixels, band, says.image);
+    note_extremes(pixels.values, band == 0, says.image);
     take(pixels.values);
   }
   note_result(says.image);

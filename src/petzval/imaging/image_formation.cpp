@@ -1,280 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
-#include <petzval/base/units.h>
-#include <petzval/imaging/band_blur.h>
-#include <petzval/imaging/cell_choice.h>
-#include <petzval/imaging/coverage.h>
+#include <petzval/imaging/formation.h>
+#include <petzval/imaging/image_formation.h>
 #include <petzval/imaging/image_frame.h>
 #include <petzval/imaging/lens_corrections.h>
-#include <petzval/imaging/positive_light.h>
 #include <petzval/imaging/psf_tails.h>
 #include <petzval/sensor/lens_facts.h>
 
 #include <algorithm>
-#include <chrono>
-#include <climits>
 #include <cmath>
 #include <cstddef>
-#include <deque>
-#include <mutex>
-#include <numeric>
+#include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace petzval {
-
-namespace {
-
-void check_distances(const Scene& scene, const LensDataTable& table) {
-  const std::optional<double> table_mm = object_to_sensor_mm(table);
-  const auto say = [](std::optional<double> mm) {
-    return mm ? fmt::format("{:.6g} m", *mm / mm_per_m) : "infinity";
-  };
-  std::optional<double> scene_mm = scene.distance_m();
-  if (scene_mm) *scene_mm *= mm_per_m;
-  constexpr double relative_tolerance = 1e-3;
-  const bool agree = scene_mm && table_mm ? std::abs(*scene_mm - *table_mm) <= relative_tolerance * *table_mm
-                                          : !scene_mm && !table_mm;
-  if (!agree)
-    throw InputError(
-        fmt::format("the scene is at {}, but the lens data table was made for an object at {} from the "
-                    "sensor; give the scene that distance, or build the table for the scene's",
-                    say(scene_mm), say(table_mm)));
-}
-
-/// How far all bands are, when several are formed at once.
-class BandProgress {
- public:
-  BandProgress(int bands, const ProgressCallback& callback)
-      : callback_(callback), fraction_(static_cast<std::size_t>(bands)) {}
-
-  void tell(std::size_t band, double fraction, const std::string& what) {
-    if (!callback_) return;
-    const std::lock_guard lock(mutex_);
-    fraction_[band] = fraction;
-    callback_(std::accumulate(fraction_.begin(), fraction_.end(), 0.0) / double(fraction_.size()), what);
-  }
-
- private:
-  const ProgressCallback& callback_;
-  std::mutex mutex_;
-  std::vector<double> fraction_;
-};
-
-/// The same lights by rows of cells that pixels share in. \param further  cells that a pixel shares in beyond
-/// its own, from its first on.
-std::vector<AimedLight> on_cells(std::span<const AimedLight> lights, int cells_per_pixel, int further) {
-  std::vector<AimedLight> on_cells(lights.begin(), lights.end());
-  for (auto& [shares, rows] : on_cells) {
-    rows.first *= cells_per_pixel;
-    if (rows.end < (INT_MAX - further) / cells_per_pixel) rows.end = rows.end * cells_per_pixel + further;
-  }
-  return on_cells;
-}
-
-/// What all images of a scene through one table share, and the bands that are formed at a time.
-struct Formation {
-  /// Where bands are formed.
-  struct Place {
-    Place(const Formation& of) : blur(of.table, of.centres, of.options, says, of.contrast) {}
-    ImagingReport says;
-    BandBlur blur;
-    bool chosen = false;
-    std::vector<CellPlane> pixels;  ///< of each light
-    double seconds = 0;
-  };
-
-  Formation(const Scene& of_scene, const LensDataTable& of_table, const SensorGeometry& of_sensor,
-            const ImagingOptions& asked, bool keeps)
-      : scene(of_scene),
-        table(of_table),
-        sensor(of_sensor),
-        options(asked),
-        may_keep(keeps),
-        centres(checked()) {
-    const CellChoice choice = choose_cells(scene, table, sensor, options);
-    options.supersample = choice.cells;
-    contrast = choice.contrast;
-    of_all.sampling_error = choice.sampling.error;
-    of_all.finer_detail_error = choice.sampling.finer;
-    frame = options.cells_of(sensor);
-    plans = plan_bands(scene, table, frame, options);
-    of_all.scene_points_per_cell = points_per_cell(plans, frame);
-    of_all.cells_per_pixel = options.cells_per_pixel();
-    path = options.light_path(of_all.scene_points_per_cell);
-    taps = pixel_taps(options.photosite, of_all.cells_per_pixel, path);
-  }
-
-  /// Everything that can be refused is refused before the work starts.
-  const LensDataTable& checked() const {
-    options.validate();
-    scene.validate();
-    table.validate();
-    check_distances(scene, table);
-    SpectralImage::check(sensor.columns, sensor.rows, scene.wavelengths_nm(), sensor.pitch_um);
-    return table;
-  }
-
-  /// \param take  is handed each band of every light, then the next band.
-  void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
-            ImagingReport& report, const BandShare& share = {}) {
-    report = of_all;
-    check_aims(lights, report.notes);
-    note_dark_corners(plans, sensor, report.notes);
-    const auto start = std::chrono::steady_clock::now();
-    if (places.empty()) {
-      choose(0, places.emplace_back(*this));
-      const std::size_t wanted = may_keep && fits(plans.size()) ? plans.size() : places_at_once();
-      while (places.size() < wanted) places.emplace_back(*this);
-    }
-    BandProgress progress(scene.bands(), callback);
-    double seconds = 0;  // of all bands
-    const auto begin = [&](std::size_t band, std::size_t) {
-      Place& place = place_of(band);
-      if (!place.chosen || places.size() < plans.size()) choose(band, place);
-    };
-    const auto end = [&](std::size_t band, std::size_t) {
-      if (!share.has(band) && share.known) {
-        CellPlane pixels = CellPlane::unset(sensor);
-        share.known(static_cast<int>(band), pixels.values);
-        place_of(band).pixels.push_back(std::move(pixels));
-      }
-      seconds += hand_over(band, take, progress, report);
-    };
-    parallel_stages(plans.size(), std::min(places.size(), static_cast<std::size_t>(thread_count())),
-                    {begin,
-                     [&](std::size_t band, std::size_t) {
-                       if (share.has(band)) work(band, lights, progress);
-                     },
-                     end});
-    share_time(seconds_since(start), seconds, report);
-    note_result(report);
-    note_unused_layout(report);
-  }
-
-  void check_aims(std::span<const AimedLight> lights, std::vector<std::string>& notes) const {
-    for (const AimedLight& light : lights)
-      for (const AimedLight::Share& share : light.shares) {
-        share.aim.check(scene);
-        check_coverage(scene, plans, frame, options.surround, notes, share.aim);
-      }
-    notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
-  }
-
-  Place& place_of(std::size_t band) { return places[band % places.size()]; }
-
-  /// Whether so many places have room, going by the first.
-  bool fits(std::size_t count) const {
-    constexpr double most_bytes = 1.25e9;
-    constexpr int planes = 4;  // the light before and after blur, with room for the pixels
-    const double of_planes = planes * double(frame.columns) * double(frame.rows) * sizeof(float);
-    return double(count) * (places.front().blur.bytes() + of_planes) <= most_bytes;
-  }
-  /// As many bands at a time as threads and memory allow.
-  std::size_t places_at_once() const {
-    std::size_t count = std::min(static_cast<std::size_t>(thread_count()), plans.size());
-    while (count > 1 && !fits(count)) --count;
-    return count;
-  }
-
-  void choose(std::size_t band, Place& place) {
-    const auto start = std::chrono::steady_clock::now();
-    place.says = {};
-    const int margin = plans[band].margin;
-    place.blur.choose(scene.wavelengths_nm()[band], grown(frame, margin), margin, last_plan);
-    last_plan = place.blur.plan();
-    place.chosen = true;
-    place.seconds = place.says.blur_seconds = seconds_since(start);
-  }
-
-  void work(std::size_t band, std::span<const AimedLight> lights, BandProgress& progress) {
-    const BandPlan& plan = plans[band];
-    Place& place = place_of(band);
-    const auto start = std::chrono::steady_clock::now();
-    place.blur.make_kernels();
-    place.says.blur_seconds += seconds_since(start);
-    const SensorGeometry grid = grown(frame, plan.margin);
-    // What a pixel's light may come from, after blur and before.
-    const std::vector<AimedLight> on_source =
-        on_cells(lights, taps.cells, taps.size() - taps.cells + 2 * plan.margin);
-    // Lights that look at the same rows in turn share what the lens makes of them.
-    constexpr double most_bytes = 1e8;
-    const auto at_once = static_cast<std::size_t>(
-        std::max(1.0, most_bytes / (double(grid.columns) * double(grid.rows) * sizeof(float))));
-    for (std::size_t i = 0; i < lights.size();) {
-      const auto start_of_light = std::chrono::steady_clock::now();
-      const auto some = std::span(on_source).subspan(i, std::min(at_once, lights.size() - i));
-      std::vector<CellPlane> ideal =
-          source_lights(scene, static_cast<int>(band), plan.map, grid, path.source, options.surround, some);
-      place.says.distortion_seconds += seconds_since(start_of_light);
-      const auto start_of_blur = std::chrono::steady_clock::now();
-      for (CellPlane& light : ideal) {
-        CellPlane blurred = place.blur(std::move(light), [&](double fraction, const std::string& what) {
-          progress.tell(band, (double(i) + fraction) / double(lights.size()), what);
-        });
-        place.pixels.push_back(without_negative_light(gathered(std::move(blurred), taps, lights[i++].rows)));
-      }
-      place.says.blur_seconds += seconds_since(start_of_blur);
-    }
-    place.seconds += seconds_since(start);
-  }
-
-  /// \return the time that the band took.
-  double hand_over(std::size_t band, const TakeBand& take, BandProgress& progress, ImagingReport& report) {
-    Place& place = place_of(band);
-    const auto start = std::chrono::steady_clock::now();
-    for (const CellPlane& pixels : place.pixels) {
-      note_extremes(pixels, static_cast<int>(band), report);
-      take(pixels.values);
-    }
-    place.pixels.clear();
-    scene.release_memory();
-    place.says.margin_cells = plans[band].margin;
-    place.says.least_captured = plans[band].least_captured;
-    add_report(place.says, report);
-    progress.tell(band, 1, "image");
-    const double seconds = place.seconds + seconds_since(start);
-    // What was chosen may serve again; time goes by anew.
-    place.seconds = place.says.distortion_seconds = place.says.blur_seconds = place.says.kernel_seconds = 0;
-    return seconds;
-  }
-
-  static void share_time(double seconds, double of_bands, ImagingReport& report) {
-    if (of_bands <= seconds) return;
-    for (double* of_step : {&report.distortion_seconds, &report.blur_seconds, &report.kernel_seconds})
-      *of_step *= seconds / of_bands;
-  }
-
-  void note_unused_layout(ImagingReport& report) const {
-    const ProductPlan& product = report.product;
-    if ((options.product.nodes != 0 || options.product.tile != 0) && product.tile != 0 && !product.direct &&
-        product.transform == 0)
-      report.notes.push_back(fmt::format(
-          "`nodes` and `tile` had no effect: tiles as asked for do not go into the transforms beside these "
-          "PSFs, or serve the tolerance; sections of {0} x {0} cells that fade into each other took their "
-          "place",
-          product.tile));
-  }
-
-  const Scene& scene;
-  const LensDataTable& table;
-  const SensorGeometry sensor;
-  ImagingOptions options;
-  const bool may_keep;
-  const LightCentres centres;
-  double contrast = 0;   ///< CellChoice::contrast
-  SensorGeometry frame;  ///< of cells
-  std::vector<BandPlan> plans;
-  LightPath path;
-  PixelTaps taps;
-  ImagingReport of_all;  ///< what there is to say of every image
-  std::deque<Place> places;
-  std::optional<ProductPlan> last_plan;
-};
-
-}  // namespace
 
 /// The picture, or its sharp part and the light that lands far away.
 struct ImageSeries::Impl {
@@ -286,14 +28,17 @@ struct ImageSeries::Impl {
     if (split)
       tails = std::make_unique<Impl>(scene, split->tails,
                                      coarse_frame(sensor, tail_coarseness(options.tail_pixels)),
-                                     of_tails(options), keeps);
+                                     of_tails(options, tail_strength(*split)), keeps);
   }
 
-  static ImagingOptions of_tails(ImagingOptions options) {
+  /// \param strength  tail_strength().
+  static ImagingOptions of_tails(ImagingOptions options, double strength) {
     options.photosite = {};
     options.supersample = 2;
-    // Far light is smooth, so errors of its kernels do not average out.
-    options.product.tolerance = std::max(1e-6, options.product.tolerance / 10);
+    // Far light is smooth, so errors of its kernels do not average out. They are errors of a weak part.
+    constexpr double smooth = 0.1, coarsest = 0.05;
+    options.product.tolerance =
+        std::clamp(options.product.tolerance * smooth / std::max(strength, smooth * 1e-3), 1e-6, coarsest);
     // What the frame needs of the scene is there; a part of a coarse pixel may lie beyond.
     if (options.surround == Surround::error) options.surround = Surround::extend;
     return options;
@@ -301,22 +46,27 @@ struct ImageSeries::Impl {
 
   void form(std::span<const AimedLight> lights, const TakeBand& take, const ProgressCallback& callback,
             ImagingReport& report, const BandShare& share = {}) {
-    if (!split) return picture.form(lights, take, callback, report, share);
-    const std::vector<std::vector<float>> far = far_light(lights, share);
+    const std::vector<std::vector<float>> far =
+        split ? far_light(lights, share) : std::vector<std::vector<float>>();
     std::vector<float> whole;
     std::size_t plane = 0;
+    ImagingReport extremes;
     picture.form(
         lights,
         [&](std::span<const float> pixels) {
-          whole.assign(pixels.begin(), pixels.end());
-          const std::vector<float>& coarse = far[plane];
-          add_coarse(coarse, tails->sensor, tail_coarseness(picture.options.tail_pixels),
-                     lights[plane % lights.size()].rows, sensor, whole);
-          ++plane;
-          take(whole);
+          if (split) {
+            whole.assign(pixels.begin(), pixels.end());
+            add_coarse(far[plane], tails->sensor, tail_coarseness(picture.options.tail_pixels),
+                       lights[plane % lights.size()].rows, sensor, whole);
+            pixels = whole;
+          }
+          note_extremes(pixels, plane++ == 0, extremes);
+          take(pixels);
         },
         callback, report, share);
-    report.tail_pixels = picture.options.tail_pixels;
+    report.brightest = extremes.brightest;
+    report.darkest = extremes.darkest;
+    if (split) report.tail_pixels = picture.options.tail_pixels;
   }
 
   /// On coarse pixels, in the order in which the picture's planes come.

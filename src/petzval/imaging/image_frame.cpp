@@ -15,10 +15,9 @@ SpectralImage blank_image(const Scene& scene, const SensorGeometry& sensor, cons
   return image;
 }
 
-void note_extremes(const CellPlane& pixels, int band, ImagingReport& report) {
+void note_extremes(std::span<const float> values, bool first, ImagingReport& report) {
   // Several side by side, as vector registers hold them.
   constexpr std::size_t lanes = 16;
-  const auto& values = pixels.values;
   std::array<float, lanes> low, high;
   low.fill(values.front());
   high.fill(values.front());
@@ -35,8 +34,8 @@ void note_extremes(const CellPlane& pixels, int band, ImagingReport& report) {
   }
   const double darkest = double(*std::min_element(low.begin(), low.end())),
                brightest = double(*std::max_element(high.begin(), high.end()));
-  report.darkest = band == 0 ? darkest : std::min(report.darkest, darkest);
-  report.brightest = band == 0 ? brightest : std::max(report.brightest, brightest);
+  report.darkest = first ? darkest : std::min(report.darkest, darkest);
+  report.brightest = first ? brightest : std::max(report.brightest, brightest);
 }
 
 void note_result(ImagingReport& report) {

@@ -58,6 +58,7 @@ class ErrorAtPlaces {
         across_(grid.cells.columns),
         down_(grid.cells.rows),
         margin_(grid.margin),
+        look_(grid.look),
         tile_(tile),
         nodes_(lobatto_nodes(nodes)) {}
   bool symmetric() const { return psfs_.symmetry() != KernelSymmetry::none; }
@@ -65,6 +66,13 @@ class ErrorAtPlaces {
   const OutwardAxis& down() const { return down_; }
   int columns_in_picture() const { return std::max(1, across_.count() - margin_); }
   int rows_in_picture() const { return std::max(1, down_.count() - margin_); }
+  /// What the square of the error of a cell counts: the square of its light, in units of any size.
+  double weight(int column, int row, const Quadrant& quadrant = {true, true}) const {
+    if (look_ == nullptr) return 1;
+    const std::array<double, 2> place = place_mm(psfs_, across_, down_, column, row, quadrant);
+    const double light = look_->place(place[0], place[1]).g_source_sr;
+    return light * light;
+  }
   /// Σd²/(1 + Σh²). \param quadrant  where the cell lies.
   double square(int column, int row, const Quadrant& quadrant = {true, true}) const {
     const Kernel exact = kernel(column, row, quadrant);
@@ -88,13 +96,15 @@ class ErrorAtPlaces {
 
   const PsfField& psfs_;
   OutwardAxis across_, down_;
-  int margin_, tile_;
+  int margin_;
+  const SceneLook* look_;
+  int tile_;
   std::vector<double> nodes_;
 };
 
 /// A cell of a quadrant.
 struct Place {
-  double radius;
+  double radius, weight;  ///< the weight's mean over the picture is 1
   int column, row;
 };
 
@@ -110,13 +120,17 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
   const int across = (columns + most - 1) / most, down = (rows + most - 1) / most;
   Places places;
   std::size_t all = 0;
+  double weights = 0;
   for (int row = down / 2; row < rows; row += down)
     for (int column = across / 2; column < columns; column += across) {
       const double x = errors.across().position(column), y = errors.down().position(row);
-      const double r = std::sqrt(x * x + y * y);
-      if (r < radius) places.inside.push_back({r, column, row});
+      const double r = std::sqrt(x * x + y * y), weight = errors.weight(column, row);
+      if (r < radius) places.inside.push_back({r, weight, column, row});
+      weights += weight;
       ++all;
     }
+  if (weights > 0)
+    for (Place& place : places.inside) place.weight *= double(all) / weights;
   // Shells reach no farther in than an eighth of them.
   const auto eighth = places.inside.begin() + static_cast<std::ptrdiff_t>((places.inside.size() + 7) / 8);
   const auto outer = [](const Place& a, const Place& b) {
@@ -129,7 +143,7 @@ Places places_within(const ErrorAtPlaces& errors, double radius) {
   return places;
 }
 
-/// The mean square error over some of the places [from, to).
+/// The mean square error, weighted, over some of the places [from, to).
 double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places, std::size_t from,
                    std::size_t to) {
   constexpr std::size_t most = 6;
@@ -137,7 +151,7 @@ double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places
   std::array<double, most> squares{};
   parallel_for(count, [&](std::size_t i) {
     const Place& place = places[from + (2 * i + 1) * (to - from) / (2 * count)];
-    squares[i] = errors.square(place.column, place.row);
+    squares[i] = place.weight == 0 ? 0 : place.weight * errors.square(place.column, place.row);
   });
   double sum = 0;
   for (const double square : squares) sum += square;
@@ -148,32 +162,56 @@ double mean_square(const ErrorAtPlaces& errors, const std::vector<Place>& places
 
 namespace {
 
-/// Evenly over the grid, in an order in which any number of first places is spread over it.
-double square_at(const ErrorAtPlaces& errors, int place) {
-  const auto column = static_cast<int>(radical_inverse(place, 2) * errors.across().count()),
-             row = static_cast<int>(radical_inverse(place, 3) * errors.down().count());
-  if (errors.symmetric()) return errors.square(column, row);
-  // Quadrant after quadrant, in another order than that of columns.
-  const int turn = place + place / 4;
-  return errors.square(column, row, {turn % 2 == 0, turn / 2 % 2 == 0});
+/// A cell that light comes from.
+struct LitPlace {
+  int column, row;
+  Quadrant quadrant;
+  double weight;  ///< the weights' mean is 1
+};
+
+/// Evenly over what is lit of the grid, in an order in which any number of first places is spread over it.
+std::vector<LitPlace> lit_places(const ErrorAtPlaces& errors) {
+  constexpr int most_tried = 64 * KernelError::places;
+  std::vector<LitPlace> places;
+  double weights = 0;
+  for (int i = 1; i <= most_tried && places.size() < KernelError::places; ++i) {
+    LitPlace place{static_cast<int>(radical_inverse(i, 2) * errors.across().count()),
+                   static_cast<int>(radical_inverse(i, 3) * errors.down().count()),
+                   {true, true},
+                   0};
+    // Quadrant after quadrant, in another order than that of columns.
+    const int turn = i + i / 4;
+    if (!errors.symmetric()) place.quadrant = {turn % 2 == 0, turn / 2 % 2 == 0};
+    place.weight = errors.weight(place.column, place.row, place.quadrant);
+    if (place.weight == 0) continue;
+    weights += place.weight;
+    places.push_back(place);
+  }
+  for (LitPlace& place : places) place.weight *= double(places.size()) / weights;
+  return places;
+}
+
+double weighted_square(const ErrorAtPlaces& errors, const LitPlace& place) {
+  return place.weight * errors.square(place.column, place.row, place.quadrant);
 }
 
 }  // namespace
 
 KernelError kernel_error(const PsfField& psfs, const SourceGrid& grid, int tile, int nodes, double limit) {
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
-  constexpr int at_once = KernelError::first_places;
+  const std::vector<LitPlace> places = lit_places(errors);
+  constexpr std::size_t at_once = KernelError::first_places;
   KernelError error;
   double total = 0;
-  for (int first = 1; first <= KernelError::places; first += at_once) {
+  for (std::size_t first = 0; first < places.size(); first += at_once) {
     std::array<double, at_once> squares{};
-    parallel_for(at_once,
-                 [&](std::size_t i) { squares[i] = square_at(errors, first + static_cast<int>(i)); });
+    parallel_for(std::min(at_once, places.size() - first),
+                 [&](std::size_t i) { squares[i] = weighted_square(errors, places[first + i]); });
     for (const double square : squares) total += square;
-    if (first == 1) error.first_squares = squares;
-    if (total > limit * limit * KernelError::places) break;
+    if (first == 0) error.first_squares = squares;
+    if (total > limit * limit * double(places.size())) break;
   }
-  error.rms = std::sqrt(total / KernelError::places);
+  error.rms = std::sqrt(total / double(std::max<std::size_t>(1, places.size())));
   return error;
 }
 
@@ -182,8 +220,9 @@ KernelError kernel_error_like(const KernelError& known, const PsfField& psfs, co
   const ErrorAtPlaces errors(psfs, grid, tile, nodes);
   KernelError error;
   std::array<double, KernelError::first_places>& squares = error.first_squares;
-  parallel_for(static_cast<std::size_t>(few),
-               [&](std::size_t i) { squares[i] = square_at(errors, static_cast<int>(i) + 1); });
+  const std::vector<LitPlace> places = lit_places(errors);
+  parallel_for(std::min(static_cast<std::size_t>(few), places.size()),
+               [&](std::size_t i) { squares[i] = weighted_square(errors, places[i]); });
   const double now = std::accumulate(squares.begin(), squares.begin() + few, 0.0),
                before = std::accumulate(known.first_squares.begin(), known.first_squares.begin() + few, 0.0);
   const double change = before > 0 ? now / before : 1;

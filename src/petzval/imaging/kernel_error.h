@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/imaging/psf_kernel.h>
+#include <petzval/imaging/scene_look.h>
 #include <petzval/sensor/sensor.h>
 
 #include <array>
@@ -15,13 +16,16 @@ namespace petzval {
 struct SourceGrid {
   SensorGeometry cells;
   int margin = 0;
+  const SceneLook* look = nullptr;  ///< how bright cells are; null: all alike
 
-  SourceGrid(const SensorGeometry& all, int beyond = 0) : cells(all), margin(beyond) {}
+  SourceGrid(const SensorGeometry& all, int beyond = 0, const SceneLook* brightness = nullptr)
+      : cells(all), margin(beyond), look(brightness) {}
 };
 
 /// The relative L2 error that a product convolution makes of noise with a standard deviation as large as its
 /// mean: √(Σd²/(1 + Σh²)), RMS over places of the grid, h the kernel of PsfField and d what the mixture of
-/// kernels differs from it.
+/// kernels differs from it. A place counts by the square of how bright the lens makes it: where no light
+/// falls, kernels do not matter.
 struct KernelError {
   static constexpr int places = 64, first_places = 8;
   double rms = 0;                                    ///< over all places looked at

@@ -10,12 +10,17 @@
 
 namespace petzval {
 
-Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,
-                      double row, const Quadrant& quadrant) {
+std::array<double, 2> place_mm(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
+                               double column, double row, const Quadrant& quadrant) {
   const double cell_mm = psfs.cell_um() * mm_per_um;
   const double x_mm = across.position(column) * cell_mm, y_mm = down.position(row) * cell_mm;
-  Kernel kernel =
-      psfs.kernel_at(quadrant.right ? -x_mm : x_mm, quadrant.below ? y_mm : -y_mm);  // columns run along −x'
+  return {quadrant.right ? -x_mm : x_mm, quadrant.below ? y_mm : -y_mm};  // columns run along −x'
+}
+
+Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,
+                      double row, const Quadrant& quadrant) {
+  const std::array<double, 2> place = place_mm(psfs, across, down, column, row, quadrant);
+  Kernel kernel = psfs.kernel_at(place[0], place[1]);
   if (!quadrant.right)
     for (int i = -kernel.radius; i <= kernel.radius; ++i)
       for (int j = 1; j <= kernel.radius; ++j) std::swap(kernel.at(i, j), kernel.at(i, -j));
@@ -37,11 +42,9 @@ NodeKernels::NodeKernels(const PsfField& psfs, const OutwardAxis& across, const 
       quadrant_(quadrant),
       diagonal_(psfs.symmetry() == KernelSymmetry::mirrored && across.position(0) == down.position(0)) {
   std::vector<std::array<double, 2>> places_mm;
-  const double cell_mm = psfs.cell_um() * mm_per_um;
   for (std::size_t j = 0; j < nodes_down_; ++j)
     for (std::size_t i = 0; i < nodes_across_; ++i)
-      places_mm.push_back({(quadrant.right ? -1 : 1) * cell_mm * across_.position(places_[i]),
-                           (quadrant.below ? 1 : -1) * cell_mm * down_.position(places_[j])});
+      places_mm.push_back(place_mm(psfs, across_, down_, places_[i], places_[j], quadrant));
   psfs.prepare(places_mm);
 
   constexpr double most_bytes = 256e6;

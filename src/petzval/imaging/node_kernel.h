@@ -6,10 +6,15 @@
 #include <petzval/imaging/product_layout.h>
 #include <petzval/imaging/psf_kernel.h>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace petzval {
+
+/// Where a cell of a quadrant lies in image space, x' and y'.
+std::array<double, 2> place_mm(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down,
+                               double column, double row, const Quadrant& quadrant);
 
 /// The kernel at a place of a quadrant, counted from the axis [cells], rows and columns growing outwards.
 Kernel kernel_at_node(const PsfField& psfs, const OutwardAxis& across, const OutwardAxis& down, double column,

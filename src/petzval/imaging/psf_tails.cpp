@@ -137,6 +137,24 @@ std::optional<TailSplit> split_tails(const LensDataTable& table, double radius_u
   return parts;
 }
 
+double tail_strength(const TailSplit& split) {
+  const auto& [sharp, tails] = split;
+  double strength = 0;
+  for (std::size_t w = 0; w < tails.wavelengths_nm.size(); ++w) {
+    double of_tails = 0, of_all = 0;
+    for (std::size_t place = 0; place < tails.places(); ++place) {
+      const std::size_t entry = tails.index(place, w);
+      // Of a centred lens, places of equal steps in height stand for rings.
+      const double area = tails.frame ? 1 : tails.real_image_height_mm[entry];
+      const double tail = tails.g_source_sr[entry], all = tail + sharp.g_source_sr[entry];
+      of_tails += area * tail * tail;
+      of_all += area * all * all;
+    }
+    if (of_all > 0) strength = std::max(strength, std::sqrt(of_tails / of_all));
+  }
+  return strength;
+}
+
 std::optional<TailSplit> split_table(const LensDataTable& table, const SensorGeometry& sensor,
                                      const ImagingOptions& options) {
   if (options.method != BlurMethod::product || options.tail_pixels == 0) return {};

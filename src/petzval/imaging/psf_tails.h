@@ -24,6 +24,9 @@ struct TailSplit {
 /// \param radius_um  of the window: it falls from half of that on, as a fifth-degree polynomial. \returns
 /// nothing where no PSF reaches beyond twice that.
 std::optional<TailSplit> split_tails(const LensDataTable& table, double radius_um);
+/// How strong an image of tails is beside the whole one: the RMS of their light over what is lit, at the
+/// wavelength where it is largest.
+double tail_strength(const TailSplit& split);
 /// As ImagingOptions::tail_pixels has it.
 std::optional<TailSplit> split_table(const LensDataTable& table, const SensorGeometry& sensor,
                                      const ImagingOptions& options);
