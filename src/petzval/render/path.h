@@ -54,6 +54,9 @@ struct PathTracer::Path {
   Lanes asked;            ///< the same had the last stretch been that to a light that was asked
   double asked_mean = 1;  ///< of the lanes, or of the hero alone
   double hero_share = 1;  ///< of the hero, when the path began
+  double beside = 0;      ///< density of add_beside() over the mean of `led_by`, where the medium scatters
+  /// How much likelier a lamp that stands somewhere is asked from the last place by that.
+  double asked_again = 1;
 
   double mean(const Lanes& of) const {
     if (alone) return static_cast<double>(of[hero]);

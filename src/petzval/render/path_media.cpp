@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ways of paths through media.
+#include <petzval/render/media/phase_function.h>
 #include <petzval/render/path.h>
 
 namespace petzval::render {
 
-std::optional<double> PathTracer::fly(Path& path, double distance, int group, SobolSample& sample) const {
+std::optional<double> PathTracer::fly(Path& path, double distance, int group, SobolSample& sample,
+                                      const std::optional<Equiangular>& beside) const {
   if (path.alone) path.throughput = only(path.hero, path.throughput[path.hero]);
   Lots lots(sample.next1());
   const Flight flight = world_.media[static_cast<std::size_t>(path.medium)].fly(
@@ -15,7 +17,43 @@ std::optional<double> PathTracer::fly(Path& path, double distance, int group, So
   const double over = flown > least_density ? 1 / flown : 0;
   path.led_by *= over, path.asked *= over, path.throughput *= over;
   path.asked_mean = path.mean(path.asked);
+  path.beside = beside && flight.scattered_at ? beside->density(*flight.scattered_at) * over : 0;
   return flight.scattered_at;
+}
+
+std::optional<Equiangular> PathTracer::add_beside(Path& path, double distance, int group,
+                                                  SobolSample& sample) const {
+  const Medium& medium = world_.media[static_cast<std::size_t>(path.medium)];
+  if (medium.density || !medium.scatters || options_.lights == PathOptions::Lights::by_chance) return {};
+  const auto [which, where, choice] = sample.next3();
+  const auto [u, v] = sample.next2();
+  const auto extinction = static_cast<double>(medium.extinction(group)[path.hero]);
+  const std::optional<Equiangular> beside =
+      world_.lights.beside({path.origin, path.direction, distance, extinction, medium.angle_shares}, which);
+  if (!beside) return {};
+  const double at = beside->sample(where);
+  if (!(at > 0 && at < distance)) return beside;
+  const Vector3 place = path.origin + at * path.direction;
+  LightPlan plan = world_.lights.plan({.position = place, .normal = path.direction, .all_around = true});
+  const double nearby = plan.nearby_sum / (plan.nearby_sum + plan.far_sum);
+  plan.far_sum = 0;
+  const std::optional<LightSample> light = world_.lights.sample(world_.geometries, plan, choice, u, v, group);
+  if (!light || !(light->pdf > 0)) return beside;
+  const std::optional<Passage> way = open_way(place, *light, path.medium, group, path.hero, sample);
+  if (!way) return beside;
+  const double asked = path.mean(path.led_by * way->asked), density = beside->density(at);
+  if (!(asked > least_density)) return beside;
+  // The other ways of finding the light: from where the path may be scattered, asked or by chance.
+  const Passage there = medium.scattered_at(at, group).passage;
+  const Lanes led_by = path.led_by * there.flown;
+  const double phase = henyey_greenstein(dot(path.direction, light->direction), medium.g);
+  const double flown = path.mean(led_by), flown_and_asked = path.mean(led_by * way->asked);
+  const double share = flown > least_density ? flown_and_asked / flown : asked;
+  double sum = light->pdf * (density * share + nearby * flown_and_asked);
+  if (!light->small && options_.lights == PathOptions::Lights::both)
+    sum += phase * path.mean(led_by * way->flown);
+  add(path, share / asked * phase / sum * (there.light * way->light * light->light), light->source);
+  return beside;
 }
 
 std::optional<Passage> PathTracer::open_way(Vector3 origin, const LightSample& light, int medium, int group,

@@ -12,6 +12,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Path length after which weak paths are ended at random.
 constexpr int roulette_depth = 2;
 constexpr double roulette_floor = 0.05;
+/// On so many stretches of a path, places near to lamps are looked for; later ones give little for the time.
+constexpr int places_beside = 2;
 
 }  // namespace
 
@@ -49,8 +51,8 @@ void PathTracer::add_emitted(Path& path, const Hit& hit, const SurfacePoint& poi
   if (path.pdf > 0) {
     if (options_.lights == PathOptions::Lights::sampled) return;
     if (options_.lights == PathOptions::Lights::both)
-      weight = balanced(path.pdf,
-                        path.asked_mean * world_.lights.area_pdf(world_.geometries, area, path.plan, point));
+      weight = balanced(path.pdf, path.asked_again * path.asked_mean *
+                                      world_.lights.area_pdf(world_.geometries, area, path.plan, point));
   }
   add(path, weight * radiance, world_.lights.areas[area].source);
   if (path.depth == 0) path.light.straight += path.throughput * radiance;
@@ -88,8 +90,10 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
   // In a medium, what a small ball gets: a quarter of the light from all around.
   if (path.depth == 1)
     path.light.arriving += (path.plan.to.all_around ? 0.25 / light.pdf : weight) * light.light;
-  if (!light.small && options_.lights == PathOptions::Lights::both)
-    weight *= balanced(asked * light.pdf, flown * scatter_pdf());
+  const double again = light.place ? path.asked_again : 1;
+  weight *= light.small || options_.lights == PathOptions::Lights::sampled
+                ? 1 / again
+                : asked * light.pdf / (again * asked * light.pdf + flown * scatter_pdf());
   add(path, weight * (f * light.light), light.source);
   if (light.source < 0) tell_skies(path, weight * (kept ? f * *kept : f), light.direction, group);
 }
@@ -137,6 +141,9 @@ bool PathTracer::scatter_in_medium(Path& path, double distance, int group, Sobol
   path.origin = path.origin + distance * path.direction;
   const auto [choice, light_u, light_v] = sample.next3();
   path.plan = world_.lights.plan({.position = path.origin, .normal = path.direction, .all_around = true});
+  path.asked_again = 1;
+  if (path.plan.nearby_sum > 0)
+    path.asked_again += path.beside * (path.plan.nearby_sum + path.plan.far_sum) / path.plan.nearby_sum;
   std::optional<LightSample> light =
       world_.lights.sample(world_.geometries, path.plan, choice, light_u, light_v, group);
   if (light && light->pdf > 0 && (options_.lights != PathOptions::Lights::by_chance || light->small)) {
@@ -186,7 +193,11 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     const std::optional<Hit> hit =
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
     if (path.medium >= 0) {
-      const std::optional<double> scattered = fly(path, hit ? hit->distance : infinity, group, sample);
+      const double distance = hit ? hit->distance : infinity;
+      std::optional<Equiangular> beside;
+      if (path.depth < std::min(options_.max_depth, places_beside))
+        beside = add_beside(path, distance, group, sample);
+      const std::optional<double> scattered = fly(path, distance, group, sample, beside);
       const bool lost = path.throughput.is_black();
       if (first && !first->met && (scattered || lost)) {
         *first = first_beyond(path, path.depth == 0 ? limit : infinity, group, sample);
@@ -228,6 +239,7 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     if (path.depth++ >= options_.max_depth) break;
     const Frame frame(point.shading_normal, point.along_u);
     const Vector3 wo = frame.to_local(-path.direction);
+    path.asked_again = 1;
     add_sampled_light(path, point, frame, bsdf, wo, geometry, group, sample);
     if (!scatter(path, point, frame, bsdf, wo, geometry, sample)) break;
   }

@@ -79,7 +79,12 @@ class PathTracer {
 
   // Through media: path_media.cpp.
   /// To what is met next, at a distance, or to where the medium scatters before: the distance to there.
-  std::optional<double> fly(Path& path, double distance, int group, SobolSample& sample) const;
+  /// \param beside  of add_beside().
+  std::optional<double> fly(Path& path, double distance, int group, SobolSample& sample,
+                            const std::optional<Equiangular>& beside) const;
+  /// Light that a homogeneous medium scatters near to a lamp, on the ray that is to be flown along. Returns
+  /// how it was looked for.
+  std::optional<Equiangular> add_beside(Path& path, double distance, int group, SobolSample& sample) const;
   bool scatter_in_medium(Path& path, double distance, int group, SobolSample& sample) const;
   /// The straight way to a light; absent where something stands in it.
   std::optional<Passage> open_way(Vector3 origin, const LightSample& light, int medium, int group, int hero,

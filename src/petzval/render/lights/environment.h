@@ -49,8 +49,8 @@ class Environment {
     Vector3 direction;
     double pdf = 0;  ///< over solid angle
   };
-  /// A picture by its luminance; an even light over the cosine of a surface, which is how it arrives there,
-  /// or evenly at a point that has none.
+  /// A picture by its luminance, mostly by what of it exceeds the mean; an even light over the cosine of a
+  /// surface, which is how it arrives there, or evenly at a point that has none.
   Sample sample(const LightReceiver& to, double u, double v) const;
   double pdf(const LightReceiver& to, Vector3 direction) const;
   /// Nearly what a plane gets of it in the open, of all wavelengths, from its spherical harmonics of order 2

@@ -283,4 +283,27 @@ double LightTree::probability(const LightReceiver& to, const Weights& weights, d
   return probability;
 }
 
+Equiangular LightTree::beside(const LightedRay& ray, double choice) const {
+  struct Seen {
+    Equiangular distances;
+    double light;
+  };
+  const auto see = [&](const Node& node) {
+    const Equiangular distances(ray.origin, ray.way, ray.length, node.centre, node.radius2, ray.shares);
+    const double dimmed = ray.extinction * std::clamp(distances.nearest(), 0.0, ray.length);
+    return Seen{distances, node.strength * distances.light() * std::exp(-dimmed)};
+  };
+  std::size_t node = 0;
+  Seen at = see(nodes_[node]);
+  while (nodes_[node].second) {
+    const Seen one = see(nodes_[node + 1]), other = see(nodes_[nodes_[node].second]);
+    const double sum = one.light + other.light, first = sum > 0 ? one.light / sum : 0.5;
+    const bool is_first = choice < first;
+    choice = is_first ? choice / first : (choice - first) / (1 - first);
+    node = is_first ? node + 1 : nodes_[node].second;
+    at = is_first ? one : other;
+  }
+  return at.distances;
+}
+
 }  // namespace petzval::render

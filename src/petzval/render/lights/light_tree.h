@@ -2,7 +2,7 @@
 // Which of many lights is worth asking from a point: a tree of lights.
 #pragma once
 
-#include <petzval/render/vector3.h>
+#include <petzval/render/lights/equiangular.h>
 
 #include <array>
 #include <cstddef>
@@ -18,6 +18,14 @@ struct LightReceiver {
   Vector3 normal;           ///< unit, on the side that is seen
   bool both_sides = false;  ///< whether light from behind counts, too
   bool all_around = false;  ///< a point of a medium, which has no normal: all directions count alike
+};
+
+/// A ray through a medium that is to scatter light.
+struct LightedRay {
+  Vector3 origin, way;    ///< way: unit
+  double length = 0;      ///< may be infinite
+  double extinction = 0;  ///< [1/unit]
+  const AngleShares& shares;
 };
 
 /// Where some lights stand, and where they shine to.
@@ -55,6 +63,9 @@ class LightTree {
   Choice choose(const LightReceiver& to, const Weights& weights, double sum, double choice) const;
   /// The probability with which choose() comes to a light.
   double probability(const LightReceiver& to, const Weights& weights, double sum, std::size_t light) const;
+  /// Distances on a ray that are near to one of the lights, which is chosen by nearly the light that it sends
+  /// to the ray. Not of an empty tree.
+  Equiangular beside(const LightedRay& ray, double choice) const;
 
  private:
   /// A node is followed by its first child.

@@ -71,6 +71,11 @@ class Lights {
   bool empty() const { return areas.empty() && smalls.empty() && environments.empty(); }
 
   LightPlan plan(const LightReceiver& to) const;
+  /// Distances near to one of the lights that stand somewhere; absent where none does.
+  std::optional<Equiangular> beside(const LightedRay& ray, double choice) const {
+    if (tree_.empty()) return {};
+    return tree_.beside(ray, choice);
+  }
   /// Light towards a point. Nothing where the chosen light does not reach.
   std::optional<LightSample> sample(const std::vector<Geometry>& geometries, const LightPlan& plan,
                                     double choice, double u, double v, int group) const;

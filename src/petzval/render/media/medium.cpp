@@ -46,13 +46,17 @@ Flight Medium::fly(Vector3 origin, Vector3 way, double distance, int group, int 
   }
   if (!scatters || !(leading > 0)) return {pass(origin, way, distance, group, hero, lots), {}};
   const double free = -std::log1p(-lots.next()) / leading;
+  if (free < std::min(distance, farthest)) return scattered_at(free, group);
   Flight flight;
-  flight.passage.flown = transmittance(all, free < farthest ? std::min(free, distance) : distance);
-  flight.passage.light = flight.passage.flown;
-  if (!(free < std::min(distance, farthest))) return flight;
-  flight.scattered_at = free;
-  flight.passage.light *= back;
-  flight.passage.flown *= all;
+  flight.passage.flown = flight.passage.light = transmittance(all, distance);
+  return flight;
+}
+
+Flight Medium::scattered_at(double distance, int group) const {
+  const Lanes all = extinction(group), left = transmittance(all, distance);
+  Flight flight{{}, distance};
+  flight.passage.light = scattering[static_cast<std::size_t>(group)] * left;
+  flight.passage.flown = all * left;
   return flight;
 }
 

@@ -2,6 +2,7 @@
 // What fills space and dims or scatters light: fog, smoke, coloured glass.
 #pragma once
 
+#include <petzval/render/lights/equiangular.h>
 #include <petzval/render/media/density_grid.h>
 #include <petzval/render/pbrt/scene_description.h>
 #include <petzval/render/spectra/wavelength_groups.h>
@@ -37,6 +38,7 @@ struct Flight {
 struct Medium {
   BandSpectrum absorption, scattering;         ///< [group], per scene unit; none negative
   double g = 0;                                ///< of Henyey and Greenstein's phase function
+  AngleShares angle_shares{0};                 ///< of g
   bool scatters = false;                       ///< else light only becomes less
   std::shared_ptr<const DensityGrid> density;  ///< that the coefficients are times; null: 1 everywhere
 
@@ -46,6 +48,8 @@ struct Medium {
   /// Follows light that `hero` leads, up to where it is scattered. \param way  unit; up to `distance`, which
   /// may be infinite.
   Flight fly(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const;
+  /// To where a homogeneous medium scatters it.
+  Flight scattered_at(double distance, int group) const;
   /// What comes through from a light.
   Passage pass(Vector3 origin, Vector3 way, double distance, int group, int hero, Lots& lots) const;
 

@@ -139,6 +139,7 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
                                  : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
   medium.scattering = read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
   medium.g = read_g(parameters);
+  medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   if (type == "uniformgrid") medium.density = read_grid(description, unsupported);
   if (medium.density) check_depth(medium, parameters.location());
@@ -163,6 +164,7 @@ Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, U
   medium.absorption = read_coefficient(coefficients, "sigma_a", 0, scale, groups, unsupported);
   medium.scattering = read_coefficient(coefficients, "sigma_s", 0, scale, groups, unsupported);
   medium.g = read_g(parameters);
+  medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   return medium;
 }
