@@ -37,7 +37,8 @@ Lens moved_triplet(const Pose& pose) {
   return lens;
 }
 
-/// Thrown back by a plane mirror on its way to the sensor, a little aside: steep light of ghosts meets it too.
+/// Thrown back by a plane mirror on its way to the sensor, a little aside: steep light of ghosts meets it
+/// too.
 Lens folded_flared_triplet() {
   Lens lens = flared_triplet();
   constexpr double to_mirror_mm = 20;
