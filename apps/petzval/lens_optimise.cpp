@@ -24,7 +24,7 @@ struct OptimiseCommand {
   FieldChoice fields;
   OptimiseRequest request;
   std::vector<std::string> variables;
-  std::string merit = "spot", weights, plot, output;
+  std::string merit = "spot", weights, azimuths, plot, output;
 };
 
 void print_as_json(const OptimiseCommand& command, const OptimiseRequest& request,
@@ -85,6 +85,7 @@ void run_optimise(const OptimiseCommand& command, const Shared& shared) {
       request.variables.push_back(variable);
   request.at = command.fields.request(lens);
   if (!command.weights.empty()) request.field_weights = parse_number_list(command.weights, "field_weights");
+  if (!command.azimuths.empty()) request.azimuths_deg = parse_number_list(command.azimuths, "azimuths_deg");
   const OptimiseResult result = optimise(lens, request, context_of(shared));
   if (!command.plot.empty())
     write_drawing(command.plot, optimise_plot(result.lens.name, result, request.merit).svg());
@@ -107,8 +108,9 @@ void add_lens_optimise(CLI::App& lens, Shared& shared) {
   options->lens.add_to(*command);
   command
       ->add_option("--variable", options->variables,
-                   "What may be altered: radii, thicknesses, gaps, image, or one number such as "
-                   "surfaces[1].conic, with =LOW:HIGH for limits (repeatable); default: radii and image")
+                   "What may be altered: radii, thicknesses, gaps, image, poses, or one number such as "
+                   "surfaces[1].conic or groups[0].pose.tilt_x_deg, with =LOW:HIGH for limits (repeatable); "
+                   "default: radii and image")
       ->take_all()
       ->allow_extra_args(false);
   command->add_option(
@@ -122,6 +124,9 @@ void add_lens_optimise(CLI::App& lens, Shared& shared) {
   command->add_option("--efl", request.efl_mm, "The focal length that it shall have [mm]; default: as it has")
       ->check(finite_number());
   options->fields.add_to(*command);
+  command->add_option("--azimuths", options->azimuths,
+                      "At which the fields count [degrees]; default: 0,90,180,270 where the lens is not "
+                      "round or poses may be altered");
   command->add_option("--field-weights", options->weights, "One for every field; default: all alike");
   command
       ->add_option("--least-rim", request.least_rim_mm, "Of glass at the clear aperture [mm]; default: 0.5")

@@ -74,15 +74,17 @@ std::shared_ptr<Lens> built(const Lens& lens, std::size_t number, const std::vec
 
 nb::tuple optimised(const Lens& lens, const std::vector<std::string>& variables, const Numbers& fields,
                     const std::optional<std::string>& field_type, const Numbers& wavelengths_nm,
-                    const Numbers& field_weights, const std::string& merit, std::optional<double> efl_mm,
-                    double least_rim_mm, int rounds, int starts, double start_spread, int glasses,
-                    std::optional<double> mtf_cpmm, std::optional<double> most_distortion_percent,
-                    bool ignore_apertures, std::uint64_t seed, int threads, const nb::object& progress) {
+                    const Numbers& field_weights, const Numbers& azimuths_deg, const std::string& merit,
+                    std::optional<double> efl_mm, double least_rim_mm, int rounds, int starts,
+                    double start_spread, int glasses, std::optional<double> mtf_cpmm,
+                    std::optional<double> most_distortion_percent, bool ignore_apertures, std::uint64_t seed,
+                    int threads, const nb::object& progress) {
   OptimiseRequest request;
   for (const std::string& text : variables)
     for (const LensVariable& each : parse_lens_variables(lens, text)) request.variables.push_back(each);
   request.at = request_of(lens, fields, field_type, wavelengths_nm, ignore_apertures);
   request.field_weights = field_weights;
+  request.azimuths_deg = azimuths_deg;
   request.merit = choice<OptimiseMerit>(
       "merit", merit, {{"spot", OptimiseMerit::rms_spot}, {"wavefront", OptimiseMerit::wavefront}});
   if (mtf_cpmm) request.merit = OptimiseMerit::mtf, request.mtf_frequency_cpmm = *mtf_cpmm;
@@ -176,8 +178,10 @@ constexpr const char* built_text =
     "tolerance().";
 constexpr const char* optimise_text =
     "A better lens and an Analysis of what was done. `variables`: [\"radii\", \"gaps\", \"thicknesses\", "
-    "\"image\", "
-    "\"surfaces[1].conic=-2:0\"]; none: radii and image. `merit`: spot [um] or wavefront [nm]. `efl_mm`: the "
+    "\"image\", \"poses\", "
+    "\"surfaces[1].conic=-2:0\", \"sensor_pose.tilt_x_deg\"]; none: radii and image. `azimuths_deg`: of the "
+    "fields; none: four where the lens is not round or poses may be altered. `merit`: spot [um] or wavefront "
+    "[nm]. `efl_mm`: the "
     "focal "
     "length to hold; None: as it is. `glasses`: try so many near ones of its maker in the place of each. "
     "`mtf_cpmm`: the frequency at which what the MTF lacks of 1 is "
@@ -207,12 +211,12 @@ void bind_design(nb::module_&) {
       nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), fit_build_text);
   add("optimise", optimised, nb::arg("variables") = std::vector<std::string>(), nb::kw_only(),
       nb::arg("fields") = Numbers(), nb::arg("field_type").none() = nb::none(),
-      nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(), nb::arg("merit") = "spot",
-      nb::arg("efl_mm").none() = nb::none(), nb::arg("least_rim_mm") = 0.5, nb::arg("rounds") = 30,
-      nb::arg("starts") = 1, nb::arg("start_spread") = 0.05, nb::arg("glasses") = 0,
-      nb::arg("mtf_cpmm").none() = nb::none(), nb::arg("most_distortion_percent").none() = nb::none(),
-      nb::arg("ignore_apertures") = false, nb::arg("seed") = 1, nb::arg("threads") = 0,
-      nb::arg("progress").none() = nb::none(), optimise_text);
+      nb::arg("wavelengths_nm") = Numbers(), nb::arg("field_weights") = Numbers(),
+      nb::arg("azimuths_deg") = Numbers(), nb::arg("merit") = "spot", nb::arg("efl_mm").none() = nb::none(),
+      nb::arg("least_rim_mm") = 0.5, nb::arg("rounds") = 30, nb::arg("starts") = 1,
+      nb::arg("start_spread") = 0.05, nb::arg("glasses") = 0, nb::arg("mtf_cpmm").none() = nb::none(),
+      nb::arg("most_distortion_percent").none() = nb::none(), nb::arg("ignore_apertures") = false,
+      nb::arg("seed") = 1, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), optimise_text);
 }
 
 }  // namespace petzval::python

@@ -35,6 +35,16 @@ def test_an_optimised_lens_is_better():
     assert len(report.tables["numbers"].rows) == 9
 
 
+def test_a_decentred_lens_is_aligned():
+    lens = pz.Lens("cooke-triplet")
+    lens.sensor_pose = {"tilt_x_deg": 0.2}
+    better, report = lens.optimise(["poses"])
+    assert [row["number"] for row in report.tables["numbers"].rows] == ["sensor_pose.tilt_x_deg"]
+    assert better.sensor_pose["tilt_x_deg"] == pytest.approx(0, abs=2e-3)
+    with pytest.raises(pz.InputError, match="azimuth"):
+        lens.optimise(["poses"], azimuths_deg=[float("nan")])
+
+
 def test_rays_alone_make_a_lens(program, tmp_path):
     table = tmp_path / "rays.csv"
     program.run("lens", "transfer", "cooke-triplet", "--set", "aperture.f_number=8", "--bands", 550, "--film-radius", 8, "-o", table)

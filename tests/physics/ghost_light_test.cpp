@@ -46,6 +46,7 @@ struct GhostCase {
   const char* lens;
   double right, up;
   int blades;
+  double decentre_mm = 0;  ///< of the second element, along both axes
 };
 
 class GhostLight : public testing::TestWithParam<GhostCase> {};
@@ -53,8 +54,9 @@ class GhostLight : public testing::TestWithParam<GhostCase> {};
 // Counts are binomial: the sum within three standard errors, the pairs together by χ², which chance exceeds
 // once in 10⁴.
 TEST_P(GhostLight, IsThatOfPhotonsReflectedAtRandom) {
-  const auto [name, right, up, blades] = GetParam();
+  const auto [name, right, up, blades, decentre_mm] = GetParam();
   Lens lens = read_lens(name).lens;
+  if (decentre_mm != 0) lens.groups = {{2, 3, {decentre_mm, -decentre_mm, 0, 0, 0, 0}, 0}};
   lens.surfaces[lens.stop_index()].blades = {blades, 17};
   const SensorGeometry frame{360, 240, 100};
   const BrightSource source = point_at(right, up);
@@ -102,17 +104,18 @@ TEST_P(GhostLight, IsThatOfPhotonsReflectedAtRandom) {
   EXPECT_LT(deviate, 3.72) << chi_sq << " of " << pairs;
 }
 
-INSTANTIATE_TEST_SUITE_P(ThreeLenses, GhostLight,
-                         testing::Values(GhostCase{"cooke-triplet", 0, 0, 0},
-                                         GhostCase{"cooke-triplet", 0.2, 0.13, 6},
-                                         GhostCase{"double-gauss", 0, 0, 0},
-                                         GhostCase{"double-gauss", -0.12, 0.1, 0},
-                                         GhostCase{"tessar", 0, 0, 5}, GhostCase{"tessar", 0.1, -0.2, 0}),
-                         [](const auto& info) {
-                           std::string name = info.param.lens;
-                           std::ranges::replace(name, '-', '_');
-                           return name + (info.param.right == 0 ? "_on_axis" : "_off_axis");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    ThreeLenses, GhostLight,
+    testing::Values(GhostCase{"cooke-triplet", 0, 0, 0}, GhostCase{"cooke-triplet", 0.2, 0.13, 6},
+                    GhostCase{"double-gauss", 0, 0, 0}, GhostCase{"double-gauss", -0.12, 0.1, 0},
+                    GhostCase{"tessar", 0, 0, 5}, GhostCase{"tessar", 0.1, -0.2, 0},
+                    GhostCase{"cooke-triplet", 0.2, 0.1, 0, 0.5}, GhostCase{"double-gauss", 0, 0, 6, 0.7}),
+    [](const auto& info) {
+      std::string name = info.param.lens;
+      std::ranges::replace(name, '-', '_');
+      name += info.param.right == 0 ? "_on_axis" : "_off_axis";
+      return name + (info.param.decentre_mm == 0 ? "" : "_decentred");
+    });
 
 // Glass of a high index, for enough of what is reflected four times. Three standard errors, as with two.
 TEST(GhostLightOfFourReflections, IsThatOfPhotonsReflectedAtRandom) {

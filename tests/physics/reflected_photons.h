@@ -15,7 +15,8 @@
 
 namespace petzval::test {
 
-/// Spheres and planes, each a circle that lets light pass; the stop a circle or a polygon. Bare glass.
+/// Spheres and planes, each a circle that lets light pass, decentred if its pose or a group says so; the stop
+/// a circle or a polygon. Bare glass.
 class ReflectingLens {
  public:
   using V = std::array<double, 3>;
@@ -28,8 +29,14 @@ class ReflectingLens {
       curvature_.push_back(surface.curvature_per_mm);
       clear_.push_back(surface.semi_diameter_mm.value_or(INFINITY));
       index_.push_back(surface.material.index(wavelength_nm));
+      shift_.push_back({surface.pose.decentre_x_mm, surface.pose.decentre_y_mm});
       z += surface.thickness_mm;
     }
+    for (const SurfaceGroup& group : lens.groups)
+      for (std::size_t i = group.first; i <= group.last && i < shift_.size(); ++i) {
+        shift_[i][0] += group.pose.decentre_x_mm;
+        shift_[i][1] += group.pose.decentre_y_mm;
+      }
     image_z_ = z;
     stop_ = lens.stop_index();
     blades_ = lens.stop_blades();
@@ -44,7 +51,7 @@ class ReflectingLens {
   /// Where it meets surface i, and the normal there; nothing where it misses.
   bool go_to(std::size_t i, V& at, const V& along, V& normal) const {
     const double c = curvature_[i], to_plane = (vertex_[i] - at[2]) / along[2];
-    V p{at[0] + to_plane * along[0], at[1] + to_plane * along[1], 0};
+    V p{at[0] + to_plane * along[0] - shift_[i][0], at[1] + to_plane * along[1] - shift_[i][1], 0};
     // c (x² + y² + z²) = 2 z from the vertex plane.
     const double b = along[2] - c * (p[0] * along[0] + p[1] * along[1]), q = c * (p[0] * p[0] + p[1] * p[1]);
     const double root = b * b - c * q;
@@ -53,10 +60,11 @@ class ReflectingLens {
     for (int k = 0; k < 3; ++k) p[k] += t * along[k];
     normal = {-c * p[0], -c * p[1], 1 - c * p[2]};
     if (!(normal[2] > 0)) return false;
-    at = {p[0], p[1], p[2] + vertex_[i]};
+    at = {p[0] + shift_[i][0], p[1] + shift_[i][1], p[2] + vertex_[i]};
     return true;
   }
-  bool is_open(std::size_t i, double x, double y) const {
+  bool is_open(std::size_t i, double at_x, double at_y) const {
+    const double x = at_x - shift_[i][0], y = at_y - shift_[i][1];
     if (std::hypot(x, y) > clear_[i]) return false;
     if (i != stop_) return true;
     if (blades_.count == 0) return std::hypot(x, y) <= stop_radius_;
@@ -185,6 +193,7 @@ class ReflectingLens {
   }
 
   std::vector<double> vertex_, curvature_, clear_, index_;
+  std::vector<std::array<double, 2>> shift_;
   double image_z_ = 0, stop_radius_ = 0;
   std::size_t stop_ = 0;
   StopBlades blades_;

@@ -58,12 +58,18 @@ constexpr int enough_nodes = 6;
 
 PupilBox front_box(const Tracer& tracer, const SourceBeam& beam) {
   const double radius = front_radius_mm(tracer);
-  const double sag = surface_point(tracer.surfaces()[0].shape, 0, radius).sag;
-  const double depth = std::isfinite(sag) ? std::abs(sag) : radius;
+  const Tracer::PreparedSurface& front = tracer.surfaces()[0];
+  const double sag = surface_point(front.shape, 0, radius).sag;
+  double depth = std::isfinite(sag) ? std::abs(sag) : radius, x = 0, y = 0;
+  if (front.posed) {
+    const auto& [offset_x, offset_y, offset_z] = front.frame.offset_mm;
+    x = offset_x, y = offset_y;
+    depth += std::abs(offset_z) + radius * std::hypot(front.frame.rows[2][0], front.frame.rows[2][1]);
+  }
   const auto [slope_x, slope_y] = beam.slope();
   const double wide = radius + depth * std::abs(slope_x), tall = radius + depth * std::abs(slope_y);
   PupilBox box;
-  box.left = -wide, box.right = wide, box.low = -tall, box.high = tall;
+  box.left = x - wide, box.right = x + wide, box.low = y - tall, box.high = y + tall;
   return box;
 }
 

@@ -193,8 +193,9 @@ Losses losses_of_picture(const Lens& lens, double wavelength_nm, const Losses& g
   if (losses.fresnel) return losses;
   double before = 1;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-    const double after = lens.surfaces[i].material.index(wavelength_nm);
-    if (!losses.coating(i, before, after)) losses.surfaces[i] = Coating::constant(0);
+    const double after = lens.medium_behind(i).index(wavelength_nm);
+    if (!lens.surfaces[i].mirror && !losses.coating(i, before, after))
+      losses.surfaces[i] = Coating::constant(0);
     before = after;
   }
   return losses;

@@ -46,7 +46,7 @@ struct GhostLightReport {
 /// Irradiance of all double reflections of sources [W·m⁻²·nm⁻¹], pixels being boxes: real rays through real
 /// apertures and blades (after M. Hullin et al., ACM Trans. Graph. 30 (2011) 108), their light by coatings,
 /// angle and polarisation, of four reflections if it is asked for. The bytes do not depend on
-/// the number of threads. \param lens  centred, of glass, focused as it is used. \throws InputError as
+/// the number of threads. \param lens  focused as it is used. \throws InputError as
 /// GhostTracer and BrightSource::validate(); Cancelled.
 ///
 ///     BrightSource sun{.name = "sun", .right = 0.2, .up = 0.1, .radius_rad = 0.0047, .irradiance = {1.3}};

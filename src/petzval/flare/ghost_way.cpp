@@ -30,13 +30,6 @@ struct Wanderer {
   }
 };
 
-void mirror_at(const double normal[3], SurfaceRay& ray) {
-  const double along = ray.l * normal[0] + ray.m * normal[1] + ray.n * normal[2];
-  ray.l -= 2 * along * normal[0];
-  ray.m -= 2 * along * normal[1];
-  ray.n -= 2 * along * normal[2];
-}
-
 /// Turns a ray by so much of its direction cosines, on the side where it is; false where there is none.
 bool diffract(double l, double m, SurfaceRay& ray) {
   ray.l += l, ray.m += m;
@@ -52,16 +45,18 @@ GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& g
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "ghosts need");
   require_no_bends(lens, "ghosts need");
-  require_centred(lens, "ghosts are those of centred lenses");
   const Losses losses = given.of(lens);
   losses.validate(lens);
   sensor.validate();
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
-    surfaces_.emplace_back(surface.index_before, surface.index_after,
-                           losses.coating(i, surface.index_before, surface.index_after), wavelength_nm);
+    const Coating* coating = losses.coating(i, surface.index_before, surface.index_after);
+    if (surface.mirror && !coating)
+      surfaces_.push_back(SurfaceReflection::mirror(1, surface.index_before));
+    else
+      surfaces_.emplace_back(surface.index_before, surface.index_after, coating, wavelength_nm);
     const std::optional<double> k =
-        losses.absorption ? lens.surfaces[i].material.extinction(wavelength_nm) : std::nullopt;
+        losses.absorption ? lens.medium_behind(i).extinction(wavelength_nm) : std::nullopt;
     absorption_per_mm_.push_back(k ? 4 * pi * *k / (wavelength_nm * mm_per_nm) : 0.0);
   }
   surfaces_.push_back(SurfaceReflection::mirror(sensor.reflectance, tracer_.image_index()));
@@ -72,12 +67,17 @@ GhostTracer::GhostTracer(const Lens& lens, double wavelength_nm, const Losses& g
     cosines_per_order_ = wavelength_nm * mm_per_nm / (sensor.pitch_um * mm_per_um * tracer_.image_index());
 }
 
+bool GhostTracer::turns_light(std::size_t surface) const {
+  const bool mirror = surface < tracer_.surface_count() && tracer_.surfaces()[surface].mirror;
+  return !mirror && surfaces_[surface].reflects();
+}
+
 std::vector<GhostPair> GhostTracer::pairs() const {
   std::vector<GhostPair> result;
   const std::size_t sensor = tracer_.surface_count();
   for (std::size_t first = 1; first < surfaces_.size(); ++first)
     for (std::size_t second = 0; second < first; ++second) {
-      if (!surfaces_[first].reflects() || !surfaces_[second].reflects()) continue;
+      if (!turns_light(first) || !turns_light(second)) continue;
       GhostPair pair{first, second};
       if (first != sensor) result.push_back(pair);
       if (first == sensor)
@@ -90,7 +90,7 @@ std::vector<GhostPair> GhostTracer::double_pairs() const {
   std::vector<GhostPair> result;
   const auto each = [&](std::size_t from, std::size_t to, const auto& use) {
     for (std::size_t i = from; i < to; ++i)
-      if (surfaces_[i].reflects()) use(i);
+      if (turns_light(i)) use(i);
   };
   each(1, surfaces_.size(), [&](std::size_t first) {
     each(0, first, [&](std::size_t second) {
@@ -119,53 +119,61 @@ GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
   double worst = -1, clear = 1;
   const GratingOrder order = pair.third == GhostPair::none ? pair.order : GratingOrder{0, 0, straight_share_};
 
-  const auto absorb = [&](std::size_t gap, const std::array<double, 3>& from) {
+  const auto absorb = [&](std::size_t gap, const std::array<double, 3>& from, const Direction& direction) {
     if (absorption_per_mm_[gap] == 0) return;
     const std::array<double, 3> to = ray.place();
     double along = 0;
-    for (std::size_t i = 0; i < 3; ++i) along += (to[i] - from[i]) * ray.direction()[i];
+    for (std::size_t i = 0; i < 3; ++i) along += (to[i] - from[i]) * direction[i];
     clear *= std::exp(-absorption_per_mm_[gap] * std::max(along, 0.0));
   };
-  /// To surface i, and through it or back from it; false where the ray ends.
-  const auto meet = [&](std::size_t i, bool backward, bool reflect) {
-    const double sense = backward ? -1 : 1;
-    const std::array<double, 3> from = ray.place();
-    double normal[3] = {0, 0, 1};
+  /// The sensor, or a surface: where the ray meets it, in its own axes.
+  const auto reach = [&](std::size_t i, double sense, double normal[3]) {
     if (i == sensor) {
-      ray.move_vertex(tracer_.image_z_mm());
-      if (!(ray.at.n > 0)) return false;
+      if (!(sense * ray.at.n > 0)) return false;
       const double distance = -ray.at.z / ray.at.n;
       ray.at.x += distance * ray.at.l;
       ray.at.y += distance * ray.at.m;
       ray.at.z = 0;
-      absorb(sensor - 1, from);
-    } else {
-      const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
-      ray.move_vertex(surface.vertex_z_mm);
-      if (!intersect(surface, sense, 1, ray.at, normal)) return false;
-      worst = std::max(worst, tracer_.clip_share_sq(i, ray.at.x, ray.at.y, clip_) - 1);
-      if (backward)
-        absorb(i, from);
-      else if (i > 0)
-        absorb(i - 1, from);
+      return true;
     }
-    if (places) places->push_back(ray.place());
-    if (i == sensor && !reflect) return true;
-    const Direction before = ray.direction(), across{normal[0], normal[1], normal[2]};
-    if (reflect) {
-      mirror_at(normal, ray.at);
+    if (!intersect(tracer_.surfaces()[i], sense, 1, ray.at, normal)) return false;
+    worst = std::max(worst, tracer_.clip_share_sq(i, ray.at.x, ray.at.y, clip_) - 1);
+    return true;
+  };
+  /// To surface i, and through it or back from it; false where the ray ends. Fields are in lens space.
+  const auto meet = [&](std::size_t i, bool backward, bool reflects) {
+    const Tracer::PreparedSurface* surface = i == sensor ? nullptr : &tracer_.surfaces()[i];
+    const bool mirror = surface && surface->mirror, posed = surface ? surface->posed : tracer_.sensor_posed();
+    const Frame& frame = surface ? surface->frame : tracer_.sensor_frame();
+    const double forward = surface ? surface->sense : tracer_.image_sense();
+    const double sense = backward && !mirror ? -forward : forward;
+    const std::array<double, 3> from = ray.place();
+    double normal[3] = {0, 0, 1};
+    ray.move_vertex(surface ? surface->vertex_z_mm : tracer_.image_z_mm());
+    if (posed) enter_frame(frame, ray.at);
+    if (!reach(i, sense, normal)) return false;
+    const auto in_lens = [&](const Direction& own) { return posed ? frame.to_lens(own) : own; };
+    const Direction before = in_lens(ray.direction()), across = in_lens({normal[0], normal[1], normal[2]});
+    if (i == sensor) landing.x_mm = ray.at.x, landing.y_mm = ray.at.y;
+    const bool ends = i == sensor && !reflects;
+    if (reflects || mirror) {
+      reflect(ray.at, normal);
       if (i == sensor) {
         if (!diffract(order.right * cosines_per_order_, order.up * cosines_per_order_, ray.at)) return false;
         clear *= order.share;
       }
-      ray.light = surfaces_[i].reflected(ray.light, before, ray.direction(), across, backward);
-    } else {
-      const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
-      const double ratio =
-          backward ? surface.index_after / surface.index_before : surface.index_before / surface.index_after;
+    } else if (surface) {
+      const double ratio = backward ? surface->index_after / surface->index_before
+                                    : surface->index_before / surface->index_after;
       if (!refract(ratio, sense, ray.at, normal)) return false;
-      ray.light = surfaces_[i].transmitted(ray.light, before, ray.direction(), across, backward);
     }
+    if (posed) leave_frame(frame, ray.at);
+    if (backward || i > 0) absorb(backward ? i : i - 1, from, before);
+    if (places) places->push_back(ray.place());
+    if (ends) return true;
+    ray.light = reflects || mirror
+                    ? surfaces_[i].reflected(ray.light, before, ray.direction(), across, backward)
+                    : surfaces_[i].transmitted(ray.light, before, ray.direction(), across, backward);
     return true;
   };
 
@@ -184,8 +192,6 @@ GhostLanding GhostTracer::follow(const Ray& start, const GhostPair& pair,
     if (!meet(next, false, false)) return landing;
   if (!meet(sensor, false, false)) return landing;
   landing.arrives = true;
-  landing.x_mm = ray.at.x;
-  landing.y_mm = ray.at.y;
   landing.share = clear * ray.light.power();
   landing.clearance = worst;
   return landing;

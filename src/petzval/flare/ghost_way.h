@@ -31,7 +31,7 @@ struct GhostPair {
 /// Where a ray ends up.
 struct GhostLanding {
   bool arrives = false;       ///< else it missed a surface, or was not reflected or let through
-  double x_mm = 0, y_mm = 0;  ///< on the sensor
+  double x_mm = 0, y_mm = 0;  ///< on the sensor, in its own axes
   double share = 0;           ///< of its power
   /// By how much it clears all apertures that it crosses, each time: the largest (r/r_clear)² − 1, negative
   /// inside; infinity where it does not arrive.
@@ -42,7 +42,8 @@ struct GhostLanding {
 class GhostTracer {
  public:
   /// Surfaces without a coating reflect as bare glass, whether or not `losses` counts that; absorption
-  /// counts if it says so. \throws InputError for lenses that are not centred or have no glass, as
+  /// counts if it says so. Mirrors of the lens reflect all light unless a coating says how much, and
+  /// make no ghosts. \throws InputError for lenses with gratings, ideal lenses or ray transfers, as
   /// Losses::validate() and SensorReflection::validate().
   GhostTracer(const Lens& lens, double wavelength_nm, const Losses& losses, const SensorReflection& sensor,
               Tracer::Clip clip = Tracer::Clip::apertures);
@@ -58,6 +59,9 @@ class GhostTracer {
                       std::vector<std::array<double, 3>>* places = nullptr) const;
 
  private:
+  /// Whether light that shall go on is reflected there: not by the mirrors of the lens.
+  bool turns_light(std::size_t surface) const;
+
   Tracer tracer_;
   Tracer::Clip clip_;
   std::vector<SurfaceReflection> surfaces_;  ///< the sensor last

@@ -39,29 +39,34 @@ ScatterCells cells_of(const SensorGeometry& frame, const ScatterLightOptions& op
   return cells;
 }
 
-/// The scatter of places of the frame, those of one quarter, which the others mirror.
+/// The scatter of places of the frame; of a centred lens those of one quarter, which the others mirror.
 class NodeFields {
  public:
   NodeFields(const Lens& lens, const ScatterTracer& tracer, const SensorGeometry& frame,
              const ScatterLightOptions& options)
-      : nodes_(options.nodes), quarter_((options.nodes + 1) / 2), frame_(frame) {
+      : nodes_(options.nodes),
+        mirrors_(tracer.tracer().is_centred()),
+        known_(mirrors_ ? (options.nodes + 1) / 2 : options.nodes),
+        frame_(frame) {
     const double reach = 1 + 2.0 / (nodes_ - 1);
-    for (int row = 0; row < quarter_; ++row)
-      for (int column = 0; column < quarter_; ++column)
+    for (int row = 0; row < known_; ++row)
+      for (int column = 0; column < known_; ++column)
         fields_.emplace_back(tracer, source_imaged_at(lens, tracer, x_mm(column), y_mm(row)), frame, reach,
                              options.across);
   }
 
   int count() const { return nodes_; }
-  int quarter() const { return quarter_; }
+  /// Rows and columns of those that no other mirrors.
+  int known() const { return known_; }
+  bool mirrors() const { return mirrors_; }
   /// Of the columns from the left, rows from the top.
   double x_mm(int column) const {
     return frame_.width_mm() * (0.5 - static_cast<double>(column) / (nodes_ - 1));
   }
   double y_mm(int row) const { return frame_.height_mm() * (static_cast<double>(row) / (nodes_ - 1) - 0.5); }
-  int mirrored(int index) const { return std::min(index, nodes_ - 1 - index); }
+  int mirrored(int index) const { return mirrors_ ? std::min(index, nodes_ - 1 - index) : index; }
   const ScatterField& field(int column, int row) const {
-    return fields_[static_cast<std::size_t>(mirrored(row) * quarter_ + mirrored(column))];
+    return fields_[static_cast<std::size_t>(mirrored(row) * known_ + mirrored(column))];
   }
   /// The share of a node's hat at a place of the frame, in 0…1 from its left or top; beyond, as at the edge.
   double hat(int index, double place) const {
@@ -69,12 +74,14 @@ class NodeFields {
   }
 
  private:
-  int nodes_, quarter_;
+  int nodes_;
+  bool mirrors_;
+  int known_;
   SensorGeometry frame_;
   std::vector<ScatterField> fields_;
 };
 
-/// Irradiance about the image of a unit of light, in cells; the kernel of a node of the first quarter.
+/// Irradiance about the image of a unit of light, in cells; the kernel of a node that no other mirrors.
 class CellKernel {
  public:
   CellKernel(const ScatterField& field, const LensBsdfs& bsdfs, const ScatterCells& cells, int reach_columns,
@@ -196,17 +203,19 @@ std::vector<double> scattered_in_cells(const std::vector<double>& light, const N
                       nodes.hat(row, (r - cells.margin_rows + 0.5) / cells.rows);
     transform.forward(plane, source);
     std::ranges::fill(plane, 0.0);
-    const int turn_c = 2 * column > nodes.count() - 1 ? -1 : 1, turn_r = 2 * row > nodes.count() - 1 ? -1 : 1;
+    const int turn_c = nodes.mirrors() && 2 * column > nodes.count() - 1 ? -1 : 1,
+              turn_r = nodes.mirrors() && 2 * row > nodes.count() - 1 ? -1 : 1;
     for (int r = -reach_rows; r <= reach_rows; ++r)
       for (int c = -reach_columns; c <= reach_columns; ++c) place(c, r) = spread.at(turn_c * c, turn_r * r);
     transform.forward(plane, kernel);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += source[i] * kernel[i];
   };
-  for (int row = 0; row < nodes.quarter(); ++row)
-    for (int column = 0; column < nodes.quarter(); ++column) {
+  for (int row = 0; row < nodes.known(); ++row)
+    for (int column = 0; column < nodes.known(); ++column) {
       const CellKernel spread(nodes.field(column, row), bsdfs, cells, reach_columns, reach_rows);
       const int last = nodes.count() - 1;
       add_node(spread, column, row);
+      if (!nodes.mirrors()) continue;
       if (last - column != column) add_node(spread, last - column, row);
       if (last - row != row) add_node(spread, column, last - row);
       if (last - column != column && last - row != row) add_node(spread, last - column, last - row);

@@ -37,14 +37,62 @@ void ScatterSpreadOptions::validate() const {
         fmt::format("{} rays across what is lit; {} to {} would be right", across, fewest, most));
 }
 
+namespace {
+
+/// Of a lens without symmetry, by Broyden's method: its derivatives are those of the designed lens first.
+BrightSource source_imaged_anywhere(const Lens& lens, const ScatterTracer& tracer, double x_mm, double y_mm,
+                                    double magnified_mm) {
+  constexpr int steps = 15, few_rays = 10;
+  constexpr double close = 1e-3, inwards = 0.7;
+  const double tolerance_mm = close * std::max(std::hypot(x_mm, y_mm), 1e-2 * magnified_mm);
+  BrightSource source;
+  source.distance_mm = lens.object_distance_mm;
+  // d(right, up)/d(x, y)
+  std::array<double, 4> by{-1 / magnified_mm, 0, 0, -1 / magnified_mm};
+  std::array<double, 2> moved{}, miss_before{};
+  bool seen_before = false;
+  for (int step = 0; step < steps; ++step) {
+    SourceImage image;
+    tracer.light(SourceBeam(source), few_rays, &image);
+    if (!(image.clear_flux_mm2 > 0)) {
+      source.right *= inwards, source.up *= inwards;
+      seen_before = false;
+      continue;
+    }
+    const std::array<double, 2> miss{x_mm - image.x_mm, y_mm - image.y_mm};
+    if (std::hypot(miss[0], miss[1]) < tolerance_mm) break;
+    if (seen_before) {
+      // How far the image has come, and how far the derivatives say that the source had to go for it.
+      const std::array<double, 2> came{miss_before[0] - miss[0], miss_before[1] - miss[1]};
+      const std::array<double, 2> said{by[0] * came[0] + by[1] * came[1], by[2] * came[0] + by[3] * came[1]};
+      const double along = moved[0] * said[0] + moved[1] * said[1];
+      if (along != 0) {
+        const std::array<double, 2> left{moved[0] * by[0] + moved[1] * by[2],
+                                         moved[0] * by[1] + moved[1] * by[3]};
+        for (std::size_t i = 0; i < 2; ++i)
+          for (std::size_t k = 0; k < 2; ++k) by[2 * i + k] += (moved[i] - said[i]) * left[k] / along;
+      }
+    }
+    moved = {by[0] * miss[0] + by[1] * miss[1], by[2] * miss[0] + by[3] * miss[1]};
+    source.right += moved[0], source.up += moved[1];
+    miss_before = miss;
+    seen_before = true;
+  }
+  return source;
+}
+
+}  // namespace
+
 BrightSource source_imaged_at(const Lens& lens, const ScatterTracer& tracer, double x_mm, double y_mm) {
   BrightSource source;
   source.distance_mm = lens.object_distance_mm;
   const double radius = std::hypot(x_mm, y_mm);
-  if (radius == 0) return source;
+  const bool centred = tracer.tracer().is_centred();
+  if (centred && radius == 0) return source;
   const FirstOrder first = first_order(lens);
   const double magnified = lens.object_distance_mm ? std::abs(first.magnification) * *lens.object_distance_mm
                                                    : std::abs(first.efl_mm);
+  if (!centred) return source_imaged_anywhere(lens, tracer, x_mm, y_mm, magnified);
   double slope = radius / magnified, widest = std::tan(radians(80));
   constexpr int steps = 12, few_rays = 10;
   constexpr double close = 1e-3, inwards = 0.9;

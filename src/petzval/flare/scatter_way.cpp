@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/flare/ghost_bundle.h>
 #include <petzval/flare/scatter_way.h>
 #include <petzval/lens/ray_transfer.h>
-#include <petzval/trace/surface_step.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,8 @@ struct ScatterTracer::Inward {
   SurfaceRay ray{};
   double vertex_z = 0;
   Vector before{}, normal{};
-  double kept = 1;  ///< what the surfaces in front have not scattered
+  std::array<double, 2> cosines{};  ///< behind it, in its own axes
+  double kept = 1;                  ///< what the surfaces in front have not scattered
   std::vector<Intersection> path;
 
   Vector direction() const { return {ray.l, ray.m, ray.n}; }
@@ -55,12 +56,46 @@ struct ScatterTracer::Landing {
   bool passes = true;
 };
 
+/// What a ray meets at a surface, in lens space.
+struct ScatterTracer::Crossing {
+  Vector before{}, normal{};
+  std::array<double, 2> cosines{};  ///< behind it, in the surface's own axes
+  bool inside = true;               ///< of its apertures
+};
+
+/// To a surface and through it, or back from a mirror; false where the ray ends.
+bool ScatterTracer::cross(std::size_t i, SurfaceRay& ray, Crossing& at) const {
+  const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
+  if (surface.posed) enter_frame(surface.frame, ray);
+  double normal[3] = {0, 0, 1};
+  if (!intersect(surface, surface.sense, 1, ray, normal)) return false;
+  at.inside = tracer_.clip_share_sq(i, ray.x, ray.y, clip_) <= 1 + Tracer::rim_tolerance;
+  at.before = {ray.l, ray.m, ray.n};
+  at.normal = {normal[0], normal[1], normal[2]};
+  if (surface.mirror)
+    reflect(ray, normal);
+  else if (!refract(surface.index_before / surface.index_after, surface.sense, ray, normal))
+    return false;
+  at.cosines = {ray.l, ray.m};
+  if (!surface.posed) return true;
+  leave_frame(surface.frame, ray);
+  at.before = surface.frame.to_lens(at.before), at.normal = surface.frame.to_lens(at.normal);
+  return true;
+}
+
+/// The direction of these cosines behind a surface, in lens space.
+std::array<double, 3> ScatterTracer::behind(std::size_t i, const std::array<double, 2>& cosines) const {
+  const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
+  const double forward = std::sqrt(std::max(0.0, 1 - cosines[0] * cosines[0] - cosines[1] * cosines[1]));
+  const Vector own{cosines[0], cosines[1], (surface.mirror ? -surface.sense : surface.sense) * forward};
+  return surface.posed ? surface.frame.to_lens(own) : own;
+}
+
 ScatterTracer::ScatterTracer(const Lens& lens, double wavelength_nm, const Losses& losses, Tracer::Clip clip)
     : tracer_(lens, wavelength_nm), clip_(clip) {
   require_glass(lens, "scatter needs");
   require_no_bends(lens, "scatter needs");
-  require_centred(lens, "scatter is that of centred lenses");
-  require_no_mirrors(lens, "scatter");
+  require_clean_mirrors(lens);
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
     const bool between = surface.index_before != surface.index_after;
@@ -89,15 +124,11 @@ bool ScatterTracer::inward(const Ray& start, std::size_t last, Inward& at) const
             0};
   at.kept = 1;
   at.path.clear();
+  Crossing met;
   for (std::size_t i = 0; i <= last; ++i) {
-    const Tracer::PreparedSurface& surface = tracer_.surfaces()[i];
-    at.move_vertex(surface.vertex_z_mm);
-    double normal[3] = {0, 0, 1};
-    if (!intersect(surface, 1, 1, at.ray, normal)) return false;
-    if (tracer_.clip_share_sq(i, at.ray.x, at.ray.y, clip_) > 1 + Tracer::rim_tolerance) return false;
-    at.before = at.direction();
-    at.normal = {normal[0], normal[1], normal[2]};
-    if (!refract(surface.index_before / surface.index_after, 1, at.ray, normal)) return false;
+    at.move_vertex(tracer_.vertex_z_mm(i));
+    if (!cross(i, at.ray, met) || !met.inside) return false;
+    at.before = met.before, at.normal = met.normal, at.cosines = met.cosines;
     if (transmittance_) at.path.push_back({at.place(), at.direction(), at.normal});
     if (i < last && bsdfs_[i].scatters())
       at.kept *=
@@ -116,6 +147,7 @@ std::optional<LitPlace> ScatterTracer::lit_place(const SourceBeam& beam, double 
   LitPlace place;
   place.point_mm = at.place();
   place.after = at.direction();
+  place.cosines = at.cosines;
   place.normal = at.normal;
   place.flux_mm2 = beam.weight(x_mm, y_mm) * at.kept;
   place.kept = at.kept;
@@ -134,28 +166,24 @@ bool ScatterTracer::follow_onward(std::size_t surface, const LitPlace& place,
   const double flat = direction[0] * direction[0] + direction[1] * direction[1];
   if (!(flat < 1)) return false;
   double vertex_z = 0;
-  SurfaceRay ray{place.point_mm[0],
-                 place.point_mm[1],
-                 place.point_mm[2],
-                 direction[0],
-                 direction[1],
-                 std::sqrt(1 - flat),
-                 0};
+  const Vector towards = behind(surface, direction);
+  SurfaceRay ray{
+      place.point_mm[0], place.point_mm[1], place.point_mm[2], towards[0], towards[1], towards[2], 0};
   end = {};
+  Crossing met;
   for (std::size_t i = surface + 1; i < bsdfs_.size(); ++i) {
-    const Tracer::PreparedSurface& next = tracer_.surfaces()[i];
-    ray.z += vertex_z - next.vertex_z_mm;
-    vertex_z = next.vertex_z_mm;
-    double normal[3] = {0, 0, 1};
-    if (!intersect(next, 1, 1, ray, normal)) return false;
-    if (tracer_.clip_share_sq(i, ray.x, ray.y, clip_) > 1 + Tracer::rim_tolerance) end.passes = false;
-    const Vector before{ray.l, ray.m, ray.n};
-    if (!refract(next.index_before / next.index_after, 1, ray, normal)) return false;
-    meet(i, before,
-         Intersection{
-             {ray.x, ray.y, ray.z + vertex_z}, {ray.l, ray.m, ray.n}, {normal[0], normal[1], normal[2]}});
+    ray.z += vertex_z - tracer_.vertex_z_mm(i);
+    vertex_z = tracer_.vertex_z_mm(i);
+    if (!cross(i, ray, met)) return false;
+    if (!met.inside) end.passes = false;
+    meet(i, met.before, Intersection{{ray.x, ray.y, ray.z + vertex_z}, {ray.l, ray.m, ray.n}, met.normal});
   }
-  if (!(ray.n > 0)) return false;
+  if (tracer_.sensor_posed()) {
+    ray.z += vertex_z - tracer_.image_z_mm();
+    vertex_z = tracer_.image_z_mm();
+    enter_frame(tracer_.sensor_frame(), ray);
+  }
+  if (!(tracer_.image_sense() * ray.n > 0)) return false;
   const double distance = (tracer_.image_z_mm() - vertex_z - ray.z) / ray.n;
   end.x_mm = ray.x + distance * ray.l;
   end.y_mm = ray.y + distance * ray.m;
@@ -171,8 +199,7 @@ bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std
 bool ScatterTracer::onward_with_light(std::size_t surface, const LitPlace& place,
                                       const std::array<double, 2>& direction, Landing& end,
                                       std::vector<Intersection>* path) const {
-  Vector last{direction[0], direction[1],
-              std::sqrt(std::max(0.0, 1 - direction[0] * direction[0] - direction[1] * direction[1]))};
+  Vector last = behind(surface, direction);
   if (path && !path->empty()) path->back().direction_after = last;
   double kept = 1;
   const bool arrives = follow_onward(
@@ -186,7 +213,11 @@ bool ScatterTracer::onward_with_light(std::size_t surface, const LitPlace& place
         if (path) path->push_back(met);
       });
   end.kept = kept;
-  if (arrives && path) path->push_back({{end.x_mm, end.y_mm, tracer_.image_z_mm()}, last, {0, 0, 1}});
+  if (!arrives || !path) return arrives;
+  Vector place_there{end.x_mm, end.y_mm, tracer_.image_z_mm()};
+  if (tracer_.sensor_posed())
+    place_there = tracer_.sensor_frame().point_to_lens(place_there, tracer_.image_z_mm());
+  path->push_back({place_there, last, tracer_.sensor_frame().to_lens({0, 0, 1})});
   return arrives;
 }
 
@@ -195,7 +226,7 @@ SourceImage ScatterTracer::image_of(const std::vector<LitPlace>& behind) const {
   double x = 0, y = 0, sum = 0;
   for (const LitPlace& place : behind) {
     Landing end;
-    if (!onward(bsdfs_.size() - 1, place, {place.after[0], place.after[1]}, end)) continue;
+    if (!onward(bsdfs_.size() - 1, place, place.cosines, end)) continue;
     const double through = transmittance_ ? transmittance_->along(place.start, place.path) : 1;
     const double flux = place.flux_mm2 * through;
     image.flux_mm2 += flux * place.shares.specular();
@@ -254,7 +285,7 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
                                                const std::optional<std::array<double, 2>>& guess) const {
   constexpr int most_steps = 25;
   constexpr double differential = 1e-6, longest_step = 0.3, settled = 1e-6, slow = 0.1;
-  std::array<double, 2> at = guess.value_or(std::array<double, 2>{place.after[0], place.after[1]});
+  std::array<double, 2> at = guess.value_or(place.cosines);
   Landing end, beside;
   double xx = 0, xy = 0, yx = 0, yy = 0;  // d(x, y)/d(L, M)
   const auto differentiate = [&] {
@@ -270,7 +301,7 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
   for (int step = 0; step < most_steps && !found; ++step) {
     if (!onward(surface, place, at, end)) {
       // Back towards the unscattered ray, which passes.
-      at = {(at[0] + place.after[0]) / 2, (at[1] + place.after[1]) / 2};
+      at = {(at[0] + place.cosines[0]) / 2, (at[1] + place.cosines[1]) / 2};
       differentiated = false;
       continue;
     }
@@ -294,19 +325,29 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
   ScatterLink link;
   link.direction = at;
   const double index = tracer_.surfaces()[surface].index_after;
-  const Vector after{at[0], at[1], std::sqrt(1 - at[0] * at[0] - at[1] * at[1])};
+  const Vector after = behind(surface, at);
+  const double forward = std::sqrt(1 - at[0] * at[0] - at[1] * at[1]);
   Vector change;
   for (std::size_t k = 0; k < 3; ++k) change[k] = index * (after[k] - place.after[k]);
   const double along = dot_of(change, place.normal);
   for (std::size_t k = 0; k < 3; ++k) change[k] -= along * place.normal[k];
   link.tau = std::hypot(change[0], change[1], change[2]);
-  link.offset = {index * (at[0] - place.after[0]), index * (at[1] - place.after[1])};
+  link.offset = {index * (at[0] - place.cosines[0]), index * (at[1] - place.cosines[1])};
   // d²β = n² cosθ/N dL dM.
   const double density =
-      index * index * std::abs(dot_of(after, place.normal)) / after[2] / std::abs(xx * yy - xy * yx);
+      index * index * std::abs(dot_of(after, place.normal)) / forward / std::abs(xx * yy - xy * yx);
   const double through = transmittance_ ? transmittance_->along(place.start, path) : 1;
   link.per_mm2 = place.flux_mm2 * density * end.kept * through;
   return link;
+}
+
+void require_clean_mirrors(const Lens& lens) {
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
+    if (lens.surfaces[i].mirror && lens.surfaces[i].scatter)
+      throw InputError(
+          fmt::format("surfaces[{0}] is a mirror, and the scatter of mirrors is not followed; set "
+                      "surfaces[{0}].scatter=null",
+                      i));
 }
 
 Lens with_scatter(Lens lens, const Scatter& scatter) {

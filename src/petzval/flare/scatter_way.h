@@ -5,6 +5,7 @@
 #include <petzval/flare/source_beam.h>
 #include <petzval/flare/surface_bsdf.h>
 #include <petzval/trace/losses.h>
+#include <petzval/trace/surface_step.h>
 #include <petzval/trace/tracer.h>
 
 #include <array>
@@ -17,6 +18,7 @@ namespace petzval {
 /// A place on a surface that a source lights, and what goes on from there unscattered.
 struct LitPlace {
   std::array<double, 3> point_mm{}, after{}, normal{};  ///< `after`: the direction behind the surface
+  std::array<double, 2> cosines{};                      ///< of that along the surface's own x and y
   double flux_mm2 =
       0;            ///< that meets it, over the irradiance at the first vertex; without losses by coatings
   double kept = 1;  ///< of which the surfaces in front have scattered the rest
@@ -28,7 +30,7 @@ struct LitPlace {
 
 /// How a place lights a point of the sensor.
 struct ScatterLink {
-  std::array<double, 2> direction{};  ///< cosines along x and y behind the surface
+  std::array<double, 2> direction{};  ///< cosines along the surface's own x and y, behind it
   /// β − β₀ along the surface: its length, and the way in which x and y of its direction differ.
   double tau = 0;
   std::array<double, 2> offset{};
@@ -48,8 +50,8 @@ struct SourceImage {
 /// would scatter again is lost.
 class ScatterTracer {
  public:
-  /// \throws InputError for lenses that are not centred, have mirrors or no glass, and as Losses::validate()
-  /// and SurfaceBsdf.
+  /// Mirrors pass light on and do not scatter. \throws InputError for lenses whose mirrors state scatter,
+  /// that have gratings, ideal lenses or ray transfers, and as Losses::validate() and SurfaceBsdf.
   ScatterTracer(const Lens& lens, double wavelength_nm, const Losses& losses,
                 Tracer::Clip clip = Tracer::Clip::apertures);
 
@@ -72,6 +74,9 @@ class ScatterTracer {
  private:
   struct Inward;
   struct Landing;
+  struct Crossing;
+  bool cross(std::size_t surface, SurfaceRay& ray, Crossing& at) const;
+  std::array<double, 3> behind(std::size_t surface, const std::array<double, 2>& cosines) const;
   bool inward(const Ray& start, std::size_t last, Inward& at) const;
   bool onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
               Landing& end) const;
@@ -93,6 +98,8 @@ class ScatterTracer {
 
 /// The lens with this way to scatter at every surface between two media that states none of its own.
 Lens with_scatter(Lens lens, const Scatter& scatter);
+/// \throws InputError naming a mirror that states scatter.
+void require_clean_mirrors(const Lens& lens);
 /// Whether it says anything of scatter.
 bool states_scatter(const Lens& lens);
 

@@ -33,6 +33,26 @@ struct LinearFit {
   }
 };
 
+using Places = std::vector<std::array<double, 3>>;
+
+/// Of the light that ends there, in the axes of the sensor.
+std::array<double, 2> cosines_at_sensor(const Tracer& tracer, const Places& places) {
+  const auto& last = places[places.size() - 1];
+  const auto& before = places[places.size() - 2];
+  const double dx = last[0] - before[0], dy = last[1] - before[1], dz = last[2] - before[2];
+  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+  if (!tracer.sensor_posed()) return {dx / length, dy / length};
+  const Frame::Vector own = tracer.sensor_frame().from_lens({dx / length, dy / length, dz / length});
+  return {own[0], own[1]};
+}
+
+/// In the stop's own axes.
+std::array<double, 3> place_at_stop(const Tracer& tracer, const Places& places) {
+  const std::size_t stop = tracer.stop_index();
+  const Tracer::PreparedSurface& surface = tracer.surfaces()[stop];
+  return surface.posed ? surface.frame.point_from_lens(places[stop], surface.vertex_z_mm) : places[stop];
+}
+
 }  // namespace
 
 double StarPupil::area() const {
@@ -57,12 +77,9 @@ std::optional<StarPupil> star_pupil(const GhostTracer& tracer, const BrightSourc
       places.clear();
       const GhostLanding end = tracer.follow(beam.ray(x, y), GhostPair::straight(), &places);
       if (!end.arrives || end.clearance > 0) continue;
-      const auto& last = places[places.size() - 1];
-      const auto& before = places[places.size() - 2];
-      const double dx = last[0] - before[0], dy = last[1] - before[1], dz = last[2] - before[2];
-      const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
-      const auto& stop = places[tracer.tracer().stop_index()];
-      fit.add(stop[0], stop[1], {dx / length, dy / length});
+      const std::array<double, 2> cosines = cosines_at_sensor(tracer.tracer(), places);
+      const auto stop = place_at_stop(tracer.tracer(), places);
+      fit.add(stop[0], stop[1], cosines);
       pupil.x_mm += end.x_mm, pupil.y_mm += end.y_mm;
       ends.push_back({end.x_mm, end.y_mm});
       pupil.flux_mm2 += end.share * beam.weight(x, y) * cell_mm2;

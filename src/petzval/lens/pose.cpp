@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
+#include <petzval/lens/frame_motion.h>
 #include <petzval/lens/lens.h>
 #include <petzval/lens/pose.h>
 #include <petzval/lens/surface_kind.h>
@@ -14,56 +15,17 @@ namespace petzval {
 
 namespace {
 
-using Vector = Frame::Vector;
-using Rows = std::array<Vector, 3>;
+constexpr RowsOf<double> identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-constexpr Rows identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-
-Rows product(const Rows& a, const Rows& b) {
-  Rows result{};
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t j = 0; j < 3; ++j) result[i][k] += a[i][j] * b[j][k];
-  return result;
+Motion<double> motion_of(const Pose& pose) {
+  return {{pose.decentre_x_mm, pose.decentre_y_mm, pose.shift_z_mm},
+          {radians(pose.tilt_x_deg), radians(pose.tilt_y_deg), radians(pose.tilt_z_deg)}};
 }
 
-Vector product(const Rows& a, const Vector& v) {
-  Vector result{};
-  for (std::size_t i = 0; i < 3; ++i) result[i] = a[i][0] * v[0] + a[i][1] * v[1] + a[i][2] * v[2];
-  return result;
-}
-
-Rows about_x(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {{{1, 0, 0}, {0, c, -s}, {0, s, c}}};
-}
-Rows about_y(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
-}
-Rows about_z(double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
-}
-
-Rows rows_of(const Pose& pose) {
-  return product(about_x(radians(pose.tilt_x_deg)),
-                 product(about_y(radians(pose.tilt_y_deg)), about_z(radians(pose.tilt_z_deg))));
-}
-
-Vector offset_of(const Pose& pose) {
-  return {pose.decentre_x_mm, pose.decentre_y_mm, pose.shift_z_mm};
-}
-
-/// Moves a frame, whose vertex the prescription has `from_pivot_mm` behind the pivot, with its group.
 void move(const Pose& pose, double from_pivot_mm, Frame& frame) {
-  const Rows rows = rows_of(pose);
-  const Vector arm =
-      product(rows, Vector{frame.offset_mm[0], frame.offset_mm[1], frame.offset_mm[2] + from_pivot_mm});
-  const Vector offset = offset_of(pose);
-  for (std::size_t i = 0; i < 3; ++i) frame.offset_mm[i] = arm[i] + offset[i];
-  frame.offset_mm[2] -= from_pivot_mm;
-  frame.rows = product(rows, frame.rows);
+  FrameOf<double> moved{frame.offset_mm, frame.rows};
+  move(motion_of(pose), from_pivot_mm, moved);
+  frame = {moved.offset_mm, moved.rows};
 }
 
 }  // namespace
@@ -86,10 +48,7 @@ Frame::Vector Frame::to_lens(const Vector& own) const {
 }
 
 Frame::Vector Frame::from_lens(const Vector& lens) const {
-  Vector result{};
-  for (std::size_t i = 0; i < 3; ++i)
-    result[i] = rows[0][i] * lens[0] + rows[1][i] * lens[1] + rows[2][i] * lens[2];
-  return result;
+  return transposed_product(rows, lens);
 }
 
 Frame::Vector Frame::point_to_lens(const Vector& own, double vertex_z_mm) const {

@@ -29,10 +29,13 @@ struct LensVariable {
 /// | `thicknesses` | of all glass, at the centre | half to twice the present one |
 /// | `gaps` | of air between surfaces | a tenth of the present one (at least 0.05 mm) to three times it |
 /// | `image` | from the last surface to the sensor | none |
+/// | `poses` | of all poses that are set and not 0 | none |
 /// | `surfaces[3].radius_mm`, `….thickness_mm`, `….conic`, `….asphere.4` | that one | none |
+/// | `surfaces[3].pose.tilt_x_deg`, `groups[0].pose.…`, `sensor_pose.…` | that one | none |
 ///
-/// followed by `=LOW:HIGH` for limits in the unit of the number; a radius then keeps its sign. \throws
-/// InputError saying what is wrong and what would be right.
+/// followed by `=LOW:HIGH` for limits in the unit of the number; a radius then keeps its sign. Gaps, glass
+/// and the way to the sensor count along the light, also where mirrors throw it back. \throws InputError
+/// saying what is wrong and what would be right.
 std::vector<LensVariable> parse_lens_variables(const Lens& lens, std::string_view text);
 
 /// "surfaces[3].radius_mm".

@@ -59,6 +59,22 @@ std::optional<double> glass_rim_mm(const Lens& lens, std::size_t surface) {
   return front.thickness_mm + sag_mm(back, height) - sag_mm(front, height);
 }
 
+/// Of the largest of its azimuths; of a lens that is not round about where field 0 lands, along the field.
+double distortion_percent(const Lens& lens, double object_field, const std::vector<double>& azimuths_deg) {
+  const double nm = lens.reference_wavelength_nm, ideal = ideal_image_height_mm(lens, object_field, nm);
+  double largest = 0;
+  for (const double azimuth : azimuths_deg) {
+    FieldTracer tracer(lens, nm, Tracer::Clip::none, azimuth);
+    const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
+    const bool centred = tracer.tracer().is_centred();
+    const std::optional<ChiefRay> middle = centred ? std::nullopt : tracer.chief_ray(0);
+    if (!chief || (!centred && !middle)) return lost_ray;
+    const double height = chief->image_height_mm - (middle ? middle->image_height_mm : 0);
+    largest = std::max(largest, 100 * std::abs(height / ideal - 1));
+  }
+  return largest;
+}
+
 /// Numbers that run without limits, mapped into those of the variables.
 class Mapping {
  public:
@@ -70,6 +86,7 @@ class Mapping {
         scale = std::max(scale, 1 / efl_of(lens));
       if (variable.number.kind == LensNumber::Kind::conic) scale = 1;
       if (variable.number.kind == LensNumber::Kind::power) scale = power_scale(lens, variable.number);
+      if (variable.number.is_pose()) scale = 1;  // a mm or a degree
       scales_.push_back(scale > 0 && std::isfinite(scale) ? scale : 1);
     }
   }
@@ -124,6 +141,7 @@ class Objective : public Eigen::DenseFunctor<double> {
     std::vector<std::pair<std::size_t, double>> rims;  ///< surface, and how thick its glass is to stay
     std::vector<double> fields = {};                   ///< object fields at which distortion counts
     double most_distortion_percent = 0;
+    std::vector<double> azimuths_deg = {};  ///< of these fields
 
     std::size_t count() const { return 1 + rims.size() + fields.size(); }
   };
@@ -174,15 +192,11 @@ class Objective : public Eigen::DenseFunctor<double> {
       values[1 + static_cast<Eigen::Index>(i)] = cost_ * rim_cost_um * std::max(0.0, least - rim);
     }
     if (targets_.fields.empty()) return values;
-    const double nm = lens.reference_wavelength_nm;
-    FieldTracer tracer(lens, nm, Tracer::Clip::none);
-    for (std::size_t i = 0; i < targets_.fields.size(); ++i) {
-      const std::optional<ChiefRay> chief = tracer.chief_ray(targets_.fields[i]);
-      const double ideal = ideal_image_height_mm(lens, targets_.fields[i], nm);
-      const double percent = chief ? 100 * std::abs(chief->image_height_mm / ideal - 1) : lost_ray;
+    for (std::size_t i = 0; i < targets_.fields.size(); ++i)
       values[1 + static_cast<Eigen::Index>(targets_.rims.size() + i)] =
-          cost_ * distortion_cost_um * std::max(0.0, percent - targets_.most_distortion_percent);
-    }
+          cost_ * distortion_cost_um *
+          std::max(0.0, distortion_percent(lens, targets_.fields[i], targets_.azimuths_deg) -
+                            targets_.most_distortion_percent);
     return values;
   }
 
@@ -351,13 +365,14 @@ void check(const Lens& lens, const OptimiseRequest& request) {
   require_glass(lens, "optimising needs");
   require_no_bends(lens, "optimising needs");
   lens.validate();
-  require_centred(lens, "centred lenses can be optimised");
   for (std::size_t i = 0; i < request.variables.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
-      const LensNumber &a = request.variables[i].number, &b = request.variables[k].number;
-      if (a.kind == b.kind && a.surface == b.surface && a.power == b.power)
-        throw InputError(fmt::format("{} is a variable twice; once would be right", name_of(a)));
+      const LensNumber& number = request.variables[i].number;
+      if (number == request.variables[k].number)
+        throw InputError(fmt::format("{} is a variable twice; once would be right", name_of(number)));
     }
+  for (const double azimuth : request.azimuths_deg)
+    if (!std::isfinite(azimuth)) throw InputError("an azimuth is not finite; degrees would be right");
   if (!request.field_weights.empty() && request.field_weights.size() != request.at.fields.size())
     throw InputError(fmt::format("{} weights for {} fields; one a field would be right",
                                  request.field_weights.size(), request.at.fields.size()));
@@ -421,6 +436,7 @@ OptimiseResult work(const Lens& lens, const OptimiseRequest& request, std::uint6
       targets.rims.emplace_back(i, std::min(*rim, request.least_rim_mm));
   if (request.most_distortion_percent) {
     targets.most_distortion_percent = *request.most_distortion_percent;
+    targets.azimuths_deg = azimuths_of(lens, request);
     for (const double field : request.at.fields)
       if (const double object = object_field(lens, request.at.field_kind, field); object != 0)
         targets.fields.push_back(object);

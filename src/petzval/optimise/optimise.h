@@ -23,7 +23,10 @@ enum class OptimiseMerit {
 struct OptimiseRequest {
   std::vector<LensVariable> variables = {};  ///< none: all radii, and the distance to the sensor
   FieldTableRequest at = {};                 ///< fields and wavelengths; empty: the lens's own
-  std::vector<double> field_weights = {};    ///< one a field; empty: all alike
+  /// Of the fields, anticlockwise from +y as seen from the film; empty: 0, 90, 180 and 270 for lenses that
+  /// are not round or have poses among their variables, else the one of `at`.
+  std::vector<double> azimuths_deg = {};
+  std::vector<double> field_weights = {};  ///< one a field; empty: all alike
   OptimiseMerit merit = OptimiseMerit::rms_spot;
   double mtf_frequency_cpmm = 0;  ///< of the MTF
   /// Of every field at the reference wavelength, about the paraxial height; absent: it does not count.
@@ -60,13 +63,13 @@ struct OptimiseResult {
 };
 
 /// Least squares by Levenberg and Marquardt (Moré's MINPACK, as Eigen has it) over transverse aberrations or
-/// path differences of rays through the real pupils, with exact derivatives (trace_derived); beside them the
+/// path differences of rays through the real pupils, with exact derivatives (DerivedTracer); beside them the
 /// focal length, the thickness of glass at the rim and distortion. An MTF is sought from the lens as it is
 /// and from that of the least spots, for where it is lost already it has no slope. Glasses are chosen after
 /// that: each near one is put in the place of each, the numbers follow, the best such change is kept, until
 /// none is better. A lens that no step improves comes back as it was. The same request and seed give the same
 /// lens on any number of threads. \throws InputError for variables, weights or numbers that do not fit, a
-/// lens with poses, a field at which no ray passes; Cancelled.
+/// lens with gratings, ideal lenses or ray transfers, a field at which no ray passes; Cancelled.
 OptimiseResult optimise(const Lens& lens, const OptimiseRequest& request = {}, const Context& context = {});
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <petzval/trace/pupil.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,7 +20,21 @@ constexpr int merit_azimuths = 16, merit_radii = 5;
 constexpr int mtf_azimuths = 32, mtf_radii = 8;
 constexpr double nm_per_mm_of_path = 1e6;
 
+/// Whether the lens is round about its axis whatever the variables.
+bool stays_round(const Lens& lens, const OptimiseRequest& request) {
+  return is_round(lens) && std::ranges::none_of(request.variables, [](const LensVariable& variable) {
+           return variable.number.is_pose();
+         });
+}
+
 }  // namespace
+
+std::vector<double> azimuths_of(const Lens& lens, const OptimiseRequest& request) {
+  if (!request.azimuths_deg.empty()) return request.azimuths_deg;
+  const double first = request.at.azimuth_deg;
+  if (stays_round(lens, request)) return {first};
+  return {first, first + 90, first + 180, first + 270};
+}
 
 /// A list of numbers and their derivatives.
 struct RayMerit::Columns {
@@ -37,34 +52,61 @@ struct RayMerit::Columns {
 
 RayMerit::RayMerit(const Lens& lens, const OptimiseRequest& request)
     : kind_(request.merit), frequency_cpmm_(request.mtf_frequency_cpmm) {
-  const bool contrast = kind_ == OptimiseMerit::mtf;
   const FieldTableRequest at = with_own_lists(request.at, lens);
   wavelengths_nm_ = at.wavelengths_nm;
   for (const LensVariable& variable : request.variables) numbers_.push_back(variable.number);
-  const double per_wavelength = 1 / static_cast<double>(wavelengths_nm_.size());
+  const bool whole = !stays_round(lens, request);
   std::vector<double> weights = request.field_weights;
   if (weights.empty()) weights.assign(at.fields.size(), 1);
   const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-  for (const double weight : weights) fields_.push_back({weight / total, {}});
-  for (std::size_t w = 0; w < wavelengths_nm_.size(); ++w) {
-    FieldTracer tracer(lens, wavelengths_nm_[w], at.clip, at.azimuth_deg);
+  const std::vector<double> azimuths_deg = azimuths_of(lens, request);
+  for (std::size_t a = 0; a < azimuths_deg.size(); ++a) {
+    const std::size_t first = fields_.size();
     for (std::size_t f = 0; f < at.fields.size(); ++f) {
-      const double object = object_field(lens, at.field_kind, at.fields[f]);
-      const std::optional<ChiefRay> chief = tracer.chief_ray(object);
-      const auto pupil =
-          chief ? tracer.object_pupil(*chief, contrast ? mtf_azimuths : merit_azimuths) : std::nullopt;
-      if (!pupil) throw no_ray_passes(lens, at.fields[f], wavelengths_nm_[w]);
-      const Pencil pencil = Pencil::from_object(lens, object);
-      for (const PupilNode& node : pupil_nodes(*pupil, contrast ? mtf_radii : merit_radii)) {
-        const std::optional<Ray> launch = pencil.ray(node.u, node.v);
-        if (!launch) continue;
-        const Ray end = tracer.tracer().trace(*launch, Tracer::Clip::none);
-        if (end.status != RayStatus::ok) continue;
-        fields_[f].rays.push_back({w, *launch, per_wavelength * node.weight / pupil->area(),
-                                   pupil->mirrored(), end.direction[0], end.direction[1]});
-      }
+      if (a > 0 && at.fields[f] == 0) continue;
+      const double share = at.fields[f] == 0 ? 1 : 1 / static_cast<double>(azimuths_deg.size());
+      const double angle = whole ? radians(azimuths_deg[a]) : 0;
+      fields_.push_back({f, weights[f] / total * share, std::cos(angle), std::sin(angle)});
+    }
+    for (std::size_t w = 0; w < wavelengths_nm_.size(); ++w) {
+      FieldTracer tracer(lens, wavelengths_nm_[w], at.clip, azimuths_deg[a]);
+      for (std::size_t i = first; i < fields_.size(); ++i) launch(tracer, at, w, whole, fields_[i]);
     }
   }
+}
+
+void RayMerit::launch(FieldTracer& tracer, const FieldTableRequest& at, std::size_t wavelength, bool whole,
+                      FieldRays& field) const {
+  const bool contrast = kind_ == OptimiseMerit::mtf;
+  const Lens& lens = tracer.lens();
+  const double object = object_field(lens, at.field_kind, at.fields[field.field]);
+  const std::optional<ChiefRay> chief = tracer.chief_ray(object);
+  const auto pupil =
+      chief ? tracer.object_pupil(*chief, contrast ? mtf_azimuths : merit_azimuths) : std::nullopt;
+  if (!pupil) throw no_ray_passes(lens, at.fields[field.field], wavelengths_nm_[wavelength]);
+  const Pencil pencil = Pencil::from_object(lens, object);
+  const double per_wavelength = 1 / static_cast<double>(wavelengths_nm_.size());
+  const bool halves = whole && pupil->mirrored();
+  const auto to_lens = [&](auto& axes) {
+    const double x = axes[0], y = axes[1];
+    axes[0] = field.cosine * x - field.sine * y, axes[1] = field.sine * x + field.cosine * y;
+  };
+  for (const PupilNode& node : pupil_nodes(*pupil, contrast ? mtf_radii : merit_radii))
+    for (const double side : {1.0, -1.0}) {
+      if (side < 0 && !halves) continue;
+      std::optional<Ray> launched = pencil.ray(side * node.u, node.v);
+      if (!launched) continue;
+      Ray end = tracer.tracer().trace(*launched, Tracer::Clip::none);
+      if (end.status != RayStatus::ok) continue;
+      const double share = per_wavelength * node.weight / pupil->area(), weight = halves ? share / 2 : share;
+      if (whole) {
+        for (auto* axes : {&launched->point_mm, &launched->direction, &end.point_mm, &end.direction})
+          to_lens(*axes);
+        field.x_mm += weight * end.point_mm[0], field.y_mm += weight * end.point_mm[1];
+      }
+      field.rays.push_back(
+          {wavelength, *launched, weight, pupil->mirrored() && !whole, end.direction[0], end.direction[1]});
+    }
 }
 
 Eigen::Index RayMerit::rows() const {
@@ -84,12 +126,14 @@ void RayMerit::mtf_rows(const FieldRays& field, const Columns& rays, Columns& ro
   const double radians_per_mm = 2 * pi * frequency_cpmm_, scale = 100 * std::sqrt(field.weight / 2);
   for (const Eigen::Index axis : {1, 0}) {
     const bool mirrored = axis == 0 && field.rays.front().mirrored;
-    const Eigen::MatrixXd& by = rays.slopes[static_cast<std::size_t>(axis)];
+    const double x = axis == 0 ? field.cosine : -field.sine, y = axis == 0 ? field.sine : field.cosine;
+    const Eigen::VectorXd places = x * rays.values.col(0) + y * rays.values.col(1);
+    const Eigen::MatrixXd by = x * rays.slopes[0] + y * rays.slopes[1];
     double total = 0, cosine = 0, sine = 0;
     Eigen::RowVectorXd cosine_by = Eigen::RowVectorXd::Zero(by.cols()), sine_by = cosine_by;
     for (Eigen::Index i = 0; i < count; ++i) {
       const double weight = field.rays[static_cast<std::size_t>(i)].weight;
-      const double phase = radians_per_mm * rays.values(i, axis), c = std::cos(phase), s = std::sin(phase);
+      const double phase = radians_per_mm * places[i], c = std::cos(phase), s = std::sin(phase);
       total += weight, cosine += weight * c;
       cosine_by -= weight * s * radians_per_mm * by.row(i);
       if (mirrored) continue;
@@ -143,10 +187,9 @@ void RayMerit::wave_rows(const FieldRays& field, const Columns& rays, Columns& r
 }
 
 std::optional<Eigen::VectorXd> RayMerit::residuals(const Lens& lens, Eigen::MatrixXd* slopes) const {
-  std::vector<Tracer> tracers;
-  for (const double wavelength : wavelengths_nm_)
-    tracers.emplace_back(lens, wavelength, std::numeric_limits<double>::infinity());
   const std::vector<LensNumber> numbers = slopes ? numbers_ : std::vector<LensNumber>();
+  std::vector<DerivedTracer> tracers;
+  for (const double wavelength : wavelengths_nm_) tracers.emplace_back(lens, wavelength, numbers);
   const auto variables = static_cast<Eigen::Index>(numbers.size());
   Eigen::VectorXd result(rows());
   if (slopes) slopes->resize(rows(), variables);
@@ -157,14 +200,15 @@ std::optional<Eigen::VectorXd> RayMerit::residuals(const Lens& lens, Eigen::Matr
                  std::vector<Eigen::MatrixXd>(3, Eigen::MatrixXd(count, variables))};
     for (Eigen::Index i = 0; i < count; ++i) {
       const FieldRay& launched = field.rays[static_cast<std::size_t>(i)];
-      const Tracer& tracer = tracers[launched.wavelength];
-      const std::optional<DerivedRay> traced = trace_derived(tracer, launched.launch, numbers);
+      const DerivedTracer& tracer = tracers[launched.wavelength];
+      const std::optional<DerivedRay> traced = tracer.trace(launched.launch);
       if (!traced) return {};
       const Ray& end = traced->ray;
-      const double x = end.point_mm[0], y = end.point_mm[1], alpha = end.direction[0],
-                   beta = end.direction[1], index = tracer.image_index();
-      // The path to the foot of the perpendicular from the axis's point, from where a plane wave would come.
-      rays.values.row(i) << x, y, end.opl_mm - index * (alpha * x + beta * y);
+      const double x = end.point_mm[0] - field.x_mm, y = end.point_mm[1] - field.y_mm,
+                   alpha = end.direction[0], beta = end.direction[1], index = tracer.tracer().image_index();
+      // The path to the foot of the perpendicular from the field's point (of a centred lens that of the axis,
+      // which differs by a move of the point), from where a plane wave would come.
+      rays.values.row(i) << end.point_mm[0], end.point_mm[1], end.opl_mm - index * (alpha * x + beta * y);
       for (Eigen::Index v = 0; v < variables; ++v) {
         const DerivedRay::Slope& by = traced->by[static_cast<std::size_t>(v)];
         rays.slopes[0](i, v) = by.x_mm;
@@ -191,14 +235,18 @@ double RayMerit::merit(const Eigen::VectorXd& residuals) const {
 }
 
 std::vector<double> RayMerit::by_field(const Eigen::VectorXd& residuals) const {
-  std::vector<double> fields;
+  std::vector<double> squares, weights;
   Eigen::Index first = 0;
   for (const FieldRays& field : fields_) {
     const Eigen::Index more = rows_of(field);
-    fields.push_back(std::sqrt(residuals.segment(first, more).squaredNorm() / field.weight));
+    const std::size_t least = field.field + 1;
+    if (squares.size() < least) squares.resize(least), weights.resize(least);
+    squares[field.field] += residuals.segment(first, more).squaredNorm();
+    weights[field.field] += field.weight;
     first += more;
   }
-  return fields;
+  for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = std::sqrt(squares[i] / weights[i]);
+  return squares;
 }
 
 }  // namespace petzval

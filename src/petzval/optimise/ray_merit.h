@@ -12,6 +12,10 @@
 
 namespace petzval {
 
+/// At which fields count [degrees]: those asked for, else four if the lens is not round about its axis or may
+/// lose that, else the one of its fields. Field 0 counts at the first alone.
+std::vector<double> azimuths_of(const Lens& lens, const OptimiseRequest& request);
+
 /// The rays by which a lens is judged for one round: launched through its pupils as they are at the start,
 /// and kept while its numbers are altered.
 class RayMerit {
@@ -36,9 +40,15 @@ class RayMerit {
     bool mirrored;       ///< stands for its mirror image in x too
     double alpha, beta;  ///< direction cosines at the image, at the start
   };
+  /// Of one field at one azimuth.
   struct FieldRays {
+    std::size_t field;
     double weight;
-    std::vector<FieldRay> rays;
+    double cosine, sine;  ///< of the azimuth
+    /// Where on the sensor the light lands at the start, of a lens that is not round [mm]: paths are about
+    /// this point, and so feel the sensor turn.
+    double x_mm = 0, y_mm = 0;
+    std::vector<FieldRay> rays = {};
   };
   struct Columns;
 
@@ -46,6 +56,9 @@ class RayMerit {
   void wave_rows(const FieldRays& field, const Columns& columns, Columns& rows) const;
   void mtf_rows(const FieldRays& field, const Columns& columns, Columns& rows) const;
   Eigen::Index rows_of(const FieldRays& field) const;
+  /// Adds the rays of a wavelength. \param whole  the lens may lose its symmetry: both halves of a pupil.
+  void launch(FieldTracer& tracer, const FieldTableRequest& at, std::size_t wavelength, bool whole,
+              FieldRays& field) const;
 
   OptimiseMerit kind_;
   double frequency_cpmm_;

@@ -163,8 +163,7 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
 Lens scattering_lens(const Lens& lens, const std::optional<Scatter>& surfaces_scatter) {
   require_glass(lens, "scatter needs");
   require_no_bends(lens, "scatter needs");
-  require_centred(lens, "scatter is that of centred lenses");
-  require_no_mirrors(lens, "the scatter of mirrors is not followed");
+  require_clean_mirrors(lens);
   if (surfaces_scatter) return with_scatter(lens, *surfaces_scatter);
   if (!states_scatter(lens))
     throw InputError(fmt::format(

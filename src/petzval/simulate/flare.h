@@ -70,7 +70,7 @@ FlareLayers flare_layers(const LitLens& lens, const SensorGeometry& frame,
                          const FlareOptions& options, const Context& context = {});
 
 /// The lens as scatter is asked for. \throws InputError for a lens that says nothing of it where nothing else
-/// does, and for one that is not centred, has mirrors or no glass.
+/// does, and as ScatterTracer.
 Lens scattering_lens(const Lens& lens, const std::optional<Scatter>& surfaces_scatter);
 
 /// What scatter does to a picture that has its other layers: the layer, which is added to it as well. Sources

@@ -56,6 +56,8 @@ GlareField glare_of(const Lens& lens, const IlluminationRow& row, const GlareOpt
 }  // namespace
 
 AnalysisResult glare_analysis(const Lens& plain, const AnalysisRequest& request, const Context&) {
+  require_centred(plain, "veiling glare is that of centred lenses");
+  require_no_mirrors(plain, "veiling glare");
   const bool is_clean = !request.glare.surfaces_scatter && !states_scatter(plain);
   const Lens lens = is_clean ? plain : scattering_lens(plain, request.glare.surfaces_scatter);
   FieldTableRequest at = request.at;

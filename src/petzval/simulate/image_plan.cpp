@@ -259,7 +259,6 @@ void check_flare(const ImagePlan& plan) {
         "suns");
   require_glass(plan.lens->lens, "ghosts and suns need");
   require_no_bends(plan.lens->lens, "ghosts and suns need");
-  require_centred(plan.lens->lens, "ghosts and suns are those of centred lenses");
   if (options.scatter) scattering_lens(plan.lens->lens, options.surfaces_scatter);
   for (const Sun& sun : options.suns) sun.at(plan.scene.wavelengths_nm());
   if (plan.depth)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/lens/frame_motion.h>
 #include <petzval/trace/ray_derivatives.h>
 
 #include <petzval/trace/surface_meet-inl.h>
@@ -8,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
 
 namespace petzval {
 
@@ -41,6 +46,12 @@ using DualPoint = SurfacePoint<DualNumber>;
 
 DualNumber fixed(double value) {
   return {value, {}};
+}
+DualNumber sine(const DualNumber& angle) {
+  return {std::sin(angle.value), angle.slope * std::cos(angle.value)};
+}
+DualNumber cosine(const DualNumber& angle) {
+  return {std::cos(angle.value), angle.slope * -std::sin(angle.value)};
 }
 
 struct DerivedPath {
@@ -98,6 +109,69 @@ DualPoint point_at(const ShapeData<DualNumber>& shape, const DualNumber& x, cons
   return HWY_NAMESPACE::Conic::at(shape, x, y);
 }
 
+using DualFrame = FrameOf<DualNumber>;
+
+/// A pose whose numbers have derivatives.
+Motion<DualNumber> seeded_motion(const Pose& pose, std::span<const LensNumber> numbers, LensNumber::Kind kind,
+                                 std::size_t of) {
+  std::array<DualNumber, pose_numbers.size()> values;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = seeded(pose.*pose_numbers[i].value, numbers, kind, of, static_cast<int>(i));
+  const DualNumber per_degree = fixed(radians(1));
+  return {{values[0], values[1], values[2]},
+          {values[3] * per_degree, values[4] * per_degree, values[5] * per_degree}};
+}
+
+/// frames_of() with derivatives.
+std::vector<DualFrame> seeded_frames(const Lens& lens, std::span<const LensNumber> numbers) {
+  using Kind = LensNumber::Kind;
+  const std::size_t sensor = lens.surfaces.size();
+  std::vector<DualNumber> vertex_mm{fixed(0)};
+  for (std::size_t i = 0; i < sensor; ++i)
+    vertex_mm.push_back(vertex_mm[i] + seeded(lens.surfaces[i].thickness_mm, numbers, Kind::thickness_mm, i));
+  std::vector<DualFrame> frames(sensor + 1);
+  for (std::size_t i = 0; i <= sensor; ++i)
+    move(i < sensor ? seeded_motion(lens.surfaces[i].pose, numbers, Kind::surface_pose, i)
+                    : seeded_motion(lens.sensor_pose, numbers, Kind::sensor_pose, 0),
+         fixed(0), frames[i]);
+  for (std::size_t g = 0; g < lens.groups.size(); ++g) {
+    const SurfaceGroup& group = lens.groups[g];
+    const Motion<DualNumber> motion = seeded_motion(group.pose, numbers, Kind::group_pose, g);
+    for (std::size_t i = group.first; i <= std::min(group.last, sensor); ++i)
+      move(motion, vertex_mm[i] - (vertex_mm[group.first] + fixed(group.pivot_mm)), frames[i]);
+  }
+  return frames;
+}
+
+bool stands_still(const DualNumber& number, double at) {
+  return number.value == at && std::ranges::all_of(number.slope.by, [](double slope) { return slope == 0; });
+}
+
+/// Whether the place is the one of the prescription, whatever the numbers.
+bool stands_still(const DualFrame& frame) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!stands_still(frame.offset_mm[i], 0)) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!stands_still(frame.rows[i][k], i == k ? 1 : 0)) return false;
+  }
+  return true;
+}
+
+void enter(const DualFrame& frame, DerivedPath& path) {
+  const auto& [ox, oy, oz] = frame.offset_mm;
+  const auto point =
+      transposed_product(frame.rows, VectorOf<DualNumber>{path.x - ox, path.y - oy, path.z - oz});
+  const auto direction = transposed_product(frame.rows, VectorOf<DualNumber>{path.l, path.m, path.n});
+  path = {point[0], point[1], point[2], direction[0], direction[1], direction[2], path.opl};
+}
+
+void leave(const DualFrame& frame, DerivedPath& path) {
+  const auto& [ox, oy, oz] = frame.offset_mm;
+  const auto point = product(frame.rows, VectorOf<DualNumber>{path.x, path.y, path.z});
+  const auto direction = product(frame.rows, VectorOf<DualNumber>{path.l, path.m, path.n});
+  path = {point[0] + ox, point[1] + oy, point[2] + oz, direction[0], direction[1], direction[2], path.opl};
+}
+
 /// To the surface, a signed distance `way_mm` on. From there one more step of Newton's, in dual numbers,
 /// moves nothing and has the derivatives of the implicit function.
 DualPoint meet_derived(const ShapeData<DualNumber>& shape, double way_mm, double index, DerivedPath& path) {
@@ -135,9 +209,30 @@ void reflect_derived(const DualPoint& at, DerivedPath& path) {
   path.n = path.n - twice;
 }
 
-/// At most `slopes_at_once` numbers. \param met  where the ray meets the surfaces, from the tracer.
-DerivedPath derived(const Tracer& tracer, const Ray& ray, const std::vector<Intersection>& met,
-                    std::span<const LensNumber> numbers) {
+}  // namespace
+
+struct DerivedTracer::Part {
+  std::vector<ShapeData<DualNumber>> shapes;
+  std::vector<DualNumber> gaps;                  ///< behind every surface [mm]
+  std::vector<std::optional<DualFrame>> frames;  ///< of every surface and the sensor, where they count
+
+  Part(const Lens& lens, const Tracer& tracer, std::span<const LensNumber> numbers) {
+    const std::size_t count = tracer.surface_count();
+    for (std::size_t i = 0; i < count; ++i) {
+      shapes.push_back(seeded_shape(tracer.surfaces()[i].shape, i, numbers));
+      const double next = i + 1 < count ? tracer.vertex_z_mm(i + 1) : tracer.image_z_mm();
+      gaps.push_back(seeded(next - tracer.vertex_z_mm(i), numbers, LensNumber::Kind::thickness_mm, i));
+    }
+    for (const DualFrame& frame : seeded_frames(lens, numbers))
+      frames.push_back(stands_still(frame) ? std::nullopt : std::optional(frame));
+  }
+
+  /// \param met  where the ray meets the surfaces, from the tracer.
+  DerivedPath derived(const Tracer& tracer, const Ray& ray, const std::vector<Intersection>& met) const;
+};
+
+DerivedPath DerivedTracer::Part::derived(const Tracer& tracer, const Ray& ray,
+                                         const std::vector<Intersection>& met) const {
   DerivedPath path{
       fixed(ray.point_mm[0]),  fixed(ray.point_mm[1]),  fixed(ray.point_mm[2] - tracer.vertex_z_mm(0)),
       fixed(ray.direction[0]), fixed(ray.direction[1]), fixed(ray.direction[2]),
@@ -145,16 +240,21 @@ DerivedPath derived(const Tracer& tracer, const Ray& ray, const std::vector<Inte
   const std::size_t count = tracer.surface_count();
   for (std::size_t i = 0; i < count; ++i) {
     const Tracer::PreparedSurface& surface = tracer.surfaces()[i];
-    const double way = (met[i].point_mm[2] - surface.vertex_z_mm - path.z.value) / path.n.value;
-    const DualPoint at =
-        meet_derived(seeded_shape(surface.shape, i, numbers), way, surface.index_before, path);
+    double met_z = met[i].point_mm[2];
+    if (frames[i]) {
+      enter(*frames[i], path);
+      met_z = surface.frame.point_from_lens(met[i].point_mm, surface.vertex_z_mm)[2];
+    }
+    const double way = (met_z - surface.vertex_z_mm - path.z.value) / path.n.value;
+    const DualPoint at = meet_derived(shapes[i], way, surface.index_before, path);
     if (surface.mirror)
       reflect_derived(at, path);
     else
       refract_derived(surface.sense, surface.index_before / surface.index_after, at, path);
-    const double next = i + 1 < count ? tracer.vertex_z_mm(i + 1) : tracer.image_z_mm();
-    path.z = path.z - seeded(next - surface.vertex_z_mm, numbers, LensNumber::Kind::thickness_mm, i);
+    if (frames[i]) leave(*frames[i], path);
+    path.z = path.z - gaps[i];
   }
+  if (frames[count]) enter(*frames[count], path);
   const DualNumber way = fixed(-1) * path.z / path.n;
   path.x = path.x + way * path.l;
   path.y = path.y + way * path.m;
@@ -162,7 +262,18 @@ DerivedPath derived(const Tracer& tracer, const Ray& ray, const std::vector<Inte
   return path;
 }
 
+namespace {
+
 void check_number(const Lens& lens, const LensNumber& number) {
+  if (number.is_pose() && (number.power < 0 || number.power >= static_cast<int>(pose_numbers.size())))
+    throw InputError(fmt::format("number {} of a pose; 0 to 5 would be right", number.power));
+  if (number.kind == LensNumber::Kind::sensor_pose) return;
+  if (number.kind == LensNumber::Kind::group_pose) {
+    if (number.surface >= lens.groups.size())
+      throw InputError(fmt::format("groups[{}]: the lens has {} groups, counted from 0", number.surface,
+                                   lens.groups.size()));
+    return;
+  }
   if (number.surface >= lens.surfaces.size())
     throw InputError(
         fmt::format("surfaces[{}]: the lens has surfaces 0 to {}", number.surface, lens.surfaces.size() - 1));
@@ -170,10 +281,22 @@ void check_number(const Lens& lens, const LensNumber& number) {
     throw InputError(fmt::format("a power of {}; 2 to 30 would be right", number.power));
 }
 
+template <class AnyLens>
+auto& pose_of(AnyLens& lens, const LensNumber& number) {
+  if (number.kind == LensNumber::Kind::sensor_pose) return lens.sensor_pose;
+  return number.kind == LensNumber::Kind::group_pose ? lens.groups[number.surface].pose
+                                                     : lens.surfaces[number.surface].pose;
+}
+
+double Pose::*value_in_pose(const LensNumber& number) {
+  return pose_numbers[static_cast<std::size_t>(number.power)].value;
+}
+
 }  // namespace
 
 double value_of(const Lens& lens, const LensNumber& number) {
   check_number(lens, number);
+  if (number.is_pose()) return pose_of(lens, number).*value_in_pose(number);
   const Surface& surface = lens.surfaces[number.surface];
   switch (number.kind) {
     case LensNumber::Kind::curvature_per_mm:
@@ -182,7 +305,7 @@ double value_of(const Lens& lens, const LensNumber& number) {
       return surface.thickness_mm;
     case LensNumber::Kind::conic:
       return surface.conic;
-    case LensNumber::Kind::power:
+    default:
       break;
   }
   const auto term = surface.asphere.find(number.power);
@@ -191,6 +314,10 @@ double value_of(const Lens& lens, const LensNumber& number) {
 
 Lens with_value(Lens lens, const LensNumber& number, double value) {
   check_number(lens, number);
+  if (number.is_pose()) {
+    pose_of(lens, number).*value_in_pose(number) = value;
+    return lens;
+  }
   Surface& surface = lens.surfaces[number.surface];
   switch (number.kind) {
     case LensNumber::Kind::curvature_per_mm:
@@ -202,30 +329,38 @@ Lens with_value(Lens lens, const LensNumber& number, double value) {
     case LensNumber::Kind::conic:
       surface.conic = value;
       break;
-    case LensNumber::Kind::power:
+    default:
       surface.asphere[number.power] = value;
   }
   return lens;
 }
 
-std::optional<DerivedRay> trace_derived(const Tracer& tracer, const Ray& ray,
-                                        std::span<const LensNumber> numbers) {
-  if (!tracer.is_centred() || tracer.sensor_posed())
-    throw InputError("derivatives of rays are those of centred lenses; a lens without poses would be right");
-  for (const Tracer::PreparedSurface& surface : tracer.surfaces()) {
+DerivedTracer::DerivedTracer(const Lens& lens, double wavelength_nm, std::vector<LensNumber> numbers)
+    : tracer_(lens, wavelength_nm, std::numeric_limits<double>::infinity()), numbers_(std::move(numbers)) {
+  for (const LensNumber& number : numbers_) check_number(lens, number);
+  for (const Tracer::PreparedSurface& surface : tracer_.surfaces()) {
     if (surface.bend)
       throw InputError(
           "derivatives of rays are those of surfaces that refract or reflect; set ideal_lens=null");
     if (surface.transfer)
       throw InputError("derivatives of rays are those of surfaces, and a ray transfer has none");
   }
+  for (std::size_t first = 0; first < numbers_.size(); first += slopes_at_once) {
+    const auto some = std::span(numbers_).subspan(first, std::min(slopes_at_once, numbers_.size() - first));
+    parts_.push_back(std::make_unique<const Part>(lens, tracer_, some));
+  }
+}
+
+DerivedTracer::DerivedTracer(DerivedTracer&&) noexcept = default;
+DerivedTracer::~DerivedTracer() = default;
+
+std::optional<DerivedRay> DerivedTracer::trace(const Ray& ray) const {
   std::vector<Intersection> met;
-  DerivedRay result{tracer.trace(ray, Tracer::Clip::none, &met), {}};
+  DerivedRay result{tracer_.trace(ray, Tracer::Clip::none, &met), {}};
   if (result.ray.status != RayStatus::ok) return {};
-  for (std::size_t first = 0; first < numbers.size(); first += slopes_at_once) {
-    const auto some = numbers.subspan(first, std::min(slopes_at_once, numbers.size() - first));
-    const DerivedPath path = derived(tracer, ray, met, some);
-    for (std::size_t i = 0; i < some.size(); ++i)
+  for (const auto& part : parts_) {
+    const DerivedPath path = part->derived(tracer_, ray, met);
+    for (std::size_t i = 0; i < slopes_at_once && result.by.size() < numbers_.size(); ++i)
       result.by.push_back({path.x.slope.by[i], path.y.slope.by[i], path.l.slope.by[i], path.m.slope.by[i],
                            path.opl.slope.by[i]});
   }

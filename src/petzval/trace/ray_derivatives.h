@@ -6,8 +6,8 @@
 #include <petzval/trace/tracer.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace petzval {
@@ -18,15 +18,21 @@ struct LensNumber {
     curvature_per_mm,
     thickness_mm,  ///< all that lies behind the surface moves along
     conic,
-    power  ///< the coefficient of r^power
+    power,         ///< the coefficient of r^power
+    surface_pose,  ///< one of pose_numbers, [mm] or [degrees]
+    group_pose,    ///< the same of a group of surfaces
+    sensor_pose    ///< and of the sensor
   };
   Kind kind = Kind::curvature_per_mm;
-  std::size_t surface = 0;
-  int power = 0;
+  std::size_t surface = 0;  ///< of a group its place among the groups
+  int power = 0;            ///< of poses the place in pose_numbers
+
+  bool is_pose() const { return kind >= Kind::surface_pose; }
+  friend bool operator==(const LensNumber&, const LensNumber&) = default;
 };
 
 double value_of(const Lens& lens, const LensNumber& number);
-/// \throws InputError for a surface or a power that there is not.
+/// \throws InputError for a surface, a group or a power that there is not.
 Lens with_value(Lens lens, const LensNumber& number, double value);
 
 /// A ray at the image surface, with its derivatives by numbers of the lens.
@@ -41,12 +47,27 @@ struct DerivedRay {
   std::vector<Slope> by;  ///< in the order of the numbers
 };
 
-/// Traces a ray that is launched where it is whatever the lens, and is not clipped. Derivatives are exact:
-/// the surfaces' own formulas in dual numbers (forward automatic differentiation), the intersection by the
-/// theorem of implicit functions, so that Newton's steps leave no trace in them. Cost grows with the number
-/// of derivatives. Nothing where the ray misses a surface or is totally reflected.
-/// \param tracer  of `lens`. \throws InputError for a lens with poses.
-std::optional<DerivedRay> trace_derived(const Tracer& tracer, const Ray& ray,
-                                        std::span<const LensNumber> numbers);
+/// Traces rays that are launched where they are whatever the lens, and are not clipped, with derivatives.
+/// These are exact: the surfaces' own formulas and those of poses in dual numbers (forward automatic
+/// differentiation), the intersection by the theorem of implicit functions, so that Newton's steps leave no
+/// trace in them. Cost grows with the number of derivatives.
+class DerivedTracer {
+ public:
+  /// \throws InputError as Tracer, and for a lens with gratings, ideal lenses or ray transfers.
+  DerivedTracer(const Lens& lens, double wavelength_nm, std::vector<LensNumber> numbers);
+  DerivedTracer(DerivedTracer&&) noexcept;
+  ~DerivedTracer();
+
+  const Tracer& tracer() const { return tracer_; }
+  /// Nothing where the ray misses a surface or is totally reflected.
+  std::optional<DerivedRay> trace(const Ray& ray) const;
+
+ private:
+  struct Part;  ///< of the lens, for as many numbers as are carried at once
+
+  Tracer tracer_;
+  std::vector<LensNumber> numbers_;
+  std::vector<std::unique_ptr<const Part>> parts_;
+};
 
 }  // namespace petzval

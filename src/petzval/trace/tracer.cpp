@@ -34,20 +34,6 @@ void come_near(const Tracer::PreparedSurface& first, bool backward, SurfaceRay& 
   ray.opl += distance * (backward ? first.index_after : first.index_before);
 }
 
-void into(const Frame& frame, SurfaceRay& ray) {
-  const auto& [ox, oy, oz] = frame.offset_mm;
-  const Frame::Vector point = frame.from_lens({ray.x - ox, ray.y - oy, ray.z - oz});
-  const Frame::Vector direction = frame.from_lens({ray.l, ray.m, ray.n});
-  ray = {point[0], point[1], point[2], direction[0], direction[1], direction[2], ray.opl};
-}
-
-void out_of(const Frame& frame, SurfaceRay& ray) {
-  const auto& [ox, oy, oz] = frame.offset_mm;
-  const Frame::Vector point = frame.to_lens({ray.x, ray.y, ray.z});
-  const Frame::Vector direction = frame.to_lens({ray.l, ray.m, ray.n});
-  ray = {point[0] + ox, point[1] + oy, point[2] + oz, direction[0], direction[1], direction[2], ray.opl};
-}
-
 void store(const SurfaceRay& from, double vertex_z, Ray& ray) {
   ray.point_mm = {from.x, from.y, from.z + vertex_z};
   ray.direction = {from.l, from.m, from.n};
@@ -82,7 +68,7 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
     // Light leaves a mirror in the other sense; a ray that goes back comes against that.
     const double sense = backward ? (surface.mirror ? surface.sense : -surface.sense) : surface.sense;
     double normal[3] = {0, 0, 1};
-    if (surface.posed) into(surface.frame, at);
+    if (surface.posed) enter_frame(surface.frame, at);
     SurfaceRay met = at;
     if (surface.transfer) {
       TransferCrossing crossing;
@@ -111,8 +97,8 @@ void walk(const std::vector<Tracer::PreparedSurface>& surfaces, bool backward, R
       ray.status = RayStatus::vignetted;
     }
     if (surface.posed) {
-      out_of(surface.frame, at);
-      out_of(surface.frame, met);
+      leave_frame(surface.frame, at);
+      leave_frame(surface.frame, met);
     }
     if (ray.status != RayStatus::ok) {
       ray.failed_at = static_cast<int>(i);
@@ -135,7 +121,7 @@ void reach_image(const Tracer& tracer, Ray& ray) {
   if (ray.status != RayStatus::ok) return;
   if (tracer.sensor_posed()) {
     SurfaceRay at = relative_to_vertex(ray, tracer.image_z_mm());
-    into(tracer.sensor_frame(), at);
+    enter_frame(tracer.sensor_frame(), at);
     store(at, tracer.image_z_mm(), ray);
   }
   flip_image_space(tracer, ray);
@@ -155,7 +141,7 @@ void leave_image(const Tracer& tracer, Ray& ray) {
   flip_image_space(tracer, ray);
   if (!tracer.sensor_posed()) return;
   SurfaceRay at = relative_to_vertex(ray, tracer.image_z_mm());
-  out_of(tracer.sensor_frame(), at);
+  leave_frame(tracer.sensor_frame(), at);
   store(at, tracer.image_z_mm(), ray);
 }
 
