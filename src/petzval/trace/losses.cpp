@@ -271,8 +271,9 @@ double transmitted_area(const Tracer& tracer, const Pencil& pencil, const PupilB
     path.clear();
     const Ray traced = pencil.backward() ? tracer.trace_backward(*launched, Tracer::Clip::none, &path)
                                          : tracer.trace(*launched, Tracer::Clip::none, &path);
+    const Ray start = pencil.backward() ? tracer.from_image(*launched) : *launched;
     if (traced.status == RayStatus::ok)
-      sum += node.weight * transmittance.along(*launched, path, pencil.backward());
+      sum += node.weight * transmittance.along(start, path, pencil.backward());
   }
   return sum;
 }

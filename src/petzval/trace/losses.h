@@ -55,8 +55,8 @@ class LensTransmittance {
   /// From now on what apertures close inside their outer edges takes light too: all of it.
   void heed_obscurations(const Tracer& tracer);
 
-  /// 0…1 for a ray that passed. \param start  the launched ray. \param path  what Tracer::trace or
-  /// trace_backward recorded of it.
+  /// 0…1 for a ray that passed. \param start  the launched ray, in lens space (Tracer::from_image of
+  /// one that runs backwards). \param path  what Tracer::trace or trace_backward recorded of it.
   double along(const Ray& start, const std::vector<Intersection>& path, bool backward = false) const;
 
   /// The Jones matrix of a ray that passed, delays of films included (film_amplitude): fields in the root of

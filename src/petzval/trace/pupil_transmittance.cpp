@@ -40,7 +40,7 @@ void add(const Light& light, double radius_mm, double u, double v, Seen& seen) {
     const Ray start{{0, radius_mm, tracer.image_z_mm()}, {-u, -v, -std::sqrt(1 - u * u - v * v)}};
     path.clear();
     if (tracer.trace_backward(start, Tracer::Clip::none, &path).status != RayStatus::ok) return;
-    values.push_back(light.transmittances[i].along(start, path, true));
+    values.push_back(light.transmittances[i].along(tracer.from_image(start), path, true));
   }
   seen.u.push_back(u), seen.v.push_back(v);
   for (std::size_t i = 0; i < values.size(); ++i) seen.transmittance[i].push_back(values[i]);

@@ -323,6 +323,11 @@ Ray Tracer::trace_backward(Ray ray, Clip clip, std::vector<Intersection>* path) 
   return ray;
 }
 
+Ray Tracer::from_image(Ray ray) const {
+  leave_image(*this, ray);
+  return ray;
+}
+
 Tracer::Clearance Tracer::clearance(const Ray& ray, bool backward, Clip clip) const {
   Clearance result;
   result.ray = ray;

@@ -91,6 +91,9 @@ class Tracer {
   Ray trace(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
   Ray trace_backward(Ray ray, Clip clip = Clip::apertures, std::vector<Intersection>* path = nullptr) const;
 
+  /// A ray of image space, as trace_backward() takes it, in the axes of lens space.
+  Ray from_image(Ray ray) const;
+
   /// (r/r_clear)² at a surface, of the worst of its limits; clips where above 1. \param with_obscurations
   /// whether what is closed inside counts, or the outer edges alone.
   double clip_share_sq(std::size_t surface, double x_mm, double y_mm, Clip clip,
