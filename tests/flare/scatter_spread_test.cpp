@@ -135,12 +135,10 @@ TEST(ScatterShare, IsTakenFromTheImage) {
 }
 
 TEST(ScatterTracerInput, IsRefusedWithAWordOfWhatWouldBeRight) {
-  Lens lens = read_lens("cooke-triplet").lens;
+  const Lens lens = read_lens("cooke-triplet").lens;
   EXPECT_FALSE(states_scatter(lens));
   EXPECT_FALSE(ScatterTracer(lens, scatter_nm, {}).scatters());
   EXPECT_THROW(with_scatter(lens, Scatter()), InputError);
-  lens.surfaces[1].pose.decentre_x_mm = 1;
-  EXPECT_THROW(ScatterTracer(with_scatter(lens, lobe()), scatter_nm, {}), InputError);
   const ScatterTracer tracer(with_scatter(read_lens("tessar").lens, lobe()), scatter_nm, {});
   EXPECT_THROW(scatter_spread(tracer, {}, {}, {.across = 2}), InputError);
 }
