@@ -12,12 +12,44 @@
 
 namespace petzval {
 
+namespace {
+
+/// Seen after a half turn about the y axis.
+Pose turned_round(Pose pose) {
+  for (double Pose::*number : {&Pose::decentre_x_mm, &Pose::shift_z_mm, &Pose::tilt_x_deg, &Pose::tilt_z_deg})
+    if (pose.*number != 0) pose.*number = -(pose.*number);
+  return pose;
+}
+
+void turn_poses(const Lens& lens, Lens& turned) {
+  const std::size_t last = lens.surfaces.size() - 1;
+  if (!lens.sensor_pose.is_none())
+    throw InputError(
+        fmt::format("{}: the sensor is off its place, and a lens that is turned round has another; "
+                    "set sensor_pose=null",
+                    lens.name));
+  for (Surface& surface : turned.surfaces) surface.pose = turned_round(surface.pose);
+  for (std::size_t i = 0; i < lens.groups.size(); ++i) {
+    const SurfaceGroup& group = lens.groups[i];
+    if (group.last > last)
+      throw InputError(
+          fmt::format("{}: groups[{}] holds the sensor, which a lens that is turned round has "
+                      "elsewhere; groups of surfaces alone can be turned round",
+                      lens.name, i));
+    double length_mm = 0;
+    for (std::size_t k = group.first; k < group.last; ++k) length_mm += lens.surfaces[k].thickness_mm;
+    turned.groups[i] = {last - group.last, last - group.first, turned_round(group.pose),
+                        length_mm - group.pivot_mm};
+  }
+}
+
+}  // namespace
+
 Lens reversed_lens(const Lens& lens) {
   if (!lens.states.empty()) return in_every_state(lens, reversed_lens);
   lens.validate();
   require_glass(lens, "turning it round needs");
   require_no_bends(lens, "turning it round needs");
-  require_centred(lens, "centred lenses can be turned round");
   require_no_mirrors(lens, "lenses without one can be turned round");
   if (!lens.surfaces.back().material.is_air() || !lens.object_material.is_air())
     throw InputError(
@@ -27,6 +59,7 @@ Lens reversed_lens(const Lens& lens) {
   Lens turned = lens;
   turned.aperture = {Aperture::Kind::stop_semi_diameter_mm, first_order(lens).stop_semi_diameter_mm};
   std::ranges::reverse(turned.surfaces);
+  turn_poses(lens, turned);
   const std::size_t last = lens.surfaces.size() - 1;
   for (std::size_t i = 0; i <= last; ++i) {
     Surface& surface = turned.surfaces[i];
