@@ -18,6 +18,7 @@
 
 #include "clip.h"
 #include "field_option.h"
+#include "interrupted.h"
 #include "output_option.h"
 #include "plot_output.h"
 #include "sweep_folder.h"
@@ -195,10 +196,13 @@ std::vector<SheetEntry> sheet_entries(const std::vector<PointResult>& results,
       return !std::isnan(first) && (std::isnan(second) || first > second);
     });
   std::vector<SheetEntry> sheet;
+  // "least_cpp" of "corners.least_cpp".
+  const std::string name =
+      criteria.empty() ? "" : criteria.front().column.substr(criteria.front().column.rfind('.') + 1);
   for (const std::size_t i : order) {
     std::string label = label_of(results[i].point);
     if (!judged.empty())
-      label += fmt::format("  {:.3g}{}", judged[i].value, judged[i].good ? "" : "  rejected");
+      label += fmt::format("  {} {:.3g}{}", name, judged[i].value, judged[i].good ? "" : "  rejected");
     sheet.push_back({results[i].picture, label});
   }
   return sheet;
@@ -256,7 +260,13 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   std::size_t failed = 0;
   for (const SweepPoint& point : points) {
     const std::size_t index = results.size();
-    results.push_back(run_point(app, options, point, index, angles[index], with_session));
+    try {
+      results.push_back(run_point(app, options, point, index, angles[index], with_session));
+    } catch (const Cancelled&) {
+      if (written.empty()) throw;
+      throw Interrupted(fmt::format("stopped after {} of {} points; the same command goes on with the rest",
+                                    index, points.size()));
+    }
     const PointResult& result = results.back();
     check_scene_angle(result, angles[index], shared);
     if (!result.done) {

@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import time
@@ -144,6 +145,19 @@ class Sweep(ProgramTest):
         self.assertEqual((said["points"], said["failed"]), (8, 0))
         self.assertEqual(first.stat().st_mtime_ns, stamp)
         self.assertFalse([path.name for path in (self.folder / "out").iterdir() if path.name.endswith((".out", ".err"))])
+
+    def test_an_interrupted_sweep_says_what_it_keeps(self):
+        sweep = [*IMAGE, "--vary", "f-number=2:0.1:6", "-o", "out"]
+        running = subprocess.Popen([PROGRAM, *sweep], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        second = self.folder / "out" / "point-0001.json"
+        while not second.exists() and running.poll() is None:
+            time.sleep(0.005)
+        running.send_signal(signal.SIGINT)
+        said = running.communicate()[1]
+        self.assertEqual(running.returncode, 130)
+        done = int(re.search(r"stopped after (\d+) of 41 points; the same command goes on with the rest", said).group(1))
+        self.assertGreaterEqual(done, 2)
+        self.assertTrue((self.folder / "out" / f"point-{done - 1:04}.json").exists())
 
     def test_an_edited_lens_makes_its_points_anew(self):
         self.assert_succeeds("lens", "convert", "edmund-54852", "own.json")
