@@ -2,7 +2,6 @@
 // Poses of surfaces, groups and the sensor: where things come to stand, in files, in settings, and what is
 // refused.
 #include <petzval/lens/pose.h>
-#include <petzval/lens/reversed_lens.h>
 #include <petzval/lens/scaled_lens.h>
 
 #include "sample_lenses.h"
@@ -113,9 +112,8 @@ TEST(Pose, SaysWhatWouldBeRight) {
   expect_mentions(complaint("sensor_pose.decentre_x_mm=1e999"), {"1e999"});
 }
 
-TEST(Pose, OtherFormatsAndReversedLensesAreRefused) {
+TEST(Pose, OtherFormatsAreRefused) {
   const Lens lens = triplet_set("surfaces[3].pose.tilt_x_deg=0.2");
-  expect_mentions(error_of([&] { reversed_lens(lens); }), {"surfaces[3].pose", "as designed"});
   expect_mentions(error_of([&] { write_lens(lens, "posed.dat"); }), {"surfaces[3].pose", ".json"});
 }
 

@@ -12,7 +12,6 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/lens/lens_file.h>
-#include <petzval/lens/reversed_lens.h>
 
 #include <cmath>
 #include <complex>
@@ -241,16 +240,12 @@ TEST(PosedLens, ATiltedSensorDefocusesItsEdges) {
 
 TEST(PosedLens, WhatNeedsAnAxisSaysSo) {
   const Lens lens = as_built();
-  const auto complaint = [](const auto& work) {
-    try {
-      work();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
-  };
-  EXPECT_NE(complaint([&] { seidel_sums(lens); }).find("surfaces[3].pose is set"), std::string::npos);
-  EXPECT_NE(complaint([&] { reversed_lens(lens); }).find("surfaces[3].pose is set"), std::string::npos);
+  try {
+    seidel_sums(lens);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("surfaces[3].pose is set"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace
