@@ -35,10 +35,10 @@ struct ImageSeries::Impl {
   static ImagingOptions of_tails(ImagingOptions options, double strength) {
     options.photosite = {};
     options.supersample = 2;
-    // Far light is smooth, so errors of its kernels do not average out. They are errors of a weak part.
+    // Far light is smooth, so errors of its kernels do not average out. They are errors of a weak part; of
+    // the part itself none may be large, however weak.
     constexpr double smooth = 0.1, coarsest = 0.05;
-    options.product.tolerance =
-        std::clamp(options.product.tolerance * smooth / std::max(strength, smooth * 1e-3), 1e-6, coarsest);
+    options.product.tolerance = std::clamp(options.product.tolerance * smooth / strength, 1e-6, coarsest);
     // What the frame needs of the scene is there; a part of a coarse pixel may lie beyond.
     if (options.surround == Surround::error) options.surround = Surround::extend;
     return options;
