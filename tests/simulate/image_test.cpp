@@ -151,6 +151,19 @@ INSTANTIATE_TEST_SUITE_P(Bundled, Previews,
                            return name;
                          });
 
+// Source cells are how a picture is computed, not what it shows.
+TEST(Image, FramesTheSceneAlikeWithAnyNumberOfCells) {
+  const Camera camera = small_camera();
+  const auto angle_deg = [&](int cells) {
+    ImageOptions options;
+    options.imaging.supersample = cells;
+    return plan_image({.name = "checkerboard"}, camera, options).scene.horizontal_angle_deg();
+  };
+  const double chosen_deg = angle_deg(0);
+  EXPECT_EQ(angle_deg(1), chosen_deg);
+  EXPECT_EQ(angle_deg(4), chosen_deg);
+}
+
 TEST(Image, MakesFewerPsfsForAPreview) {
   Camera camera = small_camera();
   const auto psfs = [&](double tolerance) {

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/axis_deposit.h>
+#include <petzval/imaging/row_convolution.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace petzval {
 
 namespace {
 
-/// What a sample, or a part of one, gives a line of cells.
-struct LineShare {
-  std::size_t sample, cell;
-  float here, next;  ///< of the cell, and of the one behind it
+/// What each cell of a line takes of the samples: entries first[cell] to first[cell + 1].
+struct LineShares {
+  std::vector<std::size_t> first, sample;
+  std::vector<float> share;
 };
 
 /// The share of a triangle of base 2 · half within `length` of its end.
@@ -22,28 +24,45 @@ double share_within(double length, double half) {
 }
 
 /// \param first  the first sample, counted from the start of the first cell. \param step  from sample to
-/// sample.
-std::vector<LineShare> line_shares(std::size_t samples, double first, double step, std::size_t cells) {
+/// sample. \param cells  with one more at the start, and two at the end.
+LineShares line_shares(std::size_t samples, double first, double step, std::size_t cells) {
+  struct Share {
+    std::size_t sample, cell;
+    float share;
+  };
   // Triangles longer than a cell are cut into parts that are not.
   const int parts = std::max(1, static_cast<int>(std::ceil(2 * std::abs(step) - 1e-9)));
   const double half = std::abs(step) / parts;
-  std::vector<LineShare> shares;
+  std::vector<Share> given;
+  LineShares shares;
+  shares.first.resize(cells + 1);
+  const auto give = [&](std::size_t sample, std::size_t cell, double share) {
+    given.push_back({sample, cell, static_cast<float>(share)});
+    ++shares.first[cell + 1];
+  };
   for (std::size_t sample = 0; sample < samples; ++sample)
     for (int part = 0; part < parts; ++part) {
       const double middle = first + (double(sample) + (part + 0.5) / parts - 0.5) * step;
-      const double begin = middle - half, cell = std::floor(begin);
-      if (!(cell >= -1 && cell < double(cells))) continue;
-      const double here = share_within(cell + 1 - begin, half) / parts;
-      shares.push_back({sample, static_cast<std::size_t>(cell + 1), static_cast<float>(here),
-                        static_cast<float>(1.0 / parts - here)});
+      const double begin = middle - half, cell = std::floor(begin) + 1;
+      if (!(cell >= 0 && cell + 1 < double(cells))) continue;
+      const double here = share_within(cell - begin, half) / parts;
+      give(sample, static_cast<std::size_t>(cell), here);
+      give(sample, static_cast<std::size_t>(cell) + 1, 1.0 / parts - here);
     }
+  std::partial_sum(shares.first.begin(), shares.first.end(), shares.first.begin());
+  shares.sample.resize(given.size()), shares.share.resize(given.size());
+  std::vector<std::size_t> next(shares.first.begin(), shares.first.end() - 1);
+  for (const Share& each : given) {
+    const std::size_t at = next[each.cell]++;
+    shares.sample[at] = each.sample, shares.share[at] = each.share;
+  }
   return shares;
 }
 
-/// rows × columns to columns × rows.
-std::vector<float> transposed(const std::vector<float>& values, std::size_t rows, std::size_t columns) {
+/// rows × columns to columns × rows, with row_padding() behind them.
+std::vector<float> transposed(const float* values, std::size_t rows, std::size_t columns) {
   constexpr std::size_t block = 16;
-  std::vector<float> result(values.size());
+  std::vector<float> result(rows * columns + row_padding());
   for (std::size_t first_row = 0; first_row < rows; first_row += block)
     for (std::size_t first = 0; first < columns; first += block)
       for (std::size_t row = first_row; row < std::min(rows, first_row + block); ++row)
@@ -52,20 +71,17 @@ std::vector<float> transposed(const std::vector<float>& values, std::size_t rows
   return result;
 }
 
-void add_scaled(const float* line, float weight, std::size_t count, float* sums) {
-  for (std::size_t i = 0; i < count; ++i) sums[i] += weight * line[i];
-}
-
-/// Lines of `count` values each go to cells, which are lines of as many: [cell + 1][value], with a cell more
-/// at either end.
-std::vector<float> gathered(const float* lines, std::size_t count, const std::vector<LineShare>& shares,
-                            std::size_t cells) {
-  std::vector<float> sums((cells + 3) * count);
-  for (const LineShare& share : shares) {
-    const float* line = lines + share.sample * count;
-    float* cell = sums.data() + share.cell * count;
-    add_scaled(line, share.here, count, cell);
-    add_scaled(line, share.next, count, cell + count);
+/// Lines of `count` values each go to cells, which are lines of as many. \param lines  with row_padding()
+/// behind the last; so has what is returned.
+std::vector<float> gathered(const float* lines, std::size_t count, const LineShares& shares) {
+  const std::size_t cells = shares.first.size() - 1;
+  std::vector<float> sums(cells * count + row_padding());
+  std::vector<RowTerm> terms;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    terms.clear();
+    for (std::size_t i = shares.first[cell]; i < shares.first[cell + 1]; ++i)
+      terms.push_back({lines + shares.sample[i] * count, &shares.share[i]});
+    convolve_rows(terms, 0, count, sums.data() + cell * count);
   }
   return sums;
 }
@@ -74,16 +90,18 @@ std::vector<float> gathered(const float* lines, std::size_t count, const std::ve
 
 void deposit_along_axes(const float* samples, std::size_t size, double weight, const PlacedLine& down,
                         const PlacedLine& across, Kernel& kernel) {
-  const auto cells = static_cast<std::size_t>(kernel.size());
+  const auto cells = static_cast<std::size_t>(kernel.size()), sums = cells + 3;
   const auto shares = [&](const PlacedLine& line) {
-    return line_shares(size, line.first + kernel.radius + 0.5, line.step, cells);
+    return line_shares(size, line.first + kernel.radius + 0.5, line.step, sums);
   };
-  const std::vector<float> rows = gathered(samples, size, shares(down), cells);
-  const std::vector<float> turned = transposed(rows, cells + 3, size);
-  const std::vector<float> sums = gathered(turned.data(), cells + 3, shares(across), cells);
-  for (std::size_t row = 0; row < cells; ++row)
-    for (std::size_t column = 0; column < cells; ++column)
-      kernel.weights[row * cells + column] += weight * double(sums[(column + 1) * (cells + 3) + row + 1]);
+  const std::vector<float> columns = transposed(gathered(samples, size, shares(down)).data(), sums, size);
+  const std::vector<float> light =
+      transposed(gathered(columns.data(), sums, shares(across)).data(), sums, sums);
+  for (std::size_t row = 0; row < cells; ++row) {
+    const float* from = light.data() + (row + 1) * sums + 1;
+    double* to = kernel.weights.data() + row * cells;
+    for (std::size_t column = 0; column < cells; ++column) to[column] += weight * double(from[column]);
+  }
 }
 
 }  // namespace petzval

@@ -16,7 +16,8 @@ struct PlacedLine {
 
 /// Adds weight · samples to a kernel, integrated over its cells: between samples light is linear; samples
 /// coarser than half a cell are squares. One axis after the other. What falls outside the kernel is left out.
-/// \param samples  size × size, row-major. \param down, across  of the rows, and of the samples of a row.
+/// \param samples  size × size, row-major, then row_padding(). \param down, across  of the rows, and of the
+/// samples of a row.
 void deposit_along_axes(const float* samples, std::size_t size, double weight, const PlacedLine& down,
                         const PlacedLine& across, Kernel& kernel);
 

@@ -194,18 +194,25 @@ Kernel HeightKernels::mixture_at(double height_mm, std::size_t interval,
 
 SmoothPsf HeightKernels::psf_at(double height_mm, std::size_t interval) const {
   const Moments wanted = moments_at(height_mm);
-  const Kernel as_stretched = mixture_at(height_mm, interval, {1, 1});
-  // What the mixture's spread misses; what little is left then is the window's to make good.
-  const Moments own = as_stretched.moments();
-  const auto missing = [&](double wanted_square, double own_square, std::size_t axis) {
+  Kernel lattice = mixture_at(height_mm, interval, {1, 1});
+  const Moments own = lattice.moments();
+  const auto variance = [](double square, double mean) { return square - mean * mean; };
+  const double of_lattice = 1 / (steps_ * steps_);
+  const std::array<double, 2> own_variance{of_lattice * variance(own.uu, own.mean[0]),
+                                           of_lattice * variance(own.vv, own.mean[1])},
+      wanted_variance{variance(wanted.uu, wanted.mean[0]), variance(wanted.vv, wanted.mean[1])};
+  // What the mixture's spread misses. A little, as what laid it down adds, is the window's to make good.
+  constexpr double left_to_window = window_cells * window_cells / 20;
+  const auto missing = [&](std::size_t axis) {
     constexpr double least = 0.8, most = 1.25;
-    const double wanted_variance = wanted_square - wanted.mean[axis] * wanted.mean[axis];
-    const double own_variance = (own_square - own.mean[axis] * own.mean[axis]) / (steps_ * steps_);
-    if (!(wanted_variance > 0 && own_variance > 0)) return 1.0;
-    return std::clamp(std::sqrt(wanted_variance / own_variance), least, most);
+    if (!(wanted_variance[axis] > 0 && own_variance[axis] > 0) ||
+        std::abs(wanted_variance[axis] - own_variance[axis]) < left_to_window)
+      return 1.0;
+    return std::clamp(std::sqrt(wanted_variance[axis] / own_variance[axis]), least, most);
   };
-  const std::array<double, 2> beyond{missing(wanted.uu, own.uu, 0), missing(wanted.vv, own.vv, 1)};
-  return {mixture_at(height_mm, interval, beyond), 1 / steps_, wanted};
+  const std::array<double, 2> beyond{missing(0), missing(1)};
+  if (beyond != std::array{1.0, 1.0}) lattice = mixture_at(height_mm, interval, beyond);
+  return {lattice, 1 / steps_, wanted};
 }
 
 double HeightKernels::coefficients() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/axis_deposit.h>
 #include <petzval/imaging/psf_deposit.h>
+#include <petzval/imaging/row_convolution.h>
 
 #include <algorithm>
 #include <array>
@@ -77,7 +78,7 @@ MergedPsf::MergedPsf(const Psf& psf, double origin_um, int merged, const LightMo
   first_um_ = -before * spacing_um_;
   const auto size = static_cast<std::size_t>(size_), step = static_cast<std::size_t>(merged);
   const auto samples = static_cast<std::size_t>(psf.size), skipped = static_cast<std::size_t>(shift);
-  samples_.resize(size * size);
+  samples_.resize(size * size + row_padding());
   std::vector<double> sums(size);
   for (std::size_t i = 0; i < samples; ++i) {
     const float* values = psf.values.data() + i * samples;

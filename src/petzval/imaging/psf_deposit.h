@@ -73,7 +73,7 @@ class MergedPsf {
   int size_;
   double spacing_um_, origin_um_, first_um_;
   LightMoments light_;
-  std::vector<float> samples_;  ///< row-major
+  std::vector<float> samples_;  ///< row-major, then row_padding()
 };
 
 /// How a PSF is laid down: its light, stretched about its centre of gravity along {s, t}.

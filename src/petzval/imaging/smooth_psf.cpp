@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/units.h>
+#include <petzval/imaging/row_convolution.h>
 #include <petzval/imaging/smooth_psf.h>
 
 #include <algorithm>
@@ -101,7 +102,7 @@ namespace {
 
 /// The weights −reach … reach that turn samples into coefficients of a spline which is seen through a
 /// Gaussian of a variance, moved by a shift [steps of the lattice].
-std::vector<double> window_weights(double variance, double shift, int reach) {
+std::vector<float> window_weights(double variance, double shift, int reach) {
   constexpr int frequencies = 64;  // up to that of half the lattice's
   std::vector<double> weights(2 * static_cast<std::size_t>(reach) + 1);
   for (int k = 0; k < frequencies; ++k) {
@@ -116,7 +117,7 @@ std::vector<double> window_weights(double variance, double shift, int reach) {
       wave *= step;
     }
   }
-  return weights;
+  return {weights.begin(), weights.end()};
 }
 
 /// What a window must still do along an axis so that light of a variance has the wanted one and that of the
@@ -147,27 +148,30 @@ SmoothPsf::SmoothPsf(const Kernel& samples, double spacing_cells, const Moments&
   constexpr int of_spline = 4;  // steps by which a spline's coefficients reach beyond
   const int reach = static_cast<int>(std::ceil(window_reach / spacing_cells)) + of_spline;
   moments_ = wanted;
-  const std::vector<double> across = weights(wanted.uu, own.uu, 0, reach, moments_.uu),
-                            down = weights(wanted.vv, own.vv, 1, reach, moments_.vv);
+  const std::vector<float> across = weights(wanted.uu, own.uu, 0, reach, moments_.uu),
+                           down = weights(wanted.vv, own.vv, 1, reach, moments_.vv);
   half_ = samples.radius + reach;
   const auto from = static_cast<std::size_t>(samples.size()), to = static_cast<std::size_t>(2 * half_ + 1);
-  const auto scale = 1 / samples.sum();
-  std::vector<float> rows(from * to);  // filtered along rows
-  for (std::size_t i = 0; i < from; ++i)
-    for (std::size_t k = 0; k < across.size(); ++k) {
-      const auto weight = static_cast<float>(across[k]);
-      const double* in = samples.weights.data() + i * from;
-      float* out = rows.data() + i * to + k;
-      for (std::size_t j = 0; j < from; ++j) out[j] += weight * static_cast<float>(scale * in[j]);
-    }
-  coefficients_.assign(to * to, 0);
-  for (std::size_t i = 0; i < from; ++i)
-    for (std::size_t k = 0; k < down.size(); ++k) {
-      const auto weight = static_cast<float>(down[k]);
-      const float* in = rows.data() + i * to;
-      float* out = coefficients_.data() + (i + k) * to;
-      for (std::size_t j = 0; j < to; ++j) out[j] += weight * in[j];
-    }
+  const double scale = 1 / samples.sum();
+  const std::size_t padding = row_padding();
+  // A row of samples with room for the window on either side, then all of them filtered along the rows.
+  std::vector<float> row(from + 4 * static_cast<std::size_t>(reach) + padding), rows(from * to + padding);
+  for (std::size_t i = 0; i < from; ++i) {
+    const double* in = samples.weights.data() + i * from;
+    std::transform(in, in + from, row.data() + 2 * reach,
+                   [&](double value) { return static_cast<float>(scale * value); });
+    const RowTerm term{row.data() + 2 * reach, across.data()};
+    convolve_rows({&term, 1}, reach, to, rows.data() + i * to);
+  }
+  coefficients_.resize(to * to + padding);
+  std::vector<RowTerm> terms;
+  for (std::size_t i = 0; i < to; ++i) {
+    terms.clear();
+    for (std::size_t k = 0; k < down.size(); ++k)
+      if (i >= k && i - k < from) terms.push_back({rows.data() + (i - k) * to, &down[k]});
+    convolve_rows(terms, 0, to, coefficients_.data() + i * to);
+  }
+  coefficients_.resize(to * to);
 }
 
 namespace {

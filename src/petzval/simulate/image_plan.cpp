@@ -345,15 +345,13 @@ bool may_end_in_margin(const ImagePlan& plan) {
   return !plan.depth && plan.options.imaging.surround != Surround::error;
 }
 
+/// The same for any number of cells a pixel: a picture more finely sampled shows the same of the scene.
 double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
-  if (may_end_in_margin(plan)) {
-    ImagingOptions without_margin = plan.options.imaging;
-    without_margin.method = BlurMethod::none;
-    return covering_angle_deg(plan.scene, plan.table, sensor, without_margin);
-  }
-  return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, plan.options.imaging,
-                                               plan.options.depth)
-                    : covering_angle_deg(plan.scene, plan.table, sensor, plan.options.imaging);
+  ImagingOptions options = plan.options.imaging;
+  options.supersample = 0;
+  if (may_end_in_margin(plan)) options.method = BlurMethod::none;
+  return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, options, plan.options.depth)
+                    : covering_angle_deg(plan.scene, plan.table, sensor, options);
 }
 
 /// A chart or a photograph without an angle of its own fills the frame, with the margin of the PSFs or (where
