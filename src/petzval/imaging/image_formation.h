@@ -46,7 +46,7 @@ struct ImagingOptions {
   Photosite photosite = {};  ///< of the sensor, with its optical low-pass filter
   /// Of `product`: where a PSF reaches farther than twice so many pixels, the light beyond that many is
   /// formed by itself, on pixels that are wider (tail_coarseness()); 0: nowhere.
-  int tail_pixels = 32;
+  int tail_pixels = 16;
 
   /// S; as long as it is not chosen 1, with which a frame needs the widest margin; without blur what the
   /// photosite needs.
