@@ -151,9 +151,9 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
                          const ProgressCallback& progress) {
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
   if (options.denoise && !options.piece.is_whole())
-    throw InputError("`denoise` looks at a whole picture; pieces without it would be right");
+    throw InputError("`denoise_light` looks at a whole picture; pieces without it would be right");
   if (options.denoise && options.light_groups)
-    throw InputError("`light_groups` are kept as they are; without `denoise` would be right");
+    throw InputError("`light_groups` are not denoised; without `denoise_light` would be right");
   const PixelWindow wanted = checked_window(sensor, options);
   const Passes passes(world.groups, options);
   const auto [first_pass, end_pass] = passes_of_piece(options.piece, wanted, passes, world.groups, options);

@@ -27,7 +27,7 @@ render::RenderOptions sampling_of(const PreparedScene& scene, const Context& con
   options.noise = request.noise;
   options.seed = context.seed;
   options.first_surfaces = request.first_surfaces;
-  options.denoise = request.denoise;
+  options.denoise = request.denoise_light;
   options.light_groups = request.light_groups;
   options.checkpoint = request.checkpoint;
   options.checkpoint_seconds = request.checkpoint_seconds;

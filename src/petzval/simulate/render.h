@@ -91,7 +91,7 @@ struct RenderRequest {
   /// The picture without most of its noise (render/film/denoise.h): light of surfaces that are alike is
   /// shared among them. `irradiance.provenance` says so; the checkpoint keeps the light as it was. At least
   /// four samples a pixel for every eight wavelengths are taken. Not of pieces, and not with light groups.
-  bool denoise = false;
+  bool denoise_light = false;
   bool first_surfaces = false;  ///< depth, normals and albedo, too
   bool light_groups = false;    ///< what each light gives of the picture, too
   /// A file to go on from and to save to, on the way, when the picture is done and when it is stopped; more

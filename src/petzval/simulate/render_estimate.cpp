@@ -28,7 +28,7 @@ SensorGeometry coarse(const SensorGeometry& film) {
 double bytes_of(const PreparedScene& scene) {
   const render::WavelengthGroups& groups = scene.world->world->groups;
   const double bands = static_cast<double>(groups.wavelengths_nm().size());
-  const bool halves = scene.request.denoise, kept = !scene.request.checkpoint.empty();
+  const bool halves = scene.request.denoise_light, kept = !scene.request.checkpoint.empty();
   const bool layers = scene.request.first_surfaces || halves;
   const double once = bands + (layers ? bands + groups.count() + 4 : 0);
   const double sums = once * (halves ? 2 : 1) + 1 + (scene.request.noise > 0 && !halves ? 1 : 0);
@@ -54,7 +54,7 @@ RenderEstimate estimate_render(const PreparedScene& scene, const Context& contex
   const int groups = scene.world->world->groups.count();
   request.checkpoint.clear();
   request.region.reset(), request.sample_range.reset();
-  request.first_surfaces = request.light_groups = request.denoise = false;
+  request.first_surfaces = request.light_groups = request.denoise_light = false;
   request.samples_per_pixel = probe_samples_a_group * groups;
   const double wanted = request.noise;
   request.noise = wanted > 0 ? 1e-9 : 0;  // all samples are taken, and the noise is told

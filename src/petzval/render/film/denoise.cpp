@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/error.h>
-#include <petzval/base/parallel.h>
 #include <petzval/render/film/denoise.h>
 #include <petzval/render/film/patch_weights.h>
+#include <petzval/render/film/smooth_features.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 
 namespace petzval::render {
 
 namespace {
 
-constexpr int features = PictureHalves::feature_count;
-/// Coefficients of a plane in the features.
-constexpr int terms = features + 1;
+constexpr int terms = feature_terms;
 
 /// Of the halves' noise, over their mean light, in squares of this radius: one difference says little.
 constexpr int variance_radius = 4;
@@ -23,13 +20,14 @@ constexpr int variance_radius = 4;
 constexpr double dark_light = 0.02;
 /// Relative differences that a picture without noise keeps.
 constexpr float finest_difference = 3e-4f;
-/// Of features, in units of their standard deviation over the picture.
-constexpr float finest_feature = 1e-3f;
 /// Keeps slopes finite where a feature is about the same in all neighbours: the square of a spread in the
 /// same unit.
 constexpr double least_spread = 1e-3;
 /// Errors of pixels darker than this share of the mean are measured by that.
 constexpr double dark_error = 0.1;
+
+/// Pixels whose errors decide together what a pixel takes, beside the next ones alone.
+constexpr int decision_radius = 3;
 
 struct FilterChoice {
   int reach, patch;
@@ -37,16 +35,6 @@ struct FilterChoice {
 };
 /// A narrow one for what is fine and a wide one for what is smooth.
 constexpr std::array<FilterChoice, 2> filters{{{5, 1, 0.3f}, {7, 3, 0.8f}}};
-constexpr FilterChoice of_features{4, 2, 1.0f};
-
-void for_tiles(int columns, int rows, const std::function<void(const PixelWindow&)>& body) {
-  constexpr int side = 32;
-  const int across = (columns + side - 1) / side, down = (rows + side - 1) / side;
-  parallel_tasks(static_cast<std::size_t>(across * down), [&](std::size_t i) {
-    const int left = static_cast<int>(i) % across * side, top = static_cast<int>(i) / across * side;
-    body({left, top, std::min(left + side, columns), std::min(top + side, rows)});
-  });
-}
 
 /// Means over thirds of the bands.
 Planes guide_of(const PictureHalves& picture, int half) {
@@ -91,77 +79,6 @@ Noise noise_of_light(const Planes& a, const Planes& b) {
   Noise noise{box_mean(relative, variance_radius), std::move(tolerance)};
   for (std::size_t i = 0; i < scale.values.size(); ++i) noise.variance.values[i] *= scale.values[i];
   return noise;
-}
-
-/// One feature of a half, in units of the standard deviation that it has over the picture.
-Planes feature_of(const PictureHalves& picture, int half, int feature) {
-  Planes plane(picture.columns, picture.rows, 1);
-  const auto all = [&](std::size_t side) {
-    return std::span(picture.halves[side].features)
-        .subspan(static_cast<std::size_t>(feature) * plane.size(), plane.size());
-  };
-  const auto count = static_cast<double>(plane.size());
-  double sum = 0, squares = 0;
-  for (std::size_t i = 0; i < plane.size(); ++i) {
-    const double value = (static_cast<double>(all(0)[i]) + static_cast<double>(all(1)[i])) / 2;
-    sum += value, squares += value * value;
-  }
-  const double spread = std::sqrt(std::max(0.0, squares / count - sum * sum / count / count));
-  const double scale = spread > 1e-9 * std::abs(sum / count) ? 1 / spread : 0;
-  for (std::size_t i = 0; i < plane.size(); ++i)
-    plane.values[i] = static_cast<float>(scale * static_cast<double>(all(static_cast<std::size_t>(half))[i]));
-  return plane;
-}
-
-/// Sums of a plane over the neighbours of the pixels of a tile, by weights that add up to 1.
-void smooth_tile(const Planes& plane, const Likeness& likeness, const PixelWindow& tile, float share,
-                 std::vector<float>& result, std::size_t stride) {
-  const std::vector<float> weights = patch_weights(likeness, tile);
-  const int reach = likeness.reach, side = likeness.side();
-  for (int row = tile.top; row < tile.bottom; ++row)
-    for (int column = tile.left; column < tile.right; ++column) {
-      float sum = 0, of_weights = 0;
-      for (int down = std::max(-reach, -row); down <= std::min(reach, plane.rows - 1 - row); ++down)
-        for (int right = std::max(-reach, -column); right <= std::min(reach, plane.columns - 1 - column);
-             ++right) {
-          const float weight =
-              weights[static_cast<std::size_t>((down + reach) * side + right + reach) * tile.size() +
-                      tile.index(column, row)];
-          sum += weight * plane.values[plane.at(0, row + down, column + right)];
-          of_weights += weight;
-        }
-      result[plane.at(0, row, column) * stride] += share * sum / of_weights;
-    }
-}
-
-/// The features without their noise, [pixel][term]; term 0 is 1 in all.
-std::vector<float> smooth_features(const PictureHalves& picture) {
-  const std::size_t pixels =
-      static_cast<std::size_t>(picture.columns) * static_cast<std::size_t>(picture.rows);
-  std::vector<float> result(pixels * terms, 0.0f);
-  for (std::size_t i = 0; i < pixels; ++i) result[i * terms] = 1;
-  for (int feature = 0; feature < features; ++feature) {
-    const std::array<Planes, 2> halves{feature_of(picture, 0, feature), feature_of(picture, 1, feature)};
-    Planes squared = halves[0];
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const float difference = halves[0].values[i] - halves[1].values[i];
-      squared.values[i] = difference * difference / 2;
-    }
-    const Planes variance = box_mean(squared, 1);
-    Planes tolerance = squared;
-    std::ranges::fill(tolerance.values, finest_feature * finest_feature);
-    std::vector<float> smooth(pixels, 0.0f);
-    for_tiles(picture.columns, picture.rows, [&](const PixelWindow& tile) {
-      for (std::size_t half = 0; half < 2; ++half)
-        smooth_tile(halves[half],
-                    {halves[1 - half], variance, tolerance, of_features.reach, of_features.patch,
-                     of_features.strictness},
-                    tile, 0.5f, smooth, 1);
-    });
-    for (std::size_t i = 0; i < pixels; ++i)
-      result[i * terms + static_cast<std::size_t>(feature) + 1] = smooth[i];
-  }
-  return result;
 }
 
 /// The row of the inverse that gives a fit's value at the pixel itself: normal equations by Cholesky's
@@ -335,7 +252,10 @@ Planes shares_of(const PictureHalves& picture, const Planes& error) {
     const float scale = near.values[i % near.size()];
     relative.values[i] /= scale * scale + least * least + 1e-30f;
   }
+  // Of the next pixels, for what is small; and of some more, lest chance decides.
+  const Planes around = box_mean(relative, decision_radius);
   relative = box_mean(relative, 1);
+  for (std::size_t i = 0; i < error.values.size(); ++i) relative.values[i] += around.values[i];
   std::ranges::fill(picked.values, 0.0f);
   for (std::size_t i = 0; i < light.size(); ++i) {
     std::size_t best = 0;
@@ -354,7 +274,7 @@ std::vector<float> denoised(const PictureHalves& picture) {
   const auto bands = static_cast<std::size_t>(picture.bands);
   for (const PictureHalves::Half& half : picture.halves)
     if (picture.columns < 1 || picture.rows < 1 || picture.bands < 1 || half.light.size() != pixels * bands ||
-        half.features.size() != pixels * features)
+        half.features.size() != pixels * PictureHalves::feature_count)
       throw InputError("a half of a picture has another size than the picture");
   const Candidates tried = candidates_of(picture);
   const Planes shares = shares_of(picture, tried.error);

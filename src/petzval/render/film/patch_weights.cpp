@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/parallel.h>
 #include <petzval/render/film/patch_weights.h>
 
 #include <algorithm>
@@ -57,6 +58,15 @@ void patch_sums(const PixelWindow& window, const PixelWindow& tile, int radius,
 }
 
 }  // namespace
+
+void for_tiles(int columns, int rows, const std::function<void(const PixelWindow&)>& body) {
+  constexpr int side = 32;
+  const int across = (columns + side - 1) / side, down = (rows + side - 1) / side;
+  parallel_tasks(static_cast<std::size_t>(across * down), [&](std::size_t i) {
+    const int left = static_cast<int>(i) % across * side, top = static_cast<int>(i) / across * side;
+    body({left, top, std::min(left + side, columns), std::min(top + side, rows)});
+  });
+}
 
 Planes box_mean(const Planes& planes, int radius) {
   Planes result(planes.columns, planes.rows, planes.count), across = result;

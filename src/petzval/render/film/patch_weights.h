@@ -4,6 +4,7 @@
 
 #include <petzval/render/film/pixel_window.h>
 
+#include <functional>
 #include <vector>
 
 namespace petzval::render {
@@ -30,6 +31,9 @@ struct Planes {
 
 /// Means over squares of 2 `radius` + 1 pixels, at the border over what is there.
 Planes box_mean(const Planes& planes, int radius);
+
+/// Calls `body` for tiles that cover a picture, on any thread; it writes to its own tile.
+void for_tiles(int columns, int rows, const std::function<void(const PixelWindow&)>& body);
 
 /// What is compared.
 struct Likeness {
