@@ -20,6 +20,8 @@ constexpr int variance_radius = 4;
 constexpr double dark_light = 0.02;
 /// Relative differences that a picture without noise keeps.
 constexpr float finest_difference = 3e-4f;
+/// Neighbours of less than this count as nothing.
+constexpr float least_weight = 0.01f;
 /// Keeps slopes finite where a feature is about the same in all neighbours: the square of a spread in the
 /// same unit.
 constexpr double least_spread = 1e-3;
@@ -147,7 +149,7 @@ struct Fit {
         const float weight =
             weights[static_cast<std::size_t>((down + reach) * side + right + reach) * tile.size() +
                     tile.index(column, row)];
-        if (weight > 0)
+        if (weight > least_weight)
           near.push_back({static_cast<std::size_t>(row + down) * static_cast<std::size_t>(picture.columns) +
                               static_cast<std::size_t>(column + right),
                           weight});
@@ -168,7 +170,8 @@ struct Fit {
       const std::array<float, terms> x = difference(each);
       for (std::size_t i = 0; i < terms; ++i) {
         const float first = each.weight * x[i];
-        for (std::size_t j = 0; j < terms; ++j) sums[i][j] += first * x[j];
+        // The upper triangle, in halves of a row: vectors of four.
+        for (std::size_t j = i < terms / 2 ? 0 : terms / 2; j < terms; ++j) sums[i][j] += first * x[j];
       }
     }
     const std::array<float, terms> row = value_at_itself(sums);

@@ -3,14 +3,20 @@
 #include <petzval/render/film/patch_weights.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace petzval::render {
 
 namespace {
 
-/// exp(−d²) of a thousandth.
-constexpr float farthest = 6.9f;
+/// From this d² on the weight is 0.
+constexpr float farthest = 8;
+
+/// (1 − d²/8)⁸, much like exp(−d²), but in a few multiplications.
+float weight_at(float d2) {
+  float weight = std::clamp(1 - d2 / farthest, 0.0f, 1.0f);
+  weight *= weight, weight *= weight;
+  return weight * weight;
+}
 
 /// Squared distances of the pixels of a window from their neighbours, 0 where one is outside.
 void distances(const Likeness& likeness, const PixelWindow& window, int down, int right,
@@ -115,8 +121,7 @@ std::vector<float> patch_weights(const Likeness& likeness, const PixelWindow& ti
         for (int column = std::max(tile.left, -right); column < std::min(tile.right, guide.columns - right);
              ++column) {
           const std::size_t at = tile.index(column, row);
-          const float d2 = std::max(0.0f, sums[at] * each);
-          if (d2 < farthest) to[at] = std::exp(-d2);
+          to[at] = weight_at(sums[at] * each);
         }
     }
   float* own = &weights[static_cast<std::size_t>(side * side / 2) * tile.size()];

@@ -48,8 +48,9 @@ struct Likeness {
 };
 
 /// For each pixel of a tile the weights of its neighbours, [neighbour][pixel]: row by row of the square
-/// around it, 0 outside of the picture and below a thousandth; that of the pixel itself is 1.
-/// exp(−d²), where d² is the mean over the patch and the guide's planes of
+/// around it, 0 outside of the picture; that of the pixel itself is 1.
+/// (1 − d²/8)⁸, much like exp(−d²) and 0 from d² = 8 on, where d² is the mean over the patch and the guide's
+/// planes of
 /// ((a − b)² − (σa² + min(σa², σb²))) / (tolerance + k²(σa² + σb²)), at least 0 (Rousselle and others 2012,
 /// equation 3).
 std::vector<float> patch_weights(const Likeness& likeness, const PixelWindow& tile);

@@ -36,24 +36,29 @@ Planes feature_of(const PictureHalves& picture, int half, int feature) {
   return plane;
 }
 
-/// Sums of a plane over the neighbours of the pixels of a tile, by weights that add up to 1.
+/// Adds a share of the means of a plane over the neighbours of the pixels of a tile, by their weights.
 void smooth_tile(const Planes& plane, const Likeness& likeness, const PixelWindow& tile, float share,
                  std::vector<float>& result) {
   const std::vector<float> weights = patch_weights(likeness, tile);
-  const int side = likeness.side();
+  std::vector<float> sums(tile.size(), 0.0f), of_weights(tile.size(), 0.0f);
+  const float* weight = weights.data();
+  for (int down = -reach; down <= reach; ++down)
+    for (int right = -reach; right <= reach; ++right, weight += tile.size()) {
+      const int left = std::max(tile.left, -right), end = std::min(tile.right, plane.columns - right);
+      for (int row = std::max(tile.top, -down); left < end && row < std::min(tile.bottom, plane.rows - down);
+           ++row) {
+        const std::size_t within = tile.index(left, row);
+        const float* from = &plane.values[plane.at(0, row + down, left + right)];
+        for (std::size_t i = 0; i < static_cast<std::size_t>(end - left); ++i) {
+          sums[within + i] += weight[within + i] * from[i];
+          of_weights[within + i] += weight[within + i];
+        }
+      }
+    }
   for (int row = tile.top; row < tile.bottom; ++row)
     for (int column = tile.left; column < tile.right; ++column) {
-      float sum = 0, of_weights = 0;
-      for (int down = std::max(-reach, -row); down <= std::min(reach, plane.rows - 1 - row); ++down)
-        for (int right = std::max(-reach, -column); right <= std::min(reach, plane.columns - 1 - column);
-             ++right) {
-          const float weight =
-              weights[static_cast<std::size_t>((down + reach) * side + right + reach) * tile.size() +
-                      tile.index(column, row)];
-          sum += weight * plane.values[plane.at(0, row + down, column + right)];
-          of_weights += weight;
-        }
-      result[plane.at(0, row, column)] += share * sum / of_weights;
+      const std::size_t within = tile.index(column, row);
+      result[plane.at(0, row, column)] += share * sums[within] / of_weights[within];
     }
 }
 
