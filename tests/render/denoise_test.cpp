@@ -99,6 +99,29 @@ TEST(Denoise, TakesMostOfTheNoiseOutOfEvenLight) {
   EXPECT_NEAR(sum, 2, 2 * 3 * 0.3 / std::sqrt(2.0 * bands * columns * rows));
 }
 
+TEST(Denoise, SharesRareBrightSamplesAmongTheirNeighbours) {
+  // One pixel in ten of each half has eleven times the light of the others. By itself it would look like a
+  // lamp; the other half knows better.
+  PictureHalves picture = noisy(even, 0);
+  std::mt19937 generator(3);
+  std::bernoulli_distribution bright(0.1);
+  for (PictureHalves::Half& half : picture.halves)
+    for (std::size_t i = 0; i < half.light.size(); i += bands) {
+      const float factor = bright(generator) ? 5.5f : 0.5f;
+      for (std::size_t band = 0; band < bands; ++band) half.light[i + band] *= factor;
+    }
+  const std::vector<float> light = denoised(picture);
+  // The standard deviation of the halves' mean, and a third of it.
+  EXPECT_LT(error(light, even), 1.5 / std::sqrt(2.0) / 3);
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    before += static_cast<double>(picture.halves[0].light[i] + picture.halves[1].light[i]) / 2;
+    after += static_cast<double>(light[i]);
+  }
+  // Weights that had seen what they weigh would lose a tenth.
+  EXPECT_NEAR(after / before, 1, 0.03);
+}
+
 TEST(Denoise, KeepsAnEdgeThatNoFeatureShows) {
   // The step is 3.3 times the noise of a half. A pixel beside it may not take more than 3 % of it.
   const std::vector<float> light = denoised(noisy(step, 0.15));
