@@ -51,6 +51,7 @@ void patch_sums(const PixelWindow& window, const PixelWindow& tile, int radius,
     float* to = &rows[static_cast<std::size_t>(row - window.top) * width];
     for (int by = -radius; by <= radius; ++by) {
       const int left = std::max(tile.left, window.left - by), end = std::min(tile.right, window.right - by);
+      if (left >= end) continue;
       const float* from = &values[window.index(left + by, row)];
       for (int i = 0; i < end - left; ++i) to[left - tile.left + i] += from[i];
     }
