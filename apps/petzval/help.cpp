@@ -39,7 +39,8 @@ const std::set<std::string> everyday{"--help",          "--lens",          "--op
                                      "--vary",          "--black",         "--order",
                                      "--film-distance", "--dry-run",       "--preview",
                                      "--list",          "--camera-at",     "--look-at",
-                                     "--layers",        "--frames",        "--clip"};
+                                     "--layers",        "--frames",        "--clip",
+                                     "--denoise-light"};
 
 struct HelpGroup {
   const char* heading;

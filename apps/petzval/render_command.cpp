@@ -269,6 +269,9 @@ void add_sampling_options(RenderRequest& request, CLI::App& command) {
                   "End as soon as nine of ten tiles are estimated to be this close to the picture without "
                   "noise: RMS error over mean light, 0.02 for instance")
       ->check(positive_number());
+  command.add_flag("--denoise-light", request.denoise_light,
+                   "Take most of the noise out of the light: surfaces that are alike share theirs. The files "
+                   "say so, and the checkpoint keeps the light as it was");
   command
       .add_option(
           "--checkpoint", request.checkpoint,

@@ -291,6 +291,7 @@ nlohmann::ordered_json summary_json(const PreparedScene& scene, const Rendering&
                {"wavelengths_nm", image.wavelengths_nm()},
                {"samples_per_pixel", picture.samples_per_pixel},
                {"noise", picture.noise ? Json(*picture.noise) : Json()},
+               {"denoised", picture.denoised},
                {"camera_rays", picture.rays},
                {"camera_rays_passed", picture.passed},
                {"mean_irradiance", sum / static_cast<double>(values.size())},
@@ -323,6 +324,7 @@ void print_summary(const PreparedScene& scene, const Rendering& picture, const O
                  static_cast<double>(std::max<std::uint64_t>(picture.rays, 1)),
              picture.rays);
   if (picture.noise) fmt::print("  noise    {:.3g} (RMS error over mean light)\n", *picture.noise);
+  if (picture.denoised) fmt::print("  denoised by non-local means of light, albedo, normals and depth\n");
   fmt::print("  time     {:.2f} s to prepare, {:.1f} s for light, {:.3g} million camera rays a second\n",
              seconds.prepare, seconds.light,
              static_cast<double>(picture.rays) * 1e-6 / std::max(seconds.light, 1e-9));

@@ -40,7 +40,7 @@ RenderRequest request_of(
     Maybe<std::array<double, 3>> look_move, double rolling_shutter, const std::string& camera_origin,
     Maybe<double> near_distance, Maybe<double> far_distance, Maybe<std::array<int, 4>> region,
     Maybe<std::array<int, 2>> sample_range, const std::vector<std::string>& lights, double scene_time,
-    bool light_groups) {
+    bool light_groups, bool denoise_light) {
   RenderRequest r;
   for (const std::string& text : lights) r.light_changes.push_back(render::parse_light_change(text));
   r.scene = scene, r.camera = camera.value();
@@ -64,7 +64,7 @@ RenderRequest request_of(
       {{"film", RenderRequest::Origin::film}, {"front", RenderRequest::Origin::front}});
   r.near_distance = near_distance, r.far_distance = far_distance;
   r.region = region, r.sample_range = sample_range, r.scene_time = scene_time;
-  r.light_groups = light_groups;
+  r.light_groups = light_groups, r.denoise_light = denoise_light;
   return r;
 }
 #define PETZVAL_RENDER_ARGUMENTS                                                                            \
@@ -85,7 +85,7 @@ RenderRequest request_of(
       nb::arg("near_distance").none() = nb::none(), nb::arg("far_distance").none() = nb::none(),            \
       nb::arg("region").none() = nb::none(), nb::arg("sample_range").none() = nb::none(),                   \
       nb::arg("lights") = std::vector<std::string>(), nb::arg("scene_time") = 0.0,                          \
-      nb::arg("light_groups") = false
+      nb::arg("light_groups") = false, nb::arg("denoise_light") = false
 
 std::vector<std::int32_t> interleaved(const SceneSegments& seen) {
   std::vector<std::int32_t> values;
@@ -206,7 +206,8 @@ constexpr const char* render_text =
     "as "
     "of `image`; the rendering's `flare` has their layers. `first_surfaces`, `segments` and `flow` add what "
     "is "
-    "known of each pixel, `light_groups` what each light gives. Raises InputError; Cancelled.";
+    "known of each pixel, `light_groups` what each light gives. `denoise_light` takes most of the noise out; "
+    "the light's `provenance` says so. Raises InputError; Cancelled.";
 
 }  // namespace
 
@@ -264,6 +265,8 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
       .def_prop_ro(
           "passed", [](const RenderingInPython& r) { return r.passed; }, "Rays that got through the lens.")
       .def_prop_ro("samples_per_pixel", [](const RenderingInPython& r) { return r.samples_per_pixel; })
+      .def_prop_ro(
+          "denoised", [](const RenderingInPython& r) { return r.denoised; }, "Whether `light` was denoised.")
       .def_prop_ro(
           "noise", [](const RenderingInPython& r) { return r.noise; }, "Estimate, if it was asked for.")
       .def("__repr__", [](const RenderingInPython& r) {

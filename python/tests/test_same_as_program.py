@@ -153,6 +153,15 @@ def test_rendering(program, tmp_path):
     assert 0 <= rendering.albedo.min() < rendering.albedo.max() <= 1
 
 
+def test_rendering_that_is_denoised(program, tmp_path):
+    program.run("render", "spheres", "--lens", "dgauss-50mm", "--focus", "1.2m", "--size", "30x20", "--wavelengths", "450,550", "--spp", 8,
+                "--denoise-light", "-o", "light.npy")
+    rendering = pz.Camera("dgauss-50mm", focus="1.2m").render("spheres", size=(30, 20), wavelengths_nm=[450, 550], samples_per_pixel=8,
+                                                              denoise_light=True)
+    assert np.array_equal(np.load(tmp_path / "light.npy"), rendering.light.values)
+    assert rendering.denoised and "denoised" in rendering.light.provenance and rendering.depth is None
+
+
 def test_rendering_of_a_camera_that_moves(program, tmp_path):
     program.run("render", "spheres", "--lens", "dgauss-50mm", "--focus", "1.2m", "--size", "30x20", "--wavelengths", 550, "--spp", 2,
                 "--camera-move", "0.02,0,0", "--rolling-shutter", 0.5, "--near", 0.5, "--far", 20, "--camera-origin", "front",

@@ -279,6 +279,23 @@ class Render(ProgramTest):
         self.assert_refused("merge", *[name + ".sums" for name in "abcf"], "-o", "x.sums", words=["f.sums", '"petzval 9', "a.sums has"])
         self.assertFalse((self.folder / "x.sums").exists())
 
+    def test_denoises_and_says_so(self):
+        say = ["render", "s.pbrt", *LENS, "--wavelengths", "450,550,650", "--checkpoint", "sums", "--denoise-light"]
+        said = self.json_of(*say, "--spp", "8", "-o", "a.exr", "-o", "a.png", "-o", "a.npy", "--threads", "1")
+        self.assertIs(said["denoised"], True)
+        for file in ["a.exr", "a.png"]:
+            self.assertIn(b"denoised by non-local means", (self.folder / file).read_bytes(), file)
+        self.assertIs(self.json_of("render", "s.pbrt", *LENS, "--spp", "8", "--wavelengths", "550", "-o", "raw.npy")["denoised"], False)
+        # The checkpoint has the light as it was: more samples make the bytes of all at once.
+        self.assert_succeeds(*say, "--spp", "16", "-o", "more.npy")
+        (self.folder / "sums").unlink()
+        self.assert_succeeds(*say, "--spp", "16", "-o", "at-once.npy")
+        self.assertEqual((self.folder / "more.npy").read_bytes(), (self.folder / "at-once.npy").read_bytes())
+        plain = [argument for argument in say if argument != "--denoise-light"]
+        self.assert_refused(*plain, "--spp", "16", "-o", "b.npy", words=["to be denoised"])
+        self.assert_refused(*say, "--spp", "16", "-o", "b.npy", "--light-groups", "l.npy", words=["--denoise-light", "--light-groups"])
+        self.assert_refused(*say, "--spp", "16", "-o", "b.npy", "--region", "0,0,8,8", words=["--denoise-light"])
+
     def test_refuses_pieces_that_are_none(self):
         for changed, words in (({"region": "60,0,5,5"}, ["--region", "0,0 to 63,47"]), ({"region": "0,0,0,5"}, ["--region"]),
                                ({"sample_range": "8:16"}, ["--sample-range 8:16", "multiples of 16 from 0 to 256"]),

@@ -80,6 +80,21 @@ std::vector<Value> values_of(const std::string& npy, std::size_t count) {
   return values;
 }
 
+TEST(Dataset, ItemsSayThatTheirLightIsDenoised) {
+  const Scratch scratch;
+  scratch.with("ball.pbrt", ball);
+  std::string text = R"({"format": "petzval-dataset/1", "items": 1,
+    "parameters": {"lens": "dgauss-50mm", "world": "ball.pbrt", "sensor": "example-vga", "focus_distance_m": 2},
+    "sensor_set": ["columns=32", "rows=24", "pitch_um=800"], "wavelengths_nm": "500,600", "samples_per_pixel": 8,
+    "denoise_light": true})";
+  make_dataset(read_recipe(scratch.with("recipe.json", text)), scratch.path("set"));
+  const auto files = members_of(scratch.path("set"));
+  EXPECT_EQ(json::parse(files.at("0000000.json")).at("denoised"), true);
+  // Only rendered light has noise that a denoiser takes out.
+  text.replace(text.find("\"world\": \"ball.pbrt\""), 20, "\"scene\": \"colorchecker\"");
+  EXPECT_THROW(parse_recipe(text, "recipe.json", ""), InputError);
+}
+
 TEST(Dataset, ItemsOfAWorldHaveMasksBoxesPosesAndFlow) {
   const Scratch scratch;
   scratch.with("ball.pbrt", ball);

@@ -101,6 +101,50 @@ TEST(Renderer, LightGroupsAddUpToThePicture) {
   EXPECT_GT(of_lamp, 0.1 * of_sky);
 }
 
+/// RMS relative error; of dark pixels, relative to a tenth of the picture's mean.
+double error_of(const Rendering& picture, const std::vector<float>& truth) {
+  double sum = 0, squares = 0;
+  for (const float value : truth) sum += static_cast<double>(value);
+  const double least = 0.1 * sum / static_cast<double>(truth.size());
+  const std::vector<float> light = values(picture);
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    squares += std::pow(
+        static_cast<double>(light[i] - truth[i]) / std::hypot(static_cast<double>(truth[i]), least), 2);
+  return std::sqrt(squares / static_cast<double>(truth.size()));
+}
+
+TEST(Renderer, DenoisesToASmallerErrorThatSamplesMakeSmallerStill) {
+  const SmallPicture small;
+  RenderOptions options;
+  options.seed = 99;
+  const std::vector<float> truth = values(small.render_with(options, 2048));
+  options.seed = 1;
+  const double raw = error_of(small.render_with(options, 16), truth);
+  options.denoise = true;
+  const Rendering few = small.render_with(options, 16), more = small.render_with(options, 256);
+  EXPECT_TRUE(few.denoised);
+  EXPECT_EQ(few.samples_per_pixel, 16);
+  // As good as twice the samples, of a picture of 40 x 30 pixels that is mostly edges.
+  EXPECT_LT(error_of(few, truth), raw / std::sqrt(2.0));
+  EXPECT_LT(error_of(more, truth), error_of(few, truth) / 2);
+  // What the checkpoint keeps is the light as it was: it goes on to the bytes of all samples at once.
+  const test::Scratch scratch;
+  options.checkpoint = scratch.path("checkpoint");
+  EXPECT_EQ(values(small.render_with(options, 16)), values(few));
+  EXPECT_EQ(values(small.render_with(options, 256)), values(more));
+}
+
+TEST(Renderer, DenoisesWholePicturesAlone) {
+  const SmallPicture small;
+  RenderOptions options;
+  options.denoise = true;
+  options.light_groups = true;
+  EXPECT_THROW(small.render_with(options, 16), InputError);
+  options.light_groups = false;
+  options.piece.region = PixelWindow{0, 0, 8, 8};
+  EXPECT_THROW(small.render_with(options, 16), InputError);
+}
+
 TEST(Renderer, GoesOnFromACheckpointToTheSameBytes) {
   const SmallPicture small;
   const test::Scratch scratch;

@@ -65,6 +65,16 @@ TEST(RenderScene, SaysWhereItsLightComesFrom) {
   EXPECT_NE(said.find("8 samples a pixel, seed 7"), std::string::npos) << said;
 }
 
+TEST(RenderScene, SaysThatItsLightIsDenoised) {
+  const Scenes scenes;
+  RenderRequest request = scenes.request();
+  request.denoise_light = true;
+  const Rendering picture = render_scene(request);
+  EXPECT_TRUE(picture.denoised);
+  EXPECT_NE(picture.irradiance.provenance.find("denoised by non-local means"), std::string::npos);
+  EXPECT_FALSE(picture.first_surfaces);  // which nobody asked for
+}
+
 TEST(RenderScene, GivesTheSameBytesInOneStepAndInTwoOnAnyThreads) {
   const Scenes scenes;
   Context one, two;

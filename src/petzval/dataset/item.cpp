@@ -202,6 +202,7 @@ class ItemInMaking {
     request.light_scale = draw_.number("light_scale", 1);
     request.light_changes = draw_.lights();
     request.samples_per_pixel = recipe_.samples_per_pixel;
+    request.denoise_light = recipe_.denoise_light;
     request.first_surfaces =
         recipe_.has(Truth::depth) || recipe_.has(Truth::normals) || recipe_.has(Truth::albedo);
     return request;
@@ -210,6 +211,7 @@ class ItemInMaking {
   void render(const PreparedScene& scene) {
     const Rendering rendering = render_scene(scene, context_);
     if (scene.lens) tell_lens(first_order(*scene.lens));
+    if (rendering.denoised) item_.facts["denoised"] = true;
     const double exposure_s = shoot(rendering.irradiance, *scene.request.camera.sensor);
     tell_pose(scene);
     if (recipe_.has(Truth::sharp))

@@ -64,6 +64,7 @@ struct Recipe {
   std::vector<double> wavelengths_nm = {};        ///< empty: as the scene has them
   double tolerance = 1e-3;                        ///< of image formation
   int samples_per_pixel = 64;                     ///< of three-dimensional scenes
+  bool denoise_light = false;                     ///< of them, before the sensor
   int bits = 8;                                   ///< of pictures
   std::set<Truth> truth = {};
   int psf_rows = 3, psf_columns = 3, psf_size = 31;  ///< the grid of places, and pixels a side of a PSF

@@ -228,6 +228,8 @@ void check(const JsonEntry& root, const Recipe& recipe) {
       root.at("truth").fail(
           fmt::format("has {}, which {}", truth_names()[static_cast<std::size_t>(truth)], what));
   };
+  if (recipe.denoise_light && !recipe.is_rendered())
+    root.at("denoise_light").fail("is of a world, and the scene is flat; false would be right");
   if (!recipe.is_rendered()) {
     needs(Truth::normals, "needs a world");
     needs(Truth::albedo, "needs a world");
@@ -266,8 +268,8 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   if (format != format_name)
     root.at("format").fail(fmt::format("is \"{}\"; \"{}\" would be right", quotable(format), format_name));
   root.allow_only({"format", "about", "items", "items_per_part", "seed", "parameters", "build_tolerances",
-                   "sensor_set", "wavelengths_nm", "tolerance", "samples_per_pixel", "bits", "truth",
-                   "psf_grid"});
+                   "sensor_set", "wavelengths_nm", "tolerance", "samples_per_pixel", "denoise_light", "bits",
+                   "truth", "psf_grid"});
   Recipe recipe;
   recipe.folder = folder;
   recipe.items = static_cast<std::size_t>(whole_in(root.at("items"), 1, most_items));
@@ -299,6 +301,7 @@ Recipe parse_recipe(const std::string& text, const std::string& file, const std:
   if (const auto tolerance = root.find("tolerance")) recipe.tolerance = number_in(*tolerance, 1e-6, 0.1);
   if (const auto samples = root.find("samples_per_pixel"))
     recipe.samples_per_pixel = static_cast<int>(whole_in(*samples, 1, 1 << 20));
+  if (const auto denoise = root.find("denoise_light")) recipe.denoise_light = denoise->truth();
   if (const auto bits = root.find("bits")) {
     recipe.bits = static_cast<int>(whole_in(*bits, 8, 16));
     if (recipe.bits != 8 && recipe.bits != 16) bits->fail("is neither 8 nor 16");

@@ -15,21 +15,24 @@ class Passes {
  public:
   /// Samples of each group of wavelengths in one pass over the picture.
   static constexpr int indices_a_pass = 4;
+  /// Of a picture to be denoised: few samples make two halves.
+  static constexpr int indices_to_denoise = 2;
 
   Passes(const WavelengthGroups& groups, const RenderOptions& options)
       : groups_(groups.count()),
         samples_(effective_samples(groups, options.samples_per_pixel)),
-        halves_(options.noise > 0) {
-    count_ = (most_of_group() + indices_a_pass - 1) / indices_a_pass;
+        each_(options.denoise ? indices_to_denoise : indices_a_pass),
+        halves_(options.noise > 0 || options.denoise) {
+    count_ = (most_of_group() + each_ - 1) / each_;
     if (!halves_) return;
     count_ += count_ % 2;
-    samples_ = count_ * indices_a_pass * groups_;
+    samples_ = count_ * each_ * groups_;
   }
 
   int count() const { return count_; }
   std::vector<SampleRange> ranges(int pass) const {
     // Of two halves each has samples of its own.
-    const int index = (halves_ ? pass / 2 : pass) * indices_a_pass;
+    const int index = (halves_ ? pass / 2 : pass) * each_;
     std::vector<SampleRange> result;
     for (int group = 0; group < groups_; ++group)
       result.push_back({index, index + taken(group, pass + 1) - taken(group, pass)});
@@ -38,7 +41,7 @@ class Passes {
   /// Samples of a group after some passes.
   int taken(int group, int passes) const {
     const int of_group = (samples_ - group + groups_ - 1) / groups_;
-    return std::min(passes * indices_a_pass, of_group);
+    return std::min(passes * each_, of_group);
   }
   int taken(int passes) const {
     int sum = 0;
@@ -47,12 +50,13 @@ class Passes {
   }
   /// Passes that take as many samples as a pass can: what follows them does not depend on how many are
   /// wanted.
-  int full() const { return samples_ / (indices_a_pass * groups_); }
+  int full() const { return samples_ / samples_a_pass(); }
+  int samples_a_pass() const { return each_ * groups_; }
 
  private:
   int most_of_group() const { return (samples_ + groups_ - 1) / groups_; }
 
-  int groups_, samples_, count_ = 0;
+  int groups_, samples_, each_, count_ = 0;
   bool halves_;
 };
 

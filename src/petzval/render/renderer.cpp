@@ -3,6 +3,7 @@
 #include <petzval/base/context.h>
 #include <petzval/base/parallel.h>
 #include <petzval/base/stop.h>
+#include <petzval/render/denoise_picture.h>
 #include <petzval/render/film/checkpoint.h>
 #include <petzval/render/film/noise.h>
 #include <petzval/render/passes.h>
@@ -72,12 +73,16 @@ std::array<int, 2> passes_of_piece(const FilmPiece& piece, const PixelWindow& wh
   return {first / each, last / each};
 }
 
+Film::Half half_of(const RenderOptions& options) {
+  if (options.denoise) return Film::Half::all;
+  return options.noise > 0 ? Film::Half::sum_of_bands : Film::Half::none;
+}
+
 /// Of the light of all bands.
 double noise_now(const Film& film) {
-  std::vector<double> whole(film.half.size(), 0.0);
+  std::vector<double> whole(film.window.size(), 0.0), half(film.window.size(), 0.0);
   for (std::size_t i = 0; i < film.light.size(); ++i) whole[i % whole.size()] += film.light[i].value();
-  std::vector<double> half;
-  for (const ExactSum& each : film.half) half.push_back(each.value());
+  for (std::size_t i = 0; i < film.half.size(); ++i) half[i % half.size()] += film.half[i].value();
   return estimated_noise(film.window, whole, half, film.passes);
 }
 
@@ -120,7 +125,7 @@ Outlook outlook(const Film& film, int wanted_passes, double wanted_noise, Outloo
   Outlook result = before;
   result.done = film.passes >= wanted_passes;
   if (!result.noise) result.likely_passes = wanted_passes;
-  if (film.half.empty() || film.passes % 2 == 1 || film.passes < 2) return result;
+  if (wanted_noise <= 0 || film.passes % 2 == 1 || film.passes < 2) return result;
   const double noise = noise_now(film);
   result.noise = noise;
   result.done = result.done || (film.passes >= fewest_passes && noise <= wanted_noise);
@@ -145,6 +150,10 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
                          const SensorGeometry& sensor, const RenderOptions& options,
                          const ProgressCallback& progress) {
   if (options.samples_per_pixel < 1) throw InputError("a picture takes at least one sample a pixel");
+  if (options.denoise && !options.piece.is_whole())
+    throw InputError("`denoise_light` looks at a whole picture; pieces without it would be right");
+  if (options.denoise && options.light_groups)
+    throw InputError("`light_groups` are not denoised; without `denoise_light` would be right");
   const PixelWindow wanted = checked_window(sensor, options);
   const Passes passes(world.groups, options);
   const auto [first_pass, end_pass] = passes_of_piece(options.piece, wanted, passes, world.groups, options);
@@ -153,7 +162,7 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
   const int margin = camera.waves() ? camera.waves()->margin_pixels() : 0;
   const PixelWindow window = with_margin(wanted, wanted, margin);
   Film film(with_margin(shown, wanted, margin), static_cast<int>(world.groups.wavelengths_nm().size()),
-            world.groups.count(), options.first_surfaces, options.noise > 0,
+            world.groups.count(), options.first_surfaces || options.denoise, half_of(options),
             options.light_groups ? world.lights.sources.size() : 0);
   film.whole = window, film.first_pass = first_pass;
   const FilmSampling gathering(window, options.photosite);
@@ -164,12 +173,17 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       film.end_pass() > passes.full())
     throw InputError(options.checkpoint,
                      fmt::format("has {} samples a pixel; as many `samples_per_pixel` or more would be right",
-                                 film.end_pass() * samples_a_pass(world.groups)));
+                                 film.end_pass() * passes.samples_a_pass()));
 
   const TileTask task{world,     camera, world_from_camera, sensor, gaps ? everywhere : gathering,
                       gathering, options};
+  const auto raw_picture_of = [&](const Film& sums) {
+    return picture_so_far(sums, world.groups, sensor, options.photosite, passes);
+  };
   const auto picture_of = [&](const Film& sums) {
-    return cropped(picture_so_far(sums, world.groups, sensor, options.photosite, passes), sums.window, shown);
+    Rendering picture = raw_picture_of(sums);
+    if (options.denoise) denoise_picture(sums, world.groups, passes, picture);
+    return cropped(std::move(picture), sums.window, shown);
   };
   const std::vector<PixelWindow> tiles = tiles_of(film.window);
   const int resumed_at = film.passes;
@@ -219,7 +233,13 @@ Rendering render_picture(const World& world, const FilmCamera& camera, const Tra
       previewed = std::chrono::steady_clock::now();
     }
   }
-  Rendering result = picture_of(film);
+  Rendering result;
+  try {
+    result = picture_of(film);
+  } catch (const Cancelled&) {
+    if (options.so_far) options.so_far(cropped(raw_picture_of(film), film.window, shown));
+    throw;
+  }
   result.complete = ahead.done;
   result.noise = ahead.noise;
   return result;

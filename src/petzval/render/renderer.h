@@ -41,6 +41,9 @@ struct RenderOptions {
   FilmPiece piece;                    ///< and of it this
   Photosite photosite;  ///< over which each pixel's value is a mean, and the low-pass filter before it
   bool first_surfaces = false;
+  /// The picture is denoised (film/denoise.h); what checkpoints hold is not. Taken in two halves, so that
+  /// there are at least four samples a pixel for each group of wavelengths. Without light groups and pieces.
+  bool denoise = false;
   bool light_groups = false;           ///< also what each light gives (Rendering::light_groups)
   std::optional<CameraMotion> motion;  ///< of the camera: each sample is taken at a time of its own
   /// A file to resume from and to save to; empty: none. Kept when the picture is done, or stopped: more

@@ -26,6 +26,7 @@ struct Rendering {
   std::optional<FirstSurfaces> first_surfaces;
   std::uint64_t rays = 0, passed = 0;  ///< camera rays, and those that got through the lens
   bool complete = true;
+  bool denoised = false;
   int samples_per_pixel = 0;    ///< that were taken
   std::optional<double> noise;  ///< estimate, if RenderOptions::noise asks for one
 };

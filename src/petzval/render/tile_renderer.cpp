@@ -189,19 +189,28 @@ class TileRenderer {
           {plane * all.size() + all.index(pixel.column, pixel.row), value});
     const std::size_t within = tile_.index(pixel.column, pixel.row);
     film_.at(plane * tile_.size() + within) += value;
-    if (half_ && plane < whole_.arriving.size()) film_.half[within] += value;
+    if (half_ && plane < whole_.arriving.size())
+      film_.half[(plane * tile_.size() + within) % film_.half.size()] += value;
   }
 
   void add_first(std::size_t i, int group, const FirstSurface& first, const Transform& place) {
     const Pixel pixel = pixel_of(i);
     const std::size_t at = tile_.index(pixel.column, pixel.row), plane = tile_.size();
-    film_.met[static_cast<std::size_t>(group) * plane + at] += 1;
-    film_.depth[at] += place.inverse_point(first.position).z;
-    film_.normal[at] += first.normal.x;
-    film_.normal[plane + at] += first.normal.y;
-    film_.normal[2 * plane + at] += first.normal.z;
-    for (int lane = 0; lane < lanes_; ++lane)
-      film_.albedo[band(group, lane) * plane + at] += static_cast<double>(first.albedo[lane]);
+    const auto groups = static_cast<std::size_t>(task_.world.groups.count());
+    const double depth = place.inverse_point(first.position).z;
+    const auto gather = [&](ExactSum* met, ExactSum* depths, ExactSum* normals, ExactSum* albedos) {
+      met[static_cast<std::size_t>(group) * plane + at] += 1;
+      depths[at] += depth;
+      normals[at] += first.normal.x;
+      normals[plane + at] += first.normal.y;
+      normals[2 * plane + at] += first.normal.z;
+      for (int lane = 0; lane < lanes_; ++lane)
+        albedos[band(group, lane) * plane + at] += static_cast<double>(first.albedo[lane]);
+    };
+    gather(film_.met.data(), film_.depth.data(), film_.normal.data(), film_.albedo.data());
+    if (!half_ || film_.half_first.empty()) return;
+    ExactSum* sums = film_.half_first.data();
+    gather(sums, sums + groups * plane, sums + (groups + 1) * plane, sums + (groups + 4) * plane);
   }
 
   const TileTask& task_;

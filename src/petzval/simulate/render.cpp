@@ -27,6 +27,7 @@ render::RenderOptions sampling_of(const PreparedScene& scene, const Context& con
   options.noise = request.noise;
   options.seed = context.seed;
   options.first_surfaces = request.first_surfaces;
+  options.denoise = request.denoise_light;
   options.light_groups = request.light_groups;
   options.checkpoint = request.checkpoint;
   options.checkpoint_seconds = request.checkpoint_seconds;
@@ -42,6 +43,9 @@ void add_facts(const PreparedScene& scene, const Context& context, Rendering& pi
   picture.irradiance.provenance =
       fmt::format("petzval {} render: {} through {}; {} samples a pixel, seed {}", version(),
                   scene.request.scene, camera_text(scene), picture.samples_per_pixel, context.seed);
+  if (picture.denoised)
+    picture.irradiance.provenance += "; denoised by non-local means of light, albedo, normals and depth";
+  if (!scene.request.first_surfaces) picture.first_surfaces.reset();
   if (scene.lens) picture.irradiance.lens = lens_facts(scene.lens->name, first_order(*scene.lens));
   for (std::size_t i = 0; i < picture.light_groups.size(); ++i) {
     SpectralImage& each = picture.light_groups[i];

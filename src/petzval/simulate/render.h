@@ -88,6 +88,10 @@ struct RenderRequest {
   /// If positive: ends when nine of ten tiles are estimated to be this close to the picture without noise,
   /// RMS error over mean light.
   double noise = 0;
+  /// The picture without most of its noise (render/film/denoise.h): light of surfaces that are alike is
+  /// shared among them. `irradiance.provenance` says so; the checkpoint keeps the light as it was. At least
+  /// four samples a pixel for every eight wavelengths are taken. Not of pieces, and not with light groups.
+  bool denoise_light = false;
   bool first_surfaces = false;  ///< depth, normals and albedo, too
   bool light_groups = false;    ///< what each light gives of the picture, too
   /// A file to go on from and to save to, on the way, when the picture is done and when it is stopped; more

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/render/film/denoise.h>
 #include <petzval/render/film/exact_sum.h>
 #include <petzval/simulate/prepared_world.h>
 #include <petzval/simulate/render_estimate.h>
@@ -27,12 +28,15 @@ SensorGeometry coarse(const SensorGeometry& film) {
 double bytes_of(const PreparedScene& scene) {
   const render::WavelengthGroups& groups = scene.world->world->groups;
   const double bands = static_cast<double>(groups.wavelengths_nm().size());
-  const bool layers = scene.request.first_surfaces, kept = !scene.request.checkpoint.empty();
-  const double sums =
-      bands + 1 + (scene.request.noise > 0 ? 1 : 0) + (layers ? bands + groups.count() + 4 : 0);
+  const bool halves = scene.request.denoise_light, kept = !scene.request.checkpoint.empty();
+  const bool layers = scene.request.first_surfaces || halves;
+  const double once = bands + (layers ? bands + groups.count() + 4 : 0);
+  const double sums = once * (halves ? 2 : 1) + 1 + (scene.request.noise > 0 && !halves ? 1 : 0);
   const double lights =
       scene.request.light_groups ? static_cast<double>(scene.world->world->lights.sources.size()) : 0;
-  const double picture = bands * (1 + lights) + (layers ? bands + 5 : 0);
+  // Two halves, two candidates and the result.
+  const double smooth = halves ? 5 * bands + 4 * render::PictureHalves::feature_count : 0;
+  const double picture = bands * (1 + lights) + (layers ? bands + 5 : 0) + smooth;
   const double pixels = static_cast<double>(scene.film.columns) * scene.film.rows;
   return pixels *
          ((sums + bands * lights) * sizeof(render::ExactSum) * (kept ? 2 : 1) + picture * sizeof(float));
@@ -50,7 +54,7 @@ RenderEstimate estimate_render(const PreparedScene& scene, const Context& contex
   const int groups = scene.world->world->groups.count();
   request.checkpoint.clear();
   request.region.reset(), request.sample_range.reset();
-  request.first_surfaces = request.light_groups = false;
+  request.first_surfaces = request.light_groups = request.denoise_light = false;
   request.samples_per_pixel = probe_samples_a_group * groups;
   const double wanted = request.noise;
   request.noise = wanted > 0 ? 1e-9 : 0;  // all samples are taken, and the noise is told

@@ -16,10 +16,13 @@ std::string render_fingerprint(const PreparedScene& scene, const render::RenderO
   text += fmt::format("seed {}\n", options.seed);
   // Fewer samples are the beginning of more, and a picture that ends at a noise that of one that ends at
   // less.
-  text += options.noise > 0 ? "samples in two halves\n" : "samples in turn\n";
+  text += options.denoise     ? "samples in two halves, to be denoised\n"
+          : options.noise > 0 ? "samples in two halves\n"
+                              : "samples in turn\n";
   text += fmt::format("max-depth {}\nnear {} far {}\n", options.path.max_depth, options.clipping.near,
                       options.clipping.far);
-  text += fmt::format("first-surfaces {}\nlight-groups {}\n", options.first_surfaces, options.light_groups);
+  text += fmt::format("first-surfaces {}\nlight-groups {}\n", options.first_surfaces || options.denoise,
+                      options.light_groups);
   text += fmt::format("film {}x{} pixels of {} um\n", camera.film.columns, camera.film.rows,
                       camera.film.pitch_um);
   text += fmt::format("photosite {}\n", camera.photosite.text());

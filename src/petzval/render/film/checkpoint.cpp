@@ -19,17 +19,17 @@ namespace petzval::render {
 
 namespace {
 
-constexpr std::string_view magic = "petzval-render-checkpoint/6\n";
+constexpr std::string_view magic = "petzval-render-checkpoint/7\n";
 constexpr std::size_t most_checkpoint_bytes = std::size_t{1} << 36;
 
 struct CheckpointHead {
   std::uint64_t fingerprint_size, rays, passed;
   PixelWindow window, whole;
   std::int32_t first_pass, passes;
-  std::array<std::uint64_t, 9> sizes;  ///< of the sums
+  std::array<std::uint64_t, 10> sizes;  ///< of the sums
   std::uint64_t outside;
 };
-static_assert(sizeof(CheckpointHead) == 144, "without bytes that nobody writes");
+static_assert(sizeof(CheckpointHead) == 152, "without bytes that nobody writes");
 
 struct OutsideSum {
   std::uint64_t at = 0, unused = 0;
@@ -44,8 +44,8 @@ std::uint32_t checksum(std::uint32_t so_far, const void* bytes, std::size_t coun
 
 template <typename AnyFilm>
 auto all_sums_of(AnyFilm& film) {
-  return std::array{&film.light, &film.of_sources, &film.half,   &film.lamps,   &film.met,
-                    &film.depth, &film.normal,     &film.albedo, &film.arriving};
+  return std::array{&film.light, &film.of_sources, &film.half,   &film.half_first, &film.lamps,
+                    &film.met,   &film.depth,      &film.normal, &film.albedo,     &film.arriving};
 }
 
 InputError damaged(const std::string& path, const char* how) {
@@ -104,7 +104,7 @@ class CheckpointReader {
         window.bottom > whole.bottom || window.left >= window.right || window.top >= window.bottom ||
         head_.first_pass < 0 || head_.passes < 0)
       throw damaged(path_, "it holds no rectangle of a picture");
-    Film film(window, 1, 1, false, false);
+    Film film(window, 1, 1, false, Film::Half::none);
     film.whole = whole;
     film.first_pass = head_.first_pass, film.passes = head_.passes;
     film.rays = head_.rays, film.passed = head_.passed;
@@ -140,9 +140,10 @@ class CheckpointReader {
     const bool first = !film.met.empty();
     if (!planes(film.light, bands) ||
         film.of_sources.size() % std::max<std::size_t>(1, film.light.size()) != 0 || !planes(film.lamps, 1) ||
-        !(film.half.empty() || planes(film.half, 1)) || film.met.size() % pixels != 0 ||
-        !planes(film.depth, first ? 1 : 0) || !planes(film.normal, first ? 3 : 0) ||
-        !planes(film.albedo, first ? bands : 0))
+        !(film.half.empty() || planes(film.half, 1) || planes(film.half, bands)) ||
+        !(film.half_first.empty() || film.half_first.size() == film.met.size() + (4 + bands) * pixels) ||
+        film.met.size() % pixels != 0 || !planes(film.depth, first ? 1 : 0) ||
+        !planes(film.normal, first ? 3 : 0) || !planes(film.albedo, first ? bands : 0))
       throw damaged(path_, "its sums are not those of a picture");
   }
 
@@ -275,11 +276,13 @@ MergeReport merge_checkpoints(const std::vector<std::string>& pieces, const std:
       throw InputError(each, fmt::format("is a piece of another picture: it has \"{}\", {} has \"{}\"",
                                          (*difference)[0], pieces.front(), (*difference)[1]));
     Film piece = reader.film();
-    if (!piece.half.empty()) throw InputError(each, "was rendered to a noise, which pieces are not");
+    if (!piece.half.empty())
+      throw InputError(each,
+                       "was rendered in two halves, to a noise or to be denoised, which pieces are not");
     if (!sum) {
       sum.emplace(piece.whole, static_cast<int>(piece.arriving.size()),
-                  static_cast<int>(piece.met.size() / piece.window.size()), !piece.met.empty(), false,
-                  piece.sources());
+                  static_cast<int>(piece.met.size() / piece.window.size()), !piece.met.empty(),
+                  Film::Half::none, piece.sources());
     }
     if (sum->whole != piece.whole) throw InputError(each, "is a piece of another rectangle of the film");
     if (piece.arriving.size() != sum->arriving.size() || piece.sources() != sum->sources() ||

@@ -15,7 +15,7 @@ constexpr double most_values = 1073741824.0;
 /// Of a film or a const one.
 template <typename AnyFilm>
 auto sums_of(AnyFilm& film) {
-  return std::array{&film.light, &film.of_sources, &film.half,   &film.lamps,
+  return std::array{&film.light, &film.of_sources, &film.half,   &film.half_first, &film.lamps,
                     &film.met,   &film.depth,      &film.normal, &film.albedo};
 }
 
@@ -31,11 +31,12 @@ void each_row(const PixelWindow& window, const PixelWindow& tile, std::size_t pl
 
 }  // namespace
 
-Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces, bool noise,
+Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces, Half kept_half,
            std::size_t sources)
     : window(pixels), whole(pixels) {
+  const double planes = bands * (first_surfaces ? 2.0 : 1.0) + groups + 6;
   const double values = static_cast<double>(pixels.size()) *
-                        (bands * ((first_surfaces ? 2.0 : 1.0) + static_cast<double>(sources)) + groups + 6);
+                        (planes * (kept_half == Half::all ? 2 : 1) + bands * static_cast<double>(sources));
   if (values > most_values)
     throw InputError(
         fmt::format("a picture of {} x {} pixels and {} bands needs {:.0f} GiB to gather its light in; fewer "
@@ -45,12 +46,15 @@ Film::Film(const PixelWindow& pixels, int bands, int groups, bool first_surfaces
   of_sources.assign(sources * light.size(), ExactSum());
   arriving.assign(static_cast<std::size_t>(bands), ExactSum());
   lamps.assign(pixels.size(), ExactSum());
-  if (noise) half.assign(pixels.size(), ExactSum());
+  if (kept_half == Half::sum_of_bands) half.assign(pixels.size(), ExactSum());
+  if (kept_half == Half::all) half = light;
   if (!first_surfaces) return;
   met.assign(pixels.size() * static_cast<std::size_t>(groups), ExactSum());
   depth.assign(pixels.size(), ExactSum());
   normal.assign(3 * pixels.size(), ExactSum());
   albedo.assign(light.size(), ExactSum());
+  if (kept_half == Half::all)
+    half_first.assign(met.size() + depth.size() + normal.size() + albedo.size(), ExactSum());
 }
 
 Film Film::part(const PixelWindow& tile) const {

@@ -18,7 +18,9 @@ struct Film {
   PixelWindow window;
   std::vector<ExactSum> light;       ///< sums over samples, [band][pixel]
   std::vector<ExactSum> of_sources;  ///< the same of each light of the scene, if wanted, [light][band][pixel]
-  std::vector<ExactSum> half;  ///< of every second pass, summed over bands: tells the noise if that is wanted
+  /// Of every second pass: its light, summed over bands or [band][pixel], and its first surfaces, the planes
+  /// below in their order.
+  std::vector<ExactSum> half, half_first;
   std::vector<ExactSum> lamps;  ///< light that comes straight from a lamp, summed over bands
   /// Of first surfaces, if wanted: how many rays of each group of wavelengths met one, and sums over them.
   std::vector<ExactSum> met, depth, normal, albedo;  ///< [group][pixel], [pixel], [3][pixel], [band][pixel]
@@ -30,9 +32,12 @@ struct Film {
   int first_pass = 0;  ///< of the rounds of samples that are in the sums
   int passes = 0;      ///< how many of them are
 
+  /// What is kept of every second pass.
+  enum class Half { none, sum_of_bands, all };
+
   /// \throws InputError if it would not fit into memory.
-  /// \param sources  lights whose light is kept apart, too.
-  Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, bool noise,
+  /// \param half  with `all`, its first surfaces too. \param sources  lights whose light is kept apart, too.
+  Film(const PixelWindow& window, int bands, int groups, bool first_surfaces, Half half,
        std::size_t sources = 0);
   int end_pass() const { return first_pass + passes; }
   std::size_t sources() const { return light.empty() ? 0 : of_sources.size() / light.size(); }
