@@ -70,23 +70,50 @@ void check_plot(const SweepCommand& options, const std::vector<SweptParameter>& 
       keys));
 }
 
-/// \throws InputError for a quantity that the command does not measure, and then nothing stays of the first
-/// point. \param results  of which the last was made.
-void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results) {
+/// Options that name a column, and the column.
+std::vector<std::pair<const char*, std::string>> columns_asked(const SweepCommand& options) {
   std::vector<std::pair<const char*, std::string>> asked;
   for (const std::string& key : options.plot_of) asked.emplace_back("--plot-of", key);
   for (const std::string& text : options.accept) asked.emplace_back("--accept", parse_criterion(text).column);
+  return asked;
+}
+
+/// What the corners of pictures say is known before there is one.
+/// \throws InputError for a column of theirs that there will not be.
+void check_corner_columns(const SweepCommand& options) {
+  for (const auto& [option, key] : columns_asked(options)) {
+    if (!key.starts_with("corners.")) continue;
+    if (!options.corners)
+      throw InputError(fmt::format("{} {}: corners are not measured; --corners would be right", option, key));
+    const std::vector<std::string> known = corner_columns();
+    if (std::ranges::find(known, key) == known.end())
+      throw InputError(fmt::format("{} {}: no such thing is measured; {} would be right", option, key,
+                                   fmt::join(known, ", ")));
+  }
+}
+
+/// \throws Failure for a quantity that the command does not measure. The first point stays for the command
+/// that names it rightly. \throws InputError where it would take the place of a sweep that was finished here:
+/// that one stays. \param results  of which the last was made.
+void check_quantities(const SweepCommand& options, const std::vector<PointResult>& results,
+                      SweepFolder& folder) {
+  const std::vector<std::pair<const char*, std::string>> asked = columns_asked(options);
   if (asked.empty()) return;
   std::vector<std::string> varied;
   for (const auto& [key, value] : results.back().point) varied.push_back(key);
   const std::vector<std::string> measured = measured_columns(table_of(rows_of(results)), varied);
   for (const auto& [option, key] : asked) {
     if (std::ranges::find(measured, key) != measured.end()) continue;
+    const std::string wrong = fmt::format("{} {}: the command measures no such thing; {} would be right",
+                                          option, key, fmt::join(measured, ", "));
+    if (folder.is_new()) {
+      folder.keep();
+      throw Failure(wrong + " (the point that was made is kept)");
+    }
     std::error_code ignored;
     std::filesystem::remove(options.folder + "/" + name_of_point(results.size() - 1) + ".json", ignored);
     for (const std::string& path : results.back().outputs) std::filesystem::remove(path, ignored);
-    throw InputError(fmt::format("{} {}: the command measures no such thing; {} would be right", option, key,
-                                 fmt::join(measured, ", ")));
+    throw InputError(wrong);
   }
 }
 
@@ -245,6 +272,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   check_plot(options, parameters);
   std::vector<Criterion> criteria;
   for (const std::string& text : options.accept) criteria.push_back(parse_criterion(text));
+  check_corner_columns(options);
   check_command_lines(app, options, parameters, shared);
   for (const std::string& text : notes) note(shared, text);
   SweepFolder folder(options.folder, planned_files(options, points.size()));
@@ -279,7 +307,7 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
       held.clear();
     }
     if (!result.done) continue;
-    if (written.empty()) check_quantities(options, results);
+    if (written.empty()) check_quantities(options, results, folder);
     folder.keep();
     written.insert(name_of_point(results.size() - 1) + ".json");
     for (const std::string& path : result.outputs)

@@ -74,6 +74,7 @@ SweepFolder::SweepFolder(std::string path, std::set<std::string> planned)
     old_ = files_of(before_);
     const Json json = old_.empty() ? Json() : Json::parse(before_, nullptr, false);
     if (json.is_object() && json.contains("scene")) scene_ = json["scene"];
+    is_new_ = old_.empty() || (json.is_object() && json.value("finished", Json()) == false);
   }
   std::vector<std::string> strange;
   for (const std::string& name : planned_)

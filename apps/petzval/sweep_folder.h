@@ -27,6 +27,8 @@ class SweepFolder {
   /// What remember_scene() was given, by this sweep or the one before it.
   const nlohmann::ordered_json& scene() const { return scene_; }
   void remember_scene(nlohmann::ordered_json scene);
+  /// Whether no finished sweep's files would be replaced.
+  bool is_new() const { return is_new_; }
   /// There is a point to keep.
   void keep();
   /// Writes sweep.json with the rows, and removes files of this sweep and of the one before it that are not
@@ -42,7 +44,7 @@ class SweepFolder {
   std::string path_, before_, made_;  ///< before_: sweep.json as it was; made_: the topmost folder made
   std::set<std::string> planned_, old_;
   nlohmann::ordered_json scene_;
-  bool kept_ = false;
+  bool is_new_ = true, kept_ = false;
 };
 
 }  // namespace petzval::app

@@ -8,6 +8,7 @@
 #include <petzval/measure/sfr/corner_sharpness.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -34,6 +35,20 @@ Criterion parse_criterion(const std::string& text) {
   return {text.substr(0, at), text[at] == '>', *value};
 }
 
+namespace {
+
+constexpr std::array<const char*, 4> corner_names{"top_left_cpp", "top_right_cpp", "bottom_left_cpp",
+                                                  "bottom_right_cpp"};
+
+}  // namespace
+
+std::vector<std::string> corner_columns() {
+  std::vector<std::string> columns(corner_names.begin(), corner_names.end());
+  columns.insert(columns.end(), {"least_cpp", "symmetry", "colour_px"});
+  for (std::string& column : columns) column.insert(0, "corners.");
+  return columns;
+}
+
 void measure_corners(PointResult& result, const Shared& shared) {
   const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
   CornerSharpness corners;
@@ -51,9 +66,8 @@ void measure_corners(PointResult& result, const Shared& shared) {
   } catch (const InputError&) {
     // Blurred beyond any edge: not measured, and so not good.
   }
-  constexpr const char* names[] = {"top_left_cpp", "top_right_cpp", "bottom_left_cpp", "bottom_right_cpp"};
   Json measured = Json::object();
-  for (std::size_t i = 0; i < 4; ++i) measured[names[i]] = number(corners.mtf50_cpp[i]);
+  for (std::size_t i = 0; i < 4; ++i) measured[corner_names[i]] = number(corners.mtf50_cpp[i]);
   measured["least_cpp"] = number(corners.least_cpp);
   measured["symmetry"] = number(corners.symmetry);
   if (corners.colour_px) measured["colour_px"] = number(*corners.colour_px);

@@ -23,6 +23,9 @@ Criterion parse_criterion(const std::string& text);
 /// Measures the corners of a point's picture, "corners" among its numbers; null for what cannot be measured.
 void measure_corners(PointResult& result, const Shared& shared);
 
+/// The columns of those.
+std::vector<std::string> corner_columns();
+
 /// A point by a sweep's criteria.
 struct JudgedPoint {
   bool good = false;

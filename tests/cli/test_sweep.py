@@ -81,8 +81,18 @@ class Sweep(ProgramTest):
         self.assert_succeeds(*again, "--accept", "f_number>=6")
         self.assertEqual({path.name for path in (self.folder / "info").iterdir()}, set(before) - {"point-0002.json"})
         other = ("sweep", "lens", "info", "cooke-triplet", "--vary", "f-number=5,8", "-o", "other")
-        self.assert_refused(*other, "--accept", "number>=6", words=("f_number",))
         self.assert_refused(*other, "--accept", "f_number=6", words=("COLUMN>=VALUE",))
+        # In a folder without an older sweep the point stays, and is not made again.
+        self.assert_error(self.petzval(*other, "--accept", "number>=6"), 1, "f_number", "is kept")
+        made = self.folder / "other" / "point-0000.json"
+        stamp = made.stat().st_mtime_ns
+        self.assert_refused(*other, "--accept", "numbers>=6", code=1, words=("f_number", "is kept"))
+        self.assert_succeeds(*other, "--accept", "f_number>=6")
+        self.assertEqual(made.stat().st_mtime_ns, stamp)
+        # Of corners it is known before.
+        self.assert_refused(*board, "--accept", "corners.symetry>=0.9", words=("corners.symmetry",))
+        self.assert_refused(*[word for word in board[:-1] if word != "--corners"], "unmade", "--accept", "corners.symmetry>=0.9", words=("--corners",))
+        self.assertFalse((self.folder / "unmade").exists())
 
     def test_a_plot_of_what_was_measured(self):
         self.assert_succeeds("sweep", "lens", "spots", "cooke-triplet", "--fields", "0,14", "--wavelengths", "550", "--vary",
@@ -106,7 +116,7 @@ class Sweep(ProgramTest):
                             words=["cannot be an axis", "f-number=4,5.6,8"])
         self.assert_refused(*lens, "f-number=5,8", "--plot", "x.txt", words=[".svg"])
         self.assert_refused(*lens, "f-number=5,8", "--plot-of", "efl_mm", words=["--plot FILE.svg"])
-        self.assert_refused(*lens, "f-number=5,8", "--plot", "x.svg", "--plot-of", "efl", words=["efl_mm"])
+        self.assert_error(self.petzval(*lens, "f-number=5,8", "--plot", "x.svg", "--plot-of", "efl"), 1, "efl_mm")
 
     def test_a_failing_point_is_reported_and_the_rest_goes_on(self):
         done = self.petzval(*IMAGE, "--vary", "f-number=0.5,4", "-o", "out")

@@ -174,6 +174,47 @@ TEST(WallThroughLens, IsGSensorOfALensAsBuilt) {
   EXPECT_GT(std::abs(seen[0] / seen[2] - 1), 0.05) << "or nothing was shown";
 }
 
+/// What the lens lets through of light at a film point above the axis: the mean over directions on a grid
+/// that pass.
+double counted_transmittance(const Tracer& tracer, const LensTransmittance& losses, double y_mm) {
+  constexpr int across = 400;
+  constexpr double reach = 0.5;  // of the cosines
+  double sum = 0;
+  int passed = 0;
+  std::vector<Intersection> path;
+  for (int i = 0; i < across; ++i)
+    for (int j = 0; j < across; ++j) {
+      const double alpha = reach * (2 * (i + 0.5) / across - 1), beta = reach * (2 * (j + 0.5) / across - 1);
+      const Ray start{{0, y_mm, tracer.image_z_mm()},
+                      {alpha, beta, -std::sqrt(1 - alpha * alpha - beta * beta)}};
+      path.clear();
+      if (tracer.trace_backward(start, Tracer::Clip::apertures, &path).status != RayStatus::ok) continue;
+      sum += losses.along(tracer.from_image(start), path, true), ++passed;
+    }
+  return sum / passed;
+}
+
+/// The same with losses, which are those of every ray.
+TEST(WallThroughLens, IsGSensorOfALensAsBuiltWithLosses) {
+  Lens lens = read_lens("dgauss-50mm").lens;
+  lens.groups = {{0, 1, {0, 1.2, 0, 6, 0, 0}, 0}};
+  lens.sensor_pose.tilt_x_deg = 3;
+  LensCameraOptions options;
+  options.losses.fresnel = true;
+  options.losses.surfaces[0] = Coating::constant(0.1);
+  const auto world = wall_world(wall_surround, {550});
+  const SensorGeometry film{17, 8017, 5};
+  const LensCamera camera(lens, film, world->groups, options);
+  const Tracer tracer(lens, 550);
+  const LensTransmittance losses(lens, 550, options.losses);
+  for (const int row : {1008, 7008}) {
+    const Measured wall = patch(*world, camera, film, 8, row, 8, 64);
+    const double y = film.y_mm(row + 0.5), through = counted_transmittance(tracer, losses, y);
+    EXPECT_LT(through, 0.8);
+    expect_agreement(wall, 0, through * counted_g_sensor_sr(tracer, y, 1500), "row " + std::to_string(row));
+  }
+}
+
 TEST(WallThroughLens, IsTheSameByTheSamplerOf2006) {
   LensCameraOptions options;
   options.sampling = LensCameraOptions::Sampling::rear_disk;

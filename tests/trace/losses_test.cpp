@@ -161,6 +161,27 @@ TEST(Losses, TheSameForwardsAndBackwards) {
   EXPECT_NEAR(passing_both_ways(losses, {0, 0, 0, 8, -5, 30}), forward, 1e-13);
 }
 
+/// Scatter sends light out of the plane of incidence. Its fields stay across it: a surface between air and
+/// air has nothing to take, however it stands.
+TEST(Losses, FieldsStayAcrossLightThatScattered) {
+  const Lens lens = plate(Material(Material::Constant{1.8}), 3);
+  Lens longer = lens;
+  longer.surfaces.push_back(sample::surface(0, 5, 1));
+  const Ray ray = tilted(0.9);
+  const Tracer tracer(lens, lambda_nm);
+  for (const double out_of_plane : {0.1, 0.5, 0.9}) {
+    std::vector<Intersection> path;
+    ASSERT_EQ(tracer.trace(ray, Tracer::Clip::none, &path).status, RayStatus::ok);
+    path[1].direction_after = {out_of_plane, 0.3, std::sqrt(1 - 0.09 - out_of_plane * out_of_plane)};
+    const double alone = LensTransmittance(lens, lambda_nm, fresnel_only()).along(ray, path);
+    std::vector<Intersection> more(path.begin(), path.begin() + 2);
+    more.push_back({{1, 1, 13}, path[1].direction_after, {0, 0, 1}});
+    EXPECT_NEAR(LensTransmittance(longer, lambda_nm, fresnel_only()).along(ray, more) / alone, 1, 1e-12);
+    more.back().normal = {0.6, 0, 0.8};
+    EXPECT_NEAR(LensTransmittance(longer, lambda_nm, fresnel_only()).along(ray, more) / alone, 1, 1e-12);
+  }
+}
+
 TEST(Losses, FilmsOfAPlateAreThoseOfBothPolarisations) {
   constexpr double index = 1.6;
   Losses losses;

@@ -31,9 +31,9 @@ Vec perpendicular(const Vec& direction) {
   return scaled(across, 1 / std::sqrt(dot(across, across)));
 }
 
-/// The axes of the plane of incidence before and after a surface.
+/// The axes of the plane of incidence before and after a surface: across the ray on either side.
 struct Incidence {
-  Vec s, p_before, p_after;
+  Vec s_before, p_before, s_after, p_after;
   double cosine_before, cosine_after;
 };
 
@@ -43,7 +43,15 @@ Incidence incidence(const Vec& before, const Vec& after, const Vec& normal) {
   // At normal incidence any axis will do.
   constexpr double smallest_sine = 1e-12;
   const Vec s = sine > smallest_sine ? scaled(across, 1 / sine) : perpendicular(before);
-  return {s, cross(before, s), cross(after, s), std::abs(dot(before, normal)), std::abs(dot(after, normal))};
+  Incidence at{
+      s, cross(before, s), s, cross(after, s), std::abs(dot(before, normal)), std::abs(dot(after, normal))};
+  // Scatter leaves the plane: the axes turn with the ray, by the smallest turn from the plane to it.
+  const double length = std::sqrt(dot(at.p_after, at.p_after));
+  if (std::abs(dot(after, s)) > smallest_sine && length > smallest_sine) {
+    at.p_after = scaled(at.p_after, 1 / length);
+    at.s_after = cross(at.p_after, after);
+  }
+  return at;
 }
 
 /// Square roots of the share of the power that a surface lets through, with what films delay if complex.
@@ -82,9 +90,9 @@ Number component(const std::array<Number, 3>& field, const Vec& axis) {
 template <class Number>
 std::array<Number, 3> transmit(const std::array<Number, 3>& field, const Incidence& at,
                                const Amplitudes<Number>& through) {
-  const Number s = through.s * component(field, at.s), p = through.p * component(field, at.p_before);
+  const Number s = through.s * component(field, at.s_before), p = through.p * component(field, at.p_before);
   std::array<Number, 3> out;
-  for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = s * at.s[axis] + p * at.p_after[axis];
+  for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = s * at.s_after[axis] + p * at.p_after[axis];
   return out;
 }
 

@@ -60,10 +60,7 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
   const bool loses = options.losses.of(lens).any();
   if (options.sampling == LensCameraOptions::Sampling::exit_pupil || loses) {
     ExitPupilRegions regions = find_regions(lens);
-    if (loses) {
-      require_centred(lens, "losses are rendered through centred lenses");
-      transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
-    }
+    if (loses) transmittance_.emplace(lens, tracers_, nm, options.losses, regions);
     if (options.sampling == LensCameraOptions::Sampling::exit_pupil) regions_ = std::move(regions);
     if (regions_ && !options.lamps.empty())
       guide_ =
