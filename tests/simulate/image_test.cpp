@@ -153,15 +153,24 @@ INSTANTIATE_TEST_SUITE_P(Bundled, Previews,
 
 // Source cells are how a picture is computed, not what it shows.
 TEST(Image, FramesTheSceneAlikeWithAnyNumberOfCells) {
-  const Camera camera = small_camera();
-  const auto angle_deg = [&](int cells) {
-    ImageOptions options;
-    options.imaging.supersample = cells;
-    return plan_image({.name = "checkerboard"}, camera, options).scene.horizontal_angle_deg();
-  };
-  const double chosen_deg = angle_deg(0);
-  EXPECT_EQ(angle_deg(1), chosen_deg);
-  EXPECT_EQ(angle_deg(4), chosen_deg);
+  Camera camera = small_camera();
+  camera.sensor = read_sensor("example-vga");  // whose photosites have a size of their own
+  for (const BlurMethod method : {BlurMethod::product, BlurMethod::none}) {
+    const auto plan = [&](int cells) {
+      ImageOptions options;
+      options.imaging.method = method;
+      options.imaging.supersample = cells;
+      return plan_image({.name = "checkerboard", .options = {.wavelengths_nm = {550}}}, camera, options);
+    };
+    const double chosen_deg = plan(0).scene.horizontal_angle_deg();
+    for (const int cells : {1, 2, 4}) {
+      // Without blur, but for the cells about the frame that photosites and the low-pass filter share in: at
+      // most a pixel on either side.
+      EXPECT_NEAR(plan(cells).scene.horizontal_angle_deg() / chosen_deg, 1,
+                  method == BlurMethod::none ? 2.0 / camera.sensor->geometry.columns : 0);
+      EXPECT_NO_THROW(image(plan(cells)));  // the scene covers what these cells see
+    }
+  }
 }
 
 TEST(Image, MakesFewerPsfsForAPreview) {

@@ -345,11 +345,12 @@ bool may_end_in_margin(const ImagePlan& plan) {
   return !plan.depth && plan.options.imaging.surround != Surround::error;
 }
 
-/// The same for any number of cells a pixel: a picture more finely sampled shows the same of the scene.
+/// With the margin of PSFs that one cell a pixel needs, the widest: a picture more finely sampled shows the
+/// same of the scene.
 double filling_angle_deg(const ImagePlan& plan, const SensorGeometry& sensor) {
   ImagingOptions options = plan.options.imaging;
-  options.supersample = 0;
   if (may_end_in_margin(plan)) options.method = BlurMethod::none;
+  if (options.method != BlurMethod::none) options.supersample = 1;
   return plan.depth ? covering_depth_angle_deg(plan.scene, *plan.depth, sensor, options, plan.options.depth)
                     : covering_angle_deg(plan.scene, plan.table, sensor, options);
 }
