@@ -164,14 +164,9 @@ void read_subsurface(const Parameters& parameters, const TextureLibrary& texture
   material.kind = Material::Kind::dielectric;
   material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.33);
   read_roughness(parameters, textures, material);
-  for (const char* name : {"sigma_a", "sigma_s", "scale", "g"})
+  for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp", "scale", "g", "name"})
     if (const Parameter* parameter = parameters.find(name); parameter && parameter->type == "texture")
       unsupported.report(parameter->at, "a subsurface material that varies over its surface");
-  for (const char* name : {"name", "reflectance", "mfp"})
-    if (const Parameter* parameter = parameters.find(name))
-      unsupported.report(parameter->at, fmt::format("a subsurface material by \"{}\" (\"sigma_a\" and "
-                                                    "\"sigma_s\" say what it is)",
-                                                    name));
 }
 
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
