@@ -210,6 +210,7 @@ const std::vector<Format>& formats() {
         "Material \"subsurface\" \"rgb reflectance\" [ .8 .5 .2 ] \"float mfp\" .1\n",
         "Material \"subsurface\" \"string name\" \"Skin1\"\n",
         "\"rgb reflectance\" [ 1 0 .2 ]",
+        "\"rgb sheencolor\" [ 1 0 .2 ]",
         "MediumInterface \"m\" \"\"\n",
         "MakeNamedMedium \"m\" \"string type\" \"homogeneous\"\n",
         "\"float g\" -0.9",
