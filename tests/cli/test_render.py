@@ -144,10 +144,10 @@ class Render(ProgramTest):
         self.assertEqual(picture("--threads", "1"), picture("--threads", "2"))
         self.assertNotEqual(picture(), picture("--sky", "100"))
         text = (self.folder / "vases.gltf").read_text()
-        (self.folder / "vases.gltf").write_text(text.replace('"KHR_materials_emissive_strength": {"', '"KHR_materials_sheen": {}, "KHR_materials_emissive_strength": {"'))
+        (self.folder / "vases.gltf").write_text(text.replace('"KHR_materials_emissive_strength": {"', '"KHR_materials_iridescence": {}, "KHR_materials_emissive_strength": {"'))
         rows = self.json_of("render", "vases.gltf", "--list-unsupported")["rows"]
-        self.assertEqual([(row["path"], row["unsupported"]) for row in rows], [("materials[4].extensions.KHR_materials_sheen", "this extension")])
-        self.assert_refused("render", "vases.gltf", "-o", "x.npy", words=["materials[4].extensions.KHR_materials_sheen", "--list-unsupported"])
+        self.assertEqual([(row["path"], row["unsupported"]) for row in rows], [("materials[4].extensions.KHR_materials_iridescence", "this extension")])
+        self.assert_refused("render", "vases.gltf", "-o", "x.npy", words=["materials[4].extensions.KHR_materials_iridescence", "--list-unsupported"])
         done = self.petzval("render", "vases.gltf", "--skip-unsupported", "--size", "16x12", "--spp", "4", "-o", "x.npy")
         self.assertEqual(done.returncode, 0)
         self.assertIn("left out", done.stderr)

@@ -110,6 +110,34 @@ TEST(GltfMaterials, AClearCoatHasItsOwnRoughnessAndTextures) {
   EXPECT_THROW(read_gltf(gltf.text()), InputError);
 }
 
+TEST(GltfMaterials, SheenHasColourAndRoughnessOfItsOwn) {
+  GltfText gltf;
+  const int colour = gltf.add_texture(png_of(1, 1, 3, {255, 255, 255})),
+            alpha = gltf.add_texture(png_of(1, 1, 4, {0, 0, 0, 102}));
+  const int cloth = gltf.add_material({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                                       {"extensions",
+                                        {{"KHR_materials_sheen",
+                                          {{"sheenColorFactor", {0.5, 0.5, 0.5}},
+                                           {"sheenColorTexture", {{"index", colour}}},
+                                           {"sheenRoughnessFactor", 0.5},
+                                           {"sheenRoughnessTexture", {{"index", alpha}}}}}}}});
+  gltf.add_node({{"mesh", gltf.add_mesh(gltf.square(cloth))}});
+  Unsupported unsupported;
+  const auto world = build_world(read_gltf(gltf.text()), WavelengthGroups({550}), {}, unsupported);
+  const Material& material = world->materials.back();
+  ASSERT_TRUE(material.sheen);
+  EXPECT_NEAR(static_cast<double>(material.sheen_colour->at({}, 0)[0]), 0.5, 2e-3);
+  EXPECT_NEAR(material.sheen_roughness->at({}, 0), 0.5 * 102 / 255, 1e-6);
+  nlohmann::json& extensions = gltf.json["materials"][0]["extensions"];
+  extensions["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}};
+  Unsupported list(true);
+  parse_gltf_scene(gltf.text(), "s.gltf", list);
+  ASSERT_EQ(list.list().size(), 1u);
+  EXPECT_EQ(list.list()[0].what, "sheen below a clear coat");
+  extensions["KHR_materials_sheen"]["sheenColorFactor"] = {2, 0, 0};
+  EXPECT_THROW(read_gltf(gltf.text()), InputError);
+}
+
 TEST(GltfMaterials, MetalnessAndRoughnessComeFromBlueAndGreen) {
   GltfText gltf;
   const int texture = gltf.add_texture(png_of(1, 1, 3, {9, 128, 64}));

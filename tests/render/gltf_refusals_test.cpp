@@ -99,7 +99,7 @@ TEST(GltfRefusals, ReadsNoFilesFromElsewhere) {
 
 TEST(GltfRefusals, ListsAllThatIsNotSupported) {
   GltfText gltf = room();
-  gltf.json["materials"][0]["extensions"]["KHR_materials_sheen"] = {{"sheenRoughnessFactor", 1}};
+  gltf.json["materials"][0]["extensions"]["KHR_materials_iridescence"] = {{"iridescenceFactor", 1}};
   gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = 0;
   gltf.json["meshes"][1]["primitives"][0]["mode"] = 1;
   gltf.json["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
@@ -107,7 +107,7 @@ TEST(GltfRefusals, ListsAllThatIsNotSupported) {
   const std::vector<std::string> wanted{
       "s.gltf: extensionsRequired[1]: the extension KHR_draco_mesh_compression",
       "s.gltf: nodes[1].skin: a skin that bones move",
-      "s.gltf: materials[0].extensions.KHR_materials_sheen: this extension",
+      "s.gltf: materials[0].extensions.KHR_materials_iridescence: this extension",
       "s.gltf: meshes[0].primitives[0].attributes.COLOR_1: a second colour for every vertex"};
   EXPECT_EQ(unsupported_in(gltf.text()), wanted);
   expect_refused(refusal(gltf.text()), "extensionsRequired[1]: ", "not supported");

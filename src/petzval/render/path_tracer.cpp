@@ -71,12 +71,12 @@ void PathTracer::add_sky(Path& path, int group) const {
 }
 
 /// What an open way has left of a light that was asked. \param scatter_pdf  of the direction to it.
-template <class Pdf>
+template <bool media, class Pdf>
 void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int medium, const Lanes& f,
                            double cos, const Pdf& scatter_pdf, int group, SobolSample& sample) const {
   std::optional<Lanes> kept;  // by media
   double asked = 1, flown = 1;
-  if (world_.media.empty()) {
+  if constexpr (!media) {
     if (world_.intersector->blocked(origin, way_to(light, origin), end_of_way(light))) return;
   } else {
     const std::optional<Passage> way = open_way(origin, light, medium, group, path.hero, sample);
@@ -90,7 +90,7 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
   // In a medium, what a small ball gets: a quarter of the light from all around.
   if (path.depth == 1)
     path.light.arriving += (path.plan.to.all_around ? 0.25 / light.pdf : weight) * light.light;
-  const double again = light.place ? path.asked_again : 1;
+  const double again = media && light.place ? path.asked_again : 1;
   weight *= light.small || options_.lights == PathOptions::Lights::sampled
                 ? 1 / again
                 : asked * light.pdf / (again * asked * light.pdf + flown * scatter_pdf());
@@ -98,6 +98,7 @@ void PathTracer::add_asked(Path& path, LightSample& light, Vector3 origin, int m
   if (light.source < 0) tell_skies(path, weight * (kept ? f * *kept : f), light.direction, group);
 }
 
+template <bool media>
 void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame,
                                    const Bsdf& bsdf, Vector3 wo, const Geometry& geometry, int group,
                                    SobolSample& sample) const {
@@ -112,12 +113,13 @@ void PathTracer::add_sampled_light(Path& path, const SurfacePoint& point, const 
   if ((dot(point.normal, light->direction) > 0) != (wi.z > 0)) return;
   const Lanes f = bsdf.value(wo, wi);
   if (f.is_black()) return;
-  add_asked(
+  add_asked<media>(
       path, *light, point.origin_towards(light->direction),
-      medium_towards(geometry, point, light->direction, path.medium), f, std::abs(wi.z),
+      media ? medium_towards(geometry, point, light->direction, path.medium) : -1, f, std::abs(wi.z),
       [&] { return bsdf.pdf(wo, wi); }, group, sample);
 }
 
+template <bool media>
 bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
                          Vector3 wo, const Geometry& geometry, SobolSample& sample) const {
   const auto [choice, u, v, roulette] = sample.next4();
@@ -131,8 +133,10 @@ bool PathTracer::scatter(Path& path, const SurfacePoint& point, const Frame& fra
   if (chosen->transmitted) path.index_scale *= chosen->index_ratio * chosen->index_ratio;
   path.direction = normalised(direction);
   path.origin = point.origin_towards(path.direction);
-  path.medium = medium_towards(geometry, point, path.direction, path.medium);
-  path.begin_stretch();
+  if constexpr (media) {
+    path.medium = medium_towards(geometry, point, path.direction, path.medium);
+    path.begin_stretch();
+  }
   return goes_on(path, roulette);
 }
 
@@ -148,7 +152,7 @@ bool PathTracer::scatter_in_medium(Path& path, double distance, int group, Sobol
       world_.lights.sample(world_.geometries, path.plan, choice, light_u, light_v, group);
   if (light && light->pdf > 0 && (options_.lights != PathOptions::Lights::by_chance || light->small)) {
     const double phase = henyey_greenstein(dot(path.direction, light->direction), g);
-    add_asked(
+    add_asked<true>(
         path, *light, path.origin, path.medium, Lanes::all(phase), 1, [&] { return phase; }, group, sample);
   }
   const auto [u, v, roulette] = sample.next3();
@@ -183,16 +187,21 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
   Path path;
   path.origin = origin, path.direction = direction, path.hero = hero;
   path.of_sources = of_sources;
-  if (!world_.media.empty()) {
-    path.medium = world_.camera_medium;
-    path.begin_with(led_by, world_.groups.lanes(group));
-  }
+  if (world_.media.empty()) return follow<false>(path, group, sample, limit, first);
+  path.medium = world_.camera_medium;
+  path.begin_with(led_by, world_.groups.lanes(group));
+  return follow<true>(path, group, sample, limit, first);
+}
+
+template <bool media>
+PathLight PathTracer::follow(Path& path, int group, SobolSample& sample, double limit,
+                             FirstSurface* first) const {
   int interfaces = 0;
   bool mirrored = true;  // so far there were only mirrors
   for (;;) {
     const std::optional<Hit> hit =
         world_.intersector->nearest(path.origin, path.direction, path.depth == 0 ? limit : infinity);
-    if (path.medium >= 0) {
+    if (media && path.medium >= 0) {
       const double distance = hit ? hit->distance : infinity;
       std::optional<Equiangular> beside;
       if (path.depth < std::min(options_.max_depth, places_beside))
@@ -226,11 +235,11 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     if (material.kind == Material::Kind::none) {
       if (++interfaces > most_interfaces) break;
       path.origin = point.origin_towards(path.direction);
-      path.medium = medium_towards(geometry, point, path.direction, path.medium);
+      if (media) path.medium = medium_towards(geometry, point, path.direction, path.medium);
       continue;
     }
     if (material.normal_map) point.shading_normal = material.normal_map->normal_at(point);
-    const Bsdf bsdf = material.bsdf(texture_point, group, hero);
+    const Bsdf bsdf = material.bsdf(texture_point, group, path.hero);
     if (first && !first->met)
       *first = {true, point.position, facing(point.shading_normal, -path.direction), bsdf.albedo()};
     mirrored = mirrored && bsdf.is_mirror();
@@ -239,9 +248,9 @@ PathLight PathTracer::trace(Vector3 origin, Vector3 direction, int group, int he
     if (path.depth++ >= options_.max_depth) break;
     const Frame frame(point.shading_normal, point.along_u);
     const Vector3 wo = frame.to_local(-path.direction);
-    path.asked_again = 1;
-    add_sampled_light(path, point, frame, bsdf, wo, geometry, group, sample);
-    if (!scatter(path, point, frame, bsdf, wo, geometry, sample)) break;
+    if (media) path.asked_again = 1;
+    add_sampled_light<media>(path, point, frame, bsdf, wo, geometry, group, sample);
+    if (!scatter<media>(path, point, frame, bsdf, wo, geometry, sample)) break;
   }
   return path.light;
 }

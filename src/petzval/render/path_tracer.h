@@ -62,17 +62,22 @@ class PathTracer {
 
  private:
   struct Path;
+  /// trace(), made for worlds with media and for those without, which need not ask at each step.
+  template <bool media>
+  PathLight follow(Path& path, int group, SobolSample& sample, double limit, FirstSurface* first) const;
   const Material& material_met(const Geometry& geometry, const TexturePoint& point, int group,
                                SobolSample& sample) const;
   void add(Path& path, const Lanes& light, int source) const;
   void tell_skies(Path& path, const Lanes& weight, Vector3 direction, int group) const;
   void add_emitted(Path& path, const Hit& hit, const SurfacePoint& point, int group) const;
   void add_sky(Path& path, int group) const;
+  template <bool media>
   void add_sampled_light(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf,
                          Vector3 wo, const Geometry& geometry, int group, SobolSample& sample) const;
-  template <class Pdf>
+  template <bool media, class Pdf>
   void add_asked(Path& path, LightSample& light, Vector3 origin, int medium, const Lanes& f, double cos,
                  const Pdf& scatter_pdf, int group, SobolSample& sample) const;
+  template <bool media>
   bool scatter(Path& path, const SurfacePoint& point, const Frame& frame, const Bsdf& bsdf, Vector3 wo,
                const Geometry& geometry, SobolSample& sample) const;
   bool goes_on(Path& path, double roulette) const;

@@ -25,11 +25,15 @@ bool is_white(const std::vector<double>& rgb) {
 struct GltfMaterials::Reading {
   const tinygltf::Material& material;
   std::string path;  ///< "materials[2]"
-  GltfExtension transmission, volume, ior, specular, strength, clearcoat;
-  GltfTexture base{}, metal_and_roughness{}, emission{}, lean{}, coat{}, coat_roughness{};
+  GltfExtension transmission, volume, ior, specular, strength, clearcoat, sheen;
+  GltfTexture base{}, metal_and_roughness{}, emission{}, lean{}, coat{}, coat_roughness{}, sheen_colour{},
+      sheen_roughness{};
   /// Names of textures; empty: the factors alone.
-  std::string colour{}, metallic{}, alpha{}, normals{}, coat_share{}, coat_alpha{};
-  double index_of_refraction = 1.5, specular_factor = 1, coat_factor = 0, coat_roughness_factor = 0;
+  std::string colour{}, metallic{}, alpha{}, normals{}, coat_share{}, coat_alpha{}, fibres{},
+      fibre_roughness{};
+  double index_of_refraction = 1.5, specular_factor = 1, coat_factor = 0, coat_roughness_factor = 0,
+         sheen_roughness_factor = 0;
+  std::array<double, 3> sheen_factor{0, 0, 0};
 
   Reading(const GltfFile& file, const tinygltf::Material& of, std::string at)
       : material(of),
@@ -39,7 +43,21 @@ struct GltfMaterials::Reading {
         ior(file, of.extensions, "KHR_materials_ior", path),
         specular(file, of.extensions, "KHR_materials_specular", path),
         strength(file, of.extensions, "KHR_materials_emissive_strength", path),
-        clearcoat(file, of.extensions, "KHR_materials_clearcoat", path) {}
+        clearcoat(file, of.extensions, "KHR_materials_clearcoat", path),
+        sheen(file, of.extensions, "KHR_materials_sheen", path) {}
+
+  bool shines_as_cloth() const { return sheen_factor != std::array<double, 3>{0, 0, 0}; }
+  void with_sheen(EntityMaker& maker) const {
+    if (!shines_as_cloth()) return;
+    if (fibres.empty())
+      maker.rgb("sheencolor", sheen_factor);
+    else
+      maker.texture("sheencolor", fibres);
+    if (fibre_roughness.empty())
+      maker.number("sheenroughness", sheen_roughness_factor);
+    else
+      maker.texture("sheenroughness", fibre_roughness);
+  }
 
   const tinygltf::PbrMetallicRoughness& pbr() const { return material.pbrMetallicRoughness; }
   std::array<double, 3> base_factor() const {
@@ -47,7 +65,8 @@ struct GltfMaterials::Reading {
     return {f[0], f[1], f[2]};
   }
   int uv_set() const {
-    for (const GltfTexture* texture : {&base, &metal_and_roughness, &lean, &coat, &coat_roughness})
+    for (const GltfTexture* texture :
+         {&base, &metal_and_roughness, &lean, &coat, &coat_roughness, &sheen_colour, &sheen_roughness})
       if (*texture) return texture->uv_set;
     return -1;
   }
@@ -166,8 +185,9 @@ void GltfMaterials::read_textures(Reading& reading) {
   reading.lean =
       textures_.reference(fourth.index, fourth.texCoord, fourth.extensions, reading.path + ".normalTexture");
   if (reading.clearcoat.is_there()) read_coat(reading);
-  for (const GltfTexture* each :
-       {&reading.metal_and_roughness, &reading.lean, &reading.coat, &reading.coat_roughness})
+  if (reading.sheen.is_there()) read_sheen(reading);
+  for (const GltfTexture* each : {&reading.metal_and_roughness, &reading.lean, &reading.coat,
+                                  &reading.coat_roughness, &reading.sheen_colour, &reading.sheen_roughness})
     if (*each && each->uv_set != reading.uv_set())
       unsupported_.report(file_.at(each->path + ".texCoord"),
                           "another set of texture coordinates than that of the first texture");
@@ -204,6 +224,29 @@ void GltfMaterials::read_coat(Reading& reading) {
                              file_.at(reading.coat_roughness.path));
 }
 
+void GltfMaterials::read_sheen(Reading& reading) {
+  GltfExtension& sheen = reading.sheen;
+  const auto texture = [&](const char* member) {
+    const tinygltf::TextureInfo info = sheen.texture(member);
+    return textures_.reference(info.index, info.texCoord, info.extensions, sheen.path() + "." + member);
+  };
+  const std::vector<double> colour = sheen.numbers("sheenColorFactor", {0, 0, 0});
+  check_factors(file_, sheen.path() + ".sheenColorFactor", colour, 3);
+  std::copy(colour.begin(), colour.end(), reading.sheen_factor.begin());
+  reading.sheen_roughness_factor = sheen.number("sheenRoughnessFactor", 0, 0, 1);
+  reading.sheen_colour = texture("sheenColorTexture");
+  reading.sheen_roughness = texture("sheenRoughnessTexture");
+  sheen.report_rest(unsupported_);
+  if (!reading.shines_as_cloth()) return;
+  if (reading.coat_factor > 0) unsupported_.report(file_.at(sheen.path()), "sheen below a clear coat");
+  GltfExtension transmission = reading.transmission;
+  if (transmission.number("transmissionFactor", 0, 0, 1) > 0)
+    unsupported_.report(file_.at(sheen.path()), "sheen on glass");
+  if (reading.sheen_colour) reading.fibres = textures_.add_colour(reading.sheen_colour, reading.sheen_factor);
+  if (reading.sheen_roughness)
+    reading.fibre_roughness = textures_.add_opacity(reading.sheen_roughness, reading.sheen_roughness_factor);
+}
+
 void GltfMaterials::read_alpha(const Reading& reading, GltfSurface& surface) {
   const std::string& mode = reading.material.alphaMode;
   if (mode == "OPAQUE" || mode.empty()) return;
@@ -234,6 +277,7 @@ int GltfMaterials::add_metal(const Reading& reading, bool under_coat) {
   reading.with_roughness(metal, under_coat ? "conductor.roughness" : "roughness");
   if (under_coat) reading.with_coat(metal, "interface.roughness");
   reading.with_normals(metal);
+  if (!under_coat) reading.with_sheen(metal);
   return add(metal.made());
 }
 
@@ -242,6 +286,7 @@ int GltfMaterials::add_opaque(const Reading& reading, bool under_coat) {
   EntityMaker body(coated ? "coateddiffuse" : "diffuse", file_.at(reading.path));
   reading.with_colour(body);
   reading.with_normals(body);
+  if (!under_coat) reading.with_sheen(body);
   if (under_coat)
     reading.with_coat(body.flag("remaproughness", false), "roughness");
   else if (coated)
@@ -321,7 +366,7 @@ void GltfMaterials::report_rest(const Reading& reading) {
   report_gltf_extensions(
       file_, reading.material.extensions, reading.path,
       {"KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior", "KHR_materials_specular",
-       "KHR_materials_emissive_strength", "KHR_materials_clearcoat"},
+       "KHR_materials_emissive_strength", "KHR_materials_clearcoat", "KHR_materials_sheen"},
       unsupported_);
 }
 

@@ -25,8 +25,8 @@ struct GltfSurface {
 /// coating; both with facets of alpha = roughness² (glTF 2.0, appendix B). What light the coating lets in,
 /// the base colour's share of it comes out again, as B.3.5 has it. KHR_materials_transmission puts glass in
 /// the place of the base: a thin sheet, or with KHR_materials_volume a body. KHR_materials_clearcoat is a
-/// coat of index 1.5 on as much of the surface as its factor says: coateddiffuse and coatedconductor. Opacity
-/// is a matter of the shape (Geometry::opacity).
+/// coat of index 1.5 on as much of the surface as its factor says: coateddiffuse and coatedconductor.
+/// KHR_materials_sheen is a matter of each of these. Opacity is a matter of the shape (Geometry::opacity).
 class GltfMaterials {
  public:
   GltfMaterials(const GltfFile& file, SceneDescription& scene, Unsupported& unsupported)
@@ -41,6 +41,7 @@ class GltfMaterials {
   GltfSurface read(int index, bool tinted);
   void read_textures(Reading& reading);
   void read_coat(Reading& reading);
+  void read_sheen(Reading& reading);
   void report_rest(const Reading& reading);
   void read_alpha(const Reading& reading, GltfSurface& surface);
   int add_body(const Reading& reading, bool under_coat);

@@ -60,7 +60,7 @@ bool Bsdf::transmits() const {
   return kind_ == Kind::dielectric || kind_ == Kind::thin || (kind_ == Kind::diffuse && !second_.is_black());
 }
 
-Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
+Lanes Bsdf::bare_value(Vector3 wo, Vector3 wi) const {
   if (mirror_ || wo.z == 0 || wi.z == 0) return Lanes::all(0);
   switch (kind_) {
     case Kind::diffuse:
@@ -83,7 +83,7 @@ Lanes Bsdf::value(Vector3 wo, Vector3 wi) const {
   return Lanes::all(0);
 }
 
-double Bsdf::pdf(Vector3 wo, Vector3 wi) const {
+double Bsdf::bare_pdf(Vector3 wo, Vector3 wi) const {
   if (mirror_ || wo.z == 0 || wi.z == 0) return 0;
   const bool same_side = wo.z * wi.z > 0;
   switch (kind_) {
@@ -113,7 +113,7 @@ double Bsdf::pdf(Vector3 wo, Vector3 wi) const {
   return 0;
 }
 
-std::optional<BsdfSample> Bsdf::sample(Vector3 wo, double choice, double u, double v) const {
+std::optional<BsdfSample> Bsdf::bare_sample(Vector3 wo, double choice, double u, double v) const {
   if (wo.z == 0) return {};
   switch (kind_) {
     case Kind::diffuse:
@@ -132,7 +132,7 @@ std::optional<BsdfSample> Bsdf::sample(Vector3 wo, double choice, double u, doub
   return sample_thin(wo, choice);
 }
 
-Lanes Bsdf::albedo() const {
+Lanes Bsdf::bare_albedo() const {
   if (kind_ == Kind::diffuse || kind_ == Kind::coated) return first_;
   if (kind_ == Kind::conductor) return conductor_at(1);
   if (kind_ == Kind::layered) return layering_->metal ? layered_mirror(1) : first_;
@@ -193,7 +193,7 @@ std::optional<BsdfSample> Bsdf::sample_coated(Vector3 wo, double choice, double 
     sample.wi = sample_cosine(u, v);
     if (wo.z < 0) sample.wi.z = -sample.wi.z;
   }
-  sample.pdf = pdf(wo, sample.wi);
+  sample.pdf = bare_pdf(wo, sample.wi);
   if (!(sample.pdf > 0)) return {};
   sample.weight = std::abs(sample.wi.z) / sample.pdf * coated_value(wo, sample.wi);
   return sample;

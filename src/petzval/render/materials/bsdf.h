@@ -22,6 +22,7 @@ struct BsdfSample {
 
 /// What a coating reflects as a whole from one direction; see coating_albedo.h.
 class CoatingAlbedo;
+class Sheen;
 
 /// How a clear dielectric lies over an opaque base.
 struct Layering {
@@ -53,6 +54,10 @@ class Bsdf {
   static Bsdf dielectric(const Lanes& eta, int hero, Microfacets facets);
   static Bsdf thin_dielectric(const Lanes& eta);
 
+  /// Fibres over what is there, which must be opaque and not layered: of what they leave of the light both
+  /// ways the lesser share lights it (KHR_materials_sheen).
+  void cover(const Sheen& sheen, const Lanes& colour, double alpha);
+
   /// f for both directions; zero for mirrors.
   Lanes value(Vector3 wo, Vector3 wi) const;
   /// The density with which sample() chooses wi; zero for mirrors.
@@ -60,7 +65,7 @@ class Bsdf {
   /// \param choice, u, v  in [0, 1). Nothing when the light is absorbed.
   std::optional<BsdfSample> sample(Vector3 wo, double choice, double u, double v) const;
 
-  bool is_mirror() const { return mirror_; }
+  bool is_mirror() const { return mirror_ && !sheen_; }
   /// Whether light from behind may come through.
   bool transmits() const;
   /// Whether a transmitted path serves the hero wavelength alone.
@@ -74,6 +79,12 @@ class Bsdf {
   class LayerWalk;
   Bsdf(Kind kind, Microfacets facets) : kind_(kind), facets_(facets) {}
 
+  Lanes bare_value(Vector3 wo, Vector3 wi) const;
+  double bare_pdf(Vector3 wo, Vector3 wi) const;
+  std::optional<BsdfSample> bare_sample(Vector3 wo, double choice, double u, double v) const;
+  Lanes bare_albedo() const;
+  double left_by_sheen(Vector3 wo, Vector3 wi) const;
+  double sheen_share(Vector3 wo) const;
   double coat_share(double cos_out) const;
   Lanes coated_value(Vector3 wo, Vector3 wi) const;
   Lanes conductor_at(double cos) const;
@@ -99,6 +110,9 @@ class Bsdf {
   const CoatingAlbedo* coating_ = nullptr;
   const Layering* layering_ = nullptr;
   Microfacets base_facets_{0, 0};  ///< below the coat
+  const Sheen* sheen_ = nullptr;
+  Lanes sheen_colour_ = Lanes::all(0);
+  double sheen_alpha_ = 1;
 };
 
 /// A direction over the hemisphere with density cos/π, from a point of the unit square (Shirley & Chiu 1997).

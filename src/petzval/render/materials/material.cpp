@@ -164,14 +164,23 @@ void read_subsurface(const Parameters& parameters, const TextureLibrary& texture
   material.kind = Material::Kind::dielectric;
   material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.33);
   read_roughness(parameters, textures, material);
-  for (const char* name : {"sigma_a", "sigma_s", "scale", "g"})
+  for (const char* name : {"sigma_a", "sigma_s", "reflectance", "mfp", "scale", "g", "name"})
     if (const Parameter* parameter = parameters.find(name); parameter && parameter->type == "texture")
       unsupported.report(parameter->at, "a subsurface material that varies over its surface");
-  for (const char* name : {"name", "reflectance", "mfp"})
-    if (const Parameter* parameter = parameters.find(name))
-      unsupported.report(parameter->at, fmt::format("a subsurface material by \"{}\" (\"sigma_a\" and "
-                                                    "\"sigma_s\" say what it is)",
-                                                    name));
+}
+
+/// Petzval's own, for KHR_materials_sheen of glTF.
+void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
+                std::shared_ptr<const Sheen>& sheen, Material& material) {
+  using enum Material::Kind;
+  const Parameter* colour = parameters.find("sheencolor");
+  if (!colour) return;
+  if (material.kind != diffuse && material.kind != coated_diffuse && material.kind != conductor)
+    return unsupported.report(colour->at, "sheen on a material of this kind");
+  material.sheen_colour = textures.spectrum_parameter(parameters, "sheencolor", SpectrumRole::albedo, 0);
+  material.sheen_roughness = textures.float_parameter(parameters, "sheenroughness", 0);
+  if (!sheen) sheen = std::make_shared<const Sheen>();
+  material.sheen = sheen;
 }
 
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
@@ -211,7 +220,7 @@ Lanes base_at(const Material& material, const Microfacets& coat, const TexturePo
 }
 
 Material make_material(const SceneDescription& scene, const Entity& entity, const TextureLibrary& textures,
-                       Unsupported& unsupported, Coatings& coatings) {
+                       Unsupported& unsupported, Coatings& coatings, std::shared_ptr<const Sheen>& sheen) {
   const Parameters& parameters = entity.parameters;
   Material material;
   if (entity.type == "diffuse") {
@@ -244,6 +253,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     return material;
   }
   parameters.find("type");
+  read_sheen(parameters, textures, unsupported, sheen, material);
   material.normal_map = textures.normal_map(parameters);
   unsupported.report_unused(parameters, fmt::format("material \"{}\"", entity.type));
   return material;
@@ -261,6 +271,14 @@ void check_mixtures(const std::vector<Material>& materials, const SceneDescripti
 }  // namespace
 
 Bsdf Material::bsdf(const TexturePoint& point, int group, int hero) const {
+  Bsdf result = bare_bsdf(point, group, hero);
+  if (!sheen) return result;
+  const double roughness = std::clamp(sheen_roughness->at(point, group), 0.0, 1.0);
+  result.cover(*sheen, clamped_albedo(sheen_colour->at(point, group)), roughness * roughness);
+  return result;
+}
+
+Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
   switch (kind) {
     case Kind::diffuse_transmission: {
       Lanes r = clamped_albedo(transmittance_scale * reflectance->at(point, group));
@@ -307,8 +325,9 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
   std::vector<Material> materials;
   materials.reserve(scene.materials.size());
   Coatings coatings;
+  std::shared_ptr<const Sheen> sheen;
   for (const Entity& entity : scene.materials)
-    materials.push_back(make_material(scene, entity, textures, unsupported, coatings));
+    materials.push_back(make_material(scene, entity, textures, unsupported, coatings, sheen));
   check_mixtures(materials, scene);
   return materials;
 }
@@ -316,10 +335,11 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
 bool varies(const std::vector<Material>& materials, int index) {
   const Material& material = materials[static_cast<std::size_t>(index)];
   for (const SpectrumTexture* each :
-       {&material.reflectance, &material.transmittance, &material.eta, &material.k})
+       {&material.reflectance, &material.transmittance, &material.eta, &material.k, &material.sheen_colour})
     if (*each && !(*each)->is_constant()) return true;
-  for (const FloatTexture* each : {&material.roughness_u, &material.roughness_v, &material.base_roughness_u,
-                                   &material.base_roughness_v, &material.mix_amount})
+  for (const FloatTexture* each :
+       {&material.roughness_u, &material.roughness_v, &material.base_roughness_u, &material.base_roughness_v,
+        &material.mix_amount, &material.sheen_roughness})
     if (*each && !(*each)->is_constant()) return true;
   if (material.normal_map) return true;
   return material.kind == Material::Kind::mix &&

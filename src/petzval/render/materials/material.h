@@ -4,6 +4,7 @@
 
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
+#include <petzval/render/materials/sheen.h>
 #include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
 
@@ -38,12 +39,18 @@ struct Material {
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
   std::shared_ptr<const NormalMap> normal_map;  ///< null: none
+  std::shared_ptr<const Sheen> sheen;           ///< null: none
+  SpectrumTexture sheen_colour;
+  FloatTexture sheen_roughness;
   FloatTexture mix_amount;
   std::array<int, 2> mixed{0, 0};  ///< into the list of materials
 
   /// Scattering at a point. \param hero  the lane that decides where dispersed light goes. Kinds none and mix
   /// have none.
   Bsdf bsdf(const TexturePoint& point, int group, int hero) const;
+
+ private:
+  Bsdf bare_bsdf(const TexturePoint& point, int group, int hero) const;
 };
 
 /// All materials of a scene, in the order of its description.

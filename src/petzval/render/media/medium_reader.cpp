@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/render/media/diffuse_albedo.h>
 #include <petzval/render/media/medium.h>
+#include <petzval/render/media/named_media.h>
 #include <petzval/render/pbrt/entity_maker.h>
 #include <petzval/render/spectra/named_spectra.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 
 namespace petzval::render {
@@ -14,6 +17,8 @@ namespace {
 
 /// Far above any medium, far below what a float holds.
 constexpr double densest = 1e12;
+/// pbrt-v4's.
+constexpr double subsurface_index = 1.33;
 
 /// The coefficient `name` times `scale`.
 BandSpectrum read_coefficient(const Parameters& parameters, const char* name, double otherwise, double scale,
@@ -41,6 +46,58 @@ BandSpectrum read_attenuation(const Parameters& parameters, double scale, const 
     constexpr double least = 1e-6;  // black has no logarithm
     return -scale / distance * std::log(std::clamp(left->at(nm), least, 1.0));
   });
+}
+
+/// The coefficients of the measured medium that the parameter `which` names; of whole milk without it, as
+/// pbrt-v4 does.
+void read_named(const Parameters& parameters, const char* which, double scale, const WavelengthGroups& groups,
+                Unsupported& unsupported, Medium& medium) {
+  const std::string name = parameters.string(which, "Wholemilk");
+  const NamedMedium* found = named_medium(name);
+  if (!found) {
+    unsupported.report(parameters.location_of(which), fmt::format("a medium named \"{}\"", name));
+    found = named_medium("Wholemilk");
+  }
+  const Entity entity = EntityMaker("", parameters.location_of(which))
+                            .rgb("sigma_a", found->absorption)
+                            .rgb("sigma_s", found->scattering)
+                            .made();
+  medium.absorption = read_coefficient(entity.parameters, "sigma_a", 0, scale, groups, unsupported);
+  medium.scattering = read_coefficient(entity.parameters, "sigma_s", 0, scale, groups, unsupported);
+}
+
+/// Coefficients that give light the colour "reflectance" and the mean free path "mfp", pbrt-v4's way.
+void read_reflectance(const Parameters& parameters, double scale, const WavelengthGroups& groups,
+                      Unsupported& unsupported, Medium& medium) {
+  const auto given = [&](const char* name, SpectrumRole role, double otherwise) {
+    const auto spectrum = spectrum_parameter(parameters, name, role, unsupported);
+    return spectrum ? *spectrum : constant_spectrum(otherwise);
+  };
+  const SceneSpectrum reflectance = given("reflectance", SpectrumRole::albedo, 0.5),
+                      mfp = given("mfp", SpectrumRole::unbounded, 1),
+                      eta = given("eta", SpectrumRole::unbounded, subsurface_index);
+  const auto extinction = [&](double nm) {
+    const double value = 1 / (scale * mfp.at(nm));
+    if (!(value >= 0 && value <= densest))
+      throw scene_error(parameters.location_of("mfp"),
+                        fmt::format("a mean free path of {:g} at {:g} nm; {:g} or more would be right",
+                                    scale * mfp.at(nm), nm, 1 / densest));
+    return value;
+  };
+  std::map<double, double> albedos;  // by wavelength
+  const auto albedo = [&](double nm) {
+    const double index = eta.at(nm);
+    if (!(index >= 1))
+      throw scene_error(parameters.location_of("eta"),
+                        fmt::format("an index of {:g} at {:g} nm; 1 or more would be right below a surface "
+                                    "of known reflectance",
+                                    index, nm));
+    const auto [at, is_new] = albedos.try_emplace(nm);
+    if (is_new) at->second = scattering_albedo(reflectance.at(nm), index, medium.g);
+    return at->second;
+  };
+  medium.scattering = groups.sampled([&](double nm) { return albedo(nm) * extinction(nm); });
+  medium.absorption = groups.sampled([&](double nm) { return (1 - albedo(nm)) * extinction(nm); });
 }
 
 double read_scale(const Parameters& parameters) {
@@ -132,12 +189,18 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
     return medium;
   }
   const double scale = read_scale(parameters);
-  if (const Parameter* preset = parameters.find("preset"))
-    unsupported.report(preset->at, "a medium by \"preset\" (\"sigma_a\" and \"sigma_s\" say what it is)");
   const bool attenuates = parameters.find("attenuation", {"rgb", "spectrum", "float"}) != nullptr;
-  medium.absorption = attenuates ? read_attenuation(parameters, scale, groups, unsupported)
-                                 : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
-  medium.scattering = read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
+  if (const std::string preset = parameters.string("preset", ""); !preset.empty()) {
+    if (attenuates || parameters.find("sigma_a") || parameters.find("sigma_s"))
+      throw scene_error(parameters.location_of("preset"),
+                        "a medium has either a preset or coefficients of its own");
+    read_named(parameters, "preset", scale, groups, unsupported, medium);
+  } else {
+    medium.absorption = attenuates ? read_attenuation(parameters, scale, groups, unsupported)
+                                   : read_coefficient(parameters, "sigma_a", 1, scale, groups, unsupported);
+    medium.scattering =
+        read_coefficient(parameters, "sigma_s", attenuates ? 0 : 1, scale, groups, unsupported);
+  }
   medium.g = read_g(parameters);
   medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
@@ -151,19 +214,30 @@ Medium make_medium(const MediumDescription& description, const WavelengthGroups&
 }  // namespace
 
 Medium make_subsurface(const Entity& material, const WavelengthGroups& groups, Unsupported& unsupported) {
-  // Whole milk (Jensen, Marschner, Levoy & Hanrahan, SIGGRAPH 2001) [1/mm], as in pbrt-v4.
-  const Entity milk = EntityMaker("", material.location())
-                          .rgb("sigma_a", {0.0011, 0.0024, 0.014})
-                          .rgb("sigma_s", {2.55, 3.21, 3.77})
-                          .made();
   const Parameters& parameters = material.parameters;
-  const bool own = parameters.find("sigma_a") || parameters.find("sigma_s");
-  const Parameters& coefficients = own ? parameters : milk.parameters;
+  const bool by_coefficients = parameters.find("sigma_a") || parameters.find("sigma_s"),
+             by_reflectance = parameters.find("reflectance") != nullptr,
+             by_name = parameters.find("name") != nullptr;
+  if (by_coefficients + by_reflectance + by_name > 1)
+    throw scene_error(parameters.location(),
+                      "a subsurface material is stated more than once; one of \"name\", \"reflectance\" "
+                      "(with \"mfp\") and \"sigma_a\" with \"sigma_s\" would be right");
+  if (parameters.find("mfp") && !by_reflectance)
+    throw scene_error(parameters.location_of("mfp"), "a mean free path without a \"reflectance\"");
   const double scale = read_scale(parameters);
   Medium medium;
-  medium.absorption = read_coefficient(coefficients, "sigma_a", 0, scale, groups, unsupported);
-  medium.scattering = read_coefficient(coefficients, "sigma_s", 0, scale, groups, unsupported);
   medium.g = read_g(parameters);
+  if (by_name && medium.g != 0)
+    throw scene_error(parameters.location_of("g"),
+                      "named media scatter as if evenly; without \"g\" would be right");
+  if (by_reflectance) {
+    read_reflectance(parameters, scale, groups, unsupported, medium);
+  } else if (by_coefficients) {
+    medium.absorption = read_coefficient(parameters, "sigma_a", 0, scale, groups, unsupported);
+    medium.scattering = read_coefficient(parameters, "sigma_s", 0, scale, groups, unsupported);
+  } else {
+    read_named(parameters, "name", scale, groups, unsupported, medium);
+  }
   medium.angle_shares = AngleShares(medium.g);
   medium.scatters = scatters(medium);
   return medium;
