@@ -144,6 +144,20 @@ TEST(MonotoneCubic, InverseUndoesTheCurve) {
   EXPECT_EQ(held.inverse(9), 2);
 }
 
+// Points that rise by twice, then by half of what they did: the quartic through them falls at the last.
+TEST(MonotoneCubic, RisesWhereItCarriesOn) {
+  const std::vector<double> x{0, 1, 2, 3, 4, 5, 6};
+  for (const std::vector<double>& y : {std::vector<double>{0, 1, 2, 3, 5, 7, 7.5},
+                                       {0, 1, 1.5, 3.5, 4, 6, 6.5},
+                                       {0, 2, 2.1, 2.2, 5, 5.1, 9}}) {
+    const MonotoneCubic curve(x, y, Start::odd, Beyond::linear);
+    for (const double at : grid(-1, 8, 901)) {
+      EXPECT_GT(curve.derivative(at), 0.01) << at;
+      EXPECT_NEAR(curve.inverse(curve(at)), at, 1e-12) << at;
+    }
+  }
+}
+
 TEST(MonotoneCubic, TakesFewPoints) {
   const MonotoneCubic one({3}, {7}), two({0, 2}, {1, 5}), even({0, 1}, {4, 3}, Start::even);
   EXPECT_EQ(one(-1), 7);

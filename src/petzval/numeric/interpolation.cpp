@@ -56,15 +56,25 @@ Mirrored mirrored(const std::vector<double>& x, const std::vector<double>& y, Mo
   return all;
 }
 
-/// The slope nearest to `slope` that keeps both neighbouring intervals monotone.
-double limited(double slope, double secant_before, double secant_after) {
-  if (secant_before * secant_after <= 0) return 0;
-  const double steepest = 3 * std::min(std::abs(secant_before), std::abs(secant_after));
-  return secant_before > 0 ? std::clamp(slope, 0.0, steepest) : std::clamp(slope, -steepest, 0.0);
-}
+/// What slopes may be of the lesser secant next to them.
+struct SlopeLimits {
+  double least, most;
+
+  /// Up to 2 no interval has a place without a slope, whatever the slopes at its ends.
+  static SlopeLimits of(MonotoneCubic::Beyond beyond) {
+    return beyond == MonotoneCubic::Beyond::hold ? SlopeLimits{0, 3} : SlopeLimits{1.0 / 3, 2};
+  }
+  /// The slope nearest to `slope` that keeps both neighbouring intervals monotone.
+  double limited(double slope, double secant_before, double secant_after) const {
+    if (secant_before * secant_after <= 0) return 0;
+    const double lesser = std::min(std::abs(secant_before), std::abs(secant_after));
+    const double sign = secant_before > 0 ? 1 : -1;
+    return sign * std::clamp(sign * slope, least * lesser, most * lesser);
+  }
+};
 
 std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y,
-                                    MonotoneCubic::Start start) {
+                                    MonotoneCubic::Start start, const SlopeLimits& limits) {
   const std::size_t count = x.size();
   const auto secant = [&](std::size_t i) { return (y[i + 1] - y[i]) / (x[i + 1] - x[i]); };
   const Mirrored all = mirrored(x, y, start);
@@ -75,7 +85,7 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
     const std::size_t first = std::min(centre - std::min(centre, width / 2), all.x.size() - width);
     const double slope = lagrange_slope(std::span(all.x).subspan(first, width),
                                         std::span(all.y).subspan(first, width), centre - first);
-    slopes[i] = limited(slope, secant(i == 0 ? 0 : i - 1), secant(std::min(i, count - 2)));
+    slopes[i] = limits.limited(slope, secant(i == 0 ? 0 : i - 1), secant(std::min(i, count - 2)));
   }
   if (start == MonotoneCubic::Start::even) slopes[0] = 0;
   return slopes;
@@ -92,7 +102,7 @@ MonotoneCubic::MonotoneCubic(std::vector<double> x, std::vector<double> y, Start
     : x_(std::move(x)), y_(std::move(y)), beyond_(beyond) {
   require_points(x_, y_);
   if (x_.size() == 1) return;
-  const std::vector<double> slopes = monotone_slopes(x_, y_, start);
+  const std::vector<double> slopes = monotone_slopes(x_, y_, start, SlopeLimits::of(beyond));
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const double width = x_[i + 1] - x_[i];
     const double secant = (y_[i + 1] - y_[i]) / width;

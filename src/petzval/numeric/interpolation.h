@@ -20,6 +20,8 @@ std::size_t bracket(std::span<const double> x, double at);
 /// fourth order in the spacing; they are then limited to [0, 3] times the neighbouring secants, which is
 /// sufficient for monotony (Fritsch & Carlson, SIAM J. Numer. Anal. 17 (1980) 238; Hyman, SIAM J. Sci. Stat.
 /// Comput. 4 (1983) 645). The price: at a point higher or lower than both its neighbours the slope is zero.
+/// A curve that carries on beyond its points rises everywhere if they do: its slopes are limited to [1/3, 2]
+/// times the secants.
 ///
 ///     MonotoneCubic g(height_mm, g_sr, MonotoneCubic::Start::even);
 ///     double g_there = g(1.25);
