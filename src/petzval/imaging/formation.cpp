@@ -86,6 +86,7 @@ Formation::Formation(const Scene& of_scene, const LensDataTable& of_table, const
   const CellChoice choice = choose_cells(scene, table, sensor, options);
   options.supersample = choice.cells;
   contrast = choice.contrast;
+  of_all.table_error = table.interpolation_error;
   of_all.sampling_error = choice.sampling.error;
   of_all.finer_detail_error = choice.sampling.finer;
   frame = options.cells_of(sensor);

@@ -87,8 +87,9 @@ struct ImagingReport {
   double finer_detail_error = 0;  ///< what finer detail of a chart than pixels can hold adds
   /// Light farther from its chief ray than this was formed on coarser pixels [pixels]; 0: none was.
   int tail_pixels = 0;
-  /// Relative L2 error of the picture, of cells and blur together: ProductPlan::estimated_error.
-  double estimated_error() const { return std::hypot(sampling_error, product.estimated_error); }
+  double table_error = 0;  ///< LensDataTable::interpolation_error
+  /// Relative L2 error of the picture, of table, cells and blur together: ProductPlan::estimated_error.
+  double estimated_error() const { return std::hypot(table_error, sampling_error, product.estimated_error); }
   double least_captured = 1;          ///< the least share of light that a PSF window in use holds
   double brightest = 0, darkest = 0;  ///< [W·m⁻²·nm⁻¹]
   /// What the steps took; of bands that were formed side by side, their shares of the time that all took.

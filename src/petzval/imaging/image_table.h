@@ -2,24 +2,23 @@
 // The lens data table of one image: PSFs where they are needed.
 #pragma once
 
+#include <petzval/imaging/spread_wanted.h>
 #include <petzval/optics/build.h>
 
 namespace petzval {
 
-/// How closely a table must say how light spreads.
-struct SpreadWanted {
-  double cell_um = 0;    ///< of the cells that the image will be formed on
-  double tolerance = 0;  ///< ProductOptions::tolerance
-};
-
-/// The table of a lens as one image needs it. From a tolerance of 3·10⁻³ on, that of a preview, PSFs are made
-/// for as few fields as serve; chief rays and illumination are those of all. A PSF in the middle between two
-/// is compared with what they say of it (HeightKernels), at the middle wavelength. Where its kernel differs
-/// by more than three tenths of the tolerance (RMS over the frame, rings of a small share of it allowed up to
-/// four times as much), or a wall would by a tenth, it is taken too, and the halves are looked at if it
-/// was more than four times what it may be. From 10⁻² on light is sampled as coarsely as the cells allow
-/// (CoarseLight), and by rays where waves carry too little of it beyond them. Finer pictures
-/// have the table of build_lens_data_table().
+/// The table of a lens as one image needs it: PSFs of as few fields as serve. A PSF in the middle between two
+/// is compared with what they say of it (HeightKernels). Where its kernel differs by more than three tenths
+/// of the tolerance (by light on the axis; RMS over the frame, rings of a small share of it allowed up to
+/// four times as much), or a wall would, it is taken too, and the halves are looked at if it was more than
+/// four times what it may be. Light that is formed apart (SpreadWanted::tail_um) is compared apart.
+///
+/// PSFs lie at fields that options.field_count asks for, or up to eight times closer: of m12-4.5mm, which
+/// ends within a field's step, the last tenth needs half of all. The middle wavelength chooses, then the
+/// first and the last. Previews, from a tolerance of 3·10⁻³ on, go by the middle wavelength and the fields
+/// asked for, and a wall may differ by a tenth of the tolerance; from 10⁻² on light is sampled as coarsely as
+/// the cells allow (CoarseLight), and by rays where waves carry too little of it beyond them. Chief rays and
+/// illumination are those of all fields asked for and of all with a PSF.
 ///
 /// Places over the frame have PSFs on every fourth row and column of their lattice, more towards its rim
 /// where they are needed, on every second or on all, at any tolerance: the fewest that tell the kernels in

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/imaging/cell_psf.h>
+#include <petzval/imaging/field_mixture.h>
+#include <petzval/imaging/light_centre.h>
 #include <petzval/imaging/psf_tails.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace petzval {
@@ -49,18 +52,36 @@ bool reaches_beyond(const LensDataTable& table, double reach_um) {
   });
 }
 
-/// Shares of the light at places without a PSF: on a straight line between the nearest that have one.
+/// Shares of the light at places without a PSF, as PSFs go between those that have one: by the cubics through
+/// them, over the frame by the spline.
 void fill_shares(const LensDataTable& table, std::vector<double>& shares) {
-  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w)
+  const auto inside = [](double share) { return std::clamp(share, 0.0, 1.0); };
+  for (std::size_t w = 0; w < table.wavelengths_nm.size(); ++w) {
+    std::vector<double> height_mm, known;
+    std::optional<LatticeSpline> over_frame;
+    if (table.frame)
+      over_frame = spline_of_psfs(*table.frame, psf_lattice(table, w),
+                                  [&](std::size_t place) { return shares[table.index(place, w)]; });
+    for (std::size_t place = 0; !table.frame && place < table.places(); ++place)
+      if (const std::size_t entry = table.index(place, w); table.has_psf(entry)) {
+        height_mm.push_back(table.real_image_height_mm[entry]);
+        known.push_back(shares[entry]);
+      }
     for (std::size_t place = 0; place < table.places(); ++place) {
       const std::size_t entry = table.index(place, w);
       if (table.has_psf(entry)) continue;
-      std::size_t low = place, high = place;
-      while (low > 0 && !table.has_psf(table.index(low, w))) --low;
-      while (high + 1 < table.places() && !table.has_psf(table.index(high, w))) ++high;
-      const double weight = high > low ? double(place - low) / double(high - low) : 0;
-      shares[entry] = (1 - weight) * shares[table.index(low, w)] + weight * shares[table.index(high, w)];
+      if (over_frame) {
+        const FramePlaces& frame = *table.frame;
+        const std::size_t columns = frame.x_mm.size();
+        shares[entry] = inside((*over_frame)(frame.x_mm[place % columns], frame.y_mm[place / columns]));
+        continue;
+      }
+      double share = 0;
+      for (const FieldShare& part : field_shares(height_mm, table.real_image_height_mm[entry]))
+        share += part.weight * known[part.field];
+      shares[entry] = inside(share);
     }
+  }
 }
 
 /// Where a part has no light, its PSF is that of the next place outwards that has some: between the two,

@@ -21,6 +21,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace petzval {
@@ -301,14 +302,31 @@ void HeightTable::add_entry(std::size_t field, std::size_t wavelength) {
   table_.psf[entry] = *std::move(psf);
 }
 
-void HeightTable::add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
-                           const ProgressCallback& progress) {
-  const std::size_t count = fields.size() * wavelengths.size();
+void HeightTable::add_entries(std::span<const std::array<std::size_t, 2>> field_and_wavelength,
+                              const ProgressCallback& progress) {
+  const std::size_t count = field_and_wavelength.size();
   std::atomic<std::size_t> done{0};
   parallel_for(count, [&](std::size_t i) {
-    add_entry(fields[i % fields.size()], wavelengths[i / fields.size()]);
+    const auto& [field, wavelength] = field_and_wavelength[i];
+    add_entry(field, wavelength);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(count), "lens data table");
   });
+}
+
+void HeightTable::add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
+                           const ProgressCallback& progress) {
+  std::vector<std::array<std::size_t, 2>> entries;
+  for (const std::size_t wavelength : wavelengths)
+    for (const std::size_t field : fields) entries.push_back({field, wavelength});
+  add_entries(entries, progress);
+}
+
+void HeightTable::add_missing_psfs(std::span<const std::size_t> fields, const ProgressCallback& progress) {
+  std::vector<std::array<std::size_t, 2>> entries;
+  for (std::size_t wavelength = 0; wavelength < table_.wavelengths_nm.size(); ++wavelength)
+    for (const std::size_t field : fields)
+      if (!table_.has_psf(table_.index(field, wavelength))) entries.push_back({field, wavelength});
+  add_entries(entries, progress);
 }
 
 void HeightTable::remove_psf(std::size_t field, std::size_t wavelength) {
@@ -351,6 +369,23 @@ LensDataTable HeightTable::finished() && {
   });
   table_.validate();
   return std::move(table_);
+}
+
+LensDataTable HeightTable::finished(std::span<const std::size_t> fields) && {
+  const auto keep = [&](auto& values, std::size_t of_a_field) {
+    std::remove_reference_t<decltype(values)> kept;
+    for (const std::size_t field : fields)
+      for (std::size_t i = 0; i < of_a_field; ++i) kept.push_back(std::move(values[field * of_a_field + i]));
+    values = std::move(kept);
+  };
+  const std::size_t wavelengths = table_.wavelengths_nm.size();
+  keep(table_.fields, 1);
+  keep(table_.real_image_height_mm, wavelengths);
+  keep(table_.g_source_sr, wavelengths);
+  keep(table_.g_sensor_sr, wavelengths);
+  keep(table_.psf, wavelengths);
+  for (std::vector<Ray>& rays : rays_) keep(rays, 1);
+  return std::move(*this).finished();
 }
 
 LensDataTable build_lens_data_table(const Lens& lens, const TableOptions& asked,

@@ -64,10 +64,14 @@ class HeightTable {
   /// Adds PSFs. From one thread; it takes as many as there are.
   void add_psfs(std::span<const std::size_t> fields, std::span<const std::size_t> wavelengths,
                 const ProgressCallback& progress = {});
+  /// Of these fields at every wavelength that has none yet.
+  void add_missing_psfs(std::span<const std::size_t> fields, const ProgressCallback& progress = {});
   void remove_psf(std::size_t field, std::size_t wavelength);
   const LensDataTable& table() const { return table_; }
   /// With g_source and g_sensor of fields without PSFs, between those of fields with one.
   LensDataTable finished() &&;
+  /// The same with no more than some fields, in increasing order.
+  LensDataTable finished(std::span<const std::size_t> fields) &&;
 
  private:
   struct Ray {
@@ -75,6 +79,8 @@ class HeightTable {
     double object_area = 0;  ///< FieldTracer::object_area_per_image_area()
   };
   void add_entry(std::size_t field, std::size_t wavelength);
+  void add_entries(std::span<const std::array<std::size_t, 2>> field_and_wavelength,
+                   const ProgressCallback& progress);
 
   Lens lens_;
   TableOptions options_;

@@ -33,9 +33,9 @@ LensDataTable blank_table(const Lens& lens, const TableOptions& options);
 class FrameTable {
  public:
   /// \param options  with its wavelengths and the frame. \param blank  what is said of the lens as a whole,
-  /// and the wavelengths. 	hrows InputError where no ray passes in the middle.
+  /// and the wavelengths. \throws InputError where no ray passes in the middle.
   FrameTable(const Lens& lens, const TableOptions& options, LensDataTable blank);
-  /// The same of a lens by its name alone, options completed. 	hrows InputError as build_lens_data_table().
+  /// The same of a lens by its name alone, options completed. \throws InputError as build_lens_data_table().
   FrameTable(const Lens& lens, const TableOptions& options);
 
   /// Adds PSFs. From one thread; it takes as many as there are.

@@ -55,6 +55,9 @@ struct LensDataTable {
   /// (size 0): light is spread there as the PSFs about it say. Such tables are for one image
   /// (build_image_table()); files hold none.
   std::vector<Psf> psf;
+  /// Relative L2 error of an image by what its PSFs miss of light between their places, as
+  /// build_image_table() estimates it; 0: not known.
+  double interpolation_error = 0;
 
   bool has_psf(std::size_t entry) const { return psf[entry].size > 0; }
   bool finite_object() const { return object_distance_mm.has_value(); }

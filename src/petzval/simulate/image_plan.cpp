@@ -314,8 +314,9 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
       constexpr int cells_a_pixel = 2;  // as many or more
       const double pitch_um =
           camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, first_order(focused));
-      return build_image_table(focused, table, {pitch_um / cells_a_pixel, options.imaging.product.tolerance},
-                               progress);
+      const SpreadWanted wanted{pitch_um / cells_a_pixel, options.imaging.product.tolerance,
+                                options.imaging.tail_pixels * pitch_um};
+      return build_image_table(focused, table, wanted, progress);
     });
   };
   LensDataTable built =
