@@ -19,6 +19,8 @@
 
 namespace petzval::app {
 
+class SweepFrames;
+
 /// Options that every subcommand takes.
 struct Shared {
   int threads = 0;  ///< 0: as many as the machine has
@@ -26,6 +28,7 @@ struct Shared {
   bool quiet = false;  ///< no notes, no progress
   bool json = false;
   RenderSession* renders = nullptr;  ///< of a command that runs many others; null: none
+  SweepFrames* frames = nullptr;     ///< of a sweep whose pictures share their paths; null: none
   bool parse_only = false;           ///< the command line is checked, and nothing is done
 };
 

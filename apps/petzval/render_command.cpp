@@ -16,6 +16,7 @@
 #include "render_option.h"
 #include "render_output.h"
 #include "scene_list.h"
+#include "sweep_frames.h"
 
 namespace petzval::app {
 
@@ -182,12 +183,14 @@ void run_render(const RenderCommand& command, const CLI::App& app, const Shared&
       request.camera.focus.kind == Focus::Kind::automatic)
     focus(command, context, shared, scene);
   if (command.show_zones) outputs.shown.frames = frames_of_zones(scene);
+  if (shared.frames && !request.is_piece() && shared.frames->takes(scene)) return;
   RenderSeconds seconds{seconds_since(start), 0};
   const auto begin = std::chrono::steady_clock::now();
   std::optional<FlareLayers> layers;
   if (flare.any() && !request.is_piece()) layers = scene_flare(scene, flare, context);
   if (request.is_piece()) return render_piece(scene, context, shared);
-  Rendering picture = render_or_save(command, scene, outputs, context);
+  Rendering picture =
+      shared.frames ? shared.frames->picture() : render_or_save(command, scene, outputs, context);
   if (layers) add_scene_flare(scene, flare, *layers, picture.irradiance, context);
   seconds.light = seconds_since(begin);
   const Outputs made =

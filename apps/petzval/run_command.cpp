@@ -13,10 +13,11 @@
 
 namespace petzval::app {
 
-CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders) {
+CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders, SweepFrames* frames) {
   CLI::App program{"", "petzval"};
   Shared shared;
   shared.renders = renders;
+  shared.frames = frames;
   add_all_commands(program, shared);
   const JsonTaker taker;
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 wants them

@@ -17,7 +17,9 @@ struct CommandOutcome {
 };
 
 /// Runs the words of a command line, without "petzval" before them. \param renders  that keeps the world of
-/// three-dimensional scenes from one command to the next; may be null. \throws Cancelled.
-CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders = nullptr);
+/// three-dimensional scenes from one command to the next; may be null. \param frames  that share their paths;
+/// may be null. \throws Cancelled.
+CommandOutcome run_command(std::vector<std::string> arguments, RenderSession* renders = nullptr,
+                           SweepFrames* frames = nullptr);
 
 }  // namespace petzval::app

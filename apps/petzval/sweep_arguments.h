@@ -20,6 +20,7 @@ struct SweepCommand {
   std::string scene_width = "same";  ///< of all points, each as its frame needs, or a length
   std::string plot;                  ///< of the numbers, or nothing
   std::vector<std::string> plot_of;  ///< what it shows; empty: what the command is about
+  bool share_paths = false;          ///< all pictures are rendered together
   bool corners = false;              ///< measure the corners of every picture
   std::vector<std::string> accept;   ///< what a good point keeps: COLUMN>=VALUE or COLUMN<=VALUE
   std::string clip;                  ///< a film of the pictures, or nothing

@@ -22,6 +22,7 @@
 #include "output_option.h"
 #include "plot_output.h"
 #include "sweep_folder.h"
+#include "sweep_frames.h"
 #include "sweep_result.h"
 #include "sweep_scene.h"
 #include "sweep_sheet.h"
@@ -260,6 +261,17 @@ std::set<std::string> write_summary(const SweepCommand& options, const std::vect
   return names;
 }
 
+/// All points, to be rendered together.
+SweepFrames frames_of(const CLI::App& app, const SweepCommand& options, const std::vector<SweepPoint>& points,
+                      const std::vector<std::string>& angles, const Shared& shared) {
+  std::vector<std::vector<std::string>> commands;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    commands.push_back(words_of_point(app, options, points[i], angles[i], shared));
+    commands.back().insert(commands.back().end(), {"-o", options.folder + "/" + name_of_point(i) + ".png"});
+  }
+  return SweepFrames(std::move(commands));
+}
+
 void sweep(const CLI::App& program, const SweepCommand& options, const Shared& shared) {
   const CLI::App& app = swept_app(program, options);
   std::vector<SweptParameter> parameters;
@@ -283,6 +295,9 @@ void sweep(const CLI::App& program, const SweepCommand& options, const Shared& s
   RenderSession renders;
   Shared with_session = shared;
   with_session.renders = &renders;
+  std::optional<SweepFrames> frames;
+  if (options.share_paths) frames = frames_of(app, options, points, angles, shared);
+  if (frames) with_session.frames = &*frames;
   std::set<std::string> written;
   std::vector<std::string> held;
   std::size_t failed = 0;
@@ -402,6 +417,13 @@ void add_swept(CLI::App& sweeps, CLI::App& program, Shared& shared, const std::s
   command->add_option("--fps", options->frames_per_second, "Pictures a second of that")
       ->check(positive_number())
       ->capture_default_str();
+  if (name == "render")
+    command->add_flag("--share-paths", options->share_paths,
+                      "Render all pictures together, in a fraction of the time: points differ in lens and "
+                      "focus alone, and the "
+                      "path of each ray serves every picture whose lens lets it through. --spp then says how "
+                      "noisy a picture is "
+                      "at most: as with so many paths of its own; fewer are sent");
   if (name != "image") return;
   command
       ->add_option("--irradiance", options->irradiance, "Keep the irradiance of every point too: exr or npy")

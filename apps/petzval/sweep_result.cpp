@@ -13,6 +13,7 @@
 
 #include "field_option.h"
 #include "run_command.h"
+#include "sweep_frames.h"
 #include "sweep_yield.h"
 
 namespace petzval::app {
@@ -74,7 +75,7 @@ bool recall(const std::string& record_path, bool corners, PointResult& result, c
 
 /// Runs the command of the point, and records what it made.
 void make(PointResult& result, const SweepCommand& options, const std::string& name, const Shared& shared) {
-  const CommandOutcome outcome = run_command(result.arguments, shared.renders);
+  const CommandOutcome outcome = run_command(result.arguments, shared.renders, shared.frames);
   result.exit_code = outcome.exit_code;
   result.numbers = outcome.numbers;
   result.done = outcome.exit_code == 0 && result.numbers.is_object();
@@ -105,13 +106,19 @@ Json checksums_of_files(const std::vector<std::string>& arguments, const std::st
   return sums;
 }
 
+std::vector<std::string> words_of_point(const CLI::App& app, const SweepCommand& options,
+                                        const SweepPoint& point, const std::string& scene_angle,
+                                        const Shared& shared) {
+  std::vector<std::string> words = arguments_of(app, options, point, shared);
+  if (!scene_angle.empty()) words.insert(words.end(), {"--scene-angle-least", scene_angle});
+  return words;
+}
+
 PointResult run_point(const CLI::App& app, const SweepCommand& options, const SweepPoint& point,
                       std::size_t index, const std::string& scene_angle, const Shared& shared) {
   PointResult result;
   result.point = point;
-  result.arguments = arguments_of(app, options, point, shared);
-  if (!scene_angle.empty())
-    result.arguments.insert(result.arguments.end(), {"--scene-angle-least", scene_angle});
+  result.arguments = words_of_point(app, options, point, scene_angle, shared);
   const std::string name = name_of_point(index), stem = options.folder + "/" + name;
   if (options.makes_pictures()) {
     result.outputs = {result.picture = stem + ".png"};
@@ -121,7 +128,13 @@ PointResult run_point(const CLI::App& app, const SweepCommand& options, const Sw
   for (const std::string& path : result.outputs)
     result.arguments.insert(result.arguments.end(), {"-o", path});
   result.checksums = checksums_of_files(result.arguments, stem);
-  if (!recall(stem + ".json", options.corners, result, shared)) make(result, options, name, shared);
+  if (shared.frames) result.checksums["frames that share paths"] = shared.frames->fingerprint();
+  if (recall(stem + ".json", options.corners, result, shared)) return result;
+  if (shared.frames) {
+    shared.frames->render(shared);
+    shared.frames->show(index);
+  }
+  make(result, options, name, shared);
   return result;
 }
 

@@ -30,6 +30,11 @@ std::string name_of_point(std::size_t index);
 nlohmann::ordered_json checksums_of_files(const std::vector<std::string>& arguments,
                                           const std::string& outputs);
 
+/// The arguments of a point without its outputs.
+std::vector<std::string> words_of_point(const CLI::App& app, const SweepCommand& options,
+                                        const SweepPoint& point, const std::string& scene_angle,
+                                        const Shared& shared);
+
 /// Takes the point from its record in the folder if that is of the same arguments, program and files, or else
 /// makes it. A point whose files are not as they were written is made again, with a note. \param scene_angle
 /// the least of it; "": none is given.

@@ -32,6 +32,12 @@ render::SceneCamera scene_camera(const PreparedScene& scene);
 /// What a path follows from the request: sampling is left to the caller.
 render::RenderOptions render_options(const PreparedScene& scene);
 
+/// And the sampling, with a fingerprint where there is a checkpoint.
+render::RenderOptions sampling_of(const PreparedScene& scene, const Context& context);
+
+/// Tells a rendering where it comes from and through which lens.
+void add_facts(const PreparedScene& scene, const Context& context, Rendering& picture);
+
 /// How many samples a pixel has at most.
 int samples_asked(const PreparedScene& scene);
 

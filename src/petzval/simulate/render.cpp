@@ -20,6 +20,8 @@ namespace {
 
 constexpr int usual_samples = 64, most_samples_for_noise = 4096;
 
+}  // namespace
+
 render::RenderOptions sampling_of(const PreparedScene& scene, const Context& context) {
   const RenderRequest& request = scene.request;
   render::RenderOptions options = render_options(scene);
@@ -54,8 +56,6 @@ void add_facts(const PreparedScene& scene, const Context& context, Rendering& pi
     each.lens = picture.irradiance.lens;
   }
 }
-
-}  // namespace
 
 int samples_asked(const PreparedScene& scene) {
   const RenderRequest& request = scene.request;

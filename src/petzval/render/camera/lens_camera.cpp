@@ -45,11 +45,12 @@ LensCamera::LensCamera(const Lens& lens, const SensorGeometry& film, const Wavel
     tracers_.push_back(Tracer(lens, nm[i], stop_radius).with_blades({}));
 
   const StopBlades& blades = lens.stop_blades();
+  round_ = tracers_.front().is_centred() && blades.count == 0;
   for (const Tracer& tracer : tracers_) {
     const Tracer bladed = tracer.with_blades(blades);
     to_scene_.push_back(kernel_path<double>(bladed, true, Tracer::Clip::apertures));
     for (KernelSurface<double>& surface : to_scene_.back().surfaces) surface.counts_path = false;
-    if (disperses_) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
+    if (disperses_ || options.lands) to_film_.emplace_back(bladed, RadianceTracer::Direction::forward);
   }
   if (options.diffraction) {
     const double origin_z_mm = options.origin_at_front ? 0 : tracers_.front().image_z_mm();
@@ -120,6 +121,10 @@ LensCamera::Start LensCamera::guided_start(double x_mm, double y_mm, double u, d
 
 LensCamera::Start LensCamera::start(double x_mm, double y_mm, double u, double v) const {
   if (regions_ && guide_.concerns(x_mm, y_mm)) return guided_start(x_mm, y_mm, u, v);
+  return unguided_start(x_mm, y_mm, u, v);
+}
+
+LensCamera::Start LensCamera::unguided_start(double x_mm, double y_mm, double u, double v) const {
   if (regions_) {
     const std::optional<ExitPupilRegions::Sample> sample = regions_->sample(x_mm, y_mm, u, v);
     return sample ? Start{sample->alpha, sample->beta, sample->area_sr} : Start{};
@@ -161,6 +166,7 @@ struct LensCamera::Led {
   const FilmSampling& sampling;
   std::span<const FilmSample> samples;
   std::span<CameraRay> rays;
+  bool alone;                      ///< nobody asks where other wavelengths would land
   std::vector<std::size_t> which;  ///< of samples and rays
   RayBatch batch;                  ///< from the film, later in front of the lens
   std::vector<double> density;     ///< [1/sr]
@@ -171,8 +177,18 @@ struct LensCamera::Led {
 
 void LensCamera::trace(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
                        std::span<CameraRay> rays) const {
+  follow_heroes(group, sampling, samples, rays, false);
+}
+
+void LensCamera::lead(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
+                      std::span<CameraRay> rays) const {
+  follow_heroes(group, sampling, samples, rays, true);
+}
+
+void LensCamera::follow_heroes(int group, const FilmSampling& sampling, std::span<const FilmSample> samples,
+                               std::span<CameraRay> rays, bool alone) const {
   const int lanes = groups_.lanes(group);
-  Led led{group, 0, lanes, sampling, samples, rays, {}, {}, {}, {}, {}, {}, {}, {}};
+  Led led{group, 0, lanes, sampling, samples, rays, alone, {}, {}, {}, {}, {}, {}, {}, {}};
   for (led.hero = 0; led.hero < (disperses_ ? lanes : 1); ++led.hero) {
     led.which.clear();
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -229,7 +245,9 @@ void LensCamera::trace_led(Led& led) const {
     ray.direction = {batch.l[k], batch.m[k], -batch.n[k]};
     ray.weight_alone = static_cast<float>(led.lanes / led.density[k]);
     ray.weight = Lanes::all(1 / led.density[k]);
+    if (led.alone) ray.density = Lanes::all(led.density[k]);
   }
+  if (led.alone) return;
   if (disperses_) share_among_wavelengths(led);
   if (transmittance_) dim(led);
 }
@@ -269,10 +287,10 @@ RadianceRays turned_round(const RayBatch& rays, std::span<const std::size_t> whi
 }  // namespace
 
 /// Of the k-th ray's light at a wavelength, where that lands.
-float LensCamera::through(const Led& led, int lane, const RadianceRays& landed, std::size_t k) const {
+float LensCamera::through(int group, int lane, const RadianceRays& landed, std::size_t k) const {
   if (!transmittance_) return 1;
   return static_cast<float>(
-      transmittance_->at(static_cast<std::size_t>(groups_.band(led.group, lane)),
+      transmittance_->at(static_cast<std::size_t>(groups_.band(group, lane)),
                          static_cast<double>(landed.x_mm[k]), static_cast<double>(landed.y_mm[k]),
                          static_cast<double>(landed.l[k]), static_cast<double>(landed.m[k])));
 }
@@ -314,7 +332,7 @@ void LensCamera::share_among_wavelengths(const Led& led) const {
       if (passes && led.sampling.pixel_at(led.samples[led.which[passing[k]]], static_cast<double>(column),
                                           static_cast<double>(row)))
         sum[k] += rays[k]->density[lane] = density[k];
-      rays[k]->weight[lane] = passes ? through(led, lane, landed, k) : 0;
+      rays[k]->weight[lane] = passes ? through(led.group, lane, landed, k) : 0;
       rays[k]->column[at] = column;
       rays[k]->row[at] = row;
     }
