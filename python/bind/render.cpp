@@ -2,6 +2,8 @@
 // Three-dimensional scenes through a camera, and autofocus on them.
 #include <fmt/format.h>
 #include <petzval/simulate/render_estimate.h>
+#include <petzval/simulate/render_frames.h>
+#include <petzval/simulate/render_session.h>
 #include <petzval/simulate/scene_segments.h>
 #include <petzval/simulate/scene_truth.h>
 
@@ -141,6 +143,26 @@ auto estimate_function(RenderRequest (*)(const CameraInPython&, OfRender...)) {
     told["memory_bytes"] = cost.memory_bytes;
     told["probe_seconds"] = cost.probe_seconds;
     return told;
+  };
+}
+
+/// Frames of one scene through several cameras, which share their paths.
+template <typename... OfRender>
+auto frames_function(RenderRequest (*)(const CameraInPython&, OfRender...)) {
+  return [](const nb::sequence& cameras, OfRender... of_render, int threads, std::uint64_t seed,
+            const nb::object& progress) {
+    std::vector<RenderRequest> asked;
+    for (const nb::handle camera : cameras)
+      asked.push_back(request_of(nb::cast<const CameraInPython&>(camera), of_render...));
+    Call call({threads, seed, progress});
+    return call([&](const Context& context) {
+      RenderSession session;
+      std::vector<PreparedScene> frames;
+      for (const RenderRequest& frame : asked) frames.push_back(session.prepare(frame, context));
+      std::vector<RenderingInPython> pictures;
+      for (Rendering& light : render_frames(frames, context)) pictures.emplace_back(std::move(light));
+      return pictures;
+    });
   };
 }
 
@@ -305,6 +327,16 @@ void bind_render(nb::class_<CameraInPython>& camera, nb::module_& module) {
              "What `render` with these keywords would take, from a small picture: a dict with "
              "`samples_per_pixel`, `seconds`, `memory_bytes` and `probe_seconds`. Raises InputError; "
              "Cancelled.");
+  module.def(
+      "render_frames", frames_function(request_of), nb::arg("cameras"), PETZVAL_RENDER_ARGUMENTS,
+      PETZVAL_SEEDED_CALL_KEYWORDS,
+      "The light of a three-dimensional scene through several cameras that differ in lens and focus "
+      "alone, four or more, as in a focus pull: a list of Renderings, no noisier than "
+      "`samples_per_pixel` paths each, in a fraction of the time, for a path serves every frame whose "
+      "lens lets it through (balance heuristic). Keywords are those of Camera.render(). The bytes of a "
+      "frame depend on all of them. Raises InputError for what frames cannot share (autofocus, "
+      "`diffraction`, `noise`, `first_surfaces`, `denoise_light`, `light_groups`, checkpoints and "
+      "pieces, a camera that moves); Cancelled.");
   module.def(
       "merge_renderings",
       [](const std::vector<std::string>& pieces, const std::string& checkpoint, const nb::object& progress) {

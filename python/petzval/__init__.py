@@ -22,7 +22,7 @@ from . import _keywords, _petzval
 _keywords.explain(_petzval)  # before its functions are taken
 
 from ._petzval import (analyses, bundled_names, chart_names, compare, compare_lenses, data_directory, develop,
-                       list_unsupported, match_lenses, measure_colour, measure_oecf, merge_images, merge_renderings, set_data_directory, sfr, target,
+                       list_unsupported, match_lenses, measure_colour, measure_oecf, merge_images, merge_renderings, render_frames, set_data_directory, sfr, target,
                        target_chart_names, test_sensor)
 from ._petzval import _set_default_data_directory, _version
 from ._sweep import sweep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lenses with poses and blades through image formation: against the same light by other ways.
+// Tables that are made for an image, over the frame and by height: against the same light by other ways.
 #include <gtest/gtest.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/pupil_rays.h>
@@ -279,6 +279,32 @@ TEST(TableOverFrame, ByHeightPosesAndBladesAreRefusedByName) {
   Lens bladed = far_gauss();
   bladed.surfaces[bladed.stop_index()].blades.count = 6;
   EXPECT_NE(complaint(bladed).find("6 blades"), std::string::npos);
+}
+
+// PSFs that grow fast towards the rim, and such that hardly change.
+TEST(TableByHeight, ChosenFieldsSayWhatADenseTableDoes) {
+  for (const auto& [name, sensor] : {std::pair{"edmund-54852", SensorGeometry{320, 240, 15}},
+                                     std::pair{"double-gauss", SensorGeometry{360, 240, 100}}}) {
+    MountedLens camera(read_lens(name).lens);
+    camera.focus_at_m({});
+    TableOptions options;
+    options.wavelengths_nm = {550};
+    options.max_image_height_mm = sensor.half_diagonal_mm() + 0.1;
+    TableOptions many = options;
+    many.field_count = 241;
+    const LensDataTable dense = build_lens_data_table(camera.lens(), many);
+    const Scene scene = checkerboard(48);
+    ImagingOptions imaging;
+    imaging.surround = Surround::extend;
+    const SpectralImage truth = form_image(scene, dense, sensor, imaging);
+    const LensDataTable chosen = build_image_table(
+        camera.lens(), options,
+        {sensor.pitch_um / 2, imaging.product.tolerance, imaging.tail_pixels * sensor.pitch_um});
+    const double off = difference(form_image(scene, chosen, sensor, imaging), truth);
+    EXPECT_LT(off, imaging.product.tolerance) << name;
+    EXPECT_GT(chosen.interpolation_error, 0) << name;
+    EXPECT_LT(chosen.interpolation_error, imaging.product.tolerance) << name;
+  }
 }
 
 }  // namespace

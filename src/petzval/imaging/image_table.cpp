@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstddef>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -68,10 +69,16 @@ LensDataTable table_by_height(const Lens& lens, const TableOptions& asked, const
   if (wanted.of_a_preview()) options.coarse = {wanted.cell_um, wanted.tolerance};
   if (options.field_count < fewest_to_choose) return build_lens_data_table(lens, options, progress);
   constexpr int most_fields = 1000;  // TableOptions::validate()
-  const int finer =
+  int finer =
       wanted.of_a_preview() ? 1 : std::clamp((most_fields - 1) / (asked.field_count - 1), 1, finer_fields);
   options.field_count = finer * (asked.field_count - 1) + 1;
-  HeightTable parts(lens, options);
+  std::optional<HeightTable> table_of_fields(std::in_place, lens, options);
+  if (finer > 1 && table_of_fields->hardly_rises()) {
+    finer = 1;
+    options.field_count = asked.field_count;
+    table_of_fields.emplace(lens, options);
+  }
+  HeightTable& parts = *table_of_fields;
   TableProgress both(progress, parts.table().psf.size() / std::size_t(finer));
   const ChosenFields chosen = choose_fields(parts, options, wanted, both.first());
   std::vector<std::size_t> kept = chosen.fields;

@@ -264,11 +264,6 @@ HeightTable::HeightTable(const Lens& lens, const TableOptions& options)
       "has blades");
   table_ = blank_table(lens, options_);
   table_.fields = choose_fields(lens, options_);
-  const std::size_t entries = table_.fields.size() * table_.wavelengths_nm.size();
-  table_.real_image_height_mm.resize(entries);
-  table_.g_source_sr.resize(entries);
-  table_.g_sensor_sr.resize(entries);
-  table_.psf.resize(entries);
   rays_.resize(table_.wavelengths_nm.size());
   parallel_for(rays_.size(), [&](std::size_t w) {
     FieldTracer tracer(lens_, table_.wavelengths_nm[w], options_.clip);
@@ -277,6 +272,22 @@ HeightTable::HeightTable(const Lens& lens, const TableOptions& options)
       if (ray.chief) ray.object_area = tracer.object_area_per_image_area(*ray.chief);
       rays_[w].push_back(ray);
     }
+  });
+  const std::size_t entries = table_.fields.size() * table_.wavelengths_nm.size();
+  table_.real_image_height_mm.resize(entries);
+  table_.g_source_sr.resize(entries);
+  table_.g_sensor_sr.resize(entries);
+  table_.psf.resize(entries);
+}
+
+bool HeightTable::hardly_rises() const {
+  constexpr double least_of_mean = 0.1;
+  return std::ranges::any_of(rays_, [](const std::vector<Ray>& rays) {
+    const auto height = [](const Ray& ray) { return ray.chief ? std::abs(ray.chief->image_height_mm) : NAN; };
+    const double least = least_of_mean * height(rays.back()) / double(rays.size() - 1);
+    for (std::size_t f = 1; f < rays.size(); ++f)
+      if (!(height(rays[f]) - height(rays[f - 1]) > least)) return true;
+    return false;
   });
 }
 
