@@ -20,7 +20,7 @@ std::vector<BandPlan> plan_ends(const Scene& scene, const DepthCamera& camera, c
   const DepthLayers layers = lay_depth_layers(scene, camera.lens, law, sensor.pitch_um, depth);
   std::vector<BandPlan> plans;
   for (const std::size_t end : {layers.layers.size() - 1, std::size_t{0}}) {
-    LensDataTable table = layer_table(camera, layers, end, sensor.pitch_um);
+    LensDataTable table = layer_table(camera, layers, end, sensor.pitch_um, options.product.tolerance);
     const LayerScene layer(scene, layers, end, law.pupil_to_sensor_mm(), sensor.pitch_um);
     for (BandPlan& plan : plan_layer(scene, layer, table, options.cells_of(sensor), options))
       plans.push_back(std::move(plan));

@@ -57,7 +57,7 @@ class DepthImaging {
   void look_at_ends() {
     for (const std::size_t layer : {layers_.layers.size() - 1, std::size_t{0}}) {
       if (layer + 1 != layers_.layers.size() && layers_.layers.size() == 1) continue;
-      if (!ends_.contains(layer)) ends_.emplace(layer, table_of(layer));
+      if (!ends_.contains(layer)) ends_.emplace(layer, table_of(layer, options_));
       const LensDataTable& table = ends_.at(layer);
       const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
       const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
@@ -91,7 +91,7 @@ class DepthImaging {
         std::max_element(layers_.layers.begin(), layers_.layers.end(),
                          [](const DepthLayer& a, const DepthLayer& b) { return a.share < b.share; });
     const auto layer = static_cast<std::size_t>(largest - layers_.layers.begin());
-    const LensDataTable& table = ends_.emplace(layer, table_of(layer)).first->second;
+    const LensDataTable& table = ends_.emplace(layer, table_of(layer, options)).first->second;
     const LayerScene planar(scene_, layers_, layer, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
     const CellChoice choice = choose_cells(planar.light(scene_.bands() / 2), table, sensor_, options);
     options.supersample = choice.cells;
@@ -99,14 +99,14 @@ class DepthImaging {
     return options;
   }
 
-  LensDataTable table_of(std::size_t layer) const {
-    return layer_table(camera_, layers_, layer, sensor_.pitch_um,
+  LensDataTable table_of(std::size_t layer, const ImagingOptions& options) const {
+    return layer_table(camera_, layers_, layer, sensor_.pitch_um, options.product.tolerance,
                        [&](double fraction, const std::string& what) { tell(0.5 * fraction, what); });
   }
 
   void add_layer(LayerStack& stack) {
     const auto end = ends_.extract(layer_);
-    const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_);
+    const LensDataTable table = end ? std::move(end.mapped()) : table_of(layer_, options_);
     const LayerScene planar(scene_, layers_, layer_, law_.pupil_to_sensor_mm(), sensor_.pitch_um);
     const std::vector<BandPlan> plans = plan_layer(scene_, planar, table, frame_, options_);
     const LightCentres centres(table);

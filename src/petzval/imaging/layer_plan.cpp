@@ -59,15 +59,16 @@ LayerLens layer_lens(const DepthCamera& camera, const DepthLayers& layers, std::
 }  // namespace
 
 LensDataTable layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
-                          double pixel_um, const ProgressCallback& progress) {
+                          double pixel_um, double tolerance, const ProgressCallback& progress) {
   const LayerLens own = layer_lens(camera, layers, layer, pixel_um);
   if (camera.made)
     if (auto made = camera.made->extract(own.key())) return std::move(made.mapped());
-  if (layers.layers.size() == 1) return build_lens_data_table(own.lens, own.options, progress);
   // Layers lie a pixel of blur apart: what lies between two is farther from either than this.
-  constexpr double tolerance = 1e-2;
+  constexpr double between_layers = 1e-2;
   constexpr int cells_a_pixel = 2;
-  return build_image_table(own.lens, own.options, {pixel_um / cells_a_pixel, tolerance}, progress);
+  return build_image_table(own.lens, own.options,
+                           {pixel_um / cells_a_pixel, layers.layers.size() == 1 ? tolerance : between_layers},
+                           progress);
 }
 
 void keep_layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,

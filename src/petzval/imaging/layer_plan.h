@@ -12,9 +12,9 @@ namespace petzval {
 
 /// The lens's table for an object at the distance of a layer; the sensor stays where it is. With several
 /// layers it has no more wavelengths than one in 5 %, between which bands lie. \param pixel_um  that PSFs
-/// need not be much finer than.
+/// need not be much finer than. \param tolerance  ProductOptions::tolerance, of a single layer.
 LensDataTable layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
-                          double pixel_um, const ProgressCallback& progress = {});
+                          double pixel_um, double tolerance, const ProgressCallback& progress = {});
 /// Lets the next layer_table() of this layer have this table, if the camera has a place for it.
 void keep_layer_table(const DepthCamera& camera, const DepthLayers& layers, std::size_t layer,
                       double pixel_um, LensDataTable table);
