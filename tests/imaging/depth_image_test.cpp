@@ -6,6 +6,7 @@
 #include <petzval/base/error.h>
 #include <petzval/camera/mounted_lens.h>
 #include <petzval/imaging/depth_image.h>
+#include <petzval/imaging/image_table.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/lens_file.h>
 
@@ -94,8 +95,10 @@ TEST(DepthImage, OfOneDepthIsThatOfThePlane) {
     fill_noise(scene);
     MountedLens at(camera.lens);
     at.place_object_at_m(1.25);
+    const double tolerance = edges_go_on().product.tolerance;
     const SpectralImage plane =
-        form_image(scene, build_lens_data_table(at.lens(), camera.table), frame, edges_go_on());
+        form_image(scene, build_image_table(at.lens(), camera.table, {frame.pitch_um / 2, tolerance}), frame,
+                   edges_go_on());
     fill_depth(scene, [](double, double) { return 1.25; });
     const SpectralImage deep = form_depth_image(scene, camera, frame, edges_go_on(), {});
     EXPECT_EQ(worst_difference(deep, plane), 0) << focus_m;
