@@ -15,27 +15,31 @@
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
 
-/// Taylor's series about the nearest quarter turn, to 1e-16. \param d  a tag of doubles.
+/// Taylor's series about the nearest quarter turn, to 1e-16 in lanes of doubles, 1e-7 of floats.
 template <class D, class V = hwy::HWY_NAMESPACE::Vec<D>>
 HWY_ATTR HWY_INLINE void turn_by(D d, V cycles, V& cosine, V& sine) {
   namespace hn = hwy::HWY_NAMESPACE;
-  constexpr double two_pi = 6.283185307179586477;
+  using T = hn::TFromD<D>;
+  constexpr T two_pi = static_cast<T>(6.283185307179586477);
   const hn::RebindToSigned<D> whole;
-  const auto quarters = hn::Round(hn::Mul(cycles, hn::Set(d, 4.0)));
-  const auto angle = hn::Mul(hn::NegMulAdd(quarters, hn::Set(d, 0.25), cycles), hn::Set(d, two_pi));
+  const auto quarters = hn::Round(hn::Mul(cycles, hn::Set(d, T{4})));
+  const auto angle = hn::Mul(hn::NegMulAdd(quarters, hn::Set(d, T{0.25}), cycles), hn::Set(d, two_pi));
   const auto square = hn::Mul(angle, angle);
   constexpr double factorials[] = {1.0 / 1307674368000, 1.0 / 6227020800, 1.0 / 39916800, 1.0 / 362880,
                                    1.0 / 5040,          1.0 / 120,        1.0 / 6,        1.0};
   constexpr double even[] = {1.0 / 20922789888000, 1.0 / 87178291200, 1.0 / 479001600, 1.0 / 3628800,
                              1.0 / 40320,          1.0 / 720,         1.0 / 24,        1.0 / 2};
-  auto s = hn::Set(d, -factorials[0]), c = hn::Set(d, even[0]);
-  double sign = 1;
-  for (std::size_t i = 1; i < std::size(factorials); ++i, sign = -sign) {
-    s = hn::MulAdd(s, square, hn::Set(d, sign * factorials[i]));
-    c = hn::MulAdd(c, square, hn::Set(d, -sign * even[i]));
+  constexpr std::size_t first = sizeof(T) == sizeof(double) ? 0 : 3;
+  const auto term = [](double sign, double factor) { return static_cast<T>(sign * factor); };
+  double sign = first % 2 == 0 ? -1 : 1;
+  auto s = hn::Set(d, term(sign, factorials[first])), c = hn::Set(d, term(-sign, even[first]));
+  for (std::size_t i = first + 1; i < std::size(factorials); ++i) {
+    sign = -sign;
+    s = hn::MulAdd(s, square, hn::Set(d, term(sign, factorials[i])));
+    c = hn::MulAdd(c, square, hn::Set(d, term(-sign, even[i])));
   }
   s = hn::Mul(s, angle);
-  c = hn::MulAdd(c, square, hn::Set(d, 1.0));
+  c = hn::MulAdd(c, square, hn::Set(d, T{1}));
   // A quarter turn takes (c, s) to (−s, c).
   const auto turns = hn::ConvertTo(whole, quarters);
   const auto one = hn::Set(whole, 1), two = hn::Set(whole, 2);

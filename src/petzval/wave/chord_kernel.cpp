@@ -13,54 +13,6 @@
 #include <petzval/numeric/turn-inl.h>
 // clang-format on
 
-#ifndef PETZVAL_WAVE_CELL_SHARES
-#define PETZVAL_WAVE_CELL_SHARES
-namespace petzval {
-namespace {
-
-/// What one sample gives to one cell.
-struct CellShare {
-  std::size_t sample, cell;
-  float share;
-};
-
-/// What a sample gives to the cell beside it, if it is the last of its own: its interval holds
-/// f + (f₊ − 2f + f₋)/24, to fourth order in the spacing.
-constexpr float to_neighbour = 1.0F / 24;
-
-/// By sample; what would go beyond the ends stays.
-std::vector<CellShare> shares_of_samples(std::size_t samples, std::size_t cell) {
-  std::vector<CellShare> shares;
-  for (std::size_t sample = 0; sample < samples; ++sample) {
-    const std::size_t own = sample / cell;
-    float kept = 1;
-    const auto give = [&](std::size_t to) {
-      if (to == own) return;
-      shares.push_back({sample, to, to_neighbour});
-      kept -= to_neighbour;
-    };
-    if (cell > 1 && sample > 0) give((sample - 1) / cell);
-    if (cell > 1 && sample + 1 < samples) give((sample + 1) / cell);
-    shares.push_back({sample, own, kept});
-  }
-  return shares;
-}
-
-/// The same where cell 0 lies about s = 0, so that what is left of it mirrors its right.
-std::vector<CellShare> shares_of_columns(std::size_t columns, std::size_t cell) {
-  std::vector<CellShare> shares = shares_of_samples(columns, cell);
-  if (cell > 1 && cell < columns)
-    for (CellShare& share : shares) {
-      if (share.sample == 0) share.share -= to_neighbour;
-      if (share.sample == cell && share.cell == 0) share.share += to_neighbour;
-    }
-  return shares;
-}
-
-}  // namespace
-}  // namespace petzval
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace petzval::HWY_NAMESPACE {
 
@@ -78,9 +30,9 @@ constexpr std::size_t block_nodes = 24;
 constexpr std::size_t block_values = block_nodes * ChordSum::chords_together;
 
 /// Clenshaw's sum of one Chebyshev series a lane at u; terms are `stride` apart.
-HWY_ATTR HWY_INLINE Double chebyshev_sum(const double* series, std::size_t terms, std::size_t stride,
-                                         Double u) {
-  const Doubles d;
+template <class D, class V = hn::Vec<D>>
+HWY_ATTR HWY_INLINE V chebyshev_sum(D d, const hn::TFromD<D>* series, std::size_t terms, std::size_t stride,
+                                    V u) {
   const auto twice = hn::Add(u, u);
   auto later = hn::Zero(d), latest = hn::Zero(d);
   for (std::size_t m = terms - 1; m > 0; --m) {
@@ -103,54 +55,74 @@ struct Nodes {
   alignas(64) float re_s[block_values], im_s[block_values];
 };
 
-/// (c + is)².
-HWY_ATTR HWY_INLINE void square(Double& c, Double& s) {
-  const auto real = hn::MulSub(c, c, hn::Mul(s, s));
-  s = hn::Mul(hn::Add(c, c), s);
-  c = real;
-}
-
-/// The nodes from `first` on of the chords from `chord` on, a vector of doubles of them.
-HWY_ATTR void start_nodes(const ChordSum& sum, std::size_t chord, std::size_t lane, std::size_t first,
+/// What nodes need in double, a vector of doubles of chords. The turns that single precision can make of it
+/// wait as cycles [−½, ½], those of the phases in `re`, of the middles in `im`, of half a step in `re_c`;
+/// the series' argument in `im_c`.
+HWY_ATTR void place_nodes(const ChordSum& sum, std::size_t chord, std::size_t lane, std::size_t first,
                           Nodes& nodes) {
   const Doubles d;
   const HalfFloats f;
   const std::size_t lanes = hn::Lanes(Floats()), chords = sum.beta.size(), own = chord + lane;
   const QuadratureRule& rule = sum.along[chord / ChordSum::chords_together];
-  const double middle_mm = sum.first_column_mm + (static_cast<double>(pairs) - 0.5) * sum.step_mm;
-  const double middle_row_mm = sum.first_row_mm + 0.5 * (sum.rows - 1) * sum.step_mm;
+  const double middle_mm = sum.first_column_mm + (static_cast<double>(pairs) - 0.5) * sum.column_step_mm;
+  const double middle_row_mm = sum.first_row_mm + 0.5 * (sum.rows - 1) * sum.row_step_mm;
   const auto half = hn::LoadU(d, &sum.half_chord[own]);
-  const auto weight = hn::Mul(hn::Add(half, half), hn::LoadU(d, &sum.weight[own]));
   const auto row_waves = hn::Mul(hn::LoadU(d, &sum.beta[own]), hn::Set(d, sum.waves_per_mm * middle_row_mm));
+  const auto put_cycles = [&](Double cycles, float* at) HWY_ATTR {
+    hn::StoreU(hn::DemoteTo(f, hn::Sub(cycles, hn::Round(cycles))), f, at);
+  };
   for (std::size_t j = 0; j < nodes.count; ++j) {
     const std::size_t at = j * lanes + lane;
     const auto alpha = hn::Mul(half, hn::Set(d, rule.nodes[first + j]));
     const auto ratio = hn::Mul(alpha, hn::Set(d, 1 / sum.alpha_scale));
     const auto u = hn::MulSub(hn::Add(ratio, ratio), ratio, hn::Set(d, 1.0));
-    const auto strength = hn::Mul(hn::Mul(weight, hn::Set(d, rule.weights[first + j])),
-                                  chebyshev_sum(&sum.amplitude[own], sum.terms, chords, u));
-    Double c, s;
-    turn_by(Doubles(), hn::Add(chebyshev_sum(&sum.phase[own], sum.terms, chords, u), row_waves), c, s);
-    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, c)), f, &nodes.re[at]);
-    hn::StoreU(hn::DemoteTo(f, hn::Mul(strength, s)), f, &nodes.im[at]);
+    put_cycles(hn::Add(chebyshev_sum(d, &sum.phase[own], sum.terms, chords, u), row_waves), &nodes.re[at]);
+    hn::StoreU(hn::DemoteTo(f, u), f, &nodes.im_c[at]);
     const auto waves_per_mm = hn::Mul(alpha, hn::Set(d, sum.waves_per_mm));
-    turn_by(Doubles(), hn::Mul(waves_per_mm, hn::Set(d, middle_mm)), c, s);
-    hn::StoreU(c, d, &nodes.cosine[at]);
-    hn::StoreU(s, d, &nodes.sine[at]);
-    // Half a step, and by its square the steps from pair to pair and from group to group.
-    turn_by(Doubles(), hn::Mul(waves_per_mm, hn::Set(d, 0.5 * sum.step_mm)), c, s);
-    Double step_c = c, step_s = s;
-    square(step_c, step_s);
+    put_cycles(hn::Mul(waves_per_mm, hn::Set(d, middle_mm)), &nodes.im[at]);
+    put_cycles(hn::Mul(waves_per_mm, hn::Set(d, 0.5 * sum.column_step_mm)), &nodes.re_c[at]);
+    Double c, s;
+    turn_by(d, hn::Mul(waves_per_mm, hn::Set(d, 2.0 * pairs * sum.column_step_mm)), c, s);
+    hn::StoreU(c, d, &nodes.turn_cosine[at]);
+    hn::StoreU(s, d, &nodes.turn_sine[at]);
+  }
+}
+
+/// The nodes from `first` on of the chords from `chord` on.
+HWY_ATTR void start_nodes(const ChordSum& sum, std::size_t chord, std::size_t first, Nodes& nodes) {
+  const Floats d;
+  const Doubles wide;
+  const HalfFloats f;
+  const std::size_t lanes = hn::Lanes(d), chords = sum.beta.size();
+  for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(wide))
+    place_nodes(sum, chord, lane, first, nodes);
+  const QuadratureRule& rule = sum.along[chord / ChordSum::chords_together];
+  const auto half = hn::LoadU(d, &sum.strength[chord]);
+  for (std::size_t j = 0; j < nodes.count; ++j) {
+    const std::size_t at = j * lanes;
+    const auto u = hn::LoadU(d, &nodes.im_c[at]);
+    const auto strength = hn::Mul(hn::Mul(half, hn::Set(d, static_cast<float>(rule.weights[first + j]))),
+                                  chebyshev_sum(d, &sum.amplitude[chord], sum.terms, chords, u));
+    Float c, s;
+    turn_by(d, hn::LoadU(d, &nodes.im[at]), c, s);
+    hn::StoreU(c, d, &nodes.re_s[at]);
+    hn::StoreU(s, d, &nodes.im_s[at]);
+    for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(wide)) {
+      hn::StoreU(hn::PromoteTo(wide, hn::LoadU(f, &nodes.re_s[at + lane])), wide, &nodes.cosine[at + lane]);
+      hn::StoreU(hn::PromoteTo(wide, hn::LoadU(f, &nodes.im_s[at + lane])), wide, &nodes.sine[at + lane]);
+    }
+    turn_by(d, hn::LoadU(d, &nodes.re[at]), c, s);
+    hn::StoreU(hn::Mul(strength, c), d, &nodes.re[at]);
+    hn::StoreU(hn::Mul(strength, s), d, &nodes.im[at]);
+    turn_by(d, hn::LoadU(d, &nodes.re_c[at]), c, s);
+    const auto step_c = hn::MulSub(c, c, hn::Mul(s, s)), step_s = hn::Mul(hn::Add(c, c), s);
     for (std::size_t p = 0; p < pairs; ++p) {
-      hn::StoreU(hn::DemoteTo(f, c), f, &nodes.pair_cosine[p][at]);
-      hn::StoreU(hn::DemoteTo(f, s), f, &nodes.pair_sine[p][at]);
+      hn::StoreU(c, d, &nodes.pair_cosine[p][at]);
+      hn::StoreU(s, d, &nodes.pair_sine[p][at]);
       const auto next = hn::MulSub(c, step_c, hn::Mul(s, step_s));
       s = hn::MulAdd(s, step_c, hn::Mul(c, step_s));
       c = next;
     }
-    for (std::size_t steps = 1; steps < 2 * pairs; steps *= 2) square(step_c, step_s);
-    hn::StoreU(step_c, d, &nodes.turn_cosine[at]);
-    hn::StoreU(step_s, d, &nodes.turn_sine[at]);
   }
 }
 
@@ -244,8 +216,7 @@ HWY_ATTR ChordFields chord_fields(const ChordSum& sum, std::size_t columns) {
     const std::size_t count = sum.along[chord / ChordSum::chords_together].nodes.size();
     for (std::size_t first = 0; first < count; first += block_nodes) {
       nodes->count = std::min(block_nodes, count - first);
-      for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(Doubles()))
-        start_nodes(sum, chord, lane, first, *nodes);
+      start_nodes(sum, chord, first, *nodes);
       for (std::size_t c = 0; c < columns; c += 2 * pairs) {
         next_group(*nodes);
         for (std::size_t p = 0; p < pairs; p += 4) add_four_pairs(*nodes, p, chord / lanes, c, fields);
@@ -275,12 +246,12 @@ HWY_ATTR RowWaves start_rows(const ChordSum& sum, double first_mm) {
   for (std::size_t i = 0; i < chords; ++i)
     for (std::size_t lane = 0; lane < lanes; lane += hn::Lanes(d)) {
       const auto row = hn::Iota(d, static_cast<double>(lane));
-      const auto mm = hn::MulAdd(row, hn::Set(d, sum.step_mm), hn::Set(d, first_mm));
+      const auto mm = hn::MulAdd(row, hn::Set(d, sum.row_step_mm), hn::Set(d, first_mm));
       turn_by(Doubles(), hn::Mul(mm, hn::Set(d, sum.beta[i] * sum.waves_per_mm)), c, s);
       hn::StoreU(c, d, &waves.cosine[i * lanes + lane]);
       hn::StoreU(s, d, &waves.sine[i * lanes + lane]);
     }
-  const double stride_waves = static_cast<double>(lanes) * sum.step_mm * sum.waves_per_mm;
+  const double stride_waves = static_cast<double>(lanes) * sum.row_step_mm * sum.waves_per_mm;
   for (std::size_t i = 0; i < chords; i += hn::Lanes(d)) {  // whole vectors, as chords_together are
     turn_by(Doubles(), hn::Mul(hn::LoadU(d, &sum.beta[i]), hn::Set(d, stride_waves)), c, s);
     hn::StoreU(c, d, &waves.turn_cosine[i]);
@@ -306,10 +277,10 @@ HWY_ATTR void next_rows(RowWaves& waves) {
   }
 }
 
-/// |U|² in the rows of the waves at two columns: with C = Σ F cos and S = Σ F sin of kβδ, U(±δ) = C ± iS.
-/// \param intensity  the upper and the lower rows of the first column, and of the second.
+/// U in the rows of the waves at two columns: with C = Σ F cos and S = Σ F sin of kβδ, U(±δ) = C ± iS.
+/// \param upper, lower  the entries of the first of these rows, and of the one that mirrors it.
 HWY_ATTR HWY_INLINE void sum_two_columns(const RowWaves& waves, const ChordFields& fields, std::size_t column,
-                                         float* intensity) {
+                                         std::size_t upper, std::size_t lower, WaveSamples& samples) {
   const Floats d;
   const std::size_t lanes = hn::Lanes(d);
   auto c_re0 = hn::Zero(d), c_im0 = c_re0, s_re0 = c_re0, s_im0 = c_re0;
@@ -331,55 +302,31 @@ HWY_ATTR HWY_INLINE void sum_two_columns(const RowWaves& waves, const ChordField
       s_im1 = hn::MulAdd(i1, s, s_im1);
     }
   }
-  const auto put = [&](std::size_t row, const auto& re, const auto& im) HWY_ATTR {
-    hn::StoreU(hn::MulAdd(re, re, hn::Mul(im, im)), d, intensity + row * lanes);
+  const auto put = [&](std::size_t to, const auto& c_re, const auto& c_im, const auto& s_re,
+                       const auto& s_im) HWY_ATTR {
+    hn::StoreU(hn::Sub(c_re, s_im), d, samples.re(to) + upper);
+    hn::StoreU(hn::Add(c_im, s_re), d, samples.im(to) + upper);
+    float *lower_re = samples.re(to) + lower - (lanes - 1), *lower_im = samples.im(to) + lower - (lanes - 1);
+    hn::StoreU(hn::Reverse(d, hn::Add(c_re, s_im)), d, lower_re);
+    hn::StoreU(hn::Reverse(d, hn::Sub(c_im, s_re)), d, lower_im);
   };
-  put(0, hn::Sub(c_re0, s_im0), hn::Add(c_im0, s_re0));
-  put(1, hn::Add(c_re0, s_im0), hn::Sub(c_im0, s_re0));
-  put(2, hn::Sub(c_re1, s_im1), hn::Add(c_im1, s_re1));
-  put(3, hn::Add(c_re1, s_im1), hn::Sub(c_im1, s_re1));
+  put(column, c_re0, c_im0, s_re0, s_im0);
+  put(column + 1, c_re1, c_im1, s_re1, s_im1);
 }
 
-/// The light of every cell, row by row. Rows that mirror each other about the middle share their waves
-/// (sum_two_columns), so they are made in pairs, as many at a time as a vector has lanes. Their samples are
-/// first gathered into the columns of cells, then these rows are shared out to the rows of cells.
-HWY_ATTR void sum_cells(const ChordSum& sum, double* cells) {
-  const Floats d;
-  const std::size_t lanes = hn::Lanes(d);
+/// Rows that mirror each other about the middle share their waves, so they are made in pairs, as many at a
+/// time as a vector has lanes.
+HWY_ATTR void sum_waves(const ChordSum& sum, WaveSamples& samples) {
+  const std::size_t lanes = hn::Lanes(Floats());
   const auto columns = static_cast<std::size_t>(sum.columns), rows = static_cast<std::size_t>(sum.rows);
-  const auto cell = static_cast<std::size_t>(sum.cell), cell_columns = columns / cell;
   const ChordFields fields = chord_fields(sum, (columns + 2 * pairs - 1) / (2 * pairs) * (2 * pairs));
-  const std::vector<CellShare> column_shares = shares_of_columns(columns, cell),
-                               row_shares = shares_of_samples(rows, cell);
-  const double first_mm = rows % 2 == 0 ? 0.5 * sum.step_mm : 0;
-  RowWaves waves = start_rows(sum, first_mm);
-  // Of the rows at hand: [column of cells][upper, lower][lane].
-  std::vector<float> in_cells(cell_columns * 2 * lanes), intensity(4 * lanes);
+  RowWaves waves = start_rows(sum, rows % 2 == 0 ? 0.5 * sum.row_step_mm : 0);
   const std::size_t half = (rows + 1) / 2;  // pairs, the middle row with itself when their number is odd
   for (std::size_t pair = 0; pair < half; pair += lanes) {
     next_rows(waves);
-    std::fill(in_cells.begin(), in_cells.end(), 0.0F);
-    auto share = column_shares.begin();
-    for (std::size_t c = 0; c < columns; c += 2) {
-      sum_two_columns(waves, fields, c, intensity.data());
-      for (; share != column_shares.end() && share->sample < c + 2; ++share)
-        for (std::size_t part = 0; part < 2; ++part) {
-          float* to = &in_cells[(2 * share->cell + part) * lanes];
-          const auto light = hn::LoadU(d, &intensity[(2 * (share->sample - c) + part) * lanes]);
-          hn::StoreU(hn::MulAdd(hn::Set(d, share->share), light, hn::LoadU(d, to)), d, to);
-        }
-    }
-    const std::size_t upper = rows / 2 + pair, count = std::min(lanes, half - pair);
-    const std::size_t lowest = rows - upper - count;
-    for (const CellShare& row : row_shares) {
-      const bool above = row.sample >= upper && row.sample < upper + count;
-      const bool below = row.sample >= lowest && row.sample < lowest + count;
-      if (!above && !below) continue;
-      const std::size_t lane = above ? row.sample - upper : rows - 1 - upper - row.sample;
-      const float* from = &in_cells[(above ? 0 : lanes) + lane];
-      for (std::size_t j = 0; j < cell_columns; ++j)
-        cells[row.cell * cell_columns + j] += static_cast<double>(row.share * from[2 * j * lanes]);
-    }
+    const std::size_t upper = rows / 2 + pair;
+    for (std::size_t c = 0; c < columns; c += 2)
+      sum_two_columns(waves, fields, c, upper, rows - 1 - upper, samples);
   }
 }
 
@@ -389,12 +336,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace petzval {
 
-HWY_EXPORT(sum_cells);
+HWY_EXPORT(sum_waves);
 
-void sum_chord_cells(const ChordSum& sum, std::vector<double>& cells) {
-  const int cell_columns = sum.columns / sum.cell, cell_rows = sum.rows / sum.cell;
-  cells.assign(static_cast<std::size_t>(cell_columns) * static_cast<std::size_t>(cell_rows), 0.0);
-  if (!sum.beta.empty()) HWY_DYNAMIC_DISPATCH(sum_cells)(sum, cells.data());
+WaveSamples::WaveSamples(int columns, int rows)
+    : stride_((static_cast<std::size_t>(rows) + 3 * margin - 1) / margin * margin + margin),
+      values_(2 * stride_ * (static_cast<std::size_t>(columns) + columns % 2), 0.0F) {}
+
+WaveSamples sum_chord_waves(const ChordSum& sum) {
+  WaveSamples samples(sum.columns, sum.rows);
+  if (!sum.beta.empty()) HWY_DYNAMIC_DISPATCH(sum_waves)(sum, samples);
+  return samples;
 }
 
 }  // namespace petzval

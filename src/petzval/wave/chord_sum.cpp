@@ -3,6 +3,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/numeric/quadrature.h>
+#include <petzval/wave/cell_light.h>
 #include <petzval/wave/chord_kernel.h>
 #include <petzval/wave/chord_sum.h>
 
@@ -184,6 +185,8 @@ std::vector<Chord> chords_of(const SmoothPupil& pupil, const Window& window) {
 void take_chords(const SmoothPupil& pupil, std::vector<Chord> chords, double turn_s, ChordSum& sum) {
   if (chords.empty()) return;
   constexpr std::size_t together = ChordSum::chords_together;
+  // About the pupil's middle, so that U turns no faster than half a pupil's width makes it.
+  const double middle = 0.5 * (pupil.beta_high() + pupil.beta_low());
   const Chord shortest = chords.back();
   while (chords.size() % together != 0) chords.push_back({shortest.beta, 0, shortest.half});
   sum.terms = pupil.phase_waves.terms();
@@ -193,15 +196,15 @@ void take_chords(const SmoothPupil& pupil, std::vector<Chord> chords, double tur
   std::vector<double> phase(sum.terms), amplitude(sum.terms);
   for (std::size_t i = 0; i < chords.size(); ++i) {
     const Chord& chord = chords[i];
-    sum.beta.push_back(chord.beta);
-    sum.weight.push_back(chord.weight);
+    sum.beta.push_back(chord.beta - middle);
+    sum.strength.push_back(static_cast<float>(2 * chord.half * chord.weight));
     sum.half_chord.push_back(chord.half);
     if (i % together == 0) sum.along.push_back(panels(0, 1, 0.5 * turn_s * chord.half));
     pupil.phase_waves.series(chord.beta, phase);
     pupil.amplitude.series(chord.beta, amplitude);
     for (std::size_t m = 0; m < sum.terms; ++m) {
       sum.phase[m * chords.size() + i] = phase[m];
-      sum.amplitude[m * chords.size() + i] = amplitude[m];
+      sum.amplitude[m * chords.size() + i] = static_cast<float>(amplitude[m]);
     }
   }
 }
@@ -218,19 +221,32 @@ struct Lit {
 };
 
 /// Columns of cells with s ≥ 0: the rest is their mirror image.
-ChordSum chord_sum(const SmoothPupil& pupil, const PsfGrid& grid, const Lit& lit) {
-  const double spacing_mm = grid.spacing_um * mm_per_um;
+CellGrid cell_grid(const SmoothPupil& pupil, const PsfGrid& grid, const Lit& lit) {
+  const double lambda_mm = pupil.wavelength_nm * mm_per_nm / pupil.image_index;
+  const double step_mm = grid.sample_spacing_um() * mm_per_um;
+  CellGrid cells;
+  cells.cell = grid.samples_per_cell;
+  cells.rows = lit.rows * cells.cell;
+  cells.columns = (lit.reach + 1) * cells.cell;
+  cells.along_s = FinerSamples::of_step(step_mm * 2 * pupil.alpha_max() / lambda_mm);
+  cells.along_t = FinerSamples::of_step(step_mm * (pupil.beta_high() - pupil.beta_low()) / lambda_mm);
+  return cells;
+}
+
+ChordSum chord_sum(const SmoothPupil& pupil, const PsfGrid& grid, const Lit& lit, const CellGrid& cells) {
+  const double step_mm = grid.sample_spacing_um() * mm_per_um;
+  const double first_of_cell_mm = -0.5 * (cells.cell - 1) * step_mm;
   ChordSum sum;
   sum.waves_per_mm = pupil.image_index / (pupil.wavelength_nm * mm_per_nm);
-  sum.cell = grid.samples_per_cell;
-  sum.step_mm = spacing_mm / sum.cell;
-  sum.rows = lit.rows * sum.cell;
-  sum.columns = (lit.reach + 1) * sum.cell;
-  const double first_of_cell_mm = -0.5 * (sum.cell - 1) * sum.step_mm;
-  sum.first_column_mm = first_of_cell_mm;
-  sum.first_row_mm = first_of_cell_mm + (lit.first_row - grid.size / 2) * spacing_mm;
-  const double low_mm = (lit.first_row - grid.size / 2 - 1) * spacing_mm;
-  const Window window{(lit.reach + 1) * spacing_mm, low_mm, low_mm + (lit.rows + 1) * spacing_mm};
+  sum.column_step_mm = cells.along_s.factor * step_mm;
+  sum.row_step_mm = cells.along_t.factor * step_mm;
+  sum.columns = cells.along_s.needed(cells.columns);
+  sum.rows = cells.along_t.needed(cells.rows);
+  sum.first_column_mm = first_of_cell_mm - cells.along_s.before() * sum.column_step_mm;
+  sum.first_row_mm = first_of_cell_mm + (lit.first_row - grid.size / 2) * grid.spacing_um * mm_per_um -
+                     cells.along_t.before() * sum.row_step_mm;
+  const Window window{sum.first_column_mm + sum.columns * sum.column_step_mm,
+                      sum.first_row_mm - sum.row_step_mm, sum.first_row_mm + sum.rows * sum.row_step_mm};
   const double k = 2 * pi * sum.waves_per_mm;
   take_chords(pupil, chords_of(pupil, window), k * (window.reach_s + pupil.reach_s_mm), sum);
   return sum;
@@ -244,28 +260,31 @@ Psf sum_chords(const SmoothPupil& pupil, const PsfGrid& grid) {
     throw InputError(fmt::format("a PSF needs at least one sample, at most {} a side, and a positive spacing",
                                  most_samples));
   const Lit lit(grid);
-  const ChordSum sum = chord_sum(pupil, grid, lit);
+  const CellGrid in_cells = cell_grid(pupil, grid, lit);
+  const ChordSum sum = chord_sum(pupil, grid, lit, in_cells);
   std::vector<double> cells;
-  sum_chord_cells(sum, cells);
+  sum_cell_light(sum_chord_waves(sum), in_cells, cells);
 
   const auto columns = static_cast<std::size_t>(lit.reach + 1);
-  double total = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) total += (i % columns == 0 ? 1 : 2) * cells[i];
   // The first column of an even size has no partner on the right.
-  if (grid.size % 2 == 0 && lit.reach == grid.size / 2)
-    for (std::size_t i = columns - 1; i < cells.size(); i += columns) total -= cells[i];
+  const std::size_t alone = grid.size % 2 == 0 && lit.reach == grid.size / 2 ? columns - 1 : columns;
+  double total = 0;
+  for (std::size_t row = 0; row < cells.size(); row += columns)
+    for (std::size_t j = 0; j < columns; ++j) total += (j == 0 || j == alone ? 1 : 2) * cells[row + j];
   Psf psf;
   psf.size = grid.size;
   psf.spacing_um = grid.spacing_um;
-  psf.captured = total * std::pow(sum.step_mm * sum.waves_per_mm, 2) / pupil.flux;
+  psf.captured = total * std::pow(grid.sample_spacing_um() * mm_per_um * sum.waves_per_mm, 2) / pupil.flux;
   const auto size = static_cast<std::size_t>(grid.size);
   psf.values.resize(size * size, 0.0F);
-  for (int i = 0; i < lit.rows; ++i)
-    for (int j = 0; j < grid.size; ++j)
-      if (const int column = std::abs(j - grid.size / 2); column <= lit.reach)
-        psf.values[static_cast<std::size_t>(lit.first_row + i) * size + static_cast<std::size_t>(j)] =
-            static_cast<float>(
-                cells[static_cast<std::size_t>(i) * columns + static_cast<std::size_t>(column)] / total);
+  const int middle = grid.size / 2, right = std::min(lit.reach, grid.size - 1 - middle);
+  for (int i = 0; i < lit.rows; ++i) {
+    const double* from = &cells[static_cast<std::size_t>(i) * columns];
+    float* to =
+        &psf.values[static_cast<std::size_t>(lit.first_row + i) * size + static_cast<std::size_t>(middle)];
+    for (int j = 0; j <= lit.reach; ++j) to[-j] = static_cast<float>(from[j] / total);
+    std::reverse_copy(to - right, to, to + 1);
+  }
   return psf;
 }
 
