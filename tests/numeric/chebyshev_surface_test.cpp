@@ -156,5 +156,26 @@ TEST(ChebyshevSurface, SaysWhenPointsDoNotDetermineIt) {
   EXPECT_THROW(ChebyshevSurface::fit(bad.x, bad.y, values, 1), InputError);
 }
 
+TEST(ChebyshevSurface, IsTheSameInAnotherFrame) {
+  const auto f = [](double x, double y) { return 1 + y * x * x - 0.3 * std::pow(x, 4) + std::pow(y - 2, 3); };
+  const ChebyshevSurface own = fit_one(sample(f), 6);
+  const ChebyshevSurface moved = own.in_frame({1.7, 2.5, 2.2});
+  EXPECT_EQ(moved.frame().y_middle, 2.5);
+  for (double x = 0; x <= 2; x += 0.4)
+    for (double y = 1; y <= 5; y += 0.5) EXPECT_NEAR(moved(x, y), f(x, y), 1e-10) << x << ' ' << y;
+}
+
+TEST(ChebyshevSurface, BlendsTermByTerm) {
+  // Of two polynomials in one frame, and of degrees that differ.
+  const auto f = [](double x, double y) { return y * x * x; };
+  const auto g = [](double x, double y) { return std::pow(y, 6) - x * x; };
+  const std::vector<ChebyshevSurface> surfaces{fit_one(sample(f), 4), fit_one(sample(g), 8)};
+  const std::array<double, 2> weights{0.25, 0.75};
+  const ChebyshevSurface sum = ChebyshevSurface::blend(surfaces, weights);
+  for (double x = 0; x <= 1; x += 0.25)
+    for (double y = 2; y <= 4; y += 0.5)
+      EXPECT_NEAR(sum(x, y), 0.25 * f(x, y) + 0.75 * g(x, y), 1e-8 * std::pow(y, 6)) << x << ' ' << y;
+}
+
 }  // namespace
 }  // namespace petzval

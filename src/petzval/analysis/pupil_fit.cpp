@@ -161,8 +161,15 @@ bool take_surfaces(const std::vector<WaveRay>& rays, const PupilFitLimits& limit
 
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits) {
+  std::optional<FittedPupil> fitted = fit_pupil_and_boundary(tracer, chief, limits);
+  if (!fitted) return {};
+  return std::move(fitted->pupil);
+}
+
+std::optional<FittedPupil> fit_pupil_and_boundary(const FieldTracer& tracer, const ChiefRay& chief,
+                                                  const PupilFitLimits& limits) {
   if (tracer.tracer().stop_blades().count > 0 || !tracer.tracer().is_centred()) return {};  // no mirror image
-  const std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, limits.outline_azimuths);
+  std::optional<PupilBoundary> boundary = tracer.object_pupil(chief, limits.outline_azimuths);
   if (!boundary) return {};
   const std::vector<RimPoint> rim = RimWalk(tracer, chief, *boundary, limits.corner_tolerance).points();
   const std::vector<WaveRay> rays =
@@ -182,7 +189,7 @@ std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& 
   // What the boundary says of the same area knows nothing of outline, corners and amplitude.
   const double area = tracer.lit_area(Pencil::from_object(tracer.lens(), chief.object_field), *boundary);
   if (!(std::abs(pupil.flux / area - 1) < flux_tolerance)) return {};
-  return pupil;
+  return FittedPupil{std::move(pupil), *std::move(boundary)};
 }
 
 }  // namespace petzval

@@ -30,4 +30,12 @@ struct PupilFitLimits {
 std::optional<SmoothPupil> fit_pupil(const FieldTracer& tracer, const ChiefRay& chief,
                                      const PupilFitLimits& limits = {});
 
+/// The same with where its rays enter.
+struct FittedPupil {
+  SmoothPupil pupil;
+  PupilBoundary boundary;
+};
+std::optional<FittedPupil> fit_pupil_and_boundary(const FieldTracer& tracer, const ChiefRay& chief,
+                                                  const PupilFitLimits& limits = {});
+
 }  // namespace petzval

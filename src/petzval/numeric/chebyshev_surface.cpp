@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/numeric/chebyshev_surface.h>
 
 #include <Eigen/Dense>
@@ -201,6 +202,58 @@ std::vector<ChebyshevSurface> ChebyshevSurface::fit(std::span<const double> x, s
     surfaces.push_back(std::move(surface));
   }
   return surfaces;
+}
+
+ChebyshevSurface ChebyshevSurface::in_frame(const Frame& frame) const {
+  ChebyshevSurface moved;
+  moved.degree_ = degree_;
+  moved.x_scale_ = frame.x_scale, moved.y_middle_ = frame.y_middle, moved.y_scale_ = frame.y_scale;
+  moved.rms_residual_ = rms_residual_, moved.max_residual_ = max_residual_;
+  moved.coefficients_.assign(coefficients_.size(), 0.0);
+  // Values at Chebyshev points of the new frame; the terms follow by discrete orthogonality.
+  const auto order = static_cast<std::size_t>(degree_) + 1;
+  std::vector<double> at_u(terms()), of_m(terms());
+  Terms of_u, of_v;
+  for (std::size_t j = 0; j < order; ++j) {
+    const double v = std::cos(pi * (static_cast<double>(j) + 0.5) / static_cast<double>(order));
+    series(frame.y_middle + frame.y_scale * v, at_u);
+    std::fill(of_m.begin(), of_m.end(), 0.0);
+    for (std::size_t i = 0; i < terms(); ++i) {
+      const double u = std::cos(pi * (static_cast<double>(i) + 0.5) / static_cast<double>(terms()));
+      const double square = 0.5 * (u + 1) * frame.x_scale * frame.x_scale;
+      const double value = chebyshev_sum(at_u, 2 * square / (x_scale_ * x_scale_) - 1);
+      chebyshev(u, terms(), of_u.data());
+      for (std::size_t m = 0; m < terms(); ++m)
+        of_m[m] += (m == 0 ? 1 : 2) / static_cast<double>(terms()) * value * of_u[m];
+    }
+    chebyshev(v, order, of_v.data());
+    double* to = moved.coefficients_.data();
+    for (std::size_t m = 0; m < terms(); ++m)
+      for (std::size_t n = 0; n + 2 * m < order; ++n)
+        *to++ += (n == 0 ? 1 : 2) / static_cast<double>(order) * of_m[m] * of_v[n];
+  }
+  return moved;
+}
+
+ChebyshevSurface ChebyshevSurface::blend(std::span<const ChebyshevSurface> surfaces,
+                                         std::span<const double> weights) {
+  ChebyshevSurface sum;
+  for (const ChebyshevSurface& surface : surfaces) sum.degree_ = std::max(sum.degree_, surface.degree_);
+  sum.coefficients_.assign(unknowns(sum.degree_), 0.0);
+  sum.x_scale_ = sum.y_scale_ = 0;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const ChebyshevSurface& surface = surfaces[i];
+    sum.x_scale_ += weights[i] * surface.x_scale_;
+    sum.y_middle_ += weights[i] * surface.y_middle_;
+    sum.y_scale_ += weights[i] * surface.y_scale_;
+    sum.rms_residual_ = std::max(sum.rms_residual_, surface.rms_residual_);
+    sum.max_residual_ = std::max(sum.max_residual_, surface.max_residual_);
+    const double* from = surface.coefficients_.data();
+    double* to = sum.coefficients_.data();
+    for (std::size_t m = 0; m < surface.terms(); ++m, to += sum.degree_ - surface.degree_)
+      for (int n = 0; n + 2 * static_cast<int>(m) <= surface.degree_; ++n) *to++ += weights[i] * *from++;
+  }
+  return sum;
 }
 
 void ChebyshevSurface::series(double y, std::span<double> series) const {

@@ -29,6 +29,16 @@ class ChebyshevSurface {
   /// Coefficients of a polynomial of this degree.
   static std::size_t unknowns(int degree, Symmetry symmetry = Symmetry::even_in_x);
 
+  /// Where the polynomials stand.
+  struct Frame {
+    double x_scale = 1, y_middle = 0, y_scale = 1;
+  };
+  Frame frame() const { return {x_scale_, y_middle_, y_scale_}; }
+  /// The same polynomial, of what is even in x, by Chebyshev terms of another frame.
+  ChebyshevSurface in_frame(const Frame& frame) const;
+  /// Σ weights[i] surfaces[i] of what is even in x, term by term: in the frame that is the sum of theirs.
+  static ChebyshevSurface blend(std::span<const ChebyshevSurface> surfaces, std::span<const double> weights);
+
   double operator()(double x, double y) const;
   /// All of one y, over x, and all of one x, over y.
   Line at_y(double y) const;
