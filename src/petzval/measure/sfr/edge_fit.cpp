@@ -69,6 +69,28 @@ double likeness(const EdgeAlignment& step, const EdgeAlignment& earlier) {
   return std::min(0.9, product / std::max(1e-300, square));
 }
 
+/// How far the profile passes the levels of its sides.
+double overshoot(const EdgeSpreadModel& model) {
+  constexpr double step_px = 0.1;
+  double farthest = 0;
+  for (double d = step_px; d < model.core_px(); d += step_px)
+    farthest =
+        std::max({farthest, model.dark() - model.value(-d), model.value(d) - model.dark() - model.step()});
+  return farthest;
+}
+
+/// The lowest frequency of half the contrast, to a hundredth; 0 if there is none up to 1.
+double mtf50_cpp(const EdgeSpreadModel& model) {
+  constexpr double step = 0.01;
+  double before = 1;
+  for (double f = step; f < 1; f += step) {
+    const double contrast = std::abs(model.transform(f));
+    if (contrast < 0.5) return f - step * (0.5 - contrast) / (before - contrast);
+    before = contrast;
+  }
+  return 0;
+}
+
 }  // namespace
 
 EdgeFit::EdgeFit(const std::vector<EdgeSample>& samples, const EdgeGuess& guess, const SfrOptions& options)
@@ -94,7 +116,34 @@ void EdgeFit::run(const SfrOptions& options) {
     join_rows(profile_.points);
     smoothing_ = -1;
     fit_profile();
+  } else if (!in_rows_) {
+    fit_to_shapes();
   }
+}
+
+/// Once more with what edges look like, now that the line rests and the noise is known, unless smoothness
+/// alone explains the samples better. Light makes no profile that passes its levels, sharpening does.
+void EdgeFit::fit_to_shapes() {
+  constexpr double quiet = 1e-3;  // samples that say all themselves
+  if (noise_ < quiet * model_->step()) return;
+  smoothing_ = -1;
+  fit_profile();
+  constexpr double plain_deviations = 4, least_share = 5e-3;
+  const double deviation = noise_ * std::sqrt(unknowns_ / static_cast<double>(profile_.points.size()));
+  if (overshoot(*model_) > std::max(plain_deviations * deviation, least_share * model_->step())) return;
+  const double smooth = model_->criterion();
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    const double mtf50 = mtf50_cpp(*model_);
+    if (!EdgeShapes::possible(mtf50, line_.normal_rad)) break;
+    shapes_.emplace(mtf50, line_.normal_rad);
+    smoothing_ = -1;
+    fit_profile();
+  }
+  if (!shapes_ || model_->criterion() < smooth) return;
+  shapes_.reset();
+  smoothing_ = -1;
+  fit_profile();
 }
 
 void EdgeFit::settle_by_evidence(const SfrOptions& options) {
@@ -174,6 +223,7 @@ void EdgeFit::fit_profile() {
   options.knot_px = coarse_ ? 0.7 : options.core_px > 45 ? 0.5 : 0.25;
   options.light_order = light_order_;
   options.smoothing = smoothing_;
+  options.shapes = shapes_;
   if (in_rows_) options.least_smoothing_share = 0.03;
   model_.emplace(profile_.points, options);
   take_profile();

@@ -14,11 +14,19 @@ constexpr double b = 1;  // pixels: scale of the closed-form part
 
 constexpr double usual_tail_spread_px = 0.06;
 
+/// Of the shapes' unknowns, over the step. How wide an edge is, is known to 0.2 from its first fit. Of their
+/// difference 0.5 makes a Gaussian and −0.5 a circular pupil; defocus, spherical aberration and halos take up
+/// to that and a little more.
+constexpr std::array<double, EdgeShapes::count - 1> shape_spreads{0.2, 0.5};
+
 /// Least weight of the roughness, for samples without noise.
 constexpr double least_smoothing = 1e-12;
 /// Third differences of the coefficients of a sharp edge with knots a quarter of a pixel apart, over the
 /// step.
 constexpr double edge_roughness = 0.1;
+/// The same of what an edge has beside its shapes. Defocus, spherical aberration and halos leave 0.03 to
+/// 0.08; half of that lets the evidence choose before noise does.
+constexpr double departure_roughness = 0.02;
 /// Greatest weight of the roughness far from the edge, over that at the edge.
 constexpr double most_weight = 1e8;
 
@@ -104,14 +112,14 @@ void EdgeSpreadModel::add_points(std::span<const EdgePoint> points, BorderedBand
 }
 
 BorderedBand EdgeSpreadModel::trimmed(const BorderedBand& all) const {
-  BorderedBand result(splines_, fixed());
+  BorderedBand result(splines_, border());
   for (int j = 0; j < splines_; ++j) {
     for (int i = j; i < std::min(splines_, j + support); ++i)
       result.at(i, j) = all.at(margin + i, margin + j);
-    for (int r = 0; r < fixed(); ++r) result.at(splines_ + r, j) = all.at(padded() + r, margin + j);
+    for (int r = 0; r < fixed(); ++r) result.at(place(r), j) = all.at(padded() + r, margin + j);
   }
   for (int r = 0; r < fixed(); ++r)
-    for (int s = 0; s <= r; ++s) result.at(splines_ + r, splines_ + s) = all.at(padded() + r, padded() + s);
+    for (int s = 0; s <= r; ++s) result.at(place(r), place(s)) = all.at(padded() + r, padded() + s);
   return result;
 }
 
@@ -127,10 +135,64 @@ void EdgeSpreadModel::add_priors(BorderedBand& normal, double step_guess) const 
   const double weight3 =
       noise / (usual_tail_spread_px * step_guess * 4 * options_.blur_px * options_.blur_px);
   normal.at(tail3, tail3) += weight3 * weight3;
+  if (!options_.shapes) return;
+  const int first = splines_ + closed_forms;
+  for (int k = 0; k < shapes(); ++k) {
+    const double weight = noise / (shape_spreads[static_cast<std::size_t>(k)] * step_guess);
+    normal.at(first + k, first + k) += weight * weight;
+  }
+}
+
+namespace {
+
+/// Coefficients of splines that pass through values at their middles; near the ends these stay as they are.
+std::vector<double> in_splines(const std::vector<double>& values) {
+  constexpr int rounds = 12;  // each leaves a fifth of what the values have at half their sampling frequency
+  std::vector<double> coefficients = values, rest(values.size(), 0.0);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 2; i + 2 < values.size(); ++i) {
+      const double* c = &coefficients[i];
+      rest[i] = values[i] - (c[-2] + 26 * c[-1] + 66 * c[0] + 26 * c[1] + c[2]) / 120;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) coefficients[i] += rest[i];
+  }
+  return coefficients;
+}
+
+}  // namespace
+
+/// What closed forms and shapes add to the coefficients whose roughness counts: with shapes, that of all the
+/// profile but step · shape 0 and the others, in any amount.
+std::vector<EdgeSpreadModel::RoughForm> EdgeSpreadModel::rough_forms() const {
+  if (!options_.shapes) return {};
+  constexpr int beyond = 8;  // the ends, where coefficients are not yet right
+  const int places = splines_ + 2 * beyond;
+  std::array<std::vector<double>, 3 + EdgeShapes::count - 1> values;
+  for (std::vector<double>& each : values) each.resize(static_cast<std::size_t>(places));
+  for (int j = 0; j < places; ++j) {
+    const double d = (j - 0.5 * (places - 1)) * options_.knot_px, q = 1 / (d * d + b * b);
+    const auto at = static_cast<std::size_t>(j), mirrored = static_cast<std::size_t>(places - 1 - j);
+    values[1][at] = -d * q;
+    values[2][at] = -d * q * q;
+    if (d < 0) continue;  // all are odd about ½
+    const std::array<double, EdgeShapes::count> shape = (*options_.shapes)(d);
+    values[0][at] = 0.5 + std::atan(d / b) / pi - shape[0];
+    values[3][at] = -shape[1], values[4][at] = -shape[2];
+    for (const std::size_t k : {0, 3, 4}) values[k][mirrored] = -values[k][at];
+  }
+  const std::array<int, values.size()> unknowns{splines_ + 1, splines_ + 2, splines_ + 3,
+                                                splines_ + closed_forms, splines_ + closed_forms + 1};
+  std::vector<RoughForm> forms;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    std::vector<double> coefficients = in_splines(values[k]);
+    forms.push_back({unknowns[k], {coefficients.begin() + beyond, coefficients.end() - beyond}});
+  }
+  return forms;
 }
 
 BorderedBand EdgeSpreadModel::roughness() const {
-  BorderedBand matrix(splines_, fixed());
+  BorderedBand matrix(splines_, border());
+  const std::vector<RoughForm> forms = rough_forms();
   for (int j = 0; j + 3 < splines_; ++j) {
     // A line spread that falls as 1/d² has curvature that falls as 1/d⁴.
     const double d = (j + 1.5 - 0.5 * (splines_ - 1)) * options_.knot_px / options_.blur_px;
@@ -138,6 +200,14 @@ BorderedBand EdgeSpreadModel::roughness() const {
     constexpr double difference[4] = {-1, 3, -3, 1};
     for (int p = 0; p < 4; ++p)
       for (int q = 0; q <= p; ++q) matrix.at(j + p, j + q) += weight * difference[p] * difference[q];
+    std::array<double, closed_forms + EdgeShapes::count> of_form{};
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+      for (int p = 0; p < 4; ++p)
+        of_form[k] += difference[p] * forms[k].coefficients[static_cast<std::size_t>(j + p)];
+      for (int p = 0; p < 4; ++p) matrix.at(forms[k].unknown, j + p) += weight * of_form[k] * difference[p];
+      for (std::size_t l = 0; l <= k; ++l)
+        matrix.at(forms[k].unknown, forms[l].unknown) += weight * of_form[k] * of_form[l];
+    }
   }
   return matrix;
 }
@@ -156,8 +226,9 @@ EdgeSpreadModel::EdgeSpreadModel(std::span<const EdgePoint> points, const EdgeSp
   else
     add_points<closed_forms>(points, normal, right);
   data_normal_ = trimmed(normal);
-  right_.resize(splines_ + fixed());
-  right_ << right.segment(margin, splines_), right.tail(fixed());
+  right_ = Eigen::VectorXd::Zero(splines_ + border());
+  right_.head(splines_) = right.segment(margin, splines_);
+  for (int r = 0; r < fixed(); ++r) right_[place(r)] = right[padded() + r];
   fit(points);
 }
 
@@ -166,7 +237,7 @@ void EdgeSpreadModel::take_light_to_order(int order, std::span<const EdgePoint> 
   const int before = lights();
   options_.light_order = order;
   data_normal_.drop_border(before - lights());
-  right_.conservativeResize(splines_ + fixed());
+  right_.conservativeResize(splines_ + border());
   fit(points);
 }
 
@@ -181,7 +252,7 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   const double count = static_cast<double>(points.size());
   const double unit = count * options_.knot_px / (2 * options_.core_px);
   const BorderedBand rough = roughness();
-  const double rank = std::max(0, splines_ - 3), unpenalised = normal.size() - rank;
+  const double rank = std::max(0, splines_ - 3), unpenalised = normal.size() - shapes() - rank;
   const auto solve = [&](double smoothing) {
     BorderedBand whole = normal;
     whole.add(smoothing * unit, rough);
@@ -197,8 +268,8 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   Solved best;
   if (options_.smoothing < 0) {
     // The evidence may not call a profile smoother than edges are.
-    const double roughness =
-        edge_roughness * std::pow(options_.knot_px / (0.25 * options_.blur_px), 3) * (high - low);
+    const double roughness = (options_.shapes ? departure_roughness : edge_roughness) *
+                             std::pow(options_.knot_px / (0.25 * options_.blur_px), 3) * (high - low);
     const double most = std::max(least_smoothing, std::pow(options_.noise / roughness, 2) / unit);
     constexpr double factor = 4;
     const double from = std::max(least_smoothing, options_.least_smoothing_share * most);
@@ -216,6 +287,10 @@ void EdgeSpreadModel::fit(std::span<const EdgePoint> points) {
   priors_.add(options_.smoothing * unit, rough);
   coefficients_ = best.solution;
   factor_ = std::move(best.factor);
+  criterion_ = best.criterion;
+  for (int k = 0; k < shapes(); ++k)
+    criterion_ += 2 * std::log(shape_spreads[static_cast<std::size_t>(k)] * (high - low) /
+                               std::max(options_.noise, 1e-7 * (high - low)));
   dark_ = coefficients_[splines_];
   step_ = coefficients_[splines_ + 1];
   evaluate_points(points);
@@ -238,7 +313,7 @@ void EdgeSpreadModel::evaluate_points(std::span<const EdgePoint> points) {
                variation;
     at.slope = closed[1] * b * q / pi - closed[2] * (q - 2 * dq * dq) - closed[3] * q * (q - 4 * dq * dq);
     for (std::size_t k = closed_forms; k < static_cast<std::size_t>(fixed()); ++k)
-      variation += closed[k] * row.fixed[k];
+      variation += coefficients_[place(static_cast<int>(k))] * row.fixed[k];
     if (row.first >= 0) {
       double slope = 0;
       for (int p = 0; p < support; ++p) {
@@ -280,7 +355,7 @@ EdgeSpreadModel::Variation EdgeSpreadModel::variation_over(double reach_px, doub
   const double reach = reach_px / options_.core_px;
   const std::array<double, light_terms.back()> reaches{1, reach, 1, reach, reach * reach};
   for (int k = light_terms[static_cast<std::size_t>(options_.light_order - 1)]; k < lights(); ++k) {
-    const Eigen::Index at = splines_ + closed_forms + k;
+    const Eigen::Index at = place(closed_forms + k);
     const double spread = factor_.solve(Eigen::VectorXd::Unit(coefficients_.size(), at))[at];
     const double coefficient = std::abs(coefficients_[at]);
     result.significance = std::max(result.significance,
@@ -312,8 +387,9 @@ void EdgeSpreadModel::Projection::add(std::size_t point,
 }
 
 EdgeSpreadModel::Projection::Matrix EdgeSpreadModel::Projection::taken() const {
-  BorderedBand::Block sums(model_.splines_ + model_.fixed(), BorderedBand::lanes);
-  sums << sums_.middleRows(margin, model_.splines_), sums_.bottomRows(model_.fixed());
+  BorderedBand::Block sums = BorderedBand::Block::Zero(model_.coefficients_.size(), BorderedBand::lanes);
+  sums.topRows(model_.splines_) = sums_.middleRows(margin, model_.splines_);
+  for (int r = 0; r < model_.fixed(); ++r) sums.row(model_.place(r)) = sums_.row(model_.padded() + r);
   BorderedBand::Block solved = sums;
   model_.factor_.solve_in_place(solved);
   return sums.transpose() * solved;
@@ -373,7 +449,7 @@ std::complex<double> EdgeSpreadModel::transform(double f) const {
 
 EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<const double> variance,
                                       const QuantisationNoise& rounding)
-    : model_(model), spread_(model.splines_, model.fixed()) {
+    : model_(model), spread_(model.splines_, model.border()) {
   const int splines = model.splines_, fixed = model.fixed();
   BorderedBand all(model.padded(), fixed);
   double mean = 0;
@@ -400,7 +476,7 @@ EdgeSpreadModel::Deviation::Deviation(const EdgeSpreadModel& model, std::span<co
         const Row& row = model.rows_[i];
         for (int p = 0; p < support && row.first >= 0; ++p)
           if (const int j = row.first + p - margin; j >= 0 && j < splines) entry(j, row.splines[p]);
-        for (int r = 0; r < fixed; ++r) entry(splines + r, row.fixed[r]);
+        for (int r = 0; r < fixed; ++r) entry(model.place(r), row.fixed[r]);
       },
       rounding_);
 }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <petzval/measure/sfr/bordered_band.h>
+#include <petzval/measure/sfr/edge_shapes.h>
 #include <petzval/measure/sfr/quantisation_noise.h>
 
 #include <Eigen/Core>
 #include <array>
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +39,8 @@ struct EdgeSpreadOptions {
   double least_smoothing_share = 1e-6;
   /// The light on the target may vary along the edge and across it: 0 not, 1 linearly, 2 as a parabola.
   int light_order = 0;
+  /// What the profile is expected to look like; absent: smooth.
+  std::optional<EdgeShapes> shapes;
 };
 
 /// E(d) = dark + step · (½ + atan(d/b)/π) − tail1 d/(d² + b²) − tail3 d/(d² + b²)² + Σ c_j B_j(d), b = 1
@@ -49,6 +53,9 @@ struct EdgeSpreadOptions {
 /// finds best (G. Wahba, Ann. Statist. 13, 1378, 1985): with noise the profile is as smooth as it shows
 /// itself to be, without noise it is free but for 1e-10 of the weight of the data, which joins the splines
 /// where samples leave gaps.
+///
+/// With shapes it is not the profile's roughness that costs, but that of its difference from the nearest of
+/// them, of any width (to first order) and between both or a little beyond.
 ///
 /// Where the target is not a half-plane, half the tail A times what is missing of it is added: the PSF falls
 /// as K₃/r³, and K₃ is half of what the edge keeps.
@@ -92,6 +99,9 @@ class EdgeSpreadModel {
   /// Unknowns that the data settle: the trace of the matrix that makes fitted values of samples.
   double unknowns() const;
   double smoothing() const { return options_.smoothing; }
+  /// −2 log of the restricted likelihood, but for what it has in common with that of other models of the same
+  /// points, knots and noise.
+  double criterion() const { return criterion_; }
 
   /// What the profile can take of other functions of the points, so that these and it can be fitted together
   /// (variable projection: G. H. Golub & V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
@@ -147,6 +157,10 @@ class EdgeSpreadModel {
   static constexpr int margin = support - 1;
   int lights() const { return light_terms[static_cast<std::size_t>(options_.light_order)]; }
   int fixed() const { return closed_forms + lights(); }
+  int shapes() const { return options_.shapes ? EdgeShapes::count - 1 : 0; }
+  /// The unknowns that are no splines: closed forms, shapes, which no sample touches, and light that varies.
+  int border() const { return fixed() + shapes(); }
+  int place(int form) const { return splines_ + form + (form < closed_forms ? 0 : shapes()); }
   int padded() const { return splines_ + 2 * margin; }
   template <int fixed>
   void add_points(std::span<const EdgePoint> points, BorderedBand& normal, Eigen::VectorXd& right);
@@ -154,11 +168,17 @@ class EdgeSpreadModel {
   void fit(std::span<const EdgePoint> points);
   void evaluate_points(std::span<const EdgePoint> points);
   void add_priors(BorderedBand& normal, double step_guess) const;
+  /// A function that has an unknown of its own, by the splines' coefficients.
+  struct RoughForm {
+    int unknown;
+    std::vector<double> coefficients;
+  };
+  std::vector<RoughForm> rough_forms() const;
   BorderedBand roughness() const;
 
   EdgeSpreadOptions options_;
   int splines_ = 0;
-  double dark_ = 0, step_ = 1;
+  double dark_ = 0, step_ = 1, criterion_ = 0;
   Eigen::VectorXd coefficients_;
   std::vector<Row> rows_;  ///< of the points
   std::vector<ValueAndSlope> fitted_;
