@@ -47,6 +47,17 @@ TEST(GhostsAboutChiefRay, AreParaxialOnesOfLensesThatAreAsGoodAsCentred) {
     // With the sensor, and for light from infinity, it does not matter where the lens stands.
     moved.groups = {{0, lens.surfaces.size(), {0.7, -0.4, 0, 0, 0, 0}, 0}};
     expect_paraxial_ghosts(lens, moved, options);
+    // A plane mirror behind it, and the sensor beside the axis.
+    Lens folded = lens;
+    constexpr double to_mirror_mm = 20;
+    Surface mirror = Surface::sphere(INFINITY, to_mirror_mm - lens.surfaces.back().thickness_mm);
+    mirror.mirror = true;
+    mirror.pose.tilt_x_deg = -45;
+    folded.surfaces.back().thickness_mm = to_mirror_mm;
+    folded.surfaces.push_back(mirror);
+    folded.groups = {{lens.surfaces.size(), lens.surfaces.size() + 1, {0, 0, 0, 90, 0, 0}, 0}};
+    GhostOptions of_glass;
+    expect_paraxial_ghosts(lens, folded, of_glass);
   }
   options.reflections = 4;
   const Lens lens = read_lens("cooke-triplet").lens;

@@ -45,7 +45,7 @@ double inner(const Matrix& a, const Matrix& b) {
 /// Where a ray meets the surfaces of its way, in their own axes; where it lands, and its slope there.
 struct Course {
   std::vector<Pair> at;
-  Pair sensor{}, in_lens{}, slope{};
+  Pair sensor{}, slope{};
   double share = 0;
 };
 
@@ -89,10 +89,12 @@ class GhostRays {
     course.sensor = {end.x_mm, end.y_mm}, course.share = end.share;
     const std::vector<std::size_t> met = surfaces_of(pair, tracer_.tracer().surface_count());
     for (std::size_t i = 0; i < met.size(); ++i) course.at.push_back(on_surface(met[i], places[i]));
-    const auto &last = places[places.size() - 2], &sensor = places.back();
-    course.in_lens = {sensor[0], sensor[1]};
-    const double along = sensor[2] - last[2];
-    course.slope = {(sensor[0] - last[0]) / along, (sensor[1] - last[1]) / along};
+    const auto &last = places[places.size() - 2], &there = places.back();
+    const Tracer& lens = tracer_.tracer();
+    const auto way =
+        lens.sensor_frame().from_lens({there[0] - last[0], there[1] - last[1], there[2] - last[2]});
+    const double along = way[2] * lens.image_sense();
+    course.slope = {way[0] / along, way[1] / along};
     return course;
   }
 
@@ -200,13 +202,12 @@ std::optional<ChiefWay> chief_way(const GhostRays& rays, const GhostPair& pair, 
   const auto on_sensor = [](const Course& course) { return course.sensor; };
   const auto across = rays.by(false, pair, on_sensor);
   const auto turned = rays.by(true, pair, on_sensor);
-  const auto in_lens = rays.by(false, pair, [](const Course& course) { return course.in_lens; });
   const auto slopes = rays.by(false, pair, [](const Course& course) { return course.slope; });
-  if (!across || !turned || !in_lens || !slopes) return {};
+  if (!across || !turned || !slopes) return {};
   ChiefWay way;
   way.chief = *chief;
   const double change = inner(*slopes, *slopes);
-  way.focus_mm = change == 0 ? std::numeric_limits<double>::infinity() : -inner(*in_lens, *slopes) / change;
+  way.focus_mm = change == 0 ? std::numeric_limits<double>::infinity() : -inner(*across, *slopes) / change;
   way.entrance_mm = entrance_mm(rays, pair, *chief);
   way.diameter_mm = 2 * way.entrance_mm * std::sqrt(std::abs(across->determinant()));
   way.source_mm = 2 * std::tan(radians(source_diameter_deg) / 2) * std::sqrt(std::abs(turned->determinant()));
