@@ -159,7 +159,7 @@ TEST(VeilingGlare, IsTheScatterOfAllPointsOfTheSurround) {
   options.surround_deg = 35;
   for (const IlluminationRow& row : illumination_table(lens, at)) {
     const VeilingGlare glare =
-        veiling_glare(lens, tracer, row.real_image_height_mm, row.g_sensor_sr, options);
+        veiling_glare(lens, tracer, {0, row.real_image_height_mm}, row.g_sensor_sr, options);
     const BrightSource middle = source_imaged_at(lens, tracer, 0, row.real_image_height_mm);
     const std::array<std::array<double, 2>, 1> place{{{0, row.real_image_height_mm}}};
     const auto angle_of = [](double right, double up, double right_2, double up_2) {
@@ -204,8 +204,8 @@ TEST(GhostVeil, IsThatOfSourcesAllAround) {
   GlareOptions options;
   options.hole_mm = 3;
   options.surround_deg = 20;
-  const std::array<double, 2> heights{0, 9};
-  const std::vector<double> veil = ghost_veil(lens, green_nm, heights, options);
+  const std::array<std::array<double, 2>, 2> places{{{0, 0}, {0, 9}}};
+  const std::vector<double> veil = ghost_veil(lens, green_nm, places, options);
   const SensorGeometry frame{9, 9, 3000};
   std::vector<BrightSource> sources;
   constexpr int steps = 14;

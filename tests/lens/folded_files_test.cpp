@@ -104,6 +104,40 @@ TEST(ZmxCoordinateBreaks, MoveFirstAndTurnThen) {
   EXPECT_NEAR(global_frames(last)[1].offset_mm[2], 20 + 2 * std::sin(30 * M_PI / 180), 1e-12);
 }
 
+TEST(ZmxCoordinateBreaks, TurnAPrismsFacesFromOneSideToTheOther) {
+  // Each turn is against the face before; of Petzval's groups, too, which turn one another.
+  const Lens prism = read_text("prism.zmx", zmx_of(zmx_stop + zmx_break("0 0 -48 0 0 0", 0) + zmx_plane +
+                                                   zmx_break("0 0 97 0 0 0", 0) + zmx_plane +
+                                                   zmx_break("0 0 -49 0 0 0", 0) + zmx_plane))
+                         .lens;
+  const auto frames = global_frames(prism);
+  for (const auto& [face, deg] : {std::pair{1, -48.0}, {2, 49.0}, {3, 0.0}}) {
+    const Frame::Vector normal = frames[static_cast<std::size_t>(face)].to_lens({0, 0, 1});
+    EXPECT_NEAR(normal[1], -std::sin(deg * M_PI / 180), 1e-15) << face;
+    EXPECT_NEAR(normal[2], std::cos(deg * M_PI / 180), 1e-15) << face;
+  }
+  EXPECT_NE(error_of([&] { with_setting(prism, "groups[0].pose.tilt_x_deg=121"); }).find("120 degrees"),
+            std::string::npos);
+}
+
+TEST(ZmxObjects, AtAPlaneThatDoesNothingLieWhereItsGapBegins) {
+  const std::string slit = "SURF 1\n  TYPE STANDARD\n  CURV 0\n  DISZ 80\n";
+  const auto finite = [](std::string text, const char* distance) {
+    return text.replace(text.find("INFINITY"), 8, distance);
+  };
+  const Lens once = read_text("a.zmx", finite(zmx_of(zmx_stop + zmx_plane), "80")).lens;
+  const Lens twice = read_text("b.zmx", finite(zmx_of(slit + zmx_stop + zmx_plane), "0")).lens;
+  EXPECT_EQ(twice.object_distance_mm, 80);
+  EXPECT_EQ(twice.surfaces.size(), once.surfaces.size());
+  EXPECT_TRUE(twice.surfaces[0].stop);
+  // Glass, or an aperture, does something.
+  for (const char* more : {"  GLAS N-BK7 0 0 1.5 40\n", "  CLAP 0 2 0\n"})
+    EXPECT_NE(error_of([&] {
+                read_text("c.zmx", finite(zmx_of(slit + more + zmx_stop + zmx_plane), "0"));
+              }).find("object_distance_mm"),
+              std::string::npos);
+}
+
 TEST(ZmxCoordinateBreaks, AreNeitherStopNorGlass) {
   const std::string bad = zmx_break("0 0 5 0 0 0", 0) + "  STOP\n";
   EXPECT_NE(
@@ -288,7 +322,9 @@ TEST(RetiredGlasses, AreThoseOfAPublishedTable) {
       {"SK5", 1.589828, -0.0532930, 0.00206810},    {"SSK2", 1.623147, -0.0645360, 0.00372950},
       {"SSK4", 1.618460, -0.0618190, 0.00205000},   {"SSKN5", 1.659373, -0.0712310, 0.00607410},
       {"SSKN8", 1.618614, -0.0682970, 0.00689950},  {"UBK7", 1.517385, -0.0446570, -0.00325110},
-      {"ZKN7", 1.509073, -0.0461350, 0.00280230},
+      {"ZKN7", 1.509073, -0.0461350, 0.00280230},   {"BK1", 1.510673, -0.0445950, -0.00249330},
+      {"FDS9", 1.849166, -0.1920500, 0.09361300},   {"FK54", 1.437351, -0.0267530, -0.00222000},
+      {"LAK14", 1.697706, -0.0693830, -0.00142550}, {"NBFD5", 1.763356, -0.1035500, 0.02151100},
   };
   for (const Fit& fit : fits) {
     const auto retired = find_retired_glass(fit.name);

@@ -335,6 +335,11 @@ TEST(SeqWriter, FictitiousGlassesKeepEveryDigit) {
     EXPECT_EQ(again->nd, model.nd);
     EXPECT_EQ(again->vd, model.vd);
   }
+  const auto colon = fictitious_glass("1.5168:64.17");
+  ASSERT_TRUE(colon);
+  EXPECT_EQ(colon->nd, 1.5168);
+  EXPECT_EQ(colon->vd, 64.17);
+  EXPECT_FALSE(fictitious_glass("SCHOTT:N-BK7"));
   EXPECT_EQ(fictitious_glass_text({1.5, 70}), "500.700");
   EXPECT_EQ(fictitious_glass_text({1.5168, 64.17}), "5168.6417");
   EXPECT_EQ(fictitious_glass_text({1.5, 7.5}), "500.075");

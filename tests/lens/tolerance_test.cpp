@@ -161,8 +161,8 @@ TEST(Tolerance, KnowsTheNamesOfOtherPrograms) {
 }
 
 TEST(Tolerance, GradesCoverTheWholeLens) {
-  // Three single lenses: each two radii, two wedges, a thickness, nd, Vd, decentre, tilt; two gaps of air
-  // (the gap before the stop is no lens's); tighter from grade to grade.
+  // Three single lenses: each two radii, two wedges, two irregularities, a thickness, nd, Vd, decentre, tilt;
+  // two gaps of air (the gap before the stop is no lens's); tighter from grade to grade.
   const Lens lens = triplet_of_tolerances();
   const auto total = [&](const char* grade) {
     double sum = 0;
@@ -172,7 +172,7 @@ TEST(Tolerance, GradesCoverTheWholeLens) {
   const std::vector<std::pair<std::size_t, std::size_t>> elements = elements_of(lens);
   ASSERT_EQ(elements.size(), 3u);
   const std::vector<Tolerance> tolerances = graded_tolerances(lens, "precision");
-  EXPECT_EQ(tolerances.size(), 3 * 9 + 2u);
+  EXPECT_EQ(tolerances.size(), 3 * 11 + 2u);
   for (const Tolerance& tolerance : tolerances) EXPECT_NO_THROW(check(lens, tolerance));
   EXPECT_LT(total("high"), total("precision"));
   EXPECT_LT(total("precision"), total("commercial"));

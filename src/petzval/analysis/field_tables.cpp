@@ -146,6 +146,7 @@ std::vector<IlluminationRow> illumination_table(const Lens& lens, const FieldTab
     const std::optional<ChiefRay> chief = tracer.chief_ray(object_field);
     IlluminationRow row;
     row.real_image_height_mm = chief ? chief->image_height_mm : not_a_number;
+    row.real_image_x_mm = chief ? chief->image_x_mm : 0;
     row.g_sensor_sr = chief ? tracer.g_sensor_sr(*chief) : 0;
     row.g_source_sr = chief ? tracer.g_source_sr(*chief) : 0;
     row.lit = row.g_sensor_sr > 0 || row.g_source_sr > 0;

@@ -52,6 +52,7 @@ struct IlluminationRow {
   bool lit = true;                 ///< false: no ray passes; g is 0
   bool pupil_in_one_piece = true;  ///< else g_sensor counts only the piece around the chief ray, holes filled
   double real_image_height_mm = 0;  ///< of the chief ray, though an aperture may stop it; NaN without one
+  double real_image_x_mm = 0;       ///< beside the field; 0 of a centred lens
   double g_sensor_sr = 0, g_source_sr = 0;
   double relative_illumination = 0;  ///< g_sensor / g_sensor on axis at the same wavelength
 };

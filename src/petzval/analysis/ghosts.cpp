@@ -199,21 +199,17 @@ std::vector<std::array<std::size_t, 2>> reflecting_pairs(const UnfoldedLens& unf
   return pairs;
 }
 
-void check(const Lens& lens, const GhostOptions& options) {
-  require_centred(lens, "ghosts are those of centred lenses");
-  options.losses.validate(lens);
-  if (!(options.sensor_reflectance >= 0 && options.sensor_reflectance <= 1))
-    throw InputError(
-        fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", options.sensor_reflectance));
-  if (options.reflections != 2 && options.reflections != 4)
-    throw InputError(fmt::format("`ghost_reflections` is {}; 2 or 4 would be right", options.reflections));
-  if (!(options.source_diameter_deg > 0 && options.source_diameter_deg < 180))
-    throw InputError(
-        fmt::format("`source_diameter_deg` is {:g}; more than 0 and less than 180 would be right",
-                    options.source_diameter_deg));
-}
-
 }  // namespace
+
+void GhostOptions::validate() const {
+  if (!(sensor_reflectance >= 0 && sensor_reflectance <= 1))
+    throw InputError(fmt::format("`sensor_reflectance` is {:g}; 0 to 1 would be right", sensor_reflectance));
+  if (reflections != 2 && reflections != 4)
+    throw InputError(fmt::format("`ghost_reflections` is {}; 2 or 4 would be right", reflections));
+  if (!(source_diameter_deg > 0 && source_diameter_deg < 180))
+    throw InputError(fmt::format(
+        "`source_diameter_deg` is {:g}; more than 0 and less than 180 would be right", source_diameter_deg));
+}
 
 std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& given) {
   require_glass(lens, "ghosts need");
@@ -221,7 +217,9 @@ std::vector<Ghost> ghosts(const Lens& lens, const GhostOptions& given) {
   lens.validate();
   GhostOptions options = given;
   options.losses = given.losses.of(lens);
-  check(lens, options);
+  require_centred(lens, "paraxial ghosts are those of centred lenses");
+  options.losses.validate(lens);
+  options.validate();
   std::vector<Ghost> all;
   const std::vector<double> wavelengths = options.wavelengths_nm.empty()
                                               ? std::vector<double>{lens.reference_wavelength_nm}

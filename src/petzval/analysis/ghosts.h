@@ -18,6 +18,9 @@ struct GhostOptions {
   double sensor_reflectance = 0;      ///< of the sensor's surface; 0: no ghosts that it takes part in
   double source_diameter_deg = 0.53;  ///< seen from the lens; the Sun's
   int reflections = 2;  ///< or 4: ghosts of four reflections, too, down to 1e-4 of the brightest
+
+  /// \throws InputError saying what would be right.
+  void validate() const;
 };
 
 /// One way of light: through the lens to surface `first`, back to surface `second` in front of it, and on to

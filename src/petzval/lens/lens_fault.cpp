@@ -73,11 +73,13 @@ Fault shape_fault(const Surface& surface, const std::string& path) {
 /// The largest tilt: beyond it a surface no longer faces the light.
 constexpr double most_tilt_deg = 60;
 
+/// A group turns what the groups behind it in the list have turned: from one largest tilt to the other.
+constexpr double most_group_tilt_deg = 2 * most_tilt_deg;
+
 /// Mirrors fold: what comes behind them may stand at any angle.
 constexpr double most_folded_tilt_deg = 180;
 
-Fault pose_fault(const Pose& pose, const std::string& path, bool folds) {
-  const double most_deg = folds ? most_folded_tilt_deg : most_tilt_deg;
+Fault pose_fault(const Pose& pose, const std::string& path, double most_deg) {
   for (const PoseNumber& number : pose_numbers) {
     const double value = pose.*number.value;
     const std::string at = fmt::format("{}.{}", path, number.name);
@@ -99,17 +101,18 @@ Fault group_fault(const Lens& lens, std::size_t index) {
                     lens.surfaces.size(), lens.surfaces.size() - 1, lens.surfaces.size())};
   if (!std::isfinite(group.pivot_mm))
     return LensFault{path + ".pivot_mm", "must be a finite distance in mm behind the group's first vertex"};
-  return pose_fault(group.pose, path + ".pose", lens.has_mirrors());
+  return pose_fault(group.pose, path + ".pose",
+                    lens.has_mirrors() ? most_folded_tilt_deg : most_group_tilt_deg);
 }
 
 Fault poses_fault(const Lens& lens) {
-  const bool folds = lens.has_mirrors();
+  const double most_deg = lens.has_mirrors() ? most_folded_tilt_deg : most_tilt_deg;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i)
-    if (Fault fault = pose_fault(lens.surfaces[i].pose, fmt::format("surfaces[{}].pose", i), folds))
+    if (Fault fault = pose_fault(lens.surfaces[i].pose, fmt::format("surfaces[{}].pose", i), most_deg))
       return fault;
   for (std::size_t i = 0; i < lens.groups.size(); ++i)
     if (Fault fault = group_fault(lens, i)) return fault;
-  return pose_fault(lens.sensor_pose, "sensor_pose", folds);
+  return pose_fault(lens.sensor_pose, "sensor_pose", most_deg);
 }
 
 Fault tolerances_fault(const Lens& lens) {

@@ -174,11 +174,12 @@ constexpr ToleranceKind kinds[] = {
 
 struct Grade {
   const char* name;
-  double radius_percent, radius_fringes, thickness_mm, index, abbe_percent, runout_mm, decentre_mm, tilt_deg;
+  double radius_percent, radius_fringes, thickness_mm, index, abbe_percent, runout_mm, decentre_mm, tilt_deg,
+      irregularity_fringes;
 };
-constexpr Grade grades[] = {{"commercial", 0.2, 5, 0.15, 1e-3, 0.8, 0.05, 0.075, 0.1},
-                            {"precision", 0.1, 3, 0.05, 5e-4, 0.5, 0.01, 0.025, 0.05},
-                            {"high", 0.05, 1, 0.01, 2e-4, 0.2, 0.005, 0.01, 0.02}};
+constexpr Grade grades[] = {{"commercial", 0.2, 5, 0.15, 1e-3, 0.8, 0.05, 0.075, 0.1, 2},
+                            {"precision", 0.1, 3, 0.05, 5e-4, 0.5, 0.01, 0.025, 0.05, 0.5},
+                            {"high", 0.05, 1, 0.01, 2e-4, 0.2, 0.005, 0.01, 0.02, 0.1}};
 constexpr const char* grade_names[] = {"commercial", "precision", "high"};
 
 std::string kind_names() {
@@ -279,6 +280,10 @@ std::vector<Tolerance> graded_tolerances(const Lens& lens, std::string_view name
     // The air behind, but for the distance to the sensor, which is focused.
     if (last + 1 < lens.surfaces.size()) add("thickness_mm", last, last, grade->thickness_mm);
   }
+  // Last: what is drawn for the others does not depend on them.
+  for (const auto& [first, last] : elements_of(lens))
+    for (std::size_t i = first; i <= last; ++i)
+      if (!polynomial(lens, i)) add("irregularity_fringes", i, i, grade->irregularity_fringes);
   return tolerances;
 }
 

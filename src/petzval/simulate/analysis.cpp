@@ -5,7 +5,9 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ghosts.h>
 #include <petzval/base/error.h>
+#include <petzval/flare/ghost_table.h>
 #include <petzval/lens/first_order.h>
+#include <petzval/lens/pose.h>
 #include <petzval/report/analysis_plots.h>
 #include <petzval/report/colours.h>
 #include <petzval/report/pupil_plots.h>
@@ -353,12 +355,28 @@ AnalysisResult ghost_reflections(const Lens& lens, const AnalysisRequest& reques
   options.source_diameter_deg = request.source_diameter_deg;
   options.reflections = request.ghost_reflections;
   const std::size_t sensor = lens.surfaces.size();
-  const std::vector<Ghost> rows = ghosts(lens, options);
-  AnalysisResult result = result_of(
-      lens, request.at,
-      fmt::format("{} reflections, paraxial, of a source {:g} deg wide; focus from the image surface",
-                  options.reflections == 4 ? "two and four" : "double", options.source_diameter_deg),
-      tabulate(rows, sensor));
+  const bool centred = is_round(lens);
+  std::vector<Ghost> rows;
+  Table table;
+  if (centred) {
+    rows = ghosts(lens, options);
+    table = tabulate(rows, sensor);
+  } else {
+    const std::vector<PosedGhost> found = ghosts_about_chief_ray(lens, options);
+    for (const PosedGhost& each : found) rows.push_back(each.ghost);
+    table = tabulate(rows, sensor);
+    table.columns.push_back({"x", "mm", 4, "x_mm"});
+    table.columns.push_back({"y", "mm", 4, "y_mm"});
+    for (std::size_t i = 0; i < found.size(); ++i)
+      table.rows[i].insert(table.rows[i].end(), {found[i].x_mm, found[i].y_mm});
+  }
+  AnalysisResult result =
+      result_of(lens, request.at,
+                fmt::format("{} reflections, {}, of a source {:g} deg wide; focus from the image surface{}",
+                            options.reflections == 4 ? "two and four" : "double",
+                            centred ? "paraxial" : "about the chief ray of the middle of the field",
+                            options.source_diameter_deg, centred ? "" : "; x and y from the image"),
+                std::move(table));
   result.facts = {{"source_diameter_deg", std::vector<double>{options.source_diameter_deg}}};
   if (request.plots) result.plots = {ghost_plot(rows, sensor)};
   return result;

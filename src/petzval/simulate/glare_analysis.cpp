@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
+#include <petzval/base/units.h>
 #include <petzval/flare/veiling_glare.h>
+#include <petzval/lens/pose.h>
 #include <petzval/simulate/analysis_result.h>
 #include <petzval/simulate/flare.h>
 #include <petzval/simulate/glare_analysis.h>
@@ -33,6 +35,13 @@ Plot glare_spread_plot(const std::string& unit) {
   return plot;
 }
 
+/// On the sensor: so far along the field, and beside it.
+std::array<double, 2> place_of(const Lens& lens, double azimuth_deg, double beside_mm, double along_mm) {
+  if (is_round(lens)) return {beside_mm, along_mm};
+  const double cosine = std::cos(radians(azimuth_deg)), sine = std::sin(radians(azimuth_deg));
+  return {beside_mm * cosine - along_mm * sine, beside_mm * sine + along_mm * cosine};
+}
+
 /// What scatter makes of points and of a hole at one field and wavelength, by row.
 struct GlareField {
   IlluminationRow at;
@@ -46,17 +55,20 @@ GlareField glare_of(const Lens& lens, const IlluminationRow& row, const GlareOpt
   if (!row.lit || !std::isfinite(row.real_image_height_mm))
     throw InputError(fmt::format(
         "no light is imaged at field {:g}; a field that the lens sees would be right", row.field));
-  GlareField field{row, veiling_glare(lens, tracer, row.real_image_height_mm, row.g_sensor_sr, options), {}};
+  const auto place = [&](double beside_mm) {
+    return place_of(lens, at.azimuth_deg, row.real_image_x_mm + beside_mm, row.real_image_height_mm);
+  };
+  const std::array<double, 2> image = place(0);
+  GlareField field{row, veiling_glare(lens, tracer, image, row.g_sensor_sr, options), {}};
   std::vector<std::array<double, 2>> places;
-  for (const double distance : distances_mm) places.push_back({distance, row.real_image_height_mm});
-  field.spread = scatter_spread(tracer, source_imaged_at(lens, tracer, 0, row.real_image_height_mm), places);
+  for (const double distance : distances_mm) places.push_back(place(distance));
+  field.spread = scatter_spread(tracer, source_imaged_at(lens, tracer, image[0], image[1]), places);
   return field;
 }
 
 }  // namespace
 
 AnalysisResult glare_analysis(const Lens& plain, const AnalysisRequest& request, const Context&) {
-  require_centred(plain, "veiling glare is that of centred lenses");
   require_no_mirrors(plain, "veiling glare");
   const bool is_clean = !request.glare.surfaces_scatter && !states_scatter(plain);
   const Lens lens = is_clean ? plain : scattering_lens(plain, request.glare.surfaces_scatter);
@@ -94,16 +106,17 @@ AnalysisResult glare_analysis(const Lens& plain, const AnalysisRequest& request,
   Plot plot = glare_spread_plot("1/mm²");
   for (const double wavelength_nm : at.wavelengths_nm) {
     std::vector<IlluminationRow> rows;
-    std::vector<double> heights;
+    std::vector<std::array<double, 2>> places;
     for (const IlluminationRow& row : illumination)
       if (row.wavelength_nm == wavelength_nm)
-        rows.push_back(row), heights.push_back(row.real_image_height_mm);
+        rows.push_back(row),
+            places.push_back(place_of(lens, at.azimuth_deg, row.real_image_x_mm, row.real_image_height_mm));
     std::vector<double> ghosts(rows.size(), 0);
     GhostLightOptions how;
     how.losses = at.losses;
     how.sensor = request.sensor_reflectance;
     how.clip = at.clip;
-    if (request.glare.ghosts) ghosts = ghost_veil(lens, wavelength_nm, heights, options, how);
+    if (request.glare.ghosts) ghosts = ghost_veil(lens, wavelength_nm, places, options, how);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       GlareField field = glare_of(lens, rows[i], options, distances, at);
       field.veil.ghosts_sr = ghosts[i];

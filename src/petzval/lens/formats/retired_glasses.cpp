@@ -19,6 +19,8 @@ namespace {
 /// @isaac/glass-catalog compares it). Of LAFN21, SF64A and SFL4 a list of SCHOTT's old glasses at 587.6 nm
 /// has nd alone; their Vd is not known. WATER is pure at 20 °C (Daimon and Masumura, Appl. Opt. 46 (2007)
 /// 3811), SEAWATER has 35 per mille of salt (Quan and Fry, Appl. Opt. 34 (1995) 3477), both against air.
+/// POLYSTYR is as Sultanova, Kasarova and Nikolov measured it (Acta Phys. Pol. A 116 (2009) 585, table I),
+/// S-LAL21 as OHARA's catalogue has it.
 constexpr RetiredGlass retired[] = {
     {"B270", 1.52308, 58.57, ""},
     {"BAF10", 1.67003, 47.11, "SCHOTT:N-BAF10"},
@@ -33,11 +35,14 @@ constexpr RetiredGlass retired[] = {
     {"BALF5", 1.54739, 53.63, "SCHOTT:N-BALF5"},
     {"BASF2", 1.66446, 35.83, "SCHOTT:N-BASF2"},
     {"BASF64A", 1.70400, 39.38, "SCHOTT:N-BASF64"},
+    {"BK1", 1.51009, 63.41, ""},
     {"BK10", 1.49782, 66.95, "SCHOTT:N-BK10"},
     {"BK7", 1.51680, 64.17, "SCHOTT:N-BK7"},
     {"F15", 1.60565, 37.83, ""},
+    {"FDS9", 1.84666, 23.86, "HOYA:FDS90"},
     {"FK5", 1.48749, 70.41, "SCHOTT:N-FK5"},
     {"FK51", 1.48656, 84.47, "SCHOTT:N-FK51"},
+    {"FK54", 1.43700, 90.66, ""},
     {"FSILICA", 1.45846, 67.82, "MISC:SILICA"},
     {"FUSEDSILICA", 1.45846, 67.82, "MISC:SILICA"},
     {"K5", 1.52249, 59.48, "SCHOTT:N-K5"},
@@ -48,6 +53,7 @@ constexpr RetiredGlass retired[] = {
     {"LAF3", 1.71700, 47.96, "SCHOTT:N-LAF3"},
     {"LAFN21", 1.78831, 0, "SCHOTT:N-LAF21"},
     {"LAK10", 1.72000, 50.41, "SCHOTT:N-LAK10"},
+    {"LAK14", 1.69680, 55.58, "SCHOTT:N-LAK14"},
     {"LAK21", 1.64049, 60.10, "SCHOTT:N-LAK21"},
     {"LAK8", 1.71300, 53.83, "SCHOTT:N-LAK8"},
     {"LAK9", 1.69100, 54.71, "SCHOTT:N-LAK9"},
@@ -57,6 +63,8 @@ constexpr RetiredGlass retired[] = {
     {"LAKN7", 1.65160, 58.52, "SCHOTT:N-LAK7"},
     {"LASF9", 1.85025, 32.17, "SCHOTT:N-LASF9"},
     {"LASFN31", 1.88067, 41.01, "SCHOTT:N-LASF31"},
+    {"NBFD5", 1.76200, 40.32, ""},
+    {"POLYSTYR", 1.59200, 30.50, ""},
     {"PSK3", 1.55232, 63.46, "SCHOTT:N-PSK3"},
     {"PSK53A", 1.62014, 63.48, "SCHOTT:N-PSK53"},
     {"SEAWATER", 1.33910, 54.90, ""},
@@ -77,6 +85,7 @@ constexpr RetiredGlass retired[] = {
     {"SK2", 1.60738, 56.65, "SCHOTT:N-SK2"},
     {"SK4", 1.61272, 58.63, "SCHOTT:N-SK4"},
     {"SK5", 1.58913, 61.27, "SCHOTT:N-SK5"},
+    {"SLAL21", 1.70300, 52.38, ""},
     {"SSK2", 1.62230, 53.16, "SCHOTT:N-SSK2"},
     {"SSK4", 1.61765, 55.14, ""},
     {"SSKN5", 1.65844, 50.88, "SCHOTT:N-SSK5"},

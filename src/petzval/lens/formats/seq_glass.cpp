@@ -23,6 +23,11 @@ constexpr std::size_t digits_of_a_code = 6, fewest_digits = 3;
 }  // namespace
 
 std::optional<Material::Model> fictitious_glass(const std::string& word) {
+  if (const std::size_t colon = word.find(':'); colon != word.npos) {
+    const auto nd = parse_number(word.substr(0, colon)), vd = parse_number(word.substr(colon + 1));
+    if (!nd || !vd) return {};
+    return Material::Model{*nd, *vd};
+  }
   const std::size_t point = word.find('.');
   std::string nd, vd;
   if (point == word.npos) {

@@ -221,10 +221,31 @@ void put_configurations(const ZmxFile& file, GlassLookup& glasses, Lens& lens,
                   count));
 }
 
+/// An object at a plane that does nothing (a slit that is drawn twice) lies where that plane's gap begins.
+void join_object_plane(ZmxFile& file) {
+  constexpr std::size_t fewest = 4;
+  if (file.surfaces.size() < fewest || zmx_configuration_count(file) > 1) return;
+  ZmxBlock& object = file.surfaces[0];
+  const ZmxBlock& plane = file.surfaces[1];
+  const ZmxRecord* distance = object.find("DISZ");
+  const ZmxRecord* gap = plane.find("DISZ");
+  if (!distance || !gap || object.find("GLAS") || !distance->has(0) || parse_number(distance->values[0]) != 0)
+    return;
+  for (const char* alters : {"STOP", "GLAS", "CLAP", "FLAP", "SQAP", "ELAP", "OBSC", "SQOB", "ELOB", "SPID"})
+    if (plane.find(alters)) return;
+  const ZmxRecord* type = plane.find("TYPE");
+  const ZmxRecord* curvature = plane.find("CURV");
+  if (!type || type->rest != "STANDARD" || (curvature && file.number_or(plane, *curvature, 0, 0) != 0))
+    return;
+  object.records.push_back(*gap);
+  file.surfaces.erase(file.surfaces.begin() + 1);
+}
+
 }  // namespace
 
 LensFile read_zmx(const std::string& text, const std::string& file_name, const LensReadOptions& options) {
-  const ZmxFile file = zmx_records(text, file_name);
+  ZmxFile file = zmx_records(text, file_name);
+  join_object_plane(file);
   LensFile result;
   result.notes = check_zmx_keywords(file);
   check_environment(file);

@@ -125,7 +125,9 @@ WaveImage::WaveImage(const Lens& lens, const SensorGeometry& film, std::vector<d
       node_bands_(bands_with_nodes(wavelengths_nm_.size())),
       azimuths_(lens.stop_blades().count > 0 ? bladed_azimuths : 1),
       psfs_(node_bands_.size() * radii * azimuths_ * defocus_waves_.size()) {
-  require_centred(lens_, "diffraction is rendered through centred lenses");
+  require_centred(lens_,
+                  "rendered diffraction is that of centred lenses, by film radius; pictures of flat scenes "
+                  "have that of any");
   // Wherever an object stands, the stop is as wide as it is.
   lens_.aperture = {Aperture::Kind::stop_semi_diameter_mm, stop_radius_mm(lens)};
   const std::vector<double>& nm = wavelengths_nm_;
