@@ -284,11 +284,11 @@ class Page {
     this.refreshSoon();
   }
 
-  /** With the next frame: until then answers of the server may come. */
+  /** Behind the next frame, which is that of the rays if the server is quick. */
   private refreshSoon(): void {
     if (this.stale) return;
     this.stale = true;
-    requestAnimationFrame(() => { if (this.stale) this.refresh(); });
+    requestAnimationFrame(() => setTimeout(() => { if (this.stale) this.refresh(); }));
   }
   private stale = false;  ///< whether the page shows a session of before
 
@@ -649,6 +649,15 @@ class Page {
   private took(message: Incoming): void {
     this.times.set(message.stage, message.ms);
     this.showProblem(message.stage, message.stage === "layout" ? this.problems.get("layout") ?? "" : "");
+    if (this.timesWaiting) return;
+    this.timesWaiting = true;
+    const glance_ms = 150;  // nobody reads numbers that change with every frame
+    setTimeout(() => this.showTimes(), glance_ms);
+  }
+  private timesWaiting = false;
+
+  private showTimes(): void {
+    this.timesWaiting = false;
     const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], ["preview", "preview"], [`plot:${this.session.plot}`, "plot"], ["picture", "full"]];
     this.timing.replaceChildren(...names.filter(([stage]) => this.times.has(stage)).map(([stage, name]) =>
       h("span", {}, h("i", {}, name), `${shown(this.times.get(stage)!, 3)} ms`)));

@@ -87,12 +87,12 @@ class Server:
 
 
 class Browser:
-    """Chromium with one page, in a window of this size."""
+    """Chromium with one page, in a window of this size; `words`: of its command line, besides."""
 
-    def __init__(self, chromium, driver, width=1280, height=720, downloads=None):
+    def __init__(self, chromium, driver, width=1280, height=720, downloads=None, words=()):
         options = Options()
         options.binary_location = chromium
-        for word in ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", f"--window-size={width},{height}"]:
+        for word in ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--disable-dev-shm-usage", f"--window-size={width},{height}", *words]:
             options.add_argument(word)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         if downloads:

@@ -254,11 +254,13 @@ void Bench::Impl::show(const BenchState& state) {
           fmt::format("{}|{}|{}|{},{}|{}", key, state.stray_key(), state.chosen_sun, ghost.first,
                       ghost.second, state.sensor),
           [&](const Context&) { show_stray(state); });
+  const auto stop = [this] { return ask->newer() || ask->ended(); };
+  plots->let_quick_ones_pass(stop);
   if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
     picture("picture", PictureQuality::full);
   }
-  if (!plots->wait([this] { return ask->newer() || ask->ended(); })) throw Cancelled();
+  if (!plots->wait(stop)) throw Cancelled();
 }
 
 Bench::Bench(const LiveStart& start, SendReply send) : impl_(std::make_unique<Impl>()) {

@@ -21,6 +21,10 @@ using nlohmann::json;
 
 namespace {
 
+constexpr std::chrono::milliseconds glance{2};
+/// For plots of this time or less the picture waits.
+constexpr std::chrono::duration<double, std::milli> quick_time{40};
+
 /// What the hand waits for comes first.
 void step_back() {
 #ifdef __linux__
@@ -59,13 +63,31 @@ BenchPlots::~BenchPlots() {
 void BenchPlots::wish(PlotWish wish) {
   {
     const std::lock_guard lock(mutex_);
+    quick_ = are_quick(wish.analyses);
     wished_ = std::move(wish);
   }
   woken_.notify_all();
 }
 
+bool BenchPlots::are_quick(const std::vector<std::string>& analyses) const {
+  return std::ranges::all_of(analyses, [this](const std::string& name) {
+    const auto found = took_ms_.find(name);
+    return found == took_ms_.end() || found->second <= quick_time.count();
+  });
+}
+
+void BenchPlots::let_quick_ones_pass(const std::function<bool()>& stop) {
+  const auto end = Clock::now() + quick_time;
+  std::unique_lock lock(mutex_);
+  while (quick_ && (wished_ || busy_) && Clock::now() < end) {
+    lock.unlock();
+    if (stop()) return;
+    lock.lock();
+    woken_.wait_for(lock, glance, [this] { return !wished_ && !busy_; });
+  }
+}
+
 bool BenchPlots::wait(const std::function<bool()>& stop) {
-  constexpr std::chrono::milliseconds glance{2};
   std::unique_lock lock(mutex_);
   while (wished_ || busy_) {
     lock.unlock();
@@ -131,7 +153,10 @@ void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
   const StageTime time;
   Context context;
   const int all = wish.threads > 0 ? wish.threads : static_cast<int>(std::thread::hardware_concurrency());
-  context.threads = std::max(1, all / 2);
+  {
+    const std::lock_guard lock(mutex_);
+    context.threads = quick_ ? all : std::max(1, all / 2);
+  }
   context.progress = [&](double, const std::string&) { return !gives_way(name); };
   const AnalysisResult result = analyse(name, wish.lens.lens, plot_request(wish.lens.losses), context);
   json plots = json::array();
@@ -144,6 +169,10 @@ void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
                   {"plots", std::move(plots)}}),
          {}});
   shown_at_[name] = Clock::now();
+  {
+    const std::lock_guard lock(mutex_);
+    took_ms_[name] = time.ms();
+  }
   send_({text_of({{"kind", "stage"},
                   {"id", wish.id},
                   {"stage", "plot:" + name},

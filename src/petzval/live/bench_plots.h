@@ -22,7 +22,7 @@ struct PlotWish {
   std::string key = {};  ///< says everything of the lens
   CoatedLens lens = {};
   std::vector<std::string> analyses = {};
-  int threads = 0;  ///< that the whole bench has; plots take half of them
+  int threads = 0;  ///< that the whole bench has; slow plots take half of them
 };
 
 /// Makes the plots of the newest wish while the bench goes on, so that none of them delays the rays of the
@@ -37,6 +37,8 @@ class BenchPlots {
   BenchPlots& operator=(const BenchPlots&) = delete;
 
   void wish(PlotWish wish);
+  /// Waits a moment for plots that were quick the last time, which the picture's threads would hold up.
+  void let_quick_ones_pass(const std::function<bool()>& stop);
   /// Waits until all that was wished for is shown. \returns false if `stop` said so before.
   bool wait(const std::function<bool()>& stop);
 
@@ -47,12 +49,15 @@ class BenchPlots {
   void show(const PlotWish& wish);
   void plot(const PlotWish& wish, const std::string& name);
   bool gives_way(const std::string& name);
+  /// As they were the last time; unless that is known, they are.
+  bool are_quick(const std::vector<std::string>& analyses) const;
 
   const SendReply send_;
   std::mutex mutex_;
   std::condition_variable woken_;
   std::optional<PlotWish> wished_;  ///< not begun yet
-  bool ending_ = false, busy_ = false;
+  bool ending_ = false, busy_ = false, quick_ = true;
+  std::map<std::string, double> took_ms_;
   std::map<std::string, std::string> shown_;  ///< analysis → key; of the thread alone, as the next
   std::map<std::string, Clock::time_point> shown_at_;
   std::thread thread_;

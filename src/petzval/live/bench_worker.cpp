@@ -19,6 +19,15 @@ constexpr std::size_t most_waiting = 512, most_waiting_bytes = most_upload_bytes
 /// How long nothing must come before the full picture is begun.
 constexpr std::chrono::milliseconds rest_of_the_hand{180};
 
+/// Pictures come one after the other: the memory of the last is kept for the next, until the hand rests.
+void keep_memory() {
+#ifdef __GLIBC__
+  constexpr int largest_plane = 1 << 25, kept = 1 << 28;  // bytes
+  mallopt(M_MMAP_THRESHOLD, largest_plane);
+  mallopt(M_TRIM_THRESHOLD, kept);
+#endif
+}
+
 /// What the last pictures took and nothing needs any more.
 void give_back_memory() {
 #ifdef __GLIBC__
@@ -111,6 +120,7 @@ void BenchWorker::show_newest(Bench& bench) {
 }
 
 void BenchWorker::work() {
+  keep_memory();
   Bench bench(start_, [this](LiveReply reply) {
     if (!ending_) send_(std::move(reply));
   });
