@@ -177,6 +177,8 @@ void add_lens_tolerance(CLI::App& lens, Shared& shared) {
       ->check(output_file());
   command->add_option("--csv", options->csv, "Also write every build, its merits and its errors")
       ->check(output_file());
+  command->add_option("--record", request.record,
+                      "Keep every build in this file as it is finished: the same command goes on from it");
   command->add_option("--lenses", options->lenses, "Also write every build as a lens file into this folder");
 }
 

@@ -26,11 +26,12 @@ nb::object toleranced(const Lens& lens, const Numbers& fields, const std::option
                       const Numbers& wavelengths_nm, const std::vector<std::string>& tolerances,
                       const std::string& grade, std::optional<double> mtf_cpmm, std::optional<double> accept,
                       int builds, const std::string& distribution, const Numbers& azimuths_deg, bool refocus,
-                      std::optional<double> inverse_change, bool ignore_apertures, std::uint64_t seed,
-                      int threads, const nb::object& progress) {
+                      std::optional<double> inverse_change, bool ignore_apertures, const std::string& record,
+                      std::uint64_t seed, int threads, const nb::object& progress) {
   ToleranceRequest request;
   request.tolerances = tolerances_from(tolerances);
   request.grade = grade;
+  request.record = record;
   request.judge.at = request_of(lens, fields, field_type, wavelengths_nm, ignore_apertures);
   if (!azimuths_deg.empty()) request.judge.azimuths_deg = azimuths_deg;
   if (mtf_cpmm) request.judge.merit = {Merit::Kind::mtf, *mtf_cpmm};
@@ -171,8 +172,9 @@ constexpr const char* tolerance_text =
     "\"builds\", facts `yield` (share, low and high end of its 95 % interval) and a plot. `tolerances`: "
     "[\"element_tilt_deg@2-3=0.05\"], else the lens's own, else those of `grade` (commercial, precision, "
     "high). "
-    "`mtf_cpmm`: judge by the MTF at that frequency, else by RMS spots [um]. Same seed, same builds. "
-    "docs/TOLERANCES.md.";
+    "`mtf_cpmm`: judge by the MTF at that frequency, else by RMS spots [um]. `record`: a file that keeps "
+    "builds as "
+    "they are finished; the same call goes on from it. Same seed, same builds. docs/TOLERANCES.md.";
 constexpr const char* built_text =
     "The lens as number `number` off the line has it, its sensor focused: the lens of that row of "
     "tolerance().";
@@ -200,8 +202,8 @@ void bind_design(nb::module_&) {
       nb::arg("tolerances") = std::vector<std::string>(), nb::arg("grade") = "precision",
       nb::arg("mtf_cpmm").none() = nb::none(), nb::arg("accept").none() = nb::none(), nb::arg("builds") = 200,
       nb::arg("distribution") = "normal", nb::arg("azimuths_deg") = Numbers(), nb::arg("refocus") = true,
-      nb::arg("inverse").none() = nb::none(), nb::arg("ignore_apertures") = false, nb::arg("seed") = 1,
-      nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), tolerance_text);
+      nb::arg("inverse").none() = nb::none(), nb::arg("ignore_apertures") = false, nb::arg("record") = "",
+      nb::arg("seed") = 1, nb::arg("threads") = 0, nb::arg("progress").none() = nb::none(), tolerance_text);
   add("built", built, nb::arg("number"), nb::kw_only(), nb::arg("tolerances") = std::vector<std::string>(),
       nb::arg("grade") = "precision", nb::arg("distribution") = "normal", nb::arg("seed") = 1, built_text);
   add("fit_build", build_fitted, nb::arg("edges"), nb::kw_only(),

@@ -17,6 +17,19 @@ def test_tolerances_are_the_programs(program):
     assert "svg" in str(ours.plot)[:200]
 
 
+def test_a_record_of_builds_serves_the_program(program, tmp_path):
+    record = str(tmp_path / "builds.txt")
+    lens = pz.Lens("cooke-triplet")
+    lens.tolerance([0, 14], wavelengths_nm=[550], builds=6, seed=3, record=record)
+    kept = (tmp_path / "builds.txt").read_bytes()
+    theirs = program.json("lens", "tolerance", "cooke-triplet", "--fields", "0,14", "--wavelengths", "550", "--builds", 6,
+                          "--seed", 3, "--record", record)
+    assert (tmp_path / "builds.txt").read_bytes() == kept
+    assert theirs["builds"] == 6
+    with pytest.raises(pz.InputError, match="not the same seed"):
+        lens.tolerance([0, 14], wavelengths_nm=[550], builds=6, seed=4, record=record)
+
+
 def test_a_build_is_the_row_of_its_number():
     lens = pz.Lens("cooke-triplet")
     worst = lens.tolerance(builds=3).tables["builds"]["worst"]

@@ -2,7 +2,6 @@
 // The ruler against lenses: a tilted checkerboard through the whole field of three of them, imaged by wave
 // optics and rendered by rays. Every edge that sfr finds must have the MTF50 that the lens's transfer
 // function at that field, along the edge's normal, and the photosite give.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <petzval/analysis/field_tracer.h>
 #include <petzval/analysis/mtf.h>
@@ -24,13 +23,11 @@
 #include <complex>
 #include <functional>
 #include <map>
-#include <random>
+
+#include "physics/tilted_board.h"
 
 namespace petzval {
 namespace {
-
-constexpr double board_nm = 550, board_tilt_deg = 7, square_px = 74;
-constexpr int scene_per_px = 5;
 
 struct BoardShot {
   const char* lens;
@@ -40,33 +37,6 @@ struct BoardShot {
 
 void PrintTo(const BoardShot& shot, std::ostream* out) {
   *out << shot.lens;
-}
-
-/// Whether a place of the board [pixels] is bright.
-bool on_bright_square(double x, double y) {
-  const double c = std::cos(radians(board_tilt_deg)), s = std::sin(radians(board_tilt_deg));
-  const double u = (x * c + y * s) / square_px + 0.31, v = (y * c - x * s) / square_px + 0.17;
-  return (static_cast<long>(std::floor(u)) + static_cast<long>(std::floor(v))) % 2 == 0;
-}
-
-/// The board as a scene at infinity, wider than the sensor sees it.
-Scene board_scene(const SensorGeometry& sensor, double focal_length_mm) {
-  const int columns = static_cast<int>(sensor.columns * 1.25) * scene_per_px;
-  const int rows = static_cast<int>(sensor.rows * 1.25) * scene_per_px;
-  const double half_tangent = columns * sensor.pitch_um * 1e-3 / (2 * scene_per_px * focal_length_mm);
-  Scene scene(columns, rows, {board_nm}, 2 * degrees(std::atan(half_tangent)), {});
-  const std::span<float> band = scene.band(0);
-  constexpr int parts = 4;  // a side, of every sample
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      int bright = 0;
-      for (int i = 0; i < parts * parts; ++i)
-        bright += on_bright_square((column + (i % parts + 0.5) / parts - columns / 2.0) / scene_per_px,
-                                   (row + (i / parts + 0.5) / parts - rows / 2.0) / scene_per_px);
-      band[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-           static_cast<std::size_t>(column)] = static_cast<float>(0.1 + 0.9 * bright / (parts * parts));
-    }
-  return scene;
 }
 
 /// |OTF| of a lens at an image height, along a direction given by its components across the field and along
@@ -131,10 +101,6 @@ class FieldTransfer {
   std::map<double, std::vector<PupilRay>> rays_;
 };
 
-double sinc(double x) {
-  return x == 0 ? 1 : std::sin(pi * x) / (pi * x);
-}
-
 /// Where a falling transfer passes one half [cycles/pixel].
 double half_of(const std::function<double(double)>& transfer) {
   double high = 0.01;
@@ -171,20 +137,6 @@ struct Errors {
   double mean() const { return sum / edges; }
   double rms() const { return std::sqrt(squares / edges); }
 };
-
-PicturePlanes picture_of(const SensorGeometry& sensor, std::span<const float> band, double noise,
-                         unsigned seed) {
-  PicturePlanes picture;
-  picture.columns = sensor.columns, picture.rows = sensor.rows;
-  Plane plane{sensor.columns, sensor.rows, {band.begin(), band.end()}};
-  const double bright = *std::max_element(plane.values.begin(), plane.values.end());
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, noise * bright);
-  if (noise > 0)
-    for (double& value : plane.values) value += normal(random);
-  picture.planes.push_back(std::move(plane));
-  return picture;
-}
 
 class TiltedBoardByWaves : public ::testing::TestWithParam<BoardShot> {};
 
@@ -272,26 +224,6 @@ INSTANTIATE_TEST_SUITE_P(ThreeLenses, TiltedBoardByWaves,
                              if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
                            return name;
                          });
-
-/// The bright squares of the board as lights in a plane, in metres.
-std::string glowing_board(double distance_m, double square_m, int squares) {
-  std::string indices, points;
-  const double c = std::cos(radians(board_tilt_deg)), s = std::sin(radians(board_tilt_deg));
-  int count = 0;
-  for (int i = -squares; i < squares; ++i)
-    for (int j = -squares; j < squares; ++j) {
-      if ((i + j) % 2 != 0) continue;
-      for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-        const double x = (i + u - 0.31) * square_m, y = (j + v - 0.17) * square_m;
-        points += fmt::format(" {:.10g} {:.10g} {:.10g}", x * c - y * s, x * s + y * c, distance_m);
-      }
-      for (const int corner : {0, 1, 2, 0, 2, 3}) indices += fmt::format(" {}", count + corner);
-      count += 4;
-    }
-  return "WorldBegin\nAreaLightSource \"diffuse\" \"spectrum L\" [ 200 1 900 1 ] \"bool twosided\" true\n"
-         "Shape \"trianglemesh\" \"integer indices\" [" +
-         indices + " ] \"point3 P\" [" + points + " ]\n";
-}
 
 // By rays, at full aperture, where they and not diffraction make the blur. Wanted (before anything was
 // measured): no bias beyond 1 % over the edges, and each within 1 % and four of its stated deviations, for

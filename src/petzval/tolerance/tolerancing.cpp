@@ -4,12 +4,14 @@
 #include <petzval/base/parallel.h>
 #include <petzval/base/units.h>
 #include <petzval/numeric/random.h>
+#include <petzval/tolerance/build_record.h>
 #include <petzval/tolerance/tolerancing.h>
 #include <petzval/tolerance/yield.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 namespace petzval {
 
@@ -132,6 +134,8 @@ ToleranceReport work(const Lens& lens, const ToleranceRequest& request, std::uin
   ToleranceReport report;
   report.tolerances = tolerances_of(lens, request);
   report.points = points_of(lens, request.judge);
+  std::optional<BuildRecord> record;
+  if (!request.record.empty()) record.emplace(request.record, lens, request, seed);
   report.designed = judge(lens, request.judge);
   const double designed = report.designed.overall;
   const std::size_t kinds = request.sensitivities ? report.tolerances.size() : 0;
@@ -161,7 +165,12 @@ ToleranceReport work(const Lens& lens, const ToleranceRequest& request, std::uin
   report.builds.resize(builds);
   parallel_tasks(builds, [&](std::size_t i) {
     Build build = draw_build(report.tolerances, request.distribution, seed, i);
-    build.judgement = judge(built_lens(lens, report.tolerances, build), request.judge);
+    if (const Judgement* known = record ? record->find(i) : nullptr) {
+      build.judgement = *known;
+    } else {
+      build.judgement = judge(built_lens(lens, report.tolerances, build), request.judge);
+      if (record) record->add(i, build.judgement);
+    }
     report.builds[i] = std::move(build);
     counter.one_done("builds");
   });

@@ -28,6 +28,9 @@ struct ToleranceRequest {
   /// What the worst point of a build must keep for it to count as good: at least of MTF, at most of spots.
   std::optional<double> accept = {};
   bool sensitivities = true;
+  /// A file that keeps every build as it is finished, and from which the same request goes on; empty: none.
+  /// More builds may be asked for then, or fewer.
+  std::string record = {};
   /// Also the limit at which each tolerance alone costs so much of the overall merit; absent: not sought.
   std::optional<double> inverse_change = {};
 };
@@ -75,8 +78,8 @@ std::vector<Tolerance> tolerances_of(const Lens& lens, const ToleranceRequest& r
 
 /// Sensitivities by real rays through the altered lens, refocused as every build is; Monte Carlo over
 /// `builds` lenses, whose errors depend on context.seed and their number alone. The interval of the yield is
-/// Clopper and Pearson's. \throws InputError for tolerances that do not fit the lens, and as judge();
-/// Cancelled.
+/// Clopper and Pearson's. \throws InputError for tolerances that do not fit the lens, for a `record` of other
+/// builds, and as judge(); Failure where it cannot be written; Cancelled.
 ToleranceReport tolerance_lens(const Lens& lens, const ToleranceRequest& request = {},
                                const Context& context = {});
 
