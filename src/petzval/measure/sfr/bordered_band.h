@@ -14,7 +14,7 @@ namespace petzval {
 /// in proportion to its size, where a full matrix takes the third power.
 class BorderedBand {
  public:
-  static constexpr int width = 5;        ///< places beside the diagonal
+  static constexpr int width = 5;         ///< places beside the diagonal
   static constexpr int most_border = 11;  ///< unknowns that touch all
   /// Entries of a column: the diagonal and `width` below it, then one for each unknown of the border.
   static constexpr int stride = width + 1 + most_border;
