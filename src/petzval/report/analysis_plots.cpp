@@ -191,6 +191,32 @@ Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows) 
   return plot;
 }
 
+Plot distortion_grid_plot(const DistortionGrid& grid) {
+  Plot plot;
+  plot.title = fmt::format("Square grid at {}, grey without distortion", wavelength_text(grid.wavelength_nm));
+  plot.x = {"image x", "mm"}, plot.y = {"image y", "mm"};
+  plot.equal_aspect = true;
+  plot.grid = false;
+  const auto lines = static_cast<std::size_t>(grid.lines);
+  const auto draw = [&](const std::vector<double>& x, const std::vector<double>& y, const char* colour,
+                        double width_px) {
+    std::vector<double> xs, ys;
+    for (const bool across : {true, false})
+      for (std::size_t i = 0; i < lines; ++i) {
+        for (std::size_t k = 0; k < lines; ++k) {
+          const std::size_t at = across ? i * lines + k : k * lines + i;
+          xs.push_back(x[at]), ys.push_back(y[at]);
+        }
+        xs.push_back(NAN), ys.push_back(NAN);
+      }
+    PlotSeries& series = plot.line("", xs, ys);
+    series.colour = colour, series.width_px = width_px;
+  };
+  draw(grid.ideal_x_mm, grid.ideal_y_mm, "#b0b0b0", 1);
+  draw(grid.x_mm, grid.y_mm, wavelength_colour(grid.wavelength_nm).hex().c_str(), 1.4);
+  return plot;
+}
+
 Plot encircled_energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows) {
   Plot plot;
   plot.title = "Encircled energy, dashed without aberration";
@@ -246,7 +272,7 @@ Plot illumination_plot(const std::vector<IlluminationRow>& rows) {
 
 Plot vignetting_plot(Fields::Kind kind, const std::vector<VignettingRow>& rows) {
   Plot plot;
-  plot.title = "Share of the stop that the light fills";
+  plot.title = "Filled share of the stop";
   plot.x = field_axis(kind);
   plot.y = {"share of the stop's area", "", PlotScale::linear, 0.0, 1.05};
   add_curves(

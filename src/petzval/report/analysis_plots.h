@@ -29,6 +29,8 @@ Plot longitudinal_plot(const std::vector<AxialFocusRow>& rows);
 Plot field_curvature_plot(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows,
                           const std::vector<FieldCurvatureRow>& reference);
 Plot distortion_plot(Fields::Kind kind, const std::vector<DistortionRow>& rows);
+/// The image of a square grid, over the ideal one in grey.
+Plot distortion_grid_plot(const DistortionGrid& grid);
 
 /// A curve a field and wavelength over the radius; dashed beside it what an Airy pattern holds.
 Plot encircled_energy_plot(Fields::Kind kind, const std::vector<EncircledEnergyRow>& rows);

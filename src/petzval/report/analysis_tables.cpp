@@ -170,6 +170,32 @@ Table tabulate(const std::vector<TvDistortion>& rows) {
   return table;
 }
 
+Table tabulate(const DistortionGrid& grid) {
+  Table table{{{"line", "", 0, "row"},
+               {"crossing", "", 0, "column"},
+               {"ideal x", "mm", 5, "ideal_x_mm"},
+               {"ideal y", "mm", 5, "ideal_y_mm"},
+               {"x", "mm", 5, "x_mm"},
+               {"y", "mm", 5, "y_mm"}},
+              {}};
+  for (std::size_t i = 0; i < grid.x_mm.size(); ++i) {
+    const int row = static_cast<int>(i) / grid.lines, column = static_cast<int>(i) % grid.lines;
+    table.rows.push_back(
+        {double(row), double(column), grid.ideal_x_mm[i], grid.ideal_y_mm[i], grid.x_mm[i], grid.y_mm[i]});
+  }
+  return table;
+}
+
+Table tabulate(Fields::Kind kind, const std::vector<Footprint>& footprints) {
+  Table table{
+      {{"surface", "", 0, "surface"}, field_column(kind), {"x", "mm", 5, "x_mm"}, {"y", "mm", 5, "y_mm"}},
+      {}};
+  for (const Footprint& each : footprints)
+    for (std::size_t i = 0; i < each.x_mm.size(); ++i)
+      table.rows.push_back({double(each.surface), each.field, each.x_mm[i], each.y_mm[i]});
+  return table;
+}
+
 Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows) {
   using Row = IlluminationRow;
   return remark_on_dark(

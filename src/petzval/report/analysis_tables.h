@@ -4,9 +4,11 @@
 
 #include <petzval/analysis/aberration_fans.h>
 #include <petzval/analysis/chromatic.h>
+#include <petzval/analysis/distortion_grid.h>
 #include <petzval/analysis/encircled_energy.h>
 #include <petzval/analysis/field_curvature.h>
 #include <petzval/analysis/field_tables.h>
+#include <petzval/analysis/footprints.h>
 #include <petzval/analysis/ghosts.h>
 #include <petzval/analysis/mtf.h>
 #include <petzval/analysis/polarisation.h>
@@ -29,6 +31,9 @@ Table tabulate(Fields::Kind kind, const std::vector<WavefrontRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<MtfRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<DistortionRow>& rows);
 Table tabulate(const std::vector<TvDistortion>& rows);
+Table tabulate(const DistortionGrid& grid);
+/// Outlines point by point.
+Table tabulate(Fields::Kind kind, const std::vector<Footprint>& footprints);
 Table tabulate(Fields::Kind kind, const std::vector<IlluminationRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<FieldCurvatureRow>& rows);
 Table tabulate(Fields::Kind kind, const std::vector<LateralColourRow>& rows);

@@ -242,6 +242,14 @@ class LensSections {
       page_.add(html::paragraph(
           fmt::format("TV distortion of a frame of {:.4g} x {:.4g} mm:", frame->width_mm, frame->height_mm)));
       page_.add(html::table(tabulate(tv_distortion(lens_, *frame, request_.wavelengths_nm))));
+      const DistortionGrid grid = distortion_grid(lens_, *frame, lens_.reference_wavelength_nm);
+      page_.add(figure_with_data(
+          distortion_grid_plot(grid).svg(),
+          fmt::format(
+              "A square grid over this frame; the crossing farthest off its place is off by {:.3g} % of "
+              "the half diagonal.",
+              100 * grid.largest_share()),
+          "distortion_grid.csv", tabulate(grid)));
     }
   }
   void colour() {
@@ -312,6 +320,14 @@ class LensSections {
     page_.add(html::table(tabulate(kind_, illumination_table(lens_, at_reference(request_, lens_)))));
     page_.add(html::table(tabulate(kind_, vignetting_table(lens_, at_reference(request_, lens_)))));
     page_.add(html::table(tabulate(kind_, chief_ray_angle_table(lens_, at_reference(request_, lens_)))));
+    if (!is_round(lens_)) return;
+    const auto prints = footprints(lens_, at_reference(request_, lens_));
+    page_.add(html::figure(
+        html::drawing(plot_grid_svg(footprint_plots(kind_, lens_, prints), footprint_plots_across, "")),
+        "Footprints: what each field's light fills of the surfaces, the circle of the clear aperture in "
+        "black."));
+    page_.add(
+        html::download("footprints.csv", "text/csv", to_csv(tabulate(kind_, prints)), "footprints (CSV)"));
   }
   void third_order() {
     const bool has_field = std::any_of(lens_.fields.values.begin(), lens_.fields.values.end(),

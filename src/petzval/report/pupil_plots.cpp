@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <petzval/base/units.h>
+#include <petzval/report/colours.h>
 #include <petzval/report/field_curves.h>
 #include <petzval/report/heat_map.h>
 #include <petzval/report/pupil_plots.h>
@@ -63,6 +64,36 @@ std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& 
       dots.width_px = stroke_px;
     }
     draw_circle(plot, 0, 0, airy_um);
+    plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
+std::vector<Plot> footprint_plots(Fields::Kind kind, const Lens& lens,
+                                  const std::vector<Footprint>& footprints) {
+  constexpr double side_px = footprint_plot_px, margin = 1.08;
+  std::vector<Plot> plots;
+  const std::size_t surfaces = lens.surfaces.size(), fields = footprints.size() / surfaces;
+  for (std::size_t s = 0; s < surfaces; ++s) {
+    const double clear = lens.surfaces[s].semi_diameter_mm.value_or(0);
+    double reach = clear;
+    for (std::size_t f = 0; f < fields; ++f) {
+      const Footprint& footprint = footprints[s * fields + f];
+      for (std::size_t k = 0; k < footprint.x_mm.size(); ++k)
+        reach = std::max({reach, std::abs(footprint.x_mm[k]), std::abs(footprint.y_mm[k])});
+    }
+    Plot plot;
+    plot.title = fmt::format("surface {}{}", s, s == lens.stop_index() ? ", the stop" : "");
+    plot.x = {"x", "mm", PlotScale::linear, -margin * reach, margin * reach};
+    plot.y = {"y", "mm", PlotScale::linear, -margin * reach, margin * reach};
+    plot.equal_aspect = true;
+    plot.width_px = side_px;
+    for (std::size_t f = 0; f < fields; ++f) {
+      const Footprint& footprint = footprints[s * fields + f];
+      plot.line(s == 0 ? field_text(kind, footprint.field) : "", footprint.x_mm, footprint.y_mm).colour =
+          series_colour(f).hex();
+    }
+    if (clear > 0) draw_circle(plot, 0, 0, clear);
     plots.push_back(std::move(plot));
   }
   return plots;

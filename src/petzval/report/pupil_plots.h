@@ -17,6 +17,12 @@ std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& 
                              const std::vector<SpotRow>& rows);
 constexpr int spot_plots_across = 3;
 
+/// A plot a surface: the outlines of the fields' light and the clear aperture in black.
+std::vector<Plot> footprint_plots(Fields::Kind kind, const Lens& lens,
+                                  const std::vector<Footprint>& footprints);
+constexpr int footprint_plots_across = 4;
+constexpr double footprint_plot_px = 300;
+
 enum class FanQuantity { transverse, opd };
 /// Two plots a field, tangential and sagittal, a curve a wavelength, all on one scale.
 std::vector<Plot> fan_plots(Fields::Kind kind, const std::vector<AberrationFans>& rows, FanQuantity quantity);

@@ -103,6 +103,11 @@ AnalysisResult distortion(const Lens& lens, const AnalysisRequest& request, cons
                            distortion_table(lens, dense(request.at)), request.at.wavelengths_nm.size(),
                            &DistortionRow::image_height_mm, &DistortionRow::distortion_percent)};
   add_tv_distortion(lens, request, result);
+  const std::optional<FrameSize> frame = request.frame ? request.frame : frame_of_fields(lens);
+  if (request.plots && frame) {
+    result.plots.push_back(distortion_grid_plot(distortion_grid(lens, *frame, lens.reference_wavelength_nm)));
+    result.plots_across = 2;
+  }
   return result;
 }
 
@@ -253,6 +258,13 @@ AnalysisResult vignetting(const Lens& lens, const AnalysisRequest& request, cons
                 tabulate(request.at.field_kind, vignetting_table(lens, request.at)));
   if (request.plots)
     result.plots = {vignetting_plot(request.at.field_kind, vignetting_table(lens, dense(request.at)))};
+  if (request.plots && is_round(lens)) {
+    const FieldTableRequest at = with_own_lists(request.at, lens);
+    std::ranges::move(footprint_plots(at.field_kind, lens, footprints(lens, at)),
+                      std::back_inserter(result.plots));
+    result.plots.front().width_px = footprint_plot_px;
+    result.plots_across = footprint_plots_across;
+  }
   return result;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
 #include <petzval/base/number_text.h>
 #include <petzval/base/whole_file.h>

@@ -24,8 +24,8 @@ constexpr double least_smoothing = 1e-12;
 /// Third differences of the coefficients of a sharp edge with knots a quarter of a pixel apart, over the
 /// step.
 constexpr double edge_roughness = 0.1;
-/// The same of what an edge has beside its shapes: defocus, spherical aberration and halos leave 0.03 to 0.08.
-/// Less would be a bias that all edges of a photograph share.
+/// The same of what an edge has beside its shapes: defocus, spherical aberration and halos leave 0.03 to
+/// 0.08. Less would be a bias that all edges of a photograph share.
 constexpr double departure_roughness = 0.05;
 /// Greatest weight of the roughness far from the edge, over that at the edge.
 constexpr double most_weight = 1e8;

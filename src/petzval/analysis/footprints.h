@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the light of a field passes each surface.
+#pragma once
+
+#include <petzval/analysis/field_tables.h>
+
+#include <vector>
+
+namespace petzval {
+
+/// The outline of a field's light on a surface, closed: its last point is its first.
+struct Footprint {
+  int surface = 0;
+  double field = 0;
+  std::vector<double> x_mm, y_mm;  ///< from the axis
+
+  double area_mm2() const;
+};
+
+/// By surfaces, then by fields; of the request's first wavelength. What all apertures together let through is
+/// outlined by real rays along the rim of its pupil. \throws InputError naming a field at which no ray
+/// passes, and for lenses with poses.
+std::vector<Footprint> footprints(const Lens& lens, const FieldTableRequest& request, int azimuths = 128);
+
+}  // namespace petzval
