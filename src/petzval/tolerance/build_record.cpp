@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/base/error.h>
-#include <petzval/base/number_text.h>
 #include <petzval/base/whole_file.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/tolerance/build_record.h>
