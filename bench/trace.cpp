@@ -129,10 +129,15 @@ BENCHMARK_CAPTURE(from_film, dgauss_transfer, "dgauss-50mm", 9, true);
 BENCHMARK_CAPTURE(from_film, four_aspheres_glass, "m12-4.5mm", 2, false);
 BENCHMARK_CAPTURE(from_film, four_aspheres_transfer, "m12-4.5mm", 2, true);
 
-void batch_double(benchmark::State& state) {
+/// Double precision. \param tilted_deg  of every surface, and of a group of three besides.
+void trace_double(benchmark::State& state, double tilted_deg) {
   const TargetsGivenBack at_the_end;
   use_target(state);
-  const Lens lens = read_lens("dgauss-50mm").lens;
+  Lens lens = read_lens("dgauss-50mm").lens;
+  if (tilted_deg != 0) {
+    for (Surface& surface : lens.surfaces) surface.pose.tilt_x_deg = tilted_deg;
+    lens.groups = {{2, 4, {0.02, 0.01, 0, tilted_deg, 0, 0}, 0}};
+  }
   const Tracer tracer(lens, 587.5618);
   const RayBatch beam = parallel_beam(10);
   RayBatch rays = beam;
@@ -145,7 +150,16 @@ void batch_double(benchmark::State& state) {
     state.SkipWithError("a ray was lost");
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beam.size()));
 }
+void batch_double(benchmark::State& state) {
+  trace_double(state, 0);
+}
 BENCHMARK(batch_double)->EACH_TARGET;
+
+/// Every surface tilted, three of them in a group that is tilted and decentred.
+void batch_double_tilted(benchmark::State& state) {
+  trace_double(state, 0.05);
+}
+BENCHMARK(batch_double_tilted)->EACH_TARGET;
 
 /// The scalar trace of the library, which says why a ray fails.
 void library_scalar(benchmark::State& state) {
