@@ -14,8 +14,6 @@
 #include <petzval/lens/lens_file.h>
 #include <petzval/measure/sfr/measure_picture.h>
 #include <petzval/optics/build.h>
-#include <petzval/render/camera/lens_camera.h>
-#include <petzval/render/renderer.h>
 #include <petzval/wave/sampled_otf.h>
 
 #include <array>
@@ -233,22 +231,11 @@ TEST(TiltedBoardByRays, RendersAsSharpAsItsRaysSay) {
   const SensorGeometry film{420, 320, 10};
   MountedLens camera(read_lens("dgauss-12.5mm").lens);
   camera.focus_at_m(distance_m);
-  const double scale_m_per_px = distance_m / 12.59 * film.pitch_um * 1e-3;
-  render::Unsupported unsupported;
-  const auto world = render::build_world(
-      render::parse_scene_description(glowing_board(distance_m, square_px * scale_m_per_px, 6), "board.pbrt",
-                                      unsupported),
-      render::WavelengthGroups({board_nm}), {true}, unsupported);
-  const render::LensCamera lens_camera(camera.lens(), film, world->groups);
-  render::RenderOptions options;
-  options.samples_per_pixel = 256;
-  options.path.max_depth = 0;
-  const render::Rendering picture =
-      render::render_picture(*world, lens_camera, render::Transform(), film, options);
+  const SpectralImage picture = rendered_board(camera.lens(), film, distance_m);
   FieldTransfer transfer(camera.lens(), 1);
   const double per_mm = 1e3 / film.pitch_um;
   Errors errors;
-  for (const MeasuredEdge& edge : measure_sfr(picture_of(film, picture.irradiance.band(0), 0, 0))) {
+  for (const MeasuredEdge& edge : measure_sfr(picture_of(film, picture.band(0), 0, 0))) {
     if (std::min(-edge.exact.distance_px.front(), edge.exact.distance_px.back()) < 10) continue;
     const EdgeAtField at(edge.exact.line, film);
     const double truth = half_of([&](double f) {

@@ -6,6 +6,8 @@
 #include <petzval/base/units.h>
 #include <petzval/imaging/image_formation.h>
 #include <petzval/measure/sfr/measure_picture.h>
+#include <petzval/render/camera/lens_camera.h>
+#include <petzval/render/renderer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +83,22 @@ inline std::string glowing_board(double distance_m, double square_m, int squares
   return "WorldBegin\nAreaLightSource \"diffuse\" \"spectrum L\" [ 200 1 900 1 ] \"bool twosided\" true\n"
          "Shape \"trianglemesh\" \"integer indices\" [" +
          indices + " ] \"point3 P\" [" + points + " ]\n";
+}
+
+/// The glowing board through a lens of 12.59 mm that is focused there, by 256 paths a pixel: a square is
+/// about `square_px` wide.
+inline SpectralImage rendered_board(const Lens& lens, const SensorGeometry& film, double distance_m) {
+  const double scale_m_per_px = distance_m / 12.59 * film.pitch_um * 1e-3;
+  render::Unsupported unsupported;
+  const auto world = render::build_world(
+      render::parse_scene_description(glowing_board(distance_m, square_px * scale_m_per_px, 6), "board.pbrt",
+                                      unsupported),
+      render::WavelengthGroups({board_nm}), {true}, unsupported);
+  const render::LensCamera lens_camera(lens, film, world->groups);
+  render::RenderOptions options;
+  options.samples_per_pixel = 256;
+  options.path.max_depth = 0;
+  return render::render_picture(*world, lens_camera, render::Transform(), film, options).irradiance;
 }
 
 }  // namespace petzval
