@@ -120,6 +120,25 @@ INSTANTIATE_TEST_SUITE_P(TwoLenses, ScatteredLight,
                            return name + (info.param.right == 0 ? "_on_axis" : "_off_axis");
                          });
 
+// Light so steep that the surfaces behind would not pass it on scatters from the front ones none the less.
+// What two mirror images of a source scatter to a place in the plane between them is one number, for any
+// order of the rays.
+TEST(ScatterSpread, OfSteepLightIsAlikeOnBothSides) {
+  const Lens lens = with_scatter(read_lens("cooke-triplet").lens, lobe());
+  const ScatterTracer tracer(lens, scatter_nm, {});
+  const std::array<std::array<double, 2>, 1> place{{{0, 8}}};
+  std::array<ScatterSpread, 2> sides;
+  for (const std::size_t side : {0, 1}) {
+    BrightSource source;
+    source.right = side == 0 ? 0.3 : -0.3, source.up = 0.4;
+    sides[side] = scatter_spread(tracer, source, place, {.across = 24});
+  }
+  for (std::size_t s = 0; s < tracer.surface_count(); ++s) {
+    EXPECT_GT(sides[0].by_surface[0][s], 0) << s;
+    EXPECT_NEAR(sides[1].by_surface[0][s] / sides[0].by_surface[0][s], 1, 1e-6) << s;
+  }
+}
+
 // All light of the image is what the lens lets through less what all surfaces scatter.
 TEST(ScatterShare, IsTakenFromTheImage) {
   const Lens lens = with_scatter(read_lens("cooke-triplet").lens, lobe());

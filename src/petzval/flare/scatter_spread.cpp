@@ -39,12 +39,16 @@ void ScatterSpreadOptions::validate() const {
 
 namespace {
 
+/// How near its place an image is to lie, over its distance from the axis: the edge of a hole is known to the
+/// inverse of its width times this.
+constexpr double close_image = 1e-5;
+
 /// Of a lens without symmetry, by Broyden's method: its derivatives are those of the designed lens first.
 BrightSource source_imaged_anywhere(const Lens& lens, const ScatterTracer& tracer, double x_mm, double y_mm,
                                     double magnified_mm) {
   constexpr int steps = 15, few_rays = 10;
-  constexpr double close = 1e-3, inwards = 0.7;
-  const double tolerance_mm = close * std::max(std::hypot(x_mm, y_mm), 1e-2 * magnified_mm);
+  constexpr double inwards = 0.7;
+  const double tolerance_mm = close_image * std::max(std::hypot(x_mm, y_mm), 1e-2 * magnified_mm);
   BrightSource source;
   source.distance_mm = lens.object_distance_mm;
   // d(right, up)/d(x, y)
@@ -95,7 +99,7 @@ BrightSource source_imaged_at(const Lens& lens, const ScatterTracer& tracer, dou
   if (!centred) return source_imaged_anywhere(lens, tracer, x_mm, y_mm, magnified);
   double slope = radius / magnified, widest = std::tan(radians(80));
   constexpr int steps = 12, few_rays = 10;
-  constexpr double close = 1e-3, inwards = 0.9;
+  constexpr double inwards = 0.9;
   for (int step = 0; step < steps; ++step) {
     slope = std::min(slope, widest);
     source.right = -x_mm / radius * slope, source.up = -y_mm / radius * slope;
@@ -106,7 +110,7 @@ BrightSource source_imaged_at(const Lens& lens, const ScatterTracer& tracer, dou
       continue;
     }
     const double reached = std::hypot(image.x_mm, image.y_mm);
-    if (!(reached > 0) || std::abs(reached / radius - 1) < close) break;
+    if (!(reached > 0) || std::abs(reached / radius - 1) < close_image) break;
     slope *= radius / reached;
   }
   return source;

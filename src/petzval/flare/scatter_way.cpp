@@ -190,6 +190,25 @@ bool ScatterTracer::follow_onward(std::size_t surface, const LitPlace& place,
   return true;
 }
 
+/// d(x, y)/d(L, M), where a ray lands by its direction behind the surface.
+struct ScatterTracer::LandingSlopes {
+  double xx = 0, xy = 0, yx = 0, yy = 0;
+
+  double determinant() const { return xx * yy - xy * yx; }
+};
+
+/// \param end  where the ray of direction `at` lands.
+bool ScatterTracer::differentiate(std::size_t surface, const LitPlace& place, const std::array<double, 2>& at,
+                                  const Landing& end, LandingSlopes& by) const {
+  constexpr double differential = 1e-6;
+  Landing beside;
+  if (!onward(surface, place, {at[0] + differential, at[1]}, beside)) return false;
+  by.xx = (beside.x_mm - end.x_mm) / differential, by.yx = (beside.y_mm - end.y_mm) / differential;
+  if (!onward(surface, place, {at[0], at[1] + differential}, beside)) return false;
+  by.xy = (beside.x_mm - end.x_mm) / differential, by.yy = (beside.y_mm - end.y_mm) / differential;
+  return std::abs(by.determinant()) > 0;
+}
+
 bool ScatterTracer::onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
                            Landing& end) const {
   return follow_onward(surface, place, direction, end,
@@ -280,48 +299,59 @@ std::vector<std::vector<LitPlace>> ScatterTracer::light(const SourceBeam& beam, 
   return lit;
 }
 
-std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPlace& place, double x_mm,
-                                               double y_mm,
-                                               const std::optional<std::array<double, 2>>& guess) const {
+/// Newton's method towards a point of the sensor. \param at  where it starts; then the direction that it
+/// found.
+bool ScatterTracer::aim_onward(std::size_t surface, const LitPlace& place, double x_mm, double y_mm,
+                               const std::array<double, 2>& home, std::array<double, 2>& at) const {
   constexpr int most_steps = 25;
-  constexpr double differential = 1e-6, longest_step = 0.3, settled = 1e-6, slow = 0.1;
-  std::array<double, 2> at = guess.value_or(place.cosines);
-  Landing end, beside;
-  double xx = 0, xy = 0, yx = 0, yy = 0;  // d(x, y)/d(L, M)
-  const auto differentiate = [&] {
-    if (!onward(surface, place, {at[0] + differential, at[1]}, beside)) return false;
-    xx = (beside.x_mm - end.x_mm) / differential, yx = (beside.y_mm - end.y_mm) / differential;
-    if (!onward(surface, place, {at[0], at[1] + differential}, beside)) return false;
-    xy = (beside.x_mm - end.x_mm) / differential, yy = (beside.y_mm - end.y_mm) / differential;
-    return std::abs(xx * yy - xy * yx) > 0;
-  };
+  constexpr double longest_step = 0.3, settled = 1e-6, slow = 0.1;
+  Landing end;
+  LandingSlopes by;
   // The derivatives of the first step serve the next ones as long as these get shorter fast.
   bool found = false, differentiated = false;
   double before = INFINITY;
   for (int step = 0; step < most_steps && !found; ++step) {
     if (!onward(surface, place, at, end)) {
-      // Back towards the unscattered ray, which passes.
-      at = {(at[0] + place.cosines[0]) / 2, (at[1] + place.cosines[1]) / 2};
+      at = {(at[0] + home[0]) / 2, (at[1] + home[1]) / 2};
       differentiated = false;
       continue;
     }
-    if (!differentiated && !differentiate()) return {};
-    const double determinant = xx * yy - xy * yx;
+    if (!differentiated && !differentiate(surface, place, at, end, by)) return false;
+    const double determinant = by.determinant();
     const double dx = x_mm - end.x_mm, dy = y_mm - end.y_mm;
-    std::array<double, 2> move{(yy * dx - xy * dy) / determinant, (xx * dy - yx * dx) / determinant};
+    std::array<double, 2> move{(by.yy * dx - by.xy * dy) / determinant,
+                               (by.xx * dy - by.yx * dx) / determinant};
     const double length = std::hypot(move[0], move[1]);
-    if (!std::isfinite(length)) return {};
+    if (!std::isfinite(length)) return false;
     differentiated = length < slow * before || length < settled;
     before = length;
-    const double scale = std::min(1.0, longest_step / std::max(length, differential));
+    const double scale = std::min(1.0, longest_step / std::max(length, settled));
     at[0] += scale * move[0], at[1] += scale * move[1];
     found = length < settled;
+  }
+  return found;
+}
+
+std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPlace& place, double x_mm,
+                                               double y_mm,
+                                               const std::optional<std::array<double, 2>>& guess) const {
+  // The light itself may be too steep for the surfaces behind: then the way starts along the axis.
+  Landing end;
+  constexpr std::array<double, 2> axis{};
+  const std::array<double, 2> home = onward(surface, place, place.cosines, end) ? place.cosines : axis;
+  std::array<double, 2> at = guess.value_or(home);
+  bool found = aim_onward(surface, place, x_mm, y_mm, home, at);
+  for (const std::array<double, 2>& start : {home, axis}) {
+    if (found) break;
+    at = start;
+    found = aim_onward(surface, place, x_mm, y_mm, start, at);
   }
   if (!found) return {};
   std::vector<Intersection> path;
   if (transmittance_) path = place.path;
   if (!onward_with_light(surface, place, at, end, transmittance_ ? &path : nullptr) || !end.passes) return {};
-  if (!differentiate()) return {};
+  LandingSlopes by;
+  if (!differentiate(surface, place, at, end, by)) return {};
   ScatterLink link;
   link.direction = at;
   const double index = tracer_.surfaces()[surface].index_after;
@@ -335,7 +365,7 @@ std::optional<ScatterLink> ScatterTracer::link(std::size_t surface, const LitPla
   link.offset = {index * (at[0] - place.cosines[0]), index * (at[1] - place.cosines[1])};
   // d²β = n² cosθ/N dL dM.
   const double density =
-      index * index * std::abs(dot_of(after, place.normal)) / forward / std::abs(xx * yy - xy * yx);
+      index * index * std::abs(dot_of(after, place.normal)) / forward / std::abs(by.determinant());
   const double through = transmittance_ ? transmittance_->along(place.start, path) : 1;
   link.per_mm2 = place.flux_mm2 * density * end.kept * through;
   return link;

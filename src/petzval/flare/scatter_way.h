@@ -74,6 +74,7 @@ class ScatterTracer {
  private:
   struct Inward;
   struct Landing;
+  struct LandingSlopes;
   struct Crossing;
   bool cross(std::size_t surface, SurfaceRay& ray, Crossing& at) const;
   std::array<double, 3> behind(std::size_t surface, const std::array<double, 2>& cosines) const;
@@ -86,6 +87,10 @@ class ScatterTracer {
   template <typename Meet>
   bool follow_onward(std::size_t surface, const LitPlace& place, const std::array<double, 2>& direction,
                      Landing& end, const Meet& meet) const;
+  bool differentiate(std::size_t surface, const LitPlace& place, const std::array<double, 2>& at,
+                     const Landing& end, LandingSlopes& by) const;
+  bool aim_onward(std::size_t surface, const LitPlace& place, double x_mm, double y_mm,
+                  const std::array<double, 2>& home, std::array<double, 2>& at) const;
   std::optional<LitPlace> lit_place(const SourceBeam& beam, double x_mm, double y_mm,
                                     std::size_t surface) const;
   SourceImage image_of(const std::vector<LitPlace>& behind) const;
