@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <petzval/analysis/surface_order.h>
 #include <petzval/base/data_directory.h>
 #include <petzval/base/error.h>
 #include <petzval/base/file_extension.h>
@@ -315,6 +316,7 @@ Lens LensChoice::read(const Shared& shared) const {
   if (!state.empty()) file.lens = in_state(file.lens, state, options);
   const Lens before = file.lens;
   for (const std::string& setting : settings) file.lens = with_setting(file.lens, setting, options);
+  require_surfaces_in_order(file.lens);
   if (before.object_distance_mm != file.lens.object_distance_mm)
     note_unfocused_object(before, file.lens, context_of(shared));
   if (!build) return std::move(file.lens);

@@ -58,6 +58,10 @@ TEST(GhostsAboutChiefRay, AreParaxialOnesOfLensesThatAreAsGoodAsCentred) {
     folded.groups = {{lens.surfaces.size(), lens.surfaces.size() + 1, {0, 0, 0, 90, 0, 0}, 0}};
     GhostOptions of_glass;
     expect_paraxial_ghosts(lens, folded, of_glass);
+    // Thrown straight back, it is centred.
+    folded.groups.clear();
+    folded.surfaces.back().pose = {};
+    expect_paraxial_ghosts(lens, folded, of_glass);
   }
   options.reflections = 4;
   const Lens lens = read_lens("cooke-triplet").lens;

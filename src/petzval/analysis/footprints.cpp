@@ -5,18 +5,28 @@
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/footprints.h>
 #include <petzval/base/error.h>
-#include <petzval/lens/pose.h>
+#include <petzval/base/units.h>
 #include <petzval/trace/pencil.h>
 
+#include <array>
 #include <cmath>
 
 namespace petzval {
 
 namespace {
 
-/// All surfaces by one field.
-std::vector<Footprint> footprints_of(const Lens& lens, FieldTracer& tracer, Fields::Kind kind, double field,
-                                     int azimuths) {
+/// Where a ray of a field met a surface, in the surface's own axes. \param turn  of the axes of the field
+/// [rad].
+std::array<double, 3> on_surface(const Tracer::PreparedSurface& surface, const std::array<double, 3>& at,
+                                 double turn) {
+  const double c = std::cos(turn), s = std::sin(turn);
+  return surface.frame.point_from_lens({c * at[0] - s * at[1], s * at[0] + c * at[1], at[2]},
+                                       surface.vertex_z_mm);
+}
+
+/// All surfaces by one field. \param lens_tracer  of the lens as it stands, not turned to the field.
+std::vector<Footprint> footprints_of(const Lens& lens, FieldTracer& tracer, const Tracer& lens_tracer,
+                                     double turn, Fields::Kind kind, double field, int azimuths) {
   const auto chief = tracer.chief_ray(object_field(lens, kind, field));
   const auto pupil = chief ? tracer.object_pupil(*chief, azimuths) : std::nullopt;
   if (!pupil)
@@ -32,8 +42,9 @@ std::vector<Footprint> footprints_of(const Lens& lens, FieldTracer& tracer, Fiel
     if (!ray) continue;
     tracer.tracer().trace(*ray, Tracer::Clip::none, &path);
     for (std::size_t s = 0; s < all.size() && s < path.size(); ++s) {
-      all[s].x_mm.push_back(path[s].point_mm[0]);
-      all[s].y_mm.push_back(path[s].point_mm[1]);
+      const auto at = on_surface(lens_tracer.surfaces()[s], path[s].point_mm, turn);
+      all[s].x_mm.push_back(at[0]);
+      all[s].y_mm.push_back(at[1]);
     }
   }
   for (Footprint& each : all) {
@@ -58,12 +69,13 @@ double Footprint::area_mm2() const {
 }
 
 std::vector<Footprint> footprints(const Lens& lens, const FieldTableRequest& request, int azimuths) {
-  require_centred(lens, "footprints are outlined about the axis");
   const FieldTableRequest at = with_own_lists(request, lens);
-  FieldTracer tracer(lens, at.wavelengths_nm.front(), at.clip);
+  FieldTracer tracer(lens, at.wavelengths_nm.front(), at.clip, at.azimuth_deg);
+  const Tracer lens_tracer(lens, at.wavelengths_nm.front());
   std::vector<std::vector<Footprint>> by_field;
   for (const double field : at.fields)
-    by_field.push_back(footprints_of(lens, tracer, at.field_kind, field, azimuths));
+    by_field.push_back(
+        footprints_of(lens, tracer, lens_tracer, radians(at.azimuth_deg), at.field_kind, field, azimuths));
   std::vector<Footprint> all;
   for (std::size_t s = 0; s < lens.surfaces.size(); ++s)
     for (std::vector<Footprint>& field : by_field) all.push_back(std::move(field[s]));

@@ -12,14 +12,14 @@ namespace petzval {
 struct Footprint {
   int surface = 0;
   double field = 0;
-  std::vector<double> x_mm, y_mm;  ///< from the axis
+  std::vector<double> x_mm, y_mm;  ///< from the vertex, in the surface's own axes
 
   double area_mm2() const;
 };
 
-/// By surfaces, then by fields; of the request's first wavelength. What all apertures together let through is
-/// outlined by real rays along the rim of its pupil. \throws InputError naming a field at which no ray
-/// passes, and for lenses with poses.
+/// By surfaces, then by fields; of the request's first wavelength. What the outer edges of all apertures
+/// together let through is outlined by real rays along the rim of its pupil. \throws InputError naming a
+/// field at which no ray passes.
 std::vector<Footprint> footprints(const Lens& lens, const FieldTableRequest& request, int azimuths = 128);
 
 }  // namespace petzval

@@ -320,11 +320,11 @@ class LensSections {
     page_.add(html::table(tabulate(kind_, illumination_table(lens_, at_reference(request_, lens_)))));
     page_.add(html::table(tabulate(kind_, vignetting_table(lens_, at_reference(request_, lens_)))));
     page_.add(html::table(tabulate(kind_, chief_ray_angle_table(lens_, at_reference(request_, lens_)))));
-    if (!is_round(lens_)) return;
+    if (is_ray_transfer(lens_)) return;
     const auto prints = footprints(lens_, at_reference(request_, lens_));
     page_.add(html::figure(
         html::drawing(plot_grid_svg(footprint_plots(kind_, lens_, prints), footprint_plots_across, "")),
-        "Footprints: what each field's light fills of the surfaces, the circle of the clear aperture in "
+        "Footprints: what each field's light fills of the surfaces, clear apertures and obscurations in "
         "black."));
     page_.add(
         html::download("footprints.csv", "text/csv", to_csv(tabulate(kind_, prints)), "footprints (CSV)"));

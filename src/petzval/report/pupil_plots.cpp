@@ -25,6 +25,26 @@ void draw_circle(Plot& plot, double x, double y, double radius) {
   circle.width_px = 1.2;
 }
 
+void draw_figure(Plot& plot, const ApertureFigure& figure) {
+  std::vector<double> xs, ys;
+  constexpr int steps = 72;
+  const double c = std::cos(radians(figure.rotation_deg)), s = std::sin(radians(figure.rotation_deg));
+  for (int i = 0; i <= steps; ++i) {
+    double across = std::cos(2 * pi * i / steps), along = std::sin(2 * pi * i / steps);
+    if (figure.kind == ApertureFigure::Kind::rectangle) {
+      // Along the same direction to the edge of the square.
+      const double far = std::max(std::abs(across), std::abs(along));
+      across /= far, along /= far;
+    }
+    const double x = figure.half_width_x_mm * across, y = figure.half_width_y_mm * along;
+    xs.push_back(figure.decentre_x_mm + c * x - s * y);
+    ys.push_back(figure.decentre_y_mm + s * x + c * y);
+  }
+  PlotSeries& edge = plot.line("", xs, ys);
+  edge.colour = "#000000";
+  edge.width_px = 1.2;
+}
+
 }  // namespace
 
 std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& diagrams,
@@ -72,16 +92,20 @@ std::vector<Plot> spot_plots(Fields::Kind kind, const std::vector<SpotDiagram>& 
 std::vector<Plot> footprint_plots(Fields::Kind kind, const Lens& lens,
                                   const std::vector<Footprint>& footprints) {
   constexpr double side_px = footprint_plot_px, margin = 1.08;
+  constexpr double widest_figure = 1.5;  // of the light that it limits, where all of it is to be seen
   std::vector<Plot> plots;
   const std::size_t surfaces = lens.surfaces.size(), fields = footprints.size() / surfaces;
   for (std::size_t s = 0; s < surfaces; ++s) {
     const double clear = lens.surfaces[s].semi_diameter_mm.value_or(0);
-    double reach = clear;
+    double light = 0;
     for (std::size_t f = 0; f < fields; ++f) {
       const Footprint& footprint = footprints[s * fields + f];
       for (std::size_t k = 0; k < footprint.x_mm.size(); ++k)
-        reach = std::max({reach, std::abs(footprint.x_mm[k]), std::abs(footprint.y_mm[k])});
+        light = std::max({light, std::abs(footprint.x_mm[k]), std::abs(footprint.y_mm[k])});
     }
+    double reach = std::max(clear, light);
+    for (const ApertureFigure& figure : lens.surfaces[s].apertures)
+      reach = std::max(reach, std::min(figure.farthest_mm(), widest_figure * light));
     Plot plot;
     plot.title = fmt::format("surface {}{}", s, s == lens.stop_index() ? ", the stop" : "");
     plot.x = {"x", "mm", PlotScale::linear, -margin * reach, margin * reach};
@@ -94,6 +118,7 @@ std::vector<Plot> footprint_plots(Fields::Kind kind, const Lens& lens,
           series_colour(f).hex();
     }
     if (clear > 0) draw_circle(plot, 0, 0, clear);
+    for (const ApertureFigure& figure : lens.surfaces[s].apertures) draw_figure(plot, figure);
     plots.push_back(std::move(plot));
   }
   return plots;

@@ -4,10 +4,12 @@
 #include <petzval/analysis/field_rows.h>
 #include <petzval/analysis/field_values.h>
 #include <petzval/analysis/ghosts.h>
+#include <petzval/analysis/surface_order.h>
 #include <petzval/base/error.h>
 #include <petzval/flare/ghost_table.h>
 #include <petzval/lens/first_order.h>
 #include <petzval/lens/pose.h>
+#include <petzval/lens/ray_transfer.h>
 #include <petzval/report/analysis_plots.h>
 #include <petzval/report/colours.h>
 #include <petzval/report/pupil_plots.h>
@@ -258,7 +260,7 @@ AnalysisResult vignetting(const Lens& lens, const AnalysisRequest& request, cons
                 tabulate(request.at.field_kind, vignetting_table(lens, request.at)));
   if (request.plots)
     result.plots = {vignetting_plot(request.at.field_kind, vignetting_table(lens, dense(request.at)))};
-  if (request.plots && is_round(lens)) {
+  if (request.plots && !is_ray_transfer(lens)) {
     const FieldTableRequest at = with_own_lists(request.at, lens);
     std::ranges::move(footprint_plots(at.field_kind, lens, footprints(lens, at)),
                       std::back_inserter(result.plots));
@@ -367,7 +369,7 @@ AnalysisResult ghost_reflections(const Lens& lens, const AnalysisRequest& reques
   options.source_diameter_deg = request.source_diameter_deg;
   options.reflections = request.ghost_reflections;
   const std::size_t sensor = lens.surfaces.size();
-  const bool centred = is_round(lens);
+  const bool centred = is_round(lens) && !lens.has_mirrors();
   std::vector<Ghost> rows;
   Table table;
   if (centred) {
@@ -437,6 +439,7 @@ AnalysisResult analyse(std::string_view name, const Lens& lens, const AnalysisRe
       continue;
     }
     lens.validate();
+    require_surfaces_in_order(lens);
     AnalysisRequest asked = request;
     asked.at = with_own_lists(std::move(asked.at), lens);
     AnalysisResult result =

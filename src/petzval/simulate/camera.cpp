@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <petzval/analysis/best_focus.h>
 #include <petzval/analysis/ray_fan.h>
+#include <petzval/analysis/surface_order.h>
 #include <petzval/analysis/tv_distortion.h>
 #include <petzval/base/error.h>
 #include <petzval/lens/first_order.h>
@@ -45,6 +46,7 @@ void seek_focus(MountedLens& lens, const Focus& focus, const FieldTableRequest& 
 
 MountedLens mounted_lens(const Camera& camera, const Context& context) {
   camera.lens.validate();
+  require_surfaces_in_order(camera.lens);
   if (camera.image_distance_mm && camera.focus.kind != Focus::Kind::design &&
       camera.focus.kind != Focus::Kind::automatic)
     throw InputError("`image_distance_mm` and `focus` both place the sensor; one of them would be right");

@@ -69,7 +69,6 @@ GlareField glare_of(const Lens& lens, const IlluminationRow& row, const GlareOpt
 }  // namespace
 
 AnalysisResult glare_analysis(const Lens& plain, const AnalysisRequest& request, const Context&) {
-  require_no_mirrors(plain, "veiling glare");
   const bool is_clean = !request.glare.surfaces_scatter && !states_scatter(plain);
   const Lens lens = is_clean ? plain : scattering_lens(plain, request.glare.surfaces_scatter);
   FieldTableRequest at = request.at;
