@@ -6,7 +6,7 @@ are compiled several at once, as the build does it; those that complain together
     clang_clean.py headers|sources PROJECT_FOLDER BUILD_FOLDER CLANG [--all | --since COMMIT | FILE...]
     clang_clean.py tidy PROJECT_FOLDER BUILD_FOLDER CLANG_TIDY [--all | --since COMMIT | FILE...]
 
-tidy: the checks of .clang-tidy over sources. --all: whatever changed, everything. --since: what differs from that commit.
+tidy: the checks of .clang-tidy over sources of src and apps. --all: whatever changed, everything. --since: what differs from that commit.
 """
 
 import concurrent.futures
@@ -53,8 +53,8 @@ def changed_files(project, wanted):
     return sorted(set(git("diff", "--name-only", "--diff-filter=d", base[0] if base else empty_tree)))
 
 
-def sources_of(project, changed):
-    return [project / name for name in changed if name.endswith(".cpp") and name.split("/")[0] in ("src", "apps", "tests")
+def sources_of(project, changed, folders=("src", "apps", "tests")):
+    return [project / name for name in changed if name.endswith(".cpp") and name.split("/")[0] in folders
             and not name.startswith("tests/consumer")]
 
 
@@ -118,7 +118,7 @@ def main():
         names = parts = headers_of(project, build, changed)
         check = complaints_of_header
     else:
-        names = sources_of(project, changed)
+        names = sources_of(project, changed, ("src", "apps")) if what == "tidy" else sources_of(project, changed)
         parts = in_groups(names)
         check = findings if what == "tidy" else complaints_of_sources
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
