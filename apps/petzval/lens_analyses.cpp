@@ -123,7 +123,7 @@ void add_encircled_energy(CLI::App& app, AnalysisCommand& command) {
   app.add_option("--radii", command.request.encircled_energy.radii_um,
                  "Radii on the sensor [um], separated by commas; default: 32 out to the wings")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_not_negative());
   app.add_flag("--about-chief-ray", command.about_chief, "Circles about the chief ray, not the centroid");
 }
 

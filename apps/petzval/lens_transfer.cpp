@@ -90,7 +90,7 @@ void add_lens_transfer(CLI::App& lens, Shared& shared) {
           "--tolerance", options->request.tolerance_mm,
           "What rays held out may be off by in front of the lens [mm], and in direction by this over "
           "the focal length")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_option("--degree", options->request.degree,
                       "Of the polynomials in the three invariants of a ray, 1 to 7; default: the least that "

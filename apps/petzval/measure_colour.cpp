@@ -304,9 +304,9 @@ void add_measure_colour(CLI::App& measure, Shared& shared) {
           ->add_option(
               "--distance", options->distance_mm,
               "S-CIELAB of each patch too, noise included, for an eye at this distance from the display [mm]")
-          ->check(CLI::PositiveNumber);
+          ->check(positive_number());
   command->add_option("--pixel-pitch", options->pitch_um, "Of the display [um]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->needs(distance)
       ->capture_default_str();
   options->outputs.add_to(*command);
@@ -321,10 +321,10 @@ void add_measure_scielab(CLI::App& measure, Shared& shared) {
   command->add_option("a", options->a, "A picture: .png, .tif")->required();
   command->add_option("b", options->b, "Another of its size")->required();
   command->add_option("--distance", options->distance_mm, "Of the eye from the display [mm]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_option("--pixel-pitch", options->pitch_um, "Of the display [um]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_option("--map", options->map, "Write the difference of each pixel as .npy")
       ->check(output_file());

@@ -148,7 +148,7 @@ void run_shoot(const ShootCommand& command, const CLI::App& app, const Shared& s
   const std::optional<Sensor> chosen = std::visit([](const auto& camera) { return camera.sensor; }, optics);
   if (!chosen || !chosen->electronics)
     throw InputError("a clip needs a sensor that counts photons; --sensor third-inch-1280x960 would be one");
-  const Sensor sensor = *chosen;
+  const Sensor& sensor = *chosen;
   ClipOptions options = command.clip.options(sensor, shared.seed);
   options.expose = command.sense.options();
   const EventCameraOptions event_camera = command.clip.event_options(app, sensor, shared.seed);

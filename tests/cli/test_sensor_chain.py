@@ -295,6 +295,7 @@ class SensorChain(ProgramTest):
         self.assertEqual(len(self.json_of("measure", "shading", "raw.dng", "--cells", "3")["rows"]), 27)
         self.assert_succeeds("develop", "raw.dng", "-o", "a.png", "--quiet")
         self.assertEqual(self.json_of("measure", "scielab", "a.png", "a.png")["rows"][0]["max"], 0)
+        self.assert_refused("measure", "scielab", "a.png", "a.png", "--distance", "0", words=["--distance", "a number above 0"])
         self.assert_refused("measure", "colour", "a.png", "--corners", "1,2,3", words=["8"])
 
     def test_contradictory_sensors_are_refused_with_the_reason(self):

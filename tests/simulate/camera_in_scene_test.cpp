@@ -180,6 +180,9 @@ TEST(RenderEstimate, CountsSamplesAndMemory) {
   request.noise = 0.025;
   const RenderEstimate fine = estimate_render(prepare_scene(request));
   EXPECT_NEAR(fine.samples_per_pixel / static_cast<double>(coarse.samples_per_pixel), 4, 0.5);
+  // More than a whole number holds: as many as are taken at most.
+  request.noise = 1e-9;
+  EXPECT_EQ(estimate_render(prepare_scene(request)).samples_per_pixel, 4096);
 }
 
 }  // namespace

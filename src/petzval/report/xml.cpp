@@ -43,10 +43,9 @@ void append_escaped(std::string& out, std::string_view sequence) {
     out += "&quot;";
   else if (c == '\'')
     out += "&#39;";
-  else if ((static_cast<std::uint8_t>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F)
+  else if ((static_cast<std::uint8_t>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7F ||
+           sequence == "\xEF\xBF\xBE" || sequence == "\xEF\xBF\xBF")  // U+FFFE, U+FFFF
     out += replacement_character;
-  else if (sequence == "\xEF\xBF\xBE" || sequence == "\xEF\xBF\xBF")
-    out += replacement_character;  // U+FFFE, U+FFFF
   else
     out += sequence;
 }

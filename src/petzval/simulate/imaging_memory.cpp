@@ -38,6 +38,7 @@ void ImagingMemory::give_back(Scene& scene) {
       scene.set_horizontal_angle_deg(kept.horizontal_angle_deg);
     }
     kept.scene = std::move(scene);
+    break;
   }
   scene_in_use_.reset();
 }

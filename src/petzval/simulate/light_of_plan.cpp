@@ -115,7 +115,9 @@ class LightOfPlan : public ClipLight {
       ImageReport whole;
       SpectralImage light = image(plan_, {}, &whole);
       if (report) *report = std::move(whole.imaging);
-      return std::vector<SpectralImage>(1, std::move(light));
+      std::vector<SpectralImage> lights_of_all;
+      lights_of_all.push_back(std::move(light));
+      return lights_of_all;
     }
     return series_->form(lights, report);
   }

@@ -63,7 +63,7 @@ std::optional<Spectrum> usable_white(const SpectralImage& light, const std::opti
   PictureOptions options;
   options.scene_white = white;
   try {
-    PictureRenderer(one_pixel, options);
+    const PictureRenderer possible(one_pixel, options);
     return white;
   } catch (const InputError& error) {
     send_note(context, fmt::format("colours are shown as they fall on the sensor, not adapted to white: {}",
@@ -216,10 +216,11 @@ Outputs write_outputs(SpectralImage light, const std::vector<std::string>& paths
   // Whole images come last: the last of them may use the room that the light takes.
   for (std::size_t i = 0; i < of_light.size(); ++i) {
     const std::string staged = files.stage(of_light[i]);
-    if (i + 1 < of_light.size())
-      write_irradiance(staged, light, options.layers);
-    else
+    if (i + 1 == of_light.size()) {
       write_irradiance(staged, std::move(light), options.layers);
+      break;
+    }
+    write_irradiance(staged, light, options.layers);
   }
   return made;
 }

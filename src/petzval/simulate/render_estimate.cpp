@@ -67,9 +67,10 @@ RenderEstimate estimate_render(const PreparedScene& scene, const Context& contex
   estimate.memory_bytes = bytes_of(scene);
   estimate.samples_per_pixel = samples_asked(scene);
   if (wanted > 0 && picture.noise)
-    estimate.samples_per_pixel = std::clamp(
-        static_cast<int>(std::ceil(picture.samples_per_pixel * std::pow(*picture.noise / wanted, 2))), 1,
-        estimate.samples_per_pixel);
+    // As a double, for a whole number may not hold what almost no noise would take.
+    estimate.samples_per_pixel = static_cast<int>(
+        std::clamp(std::ceil(picture.samples_per_pixel * std::pow(*picture.noise / wanted, 2)), 1.0,
+                   static_cast<double>(estimate.samples_per_pixel)));
   estimate.seconds = estimate.probe_seconds * static_cast<double>(scene.film.columns) * scene.film.rows /
                      (static_cast<double>(probe.film.columns) * probe.film.rows) *
                      estimate.samples_per_pixel / picture.samples_per_pixel;

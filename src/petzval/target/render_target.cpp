@@ -82,7 +82,7 @@ Surroundings surroundings(const TargetOptions& options, const Otf& otf, const st
   }
   if (std::max(options.columns, options.rows) + 2 * best_margin > largest)
     throw InputError(
-        fmt::format("a picture of {} x {} pixels with a blur that reaches {:.0f} pixels needs a period above "
+        fmt::format("a picture of {} x {} pixels with a blur that reaches {:.6g} pixels needs a period above "
                     "{} pixels; a smaller picture or less aberration would fit",
                     options.columns, options.rows, reach, largest));
   const auto fitted = [&](int size) {

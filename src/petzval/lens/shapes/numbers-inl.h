@@ -153,7 +153,7 @@ HWY_INLINE auto is_below(V a, V b) {
 template <class V>
 HWY_INLINE auto is_number(V a) {
   if constexpr (std::is_floating_point_v<V>)
-    return a == a;
+    return a == a;  // NOLINT(misc-redundant-expression): false for NaN alone, as below
   else
     return hn::Eq(a, a);
 }

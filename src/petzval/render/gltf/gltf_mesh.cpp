@@ -52,7 +52,7 @@ void report_attributes(const GltfFile& file, const tinygltf::Primitive& primitiv
   for (const auto& [name, accessor] : primitive.attributes) {
     // Normal maps are laid along u, not along tangents; other sets of coordinates may serve nothing.
     const bool known = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" ||
-                       name.rfind("TEXCOORD_", 0) == 0 || name.rfind("_", 0) == 0;
+                       name.starts_with("TEXCOORD_") || name.starts_with('_');
     if (!known)
       unsupported.report(
           file.at(fmt::format("{}.attributes.{}", path, name)),

@@ -143,7 +143,7 @@ Environment::Environment(BandSpectrum radiance, Transform world_from_light)
       world_from_light_(std::move(world_from_light)),
       mean_(mean_of(radiance_)) {}
 
-Environment::Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white,
+Environment::Environment(const std::shared_ptr<const PictureFile>& picture, BandSpectrum white,
                          const WavelengthGroups& groups, Transform world_from_light)
     : radiance_(std::move(white)), world_from_light_(std::move(world_from_light)) {
   const ReflectanceTable table;

@@ -40,8 +40,8 @@ class Environment {
   /// \param radiance  [group].
   Environment(BandSpectrum radiance, Transform world_from_light);
   /// Each pixel's colour as light of `white` (the spectrum of rgb 1, scaled).
-  Environment(std::shared_ptr<const PictureFile> picture, BandSpectrum white, const WavelengthGroups& groups,
-              Transform world_from_light);
+  Environment(const std::shared_ptr<const PictureFile>& picture, BandSpectrum white,
+              const WavelengthGroups& groups, Transform world_from_light);
 
   /// From a unit direction (world space, towards the light).
   Lanes radiance(Vector3 direction, int group) const;

@@ -88,6 +88,8 @@ class LightTree::Builder {
   Builder(std::span<const LightBounds> lights, std::vector<Node>& nodes) : lights_(lights), nodes_(nodes) {
     for (std::size_t i = 0; i < lights.size(); ++i)
       if (lights[i].strength > 0) order_.push_back(static_cast<std::uint32_t>(i));
+  }
+  void build() {
     if (!order_.empty()) build(0, order_.size(), 0);
   }
 
@@ -176,7 +178,7 @@ class LightTree::Builder {
 };
 
 LightTree::LightTree(std::span<const LightBounds> lights) : ways_(lights.size()) {
-  Builder(lights, nodes_);
+  Builder(lights, nodes_).build();
   if (nodes_.empty()) return;
   find_entries();
   for (Way& way : ways_) way.entry = most_entries;  // of a light that gives none

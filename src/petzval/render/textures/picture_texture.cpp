@@ -31,28 +31,29 @@ void TextureMapping::coordinates(const TexturePoint& point, double& s, double& t
 namespace {
 
 /// Every second picture the other way round.
-int mirrored(int at, int size) {
-  const int within = (at % (2 * size) + 2 * size) % (2 * size);
+std::int64_t mirrored(std::int64_t at, int size) {
+  const std::int64_t within = (at % (2 * size) + 2 * size) % (2 * size);
   return within < size ? within : 2 * size - 1 - within;
 }
 
 }  // namespace
 
-void PictureSampler::add_pixel(double weight, int column, int row, std::array<double, 3>& sum) const {
+void PictureSampler::add_pixel(double weight, std::int64_t column, std::int64_t row,
+                               std::array<double, 3>& sum) const {
   const int width = picture_->width, height = picture_->height;
   if (wrap_ == PictureWrap::repeat) {
     column = (column % width + width) % width;
     row = (row % height + height) % height;
   } else if (wrap_ == PictureWrap::clamp) {
-    column = std::clamp(column, 0, width - 1);
-    row = std::clamp(row, 0, height - 1);
+    column = std::clamp<std::int64_t>(column, 0, width - 1);
+    row = std::clamp<std::int64_t>(row, 0, height - 1);
   } else if (wrap_ == PictureWrap::mirror) {
     column = mirrored(column, width);
     row = mirrored(row, height);
   } else if (column < 0 || column >= width || row < 0 || row >= height) {
     return;
   }
-  const float* pixel = picture_->pixel(column, row);
+  const float* pixel = picture_->pixel(static_cast<int>(column), static_cast<int>(row));
   for (std::size_t c = 0; c < 3; ++c)
     sum[c] += weight * static_cast<double>(pixel[picture_->channels == 3 ? c : 0]);
 }
@@ -63,15 +64,15 @@ std::array<double, 3> PictureSampler::at(double s, double t) const {
   if (!(std::abs(s) < 1e6 && std::abs(t) < 1e6)) return sum;
   const double x = s * picture_->width, y = (1 - t) * picture_->height;
   if (!linear_) {
-    add_pixel(1, static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)), sum);
+    add_pixel(1, static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)), sum);
     return sum;
   }
   const double column = std::floor(x - 0.5), row = std::floor(y - 0.5);
   const double dx = x - 0.5 - column, dy = y - 0.5 - row;
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j)
-      add_pixel((i ? dx : 1 - dx) * (j ? dy : 1 - dy), static_cast<int>(column) + i,
-                static_cast<int>(row) + j, sum);
+      add_pixel((i ? dx : 1 - dx) * (j ? dy : 1 - dy), static_cast<std::int64_t>(column) + i,
+                static_cast<std::int64_t>(row) + j, sum);
   return sum;
 }
 

@@ -8,6 +8,7 @@
 #include <petzval/render/textures/texture.h>
 
 #include <array>
+#include <cstdint>
 
 namespace petzval::render {
 
@@ -24,7 +25,7 @@ class PictureSampler {
   std::array<double, 3> at(double s, double t) const;
 
  private:
-  void add_pixel(double weight, int column, int row, std::array<double, 3>& sum) const;
+  void add_pixel(double weight, std::int64_t column, std::int64_t row, std::array<double, 3>& sum) const;
 
   std::shared_ptr<const PictureFile> picture_;
   PictureWrap wrap_;

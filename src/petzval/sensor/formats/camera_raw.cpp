@@ -72,7 +72,7 @@ RawImage read_raw(const std::string& path) {
   try {
     return read_camera_raw(path);
   } catch (const InputError&) {
-    throw *own;  // which says more
+    throw InputError(*own);  // which says more
   }
 }
 
