@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double focal_mm = 6, g_source_sr = 0.25;
+constexpr double focal_mm = 6, stars_g_sr = 0.25;
 
 /// x' = f tan: no distortion, so that a sample's image has the same size everywhere.
 LensDataTable rectilinear_table(double sigma_um) {
@@ -22,7 +22,7 @@ LensDataTable rectilinear_table(double sigma_um) {
   recipe.fields.clear();
   for (int field = 0; field <= 24; ++field) recipe.fields.push_back(field);
   recipe.height_mm = [](double field, double) { return focal_mm * std::tan(radians(field)); };
-  recipe.g_source_sr = [](double) { return g_source_sr; };
+  recipe.g_source_sr = [](double) { return stars_g_sr; };
   recipe.psf = [=](double, double) {
     return psf_of_spots({{0, 0, sigma_um, sigma_um, 1}}, 161, sigma_um / 10);
   };
@@ -64,7 +64,7 @@ TEST_P(StarFlux, IsThatOfItsSampleWhereverItFalls) {
   const SensorGeometry sensor{pixels, pixels, pitch_um};
   const SpectralImage image = form_image(scene, table, sensor, options);
   // Flux over pitch².
-  const double wanted = g_source_sr * 3 / (samples_per_pixel * samples_per_pixel);
+  const double wanted = stars_g_sr * 3 / (samples_per_pixel * samples_per_pixel);
   for (const Star& star : stars) {
     const double column = (star.column + 0.5 - samples / 2.0) / samples_per_pixel + pixels / 2.0,
                  row = (star.row + 0.5 - samples / 2.0) / samples_per_pixel + pixels / 2.0;

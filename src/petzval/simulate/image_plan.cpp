@@ -6,6 +6,7 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
+#include <petzval/imaging/field_error.h>
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_table.h>
 #include <petzval/lens/lens_file.h>
@@ -274,6 +275,18 @@ bool expects_object(const Camera& camera) {
   return camera.focus.kind == Focus::Kind::design || (nearby && is_afocal(first_order(camera.lens)));
 }
 
+/// How closely an image asks a table to say how light spreads.
+SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um) {
+  constexpr int cells_a_pixel = 2;  // as many or more
+  return {pitch_um / cells_a_pixel, options.imaging.product.tolerance,
+          options.imaging.tail_pixels * pitch_um};
+}
+
+bool mixes_psfs(const ImageOptions& options) {
+  return options.imaging.method == BlurMethod::product &&
+         options.imaging.interpolation == PsfInterpolation::psf;
+}
+
 /// Scene and table, before frame and scene are fitted to each other.
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context, ImagingMemory* memory) {
@@ -307,16 +320,11 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
             in_use(focused, table, camera)};
   const auto build = [&] {
     return result_within(context, [&](const ProgressCallback& progress) {
-      const bool mixes_psfs = options.imaging.method == BlurMethod::product &&
-                              options.imaging.interpolation == PsfInterpolation::psf;
-      if (!mixes_psfs || detail == TableDetail::outline)
+      if (!mixes_psfs(options) || detail == TableDetail::outline)
         return build_lens_data_table(focused, table, progress);
-      constexpr int cells_a_pixel = 2;  // as many or more
       const double pitch_um =
           camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, first_order(focused));
-      const SpreadWanted wanted{pitch_um / cells_a_pixel, options.imaging.product.tolerance,
-                                options.imaging.tail_pixels * pitch_um};
-      return build_image_table(focused, table, wanted, progress);
+      return build_image_table(focused, table, spread_wanted(options, pitch_um), progress);
     });
   };
   LensDataTable built =
@@ -324,8 +332,25 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   return {std::move(scene), std::move(built), {}, {}, std::move(options), in_use(focused, table, camera)};
 }
 
+/// What a stored table misses between its fields.
+double stored_table_error(const TableCamera& camera, const Scene& scene, const ImageOptions& options) {
+  const LensDataTable& table = camera.table;
+  if (table.frame || !mixes_psfs(options)) return 0;
+  const double side_mm = table.real_image_height_mm.back() / std::sqrt(2.0);
+  const double pitch_um =
+      camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, table.first_order);
+  if (!(pitch_um > 0)) return 0;  // tables of other programs may not say how wide a scene is on the sensor
+  try {
+    return error_between_fields(
+        table, camera.sensor ? half_frame_mm(camera.sensor->geometry) : std::array{side_mm, side_mm},
+        spread_wanted(options, pitch_um));
+  } catch (const InputError&) {
+    return 0;  // kernels of so many cells are not made; forming the image says so if it cannot do with fewer
+  }
+}
+
 /// A stored table is what it is: the scene stands where it was made for.
-ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, TableDetail,
+ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, TableDetail detail,
                  const Context& context, ImagingMemory* memory) {
   if (memory != nullptr) memory->set_lens_key({});
   std::optional<double> distance_m;
@@ -338,6 +363,8 @@ ImagePlan source(SceneInput input, TableCamera& camera, ImageOptions options, Ta
     send_note(
         context,
         "the scene's depth map is not used: a lens data table is made for one distance; `lens` would use it");
+  if (detail == TableDetail::full && camera.table.interpolation_error == 0)
+    camera.table.interpolation_error = stored_table_error(camera, scene, options);
   return {std::move(scene), std::move(camera.table), {}, {}, std::move(options), {}};
 }
 
