@@ -62,16 +62,20 @@ page.take = (message, bytes) => {
 """
 
 
+def plot(browser, name):
+    """Asks for a plot and waits for it, but not for the finest picture, which takes many seconds."""
+    browser.run("document.getElementById('tab-' + arguments[0]).click()", name)
+    browser.until(name, lambda: browser.run("return window.petzvalPage.plots.get(arguments[0])?.id === window.petzvalPage.id", name))
+
+
 def work_of_stages(browser, gaps, moves=10):
     """Milliseconds of one core by stage, each stage without another beside it; whatever else the machine does."""
     browser.run(COUNT_CPU)
     for i in range(moves):
-        browser.run("document.getElementById('tab-distortion').click()")
-        browser.settle()
+        plot(browser, "distortion")
         browser.run(SLIDE, f"surfaces[{gaps[i % len(gaps)]}].thickness_mm", 460 + (i * 29) % 80)
-        browser.settle()
-        browser.run("document.getElementById('tab-mtf').click()")
-        browser.settle()
+        browser.until("the full picture", lambda: browser.run("return Number(document.body.dataset.full) === window.petzvalPage.id"))
+        plot(browser, "mtf")
     return browser.run("return window.stageCpu")
 
 
@@ -143,7 +147,7 @@ def main():
 
 def work_and_memory(browser, server, gaps):
     browser.settle()
-    print("the full picture, on the server:", browser.run("return window.petzvalPage.times.get('picture')"), "ms")
+    print("full and finest picture, on the server:", *browser.run("return ['picture', 'finest'].map(stage => window.petzvalPage.times.get(stage))"), "ms")
     # After 100 moves and after 1,000 the same has been asked for: waiting, quickly, and by stages.
     sweep(browser, gaps, 100)
     for stage, values in work_of_stages(browser, gaps).items():

@@ -664,6 +664,7 @@ class Page {
   }
 
   private took(message: Incoming): void {
+    if (message.stage === "preview") for (const later of ["picture", "finest"]) this.times.delete(later);  // of what is no more
     this.times.set(message.stage, message.ms);
     this.showProblem(message.stage, message.stage === "layout" ? this.problems.get("layout") ?? "" : "");
     if (this.timesWaiting) return;

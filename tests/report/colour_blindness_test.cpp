@@ -53,6 +53,17 @@ TEST(ColourBlindness, LeavesAnyTwoSeriesApart) {
             << series_colour(a).hex() << " and " << series_colour(b).hex() << ", " << vision.name;
 }
 
+TEST(ColourBlindness, LeavesTheUsualWavelengthsApart) {
+  constexpr double f_d_c[] = {486.13, 587.56, 656.27};
+  for (const Vision& vision : visions)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        EXPECT_GE(delta_e_2000(seen(wavelength_colour(f_d_c[a]), vision),
+                               seen(wavelength_colour(f_d_c[b]), vision)),
+                  least_delta_e)
+            << f_d_c[a] << " and " << f_d_c[b] << " nm, " << vision.name;
+}
+
 TEST(ColourBlindness, LeavesSeriesApartFromWhatIsBehindThem) {
   // Cards and glass of the page of petzval live, light and dark (web/style.css); paper.
   for (const std::uint32_t ground : {0xFFFFFF, 0x161D26, 0xBCD9F2, 0x24466A})

@@ -206,7 +206,9 @@ void Bench::Impl::show_layout(const BenchState& state) const {
 }
 
 void Bench::Impl::show_psf(const BenchState& state, const Context& context) const {
-  const BenchPsf psf = bench_psf({use.lens, use.camera.losses}, state.cursor_mm, context);
+  Context alone = context;
+  alone.threads = 1;  // another processor is left to the browser, which paints the rays meanwhile
+  const BenchPsf psf = bench_psf({use.lens, use.camera.losses}, state.cursor_mm, alone);
   send({json{{"kind", "psf"},
              {"id", state.id},
              {"size", psf.size},
@@ -275,9 +277,10 @@ void Bench::Impl::show(const BenchState& state) {
                              state.sensor, state.shot_key()),
                  work);
   };
-  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
+  // Behind the point spread, for the same reason.
+  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
   if (!state.suns.empty() || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
     stage(state.id, "stray",
