@@ -62,20 +62,16 @@ page.take = (message, bytes) => {
 """
 
 
-def plot(browser, name):
-    """Asks for a plot and waits for it, but not for the finest picture, which takes many seconds."""
-    browser.run("document.getElementById('tab-' + arguments[0]).click()", name)
-    browser.until(name, lambda: browser.run("return window.petzvalPage.plots.get(arguments[0])?.id === window.petzvalPage.id", name))
-
-
 def work_of_stages(browser, gaps, moves=10):
     """Milliseconds of one core by stage, each stage without another beside it; whatever else the machine does."""
     browser.run(COUNT_CPU)
     for i in range(moves):
-        plot(browser, "distortion")
+        browser.run("document.getElementById('tab-distortion').click()")
         browser.run(SLIDE, f"surfaces[{gaps[i % len(gaps)]}].thickness_mm", 460 + (i * 29) % 80)
         browser.until("the full picture", lambda: browser.run("return Number(document.body.dataset.full) === window.petzvalPage.id"))
-        plot(browser, "mtf")
+        browser.run("document.getElementById('tab-mtf').click()")
+        # Not until all is shown: the finest picture takes many seconds.
+        browser.until("MTF", lambda: browser.run("const page = window.petzvalPage; return !page.pending && page.plots.get('mtf')?.id === page.id"))
     return browser.run("return window.stageCpu")
 
 
