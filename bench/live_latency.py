@@ -67,11 +67,11 @@ def work_of_stages(browser, gaps, moves=10):
     browser.run(COUNT_CPU)
     for i in range(moves):
         browser.run("document.getElementById('tab-distortion').click()")
-        browser.settle()
         browser.run(SLIDE, f"surfaces[{gaps[i % len(gaps)]}].thickness_mm", 460 + (i * 29) % 80)
-        browser.settle()
+        browser.until("the full picture", lambda: browser.run("return Number(document.body.dataset.full) === window.petzvalPage.id"))
         browser.run("document.getElementById('tab-mtf').click()")
-        browser.settle()
+        # Not until all is shown: the finest picture takes many seconds.
+        browser.until("MTF", lambda: browser.run("const page = window.petzvalPage; return !page.pending && page.plots.get('mtf')?.id === page.id"))
     return browser.run("return window.stageCpu")
 
 
@@ -143,7 +143,7 @@ def main():
 
 def work_and_memory(browser, server, gaps):
     browser.settle()
-    print("the full picture, on the server:", browser.run("return window.petzvalPage.times.get('picture')"), "ms")
+    print("full and finest picture, on the server:", *browser.run("return ['picture', 'finest'].map(stage => window.petzvalPage.times.get(stage))"), "ms")
     # After 100 moves and after 1,000 the same has been asked for: waiting, quickly, and by stages.
     sweep(browser, gaps, 100)
     for stage, values in work_of_stages(browser, gaps).items():

@@ -55,8 +55,11 @@ bool try_live(std::string_view bytes) {
   const bool upload = accepted([&] {
     const Upload read = parse_live_upload(bytes);
     require(is_offered(upload_lens_extensions(), read.extension) ||
-                is_offered(upload_photograph_extensions(), read.extension),
+                is_offered(upload_photograph_extensions(), read.extension) ||
+                is_offered(upload_spectral_extensions(), read.extension),
             "another extension");
+    require(read.companion_bytes.empty() || !read.companion.empty(), "a companion without a name");
+    require(read.bytes.size() + read.companion_bytes.size() <= bytes.size(), "bytes from nowhere");
   });
   return message || upload;
 }

@@ -26,8 +26,12 @@ export function commandLine(session: Session, picture: Incoming | null, solid: b
   if (session.blades !== null) words.push("--blades", String(session.blades));
   words.push("--focus", focusText(session));
   if (session.defocus_mm !== 0) words.push("--defocus", String(session.defocus_mm));
-  if (session.distance_m !== null && !solid) words.push("--scene-distance", `${session.distance_m}m`);
-  if (session.illuminant && !solid) words.push("--illuminant", session.illuminant);
+  // A spectral file stands where the lens expects it and fills the frame, whatever it says of that itself.
+  const placed = !solid && picture?.scene_angle_deg;
+  if (placed) words.push("--scene-angle", placed.toPrecision(8), "--scene-distance", picture.scene_distance_m === null ? "infinity" : `${picture.scene_distance_m}m`, "--scene-depth", "none");
+  else if (session.distance_m !== null && !solid) words.push("--scene-distance", `${session.distance_m}m`);
+  const light = session.illuminant || picture?.scene_illuminant;
+  if (light && !solid) words.push("--illuminant", light);
   const columns = picture?.scene_columns as number | undefined;
   if (columns) words.push("--scene-size", `${columns}x${columns * 3 / 4}`);
   if (picture?.wavelengths) words.push("--wavelengths", picture.wavelengths);

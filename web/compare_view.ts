@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Another lens beside the one on the bench: the same camera before the same scene, on a bench of its own at the server.
 import {h, shown} from "./dom";
-import {Incoming, Link} from "./link";
+import {Dropped, Incoming, Link} from "./link";
 import {Lens} from "./model";
+import {isFull} from "./picture_view";
 import {PsfView} from "./psf_view";
 
 export interface CompareListener {
@@ -60,7 +61,10 @@ export class CompareView {
     const all = names.includes(compared.name) ? names : [compared.name, ...names];
     this.select.replaceChildren(...all.map(name => h("option", {value: name, selected: name === compared.name}, name)));
     this.link ??= new Link(this.token, {
-      opened: () => this.ask(),
+      opened: async () => {
+        for (const each of this.dropped) await this.link?.upload(each);
+        this.ask();
+      },
       lost: () => {},
       message: (message, bytes) => this.take(message, bytes),
     });
@@ -73,6 +77,13 @@ export class CompareView {
     this.state = state;
     this.ask();
   }
+
+  /** A scene that may be chosen from now on. */
+  drop(scene: Dropped): void {
+    this.dropped.push(scene);
+    if (this.link?.isOpen) void this.link.upload(scene).then(() => this.ask());
+  }
+  private readonly dropped: Dropped[] = [];
 
   private ask(): void {
     if (!this.link?.isOpen || !this.compared) return;
@@ -99,7 +110,7 @@ export class CompareView {
         this.canvas.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(bytes!), message.columns, message.rows), 0, 0);
         this.aspect = message.columns / message.rows;
         this.badge.textContent = message.quality;
-        this.badge.classList.toggle("is-preview", message.quality !== "full");
+        this.badge.classList.toggle("is-preview", !isFull(message));
         this.fit(this.stage.parentElement!);
         return;
       }

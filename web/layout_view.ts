@@ -64,12 +64,11 @@ export class LayoutView {
     const svg = s("svg", {class: "layout", viewBox: `0 0 ${width} ${height}`, width, height});
     svg.append(s("path", {class: "axis", d: `M${px(-lead)} ${middle}H${px(z1) + 10}`}));
     data.elements.forEach((outline: Point[]) => svg.append(s("path", {class: "glass", d: path(outline) + "Z"})));
-    data.surfaces.forEach((surface: any) => {
-      if (!surface.stop) svg.append(s("path", {class: "surface", d: path(surface.profile)}));
-    });
+    svg.append(s("path", {class: "surface", d: data.surfaces.filter((each: any) => !each.stop).map((each: any) => path(each.profile)).join("")}));
     const rays = s("g", {class: this.way.length ? "rays ghost-way" : "rays"});
+    // One path for all rays of a field: the browser then has a few things to draw in the frame of a move, not dozens.
     for (const field of this.way.length ? [{rays: this.way, colour: "var(--ghost)"}] : data.fields)
-      for (const ray of field.rays as Point[][]) rays.append(s("path", {class: "ray", d: path(ray), stroke: field.colour}));
+      if (field.rays.length) rays.append(s("path", {class: "ray", d: (field.rays as Point[][]).map(path).join(""), stroke: field.colour, "data-rays": field.rays.length}));
     svg.append(rays);
     const tall = Math.max(data.image_height, reach * 0.2) * 1.04;
     svg.append(s("path", {class: "sensor", d: `M${px(z1)} ${py(tall)}V${py(-tall)}`}));

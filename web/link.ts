@@ -13,6 +13,12 @@ export interface LinkListener {
   message(message: Incoming, bytes: Uint8Array | null): void;
 }
 
+/** A file that was dropped, with what the server is told of it: each connection has a bench of its own, which must be given it anew. */
+export interface Dropped {
+  header: {kind: "upload"; id: number; name: string};
+  bytes: Blob;
+}
+
 const protocol = "petzval-live.1";
 
 export class Link {
@@ -35,8 +41,8 @@ export class Link {
   }
 
   /** A file, behind a header that says what it is. */
-  upload(header: object, bytes: ArrayBuffer): void {
-    const text = new TextEncoder().encode(JSON.stringify(header));
+  async upload({header, bytes: file}: Dropped): Promise<void> {
+    const text = new TextEncoder().encode(JSON.stringify(header)), bytes = await file.arrayBuffer();
     const frame = new Uint8Array(4 + text.length + bytes.byteLength);
     new DataView(frame.buffer).setUint32(0, text.length, true);
     frame.set(text, 4);

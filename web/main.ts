@@ -5,10 +5,10 @@ import {choice, Slider} from "./controls";
 import {h, icon, icons, shown} from "./dom";
 import {LayoutView} from "./layout_view";
 import {CompareView} from "./compare_view";
-import {Incoming, Link, takeToken} from "./link";
+import {Dropped, Incoming, Link, takeToken} from "./link";
 import {Ghost, ghostTable} from "./ghost_view";
 import {coat, copied, History, isCoatable, Lens, mostSuns, newSession, packed, pinAbout, placeOfSun, Session, setValue, Sky, sunAt, sunlight_lx, uncoated, unpacked, usualStray, valueAt} from "./model";
-import {PictureView} from "./picture_view";
+import {isFull, PictureView} from "./picture_view";
 import {drawPlots, PlotData} from "./plot_view";
 import {PsfView} from "./psf_view";
 import {reportOf} from "./report";
@@ -24,6 +24,13 @@ const shownPlots: [string, string, string][] = [
   ["ghosts", "Ghosts", "ghosts"],
 ];
 
+/** The file that says what it is, and the numbers of an ENVI header or the .json of a .npy, if they came together. */
+function withCompanion(files: File[]): [File | undefined, File | undefined] {
+  const header = files.find(each => /\.(hdr|npy)$/i.test(each.name));
+  if (files.length !== 2 || !header) return [files[0], undefined];
+  return [header, files.find(each => each !== header)];
+}
+
 class Page {
   private session!: Session;
   private history!: History;
@@ -31,7 +38,8 @@ class Page {
   private id = 0;
   private pending = false;
   private unanswered_since = 0;
-  private uploads = new Map<number, string>();
+  private uploads = new Map<number, Dropped>();
+  private dropped: Dropped[] = [];  ///< scenes
   private glassWaiting = new Map<number, (glasses: FoundGlass[]) => void>();
   private saving = new Map<number, string>();
   private lastPicture: Incoming | null = null;
@@ -81,7 +89,7 @@ class Page {
     onclick: () => this.toggleBefore()}, "Before / after");
   private readonly compareButton = h("button", {type: "button", class: "text-button", id: "compare", title: "another lens beside this one (C)", "aria-pressed": "false",
     onclick: () => this.toggleCompare()}, "Compare");
-  private readonly focusButton = h("button", {type: "button", class: "small-button", id: "focus-here", title: "make the place of the ring sharp (F)", "data-term": "defocus",
+  private readonly focusButton = h("button", {type: "button", class: "small-button", id: "focus-here", title: "make the place of the ring sharp (F); a double click does so where it is", "data-term": "defocus",
     onclick: () => this.focusAt(...this.session.cursor_mm)}, "Focus here");
   private times = new Map<string, number>();
   private readonly tour = new Tour(exercise => this.startExercise(exercise));
@@ -95,9 +103,10 @@ class Page {
     });
     this.build();
     this.link = new Link(token, {
-      opened: () => {
+      opened: async () => {
         this.pending = false;
         this.unanswered_since = 0;
+        for (const each of this.dropped) await this.link.upload(each);
         this.link.send({kind: "hello"});
       },
       lost: () => {
@@ -131,7 +140,7 @@ class Page {
                 card("Controls", "f-number", [], this.controls)),
             h("div", {class: "column middle"},
                 card("Layout", "stop", [this.facts], this.layout.element),
-                card("Picture", "preview", [h("small", {class: "hint"}, "double-click to focus"), this.focusButton, this.picture.badge], h("div", {class: "pictures"}, this.picture.element, this.compare.element))),
+                card("Picture", "preview", [this.picture.detail, this.focusButton, this.picture.badge], h("div", {class: "pictures"}, this.picture.element, this.compare.element))),
             h("div", {class: "column right"},
                 card("Point spread", "psf", [], this.psf.element),
                 h("section", {class: "card analysis-card"}, this.tabs, this.plotBox))),
@@ -145,8 +154,7 @@ class Page {
     document.addEventListener("drop", event => {
       event.preventDefault();
       document.body.classList.remove("dropping");
-      const file = event.dataTransfer?.files[0];
-      if (file) void this.upload(file);
+      void this.upload([...event.dataTransfer?.files ?? []]);
     });
     new ResizeObserver(entries => {
       const {width, height} = entries[0].contentRect;
@@ -159,9 +167,9 @@ class Page {
   }
 
   private saveMenu(): HTMLElement {
-    const file = h("input", {type: "file", id: "file", hidden: true, onchange: (event: Event) => {
+    const file = h("input", {type: "file", id: "file", multiple: true, hidden: true, onchange: (event: Event) => {
       const input = event.target as HTMLInputElement;
-      if (input.files?.[0]) void this.upload(input.files[0]);
+      void this.upload([...input.files ?? []]);
       input.value = "";
     }});
     const entry = (label: string, id: string, act: () => void) => h("button", {type: "button", role: "menuitem", id, onclick: () => { menu.removeAttribute("open"); act(); }}, label);
@@ -172,7 +180,7 @@ class Page {
     };
     const menu: HTMLDetailsElement = h("details", {class: "menu"}, h("summary", {class: "text-button", id: "file-menu"}, "File"),
         h("div", {class: "menu-list", role: "menu"},
-            entry("Open a lens, photograph or session …", "open", () => file.click()), h("hr"),
+            entry("Open a lens, scene or session …", "open", () => file.click()), h("hr"),
             entry("Save lens (.json)", "save-json", save(".json")), entry("Save lens (.zmx)", "save-zmx", save(".zmx")), entry("Save lens (.seq)", "save-seq", save(".seq")), h("hr"),
             entry("Save picture (.png)", "save-png", save(".png")), entry("Save raw image (.dng)", "save-dng", save(".dng")), entry("Save light (.exr)", "save-exr", save(".exr")), h("hr"),
             entry("Save report (.html)", "save-report", () => { this.reporting = true; this.ask(); }),
@@ -496,10 +504,7 @@ class Page {
     switch (message.kind) {
       case "welcome": return void this.greeted(message);
       case "lens": return this.takeLens(message);
-      case "scenes":
-        this.welcome!.scenes = message.scenes;
-        this.change(() => { this.session.scene = message.scene; });
-        return this.buildChoices();
+      case "scenes": return this.takeScene(message);
       case "layout": return this.takeLayout(message);
       case "plots":
         this.plots.set(message.analysis, message);
@@ -509,7 +514,7 @@ class Page {
       case "picture":
         this.picture.show(message, bytes!);
         this.sourceCount.textContent = this.isSolid ? "" : this.session.stray.ghosts || this.session.stray.starburst || this.session.stray.roughness_nm > 0 ? `${message.sources.length || "no"} source${message.sources.length === 1 ? "" : "s"} in the scene` : "";
-        if (message.quality === "full") this.lastPicture = message;
+        if (isFull(message)) this.lastPicture = message;
         if (this.focusNext && message.id === this.id) {
           this.focusNext = false;
           this.focusAt(0, -this.picture.size_mm[1] / 6);
@@ -577,6 +582,18 @@ class Page {
     return whole;
   }
 
+  private takeScene(message: Incoming): void {
+    const scene = this.uploads.get(message.id!);
+    if (!scene) return;  // given again to a server that came back
+    this.uploads.delete(message.id!);
+    this.dropped.push(scene);
+    this.compare.drop(scene);
+    this.welcome!.scenes = message.scenes;
+    for (const note of message.notes) this.tell(note);
+    this.chooseScene(message.scene);
+    this.buildChoices();
+  }
+
   private takeLens(message: Incoming): void {
     for (const note of message.notes ?? []) this.tell(note);
     const session = newSession(message.name, message.lens as Lens, this.session.scene, message.sensor);
@@ -629,7 +646,7 @@ class Page {
       delete document.body.dataset.busy;
     }
     if (message.stage === "psf") this.psf.stale();
-    if (message.stage === "preview" || message.stage === "picture") this.picture.stale();
+    if (["preview", "picture", "finest"].includes(message.stage)) this.picture.stale();
     if (message.stage.startsWith("plot:")) {
       this.plots.delete(message.stage.slice(5));
       this.drawPlot(message.text);
@@ -640,13 +657,14 @@ class Page {
   private showProblem(stage: string, text: string): void {
     if (text) this.problems.set(stage, text);
     else this.problems.delete(stage);
-    const order = ["lens", "camera", "layout", "preview", "picture", "psf"];
+    const order = ["lens", "camera", "layout", "preview", "picture", "finest", "psf"];
     const worst = order.find(each => this.problems.has(each));
     this.banner.textContent = worst ? this.problems.get(worst)! : "";
     document.body.classList.toggle("has-problem", worst !== undefined);
   }
 
   private took(message: Incoming): void {
+    if (message.stage === "preview") for (const later of ["picture", "finest"]) this.times.delete(later);  // of what is no more
     this.times.set(message.stage, message.ms);
     this.showProblem(message.stage, message.stage === "layout" ? this.problems.get("layout") ?? "" : "");
     if (this.timesWaiting) return;
@@ -658,7 +676,7 @@ class Page {
 
   private showTimes(): void {
     this.timesWaiting = false;
-    const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], ["preview", "preview"], [`plot:${this.session.plot}`, "plot"], ["picture", "full"]];
+    const names: [string, string][] = [["layout", "rays"], ["psf", "PSF"], ["preview", "preview"], [`plot:${this.session.plot}`, "plot"], ["picture", "full"], ["finest", "finest"]];
     this.timing.replaceChildren(...names.filter(([stage]) => this.times.has(stage)).map(([stage, name]) =>
       h("span", {}, h("i", {}, name), `${shown(this.times.get(stage)!, 3)} ms`)));
   }
@@ -692,19 +710,22 @@ class Page {
     this.tell(`saved ${name}`);
   }
 
-  private async upload(file: File): Promise<void> {
-    const most = 24 * 1024 * 1024;
-    if (file.size > most) return this.tell("a file has at most 24 MB", true);
-    const bytes = await file.arrayBuffer();
-    if (file.name.endsWith(".json") && bytes.byteLength < 1e6) {
+  /** One file, or a spectral one and what is read with it. */
+  private async upload(files: File[]): Promise<void> {
+    const most_mib = 64, [file, companion] = withCompanion(files);
+    if (!file) return;
+    if (files.length > 2 || (files.length === 2 && !companion)) return this.tell("one file at a time, or an ENVI .hdr with its numbers, or a .npy with its .json", true);
+    if (files.reduce((sum, each) => sum + each.size, 0) > most_mib * 1024 * 1024) return this.tell(`${file.name}: is too large; ${most_mib} MiB are the most`, true);
+    if (file.name.endsWith(".json") && file.size < 1e6) {
       try {
-        const read = JSON.parse(new TextDecoder().decode(bytes));
+        const read = JSON.parse(await file.text());
         if (read.petzval_session === 1) return this.start(this.checked(read as Session));
       } catch { /* the server says what is wrong with it */ }
     }
-    const id = ++this.id;
-    this.uploads.set(id, file.name);
-    this.link.upload({kind: "upload", id, name: file.name}, bytes);
+    const id = ++this.id, header = {kind: "upload" as const, id, name: file.name, ...companion ? {companion: companion.name, companion_bytes: companion.size} : {}};
+    const dropped = {header, bytes: new Blob(companion ? [file, companion] : [file])};
+    this.uploads.set(id, dropped);
+    void this.link.upload(dropped);
   }
 
   private copy(text: string, done: string): void {

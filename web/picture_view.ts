@@ -9,6 +9,15 @@ export interface PictureListener {
   focused(x_mm: number, y_mm: number): void;
 }
 
+/** Whether it is as good as files of it are to be. */
+export function isFull(message: Incoming): boolean { return message.quality === "full" || message.quality === "finest"; }
+
+/** "31 bands, 1500 × 1000 of 6000 × 4000 pixels" */
+function detailOf(message: Incoming): string {
+  const [columns, rows] = message.whole as [number, number], part = message.pixels_added > 1 ? ` of ${columns} × ${rows}` : "";
+  return `${message.bands} band${message.bands === 1 ? "" : "s"}, ${message.columns} × ${message.rows}${part}`;
+}
+
 interface Kept {
   canvas: HTMLCanvasElement;
   caption: string;
@@ -17,6 +26,8 @@ interface Kept {
 export class PictureView {
   readonly element: HTMLElement;
   readonly badge = h("span", {class: "badge", "data-term": "preview"});
+  /** Of how many bands and pixels, and of how many the sensor has. */
+  readonly detail = h("small", {class: "hint detail"});
   private readonly stage = h("div", {class: "picture-stage"});
   private readonly now = h("canvas", {class: "picture", role: "img", "aria-label": "the picture"});
   private readonly mark = h("div", {class: "cursor-mark"});
@@ -59,9 +70,9 @@ export class PictureView {
     this.now.height = rows;
     this.now.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(pixels), columns, rows), 0, 0);
     this.frame_mm = [columns * message.pitch_um / 1000, rows * message.pitch_um / 1000];
-    const full = message.quality === "full";
     this.badge.textContent = message.quality === "refining" ? `${message.samples} of ${message.samples_wanted} rays` : message.quality;
-    this.badge.classList.toggle("is-preview", !full);
+    this.badge.classList.toggle("is-preview", !isFull(message));
+    this.detail.textContent = detailOf(message);
     this.sources.replaceChildren(...message.sources.map((source: {name: string; x_mm: number; y_mm: number}) => {
       const mark = h("div", {class: "source-mark", title: source.name});
       mark.style.left = `${50 + 100 * source.x_mm / this.frame_mm[0]}%`;

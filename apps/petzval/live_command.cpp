@@ -2,9 +2,9 @@
 // petzval live: the bench in a browser.
 #include <fmt/format.h>
 #include <petzval/lens/lens_file.h>
+#include <petzval/live/bench_scene.h>
 #include <petzval/live/guard.h>
 #include <petzval/live/live_server.h>
-#include <petzval/scene/scene_file.h>
 #include <petzval/sensor/sensor.h>
 
 #include <algorithm>
@@ -44,9 +44,8 @@ LiveOptions live_options(LiveChoice& choice, const Shared& shared) {
   };
   start.scene = choice.scene;
   if (!is_bundled(names.scenes, choice.scene)) {
-    read_scene(choice.scene);  // refuses what is none
     start.scene = label_of(choice.scene);
-    start.scene_files[start.scene] = choice.scene;
+    start.scene_files[start.scene] = bench_scene(choice.scene);  // refuses what is none
   }
   start.sensor = choice.sensor;
   if (!choice.sensor.empty() && !is_bundled(names.sensors, choice.sensor)) {

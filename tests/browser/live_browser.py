@@ -115,7 +115,7 @@ class Browser:
         WebDriverWait(self.driver, PATIENCE_S, 0.05).until(lambda _: condition(), what)
 
     def settle(self):
-        """Waits until all that was asked for is shown, the full picture too."""
+        """Waits until all that was asked for is shown, the finest picture too."""
         self.until("everything is shown", lambda: self.run(SETTLED))
 
     def session(self):

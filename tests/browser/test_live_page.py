@@ -4,6 +4,7 @@
     test_live_page.py PROGRAM CHROMIUM CHROMEDRIVER [TEST ...]
 """
 
+import base64
 import json
 import pathlib
 import sys
@@ -67,9 +68,10 @@ class LivePage(unittest.TestCase):
 
     def test_shows_everything_and_ends_with_the_full_picture(self):
         browser = self.browser
-        self.assertEqual(browser.text(".badge"), "full")
+        self.assertEqual(browser.text(".badge"), "finest")
+        self.assertEqual(browser.text(".detail"), "31 bands, 160 × 120")
         self.assertEqual(len(browser.driver.find_elements(By.CSS_SELECTOR, ".prescription tr[data-surface]")), 3)
-        self.assertGreater(len(browser.driver.find_elements(By.CSS_SELECTOR, ".layout .ray")), 10)
+        self.assertGreater(browser.run("return [...document.querySelectorAll('.layout .ray')].reduce((sum, each) => sum + Number(each.dataset.rays), 0)"), 10)
         self.assertIn("f50", browser.text(".facts").replace(" ", "").replace("49.", "50"))
         lit = browser.run("const c = document.querySelector('.picture'); return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.reduce((most, v, i) => i % 4 === 3 ? most : Math.max(most, v), 0)")
         self.assertGreater(lit, 100)
@@ -252,11 +254,11 @@ class LivePage(unittest.TestCase):
         browser = self.browser
         shown = lambda: browser.run("const c = document.querySelector('.compare canvas.picture'); return [c.width, document.querySelector('.compare .badge').textContent]")
         browser.run("document.getElementById('compare').click()")
-        browser.until("the other picture", lambda: shown()[0] > 0 and shown()[1] == "full")
+        browser.until("the other picture", lambda: shown()[0] > 0 and shown()[1] == "finest")
         browser.until("both plots", lambda: browser.run("return document.querySelectorAll('.half svg.plot').length") == 2)
         browser.run(CHOOSE, "compare", "plano-convex")
         browser.until("its lens", lambda: (browser.session()["compared"] or {}).get("lens") and browser.session()["compared"]["name"] == "plano-convex")
-        browser.until("its picture", lambda: shown()[0] > 0 and shown()[1] == "full")
+        browser.until("its picture", lambda: shown()[0] > 0 and shown()[1] == "finest")
         expected = browser.session()
         browser.driver.refresh()
         browser.settle()
@@ -404,6 +406,48 @@ class LivePage(unittest.TestCase):
             self.browser.until("the lens is there", lambda: self.browser.session()["lensName"] == "mine")
             self.browser.settle()
             self.assertEqual(self.browser.session()["lens"]["surfaces"][1]["thickness_mm"], 3.25)
+
+    def drop(self, *files):
+        """Files dropped onto the page, by name and content."""
+        self.browser.run("""const files = new DataTransfer();
+            for (const [name, text] of arguments[0]) files.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
+            document.dispatchEvent(new DragEvent("drop", {dataTransfer: files, cancelable: true}));""",
+                         [[name, base64.b64encode(content).decode()] for name, content in files])
+
+    def told(self):
+        return self.browser.run("return [...document.querySelectorAll('.note.bad')].map(each => each.textContent)")
+
+    def test_a_spectral_file_that_is_dropped_becomes_the_scene(self):
+        browser = self.browser
+        header = b"ENVI\nsamples = 12\nlines = 9\nbands = 3\ndata type = 1\ninterleave = bsq\nwavelength = {420, 550, 660}\nreflectance scale factor = 255\n"
+        numbers = bytes(60 + 40 * ((x // 3 + y // 3) % 2) + 30 * band for band in range(3) for y in range(9) for x in range(12))
+        self.drop(("cube.hdr", header), ("cube.raw", numbers))
+        browser.until("the scene is there", lambda: browser.session()["scene"] == "dropped spectra")
+        browser.settle()
+        self.assertEqual(self.problem(), "")
+        self.assertEqual(browser.text(".badge"), "finest")
+        self.assertEqual(browser.text(".detail"), "25 bands, 160 × 120")
+        self.assertIn("--illuminant D65 --wavelengths 420:10:660", browser.text(".command"))
+        # The other lens has a bench of its own, which is given the scene too.
+        browser.run("document.getElementById('compare').click()")
+        browser.until("the other picture", lambda: browser.run("return document.querySelector('.compare .badge').textContent") == "finest")
+        self.assertEqual(browser.text(".compare-problem"), "")
+        browser.run("document.getElementById('compare').click()")
+
+    def test_damaged_and_too_large_spectral_files_are_refused(self):
+        browser = self.browser
+        header = b"ENVI\nsamples = 12\nlines = 9\nbands = 3\ndata type = 1\ninterleave = bsq\nwavelength = {420, 550, 660}\nreflectance scale factor = 255\n"
+        for files, told in [([("cube.hdr", header), ("cube.raw", b"few")], "cube.raw: holds 3 bytes"), ([("cube.hdr", header)], "cube.hdr: has no data beside it"),
+                            ([("cube.raw", b"few")], "cube.raw: the bench reads"), ([("cube.mat", b"MATLAB")], "cube.mat: "), ([("cube.exr", b"v/1\x01")], "cube.exr: "),
+                            ([("cube.npy", b"\x93NUMPY\1\0")], "cube.npy: "), ([("a.npy", b""), ("b.npy", b""), ("c.npy", b"")], "one file at a time")]:
+            with self.subTest(told):
+                self.drop(*files)
+                browser.until(told, lambda told=told: any(text.startswith(told) for text in self.told()))
+        browser.run("""const files = new DataTransfer();
+            files.items.add(new File([new Uint8Array(65 * 1024 * 1024)], "large.npy"));
+            document.dispatchEvent(new DragEvent("drop", {dataTransfer: files, cancelable: true}));""")
+        browser.until("it says so", lambda: "large.npy: is too large; 64 MiB are the most" in self.told())
+        self.change_shows(SLIDE, "defocus_mm", 600)
 
     def touch(self, element, dx, dy):
         """A finger put on the middle of an element, moved and lifted."""

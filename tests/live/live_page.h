@@ -123,11 +123,15 @@ class LivePage {
     socket_.binary(true);
     socket_.write(boost::asio::buffer(bytes));
   }
-  void upload(const std::string& name, const std::string& bytes) {
-    const std::string header = json{{"kind", "upload"}, {"id", 7}, {"name", name}}.dump();
+  void upload(const std::string& name, const std::string& bytes, const std::string& companion = {},
+              const std::string& companion_bytes = {}) {
+    json message{{"kind", "upload"}, {"id", 7}, {"name", name}};
+    if (!companion.empty())
+      message.update({{"companion", companion}, {"companion_bytes", companion_bytes.size()}});
+    const std::string header = message.dump();
     std::string frame;
     for (int shift = 0; shift < 32; shift += 8) frame += static_cast<char>(header.size() >> shift);
-    send_bytes(frame + header + bytes);
+    send_bytes(frame + header + bytes + companion_bytes);
   }
 
   /// The next message; bytes behind its header are kept in `bytes`.

@@ -135,5 +135,29 @@ TEST(LiveUpload, IsAHeaderAndBytes) {
     EXPECT_THROW(parse_live_upload(std::string_view(frame).substr(0, length)), InputError) << length;
 }
 
+TEST(LiveUpload, MayHaveACompanion) {
+  const auto frame = [](const json& header, const std::string& files) {
+    const std::string text = header.dump();
+    return std::string({static_cast<char>(text.size()), 0, 0, 0}) + text + files;
+  };
+  json header{
+      {"kind", "upload"}, {"id", 3}, {"name", "a.hdr"}, {"companion", "a.raw"}, {"companion_bytes", 3}};
+  const Upload upload = parse_live_upload(frame(header, "ENVI\n123"));
+  EXPECT_EQ(upload.bytes, "ENVI\n");
+  EXPECT_EQ(upload.companion_bytes, "123");
+  for (const auto& [key, value] : std::vector<std::pair<std::string, json>>{{"companion_bytes", 9},
+                                                                            {"companion_bytes", -1},
+                                                                            {"companion_bytes", 0.5},
+                                                                            {"companion", ""},
+                                                                            {"companion", 1},
+                                                                            {"name", "a.zmx"}}) {
+    json wrong = header;
+    wrong[key] = value;
+    EXPECT_THROW(parse_live_upload(frame(wrong, "ENVI\n123")), InputError) << key << ' ' << value;
+  }
+  header.erase("companion");
+  EXPECT_THROW(parse_live_upload(frame(header, "ENVI\n123")), InputError);
+}
+
 }  // namespace
 }  // namespace petzval

@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -34,7 +36,32 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* dropped_photograph = "dropped photograph";
+/// Scenes that one page may drop: their files are kept as long as it is there.
+constexpr int most_dropped_scenes = 16;
+
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Text with `there` in place of each `here`.
+std::string replaced(std::string text, const std::string& here, const std::string& there) {
+  for (std::size_t at = text.find(here); at != text.npos; at = text.find(here, at + there.size()))
+    text.replace(at, here.size(), there);
+  return text;
+}
+
+/// Text that ends before what a reader's own library says, if that names a file of this folder (which may be
+/// cut short).
+std::string without_paths(const std::string& text, const std::string& folder) {
+  const std::size_t at = text.find(std::filesystem::path(folder).parent_path().string() + '/');
+  return at == text.npos ? text : text.substr(0, text.rfind(": ", at));
+}
+
+/// A note of the library without the parameter that it advises, which the page does not have.
+std::string without_advice(const std::string& note) {
+  const std::size_t from = note.find(" (`"), to = note.find(')', from == note.npos ? 0 : from);
+  return from == note.npos || to == note.npos ? note : note.substr(0, from) + note.substr(to + 1);
+}
 
 /// The lens of a state in use, and the state of which it is.
 struct LensInUse {
@@ -96,7 +123,8 @@ struct Bench::Impl {
   LiveStart start;
   SendReply send;
   LiveNames names;
-  std::map<std::string, std::string> scene_paths = {}, sensor_paths = {};
+  std::map<std::string, BenchScene> scenes = {};  ///< from files
+  std::map<std::string, std::string> sensor_paths = {};
   ScratchFolder files = {};
   LensInUse use = {};
   std::map<std::string, std::string> shown = {};  ///< stage → key of what was sent
@@ -107,7 +135,7 @@ struct Bench::Impl {
   BenchRender renderings = {};
   bool solid = false;  ///< whether the scene that was shown last has three dimensions
   std::optional<BenchPlots> plots = {};
-  int uploads = 0;
+  int dropped = 0;  ///< scenes
 
   void tell(const json& message) const {
     send({message.dump(-1, ' ', false, json::error_handler_t::replace), {}});
@@ -126,9 +154,9 @@ struct Bench::Impl {
     return found != shown_at.end() && Clock::now() - found->second < moment;
   }
 
-  /// The full picture gives way at once, other stages as is_fresh() says.
+  /// Full and finest pictures give way at once, other stages as is_fresh() says.
   bool gives_way(const std::string& name) const {
-    return ask->ended() || (ask->newer() && (name == "picture" || is_fresh(name)));
+    return ask->ended() || (ask->newer() && (name == "picture" || name == "finest" || is_fresh(name)));
   }
 
   /// Does a stage unless it has been shown as it is. \returns whether it stands.
@@ -159,6 +187,8 @@ struct Bench::Impl {
   }
 
   void show(const BenchState& state);
+  void take_scene(const Upload& upload);
+  void take_lens(const Upload& upload);
   void show_layout(const BenchState& state) const;
   void show_psf(const BenchState& state, const Context& context) const;
   void show_stray(const BenchState& state) const;
@@ -176,7 +206,9 @@ void Bench::Impl::show_layout(const BenchState& state) const {
 }
 
 void Bench::Impl::show_psf(const BenchState& state, const Context& context) const {
-  const BenchPsf psf = bench_psf({use.lens, use.camera.losses}, state.cursor_mm, context);
+  Context alone = context;
+  alone.threads = 1;  // another processor is left to the browser, which paints the rays meanwhile
+  const BenchPsf psf = bench_psf({use.lens, use.camera.losses}, state.cursor_mm, alone);
   send({json{{"kind", "psf"},
              {"id", state.id},
              {"size", psf.size},
@@ -232,22 +264,23 @@ void Bench::Impl::show(const BenchState& state) {
   }
   if (!stage(state.id, "layout", key, [&](const Context&) { show_layout(state); })) return;
   const auto picture = [&](const char* name, PictureQuality quality) {
-    const auto scene = scene_paths.find(state.scene);
+    const auto scene = scenes.find(state.scene);
     // The picture knows itself whether it is new.
     const auto work = [&](const Context& context) {
       if (solid) return renderings.show(state, use.camera, sensor_path(state), quality, context, send);
       pictures.show(state, {use.lens, use.camera.losses},
-                    scene == scene_paths.end() ? state.scene : scene->second, sensor_path(state), quality,
-                    context, send);
+                    scene == scenes.end() ? BenchScene{.path = state.scene} : scene->second,
+                    sensor_path(state), quality, context, send);
     };
     return stage(state.id, name,
                  fmt::format("{}|{}|{}|{}|{}|{}", key, state.stray_key(), state.scene, state.illuminant,
                              state.sensor, state.shot_key()),
                  work);
   };
-  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   stage(state.id, "psf", fmt::format("{}|{}|{}", key, state.cursor_mm[0], state.cursor_mm[1]),
         [&](const Context& context) { show_psf(state, context); });
+  // Behind the point spread, for the same reason.
+  plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads});
   const GhostPair ghost = state.ghost.value_or(GhostPair{0, 0});
   if (!state.suns.empty() || state.ghost || std::ranges::find(state.plots, "ghosts") != state.plots.end())
     stage(state.id, "stray",
@@ -258,7 +291,7 @@ void Bench::Impl::show(const BenchState& state) {
   plots->let_quick_ones_pass(stop);
   if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
-    picture("picture", PictureQuality::full);
+    if (picture("picture", PictureQuality::full) && !solid) picture("finest", PictureQuality::finest);
   }
   if (!plots->wait(stop)) throw Cancelled();
 }
@@ -268,9 +301,9 @@ Bench::Bench(const LiveStart& start, SendReply send) : impl_(std::make_unique<Im
   impl_->send = std::move(send);
   impl_->plots.emplace(impl_->send);
   impl_->names = bundled_live_names();
-  impl_->scene_paths = start.scene_files;
+  impl_->scenes = start.scene_files;
   impl_->sensor_paths = start.sensor_files;
-  for (const auto& [label, path] : start.scene_files) impl_->names.scenes.push_back(label);
+  for (const auto& [label, scene] : start.scene_files) impl_->names.scenes.push_back(label);
   for (const auto& [label, path] : start.sensor_files) impl_->names.sensors.push_back(label);
 }
 
@@ -359,34 +392,66 @@ void Bench::save(const SaveWish& wish, const Context& context) {
   }
 }
 
-void Bench::take(const Upload& upload) {
-  const auto& photographs = upload_photograph_extensions();
-  const bool photograph = std::ranges::find(photographs, upload.extension) != photographs.end();
-  const std::string path =
-      fmt::format("{}/upload{}{}", impl_->files.path(), photograph ? impl_->uploads++ : 0, upload.extension);
+/// Reads and keeps a scene that was dropped, and its companion.
+void Bench::Impl::take_scene(const Upload& upload) {
+  if (dropped == most_dropped_scenes)
+    throw InputError(
+        fmt::format("this page has {} dropped scenes, the most that are kept; a page that is "
+                    "loaded anew takes more",
+                    most_dropped_scenes));
+  const std::string stem = fmt::format("{}/upload{}", files.path(), dropped);
+  const std::string path = stem + upload.extension, beside = stem + upload.companion_extension();
   try {
     write_whole_file(path, upload.bytes);
-    if (photograph) {
-      read_scene(path, {.wavelengths_nm = {550}});
-      std::string label = dropped_photograph;
-      if (impl_->uploads > 1) label += fmt::format(" {}", impl_->uploads);
-      impl_->scene_paths[label] = path;
-      impl_->names.scenes.push_back(label);
-      return impl_->tell(
-          {{"kind", "scenes"}, {"id", upload.id}, {"scene", label}, {"scenes", impl_->names.scenes}});
-    }
-    const LensFile read = read_lens(path);
-    impl_->tell({{"kind", "lens"},
-                 {"id", upload.id},
-                 {"name", upload.label},
-                 {"lens", json::parse(lens_to_json(read.lens))},
-                 {"sensor", sensor_for(read.lens)},
-                 {"notes", read.notes}});
+    if (!upload.companion.empty()) write_whole_file(beside, upload.companion_bytes);
+    BenchScene scene = bench_scene(path);
+    std::string label = scene.is_spectral() ? "dropped spectra" : "dropped photograph";
+    if (is_among(names.scenes, label)) label += fmt::format(" {}", dropped + 1);
+    json notes = json::array();
+    for (const std::string& note : scene.notes) notes.push_back(without_advice(note));
+    scenes[label] = std::move(scene);
+    names.scenes.push_back(label);
+    ++dropped;
+    tell({{"kind", "scenes"},
+          {"id", upload.id},
+          {"scene", label},
+          {"scenes", names.scenes},
+          {"notes", std::move(notes)}});
   } catch (const Error& error) {
-    // The reader names its file; people know it by the name it had.
-    std::string text = error.what();
-    if (text.starts_with(path)) text = upload.label + upload.extension + text.substr(path.size());
-    impl_->problem(upload.id, "upload", text);
+    std::filesystem::remove(path);
+    std::filesystem::remove(beside);
+    // The reader names its files; people know them by the names they had.
+    std::string text = replaced(error.what(), path, upload.label + upload.extension);
+    if (!upload.companion.empty()) text = replaced(text, beside, upload.companion);
+    problem(upload.id, "upload", without_paths(replaced(text, stem, upload.label), files.path()));
+  }
+}
+
+void Bench::Impl::take_lens(const Upload& upload) {
+  const std::string path = files.path() + "/upload" + upload.extension;
+  try {
+    write_whole_file(path, upload.bytes);
+    const LensFile read = read_lens(path);
+    tell({{"kind", "lens"},
+          {"id", upload.id},
+          {"name", upload.label},
+          {"lens", json::parse(lens_to_json(read.lens))},
+          {"sensor", sensor_for(read.lens)},
+          {"notes", read.notes}});
+  } catch (const Error& error) {
+    problem(upload.id, "upload", replaced(error.what(), path, upload.label + upload.extension));
+  }
+}
+
+void Bench::take(const Upload& upload) {
+  try {
+    if (is_among(upload_lens_extensions(), upload.extension)) return impl_->take_lens(upload);
+    impl_->take_scene(upload);
+  } catch (const Error& error) {
+    impl_->problem(upload.id, "upload", error.what());
+  } catch (const std::bad_alloc&) {
+    impl_->problem(upload.id, "upload",
+                   upload.label + upload.extension + ": takes more memory than there is");
   }
 }
 

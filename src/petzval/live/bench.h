@@ -3,6 +3,7 @@
 #pragma once
 
 #include <petzval/base/context.h>
+#include <petzval/live/bench_scene.h>
 #include <petzval/live/message.h>
 #include <petzval/trace/losses.h>
 
@@ -36,8 +37,8 @@ struct LiveStart {
   std::string lens_json = {};
   std::string scene = {};   ///< the first to be shown
   std::string sensor = {};  ///< empty: the usual one of the lens
-  std::map<std::string, std::string> scene_files =
-      {};  ///< files that were named at the start, by their labels
+  /// Files that were named at the start, by their labels.
+  std::map<std::string, BenchScene> scene_files = {};
   std::map<std::string, std::string> sensor_files = {};
 };
 
@@ -48,10 +49,10 @@ struct BenchQuestions {
   std::function<bool()> rests;  ///< waits until the hand has rested; false if something came first
 };
 
-/// Stages: layout → psf → preview (few pixels, three bands) → picture, and plots beside them. What has been
-/// shown already and has not changed is left out. While a hand moves, a stage that was shown a moment ago
-/// gives way to what is newer; one that was not is finished first, so that all of them follow the hand. A
-/// Bench is for one thread at a time.
+/// Stages: layout → psf → preview (few pixels, three bands) → picture → finest, and plots beside them. What
+/// has been shown already and has not changed is left out. While a hand moves, a stage that was shown a
+/// moment ago gives way to what is newer; one that was not is finished first, so that all of them follow the
+/// hand. A Bench is for one thread at a time.
 ///
 /// All of its numbers come from `simulate` and below; what fails is told to the page ("problem") and ends
 /// the stage, not the bench.
@@ -70,7 +71,7 @@ class Bench {
   void focus(const FocusWish& wish);
   /// The lens or the picture that was shown last, as a file. \throws Cancelled.
   void save(const SaveWish& wish, const Context& context);
-  /// Reads a lens, or keeps a photograph as a scene.
+  /// Reads a lens, or keeps a photograph or a spectral file as a scene.
   void take(const Upload& upload);
   /// What its messages may name.
   const LiveNames& names() const;

@@ -38,14 +38,21 @@ void scale_electronics(std::vector<std::string>& settings, const SensorElectroni
 BinnedSensor binned_sensor(const std::string& name, int most_columns) {
   const Sensor whole = read_sensor(name);
   const int k = std::max(1, (whole.geometry.columns + most_columns - 1) / most_columns);
-  if (k == 1) return {whole, {}, 1};
+  if (k == 1) return {whole, {}, 1, whole.geometry.columns, whole.geometry.rows};
   // Even numbers, so that the mosaic ends as it begins.
   const auto pixels = [k](int count) { return std::max(2, count / k / 2 * 2); };
   std::vector<std::string> settings{fmt::format("columns={}", pixels(whole.geometry.columns)),
                                     fmt::format("rows={}", pixels(whole.geometry.rows)),
                                     fmt::format("pitch_um={:.10g}", whole.geometry.pitch_um * k)};
   if (whole.electronics) scale_electronics(settings, *whole.electronics, k);
-  return {read_sensor(name, settings), settings, k};
+  return {read_sensor(name, settings), settings, k, whole.geometry.columns, whole.geometry.rows};
+}
+
+int columns_for_pixels(const std::string& name, double most_pixels) {
+  const SensorGeometry geometry = read_sensor(name).geometry;
+  const double pixels = static_cast<double>(geometry.columns) * static_cast<double>(geometry.rows);
+  const int k = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / most_pixels))));
+  return (geometry.columns + k - 1) / k;
 }
 
 std::string usual_sensor(double image_height_mm) {

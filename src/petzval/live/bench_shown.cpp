@@ -114,6 +114,7 @@ void send_picture(const SpectralImage& light, const ShownSensor& sensor, const O
                   {"rows", light.rows()},
                   {"pitch_um", light.pitch_um()},
                   {"pixels_added", sensor.binned.pixels_added},
+                  {"whole", {sensor.binned.whole_columns, sensor.binned.whole_rows}},
                   {"bands", light.bands()},
                   {"sensor_settings", sensor.binned.settings},
                   {"exposure", exposure}});

@@ -227,6 +227,32 @@ LiveMessage parse_live_message(std::string_view text, const LiveNames& names) {
   message.at("kind").fail("must be hello, state, lens, glasses, focus or save");
 }
 
+namespace {
+
+void check_extension(const std::string& name, const std::string& extension) {
+  for (const auto* known :
+       {&upload_lens_extensions(), &upload_photograph_extensions(), &upload_spectral_extensions()})
+    if (std::ranges::find(*known, extension) != known->end()) return;
+  throw InputError(name, fmt::format("the bench reads {} (lenses), {} (photographs) and {} (spectra; .hdr "
+                                     "together with its numbers)",
+                                     fmt::join(upload_lens_extensions(), ", "),
+                                     fmt::join(upload_photograph_extensions(), ", "),
+                                     fmt::join(upload_spectral_extensions(), ", ")));
+}
+
+/// The last bytes of an upload are those of its companion.
+void read_companion(const JsonEntry& header, Upload& upload) {
+  if (upload.extension != ".hdr" && upload.extension != ".npy")
+    header.at("name").fail("must end in .hdr or .npy, which alone are read with a companion");
+  upload.companion = short_text(header.at("companion"));
+  if (upload.companion.empty()) header.at("companion").fail("must be a name");
+  const std::size_t length = count_of(header.at("companion_bytes"), static_cast<double>(upload.bytes.size()));
+  upload.companion_bytes = upload.bytes.substr(upload.bytes.size() - length);
+  upload.bytes.resize(upload.bytes.size() - length);
+}
+
+}  // namespace
+
 Upload parse_live_upload(std::string_view bytes) {
   constexpr std::size_t length_bytes = 4;
   if (bytes.size() < length_bytes) throw InputError("an upload begins with the length of its header");
@@ -237,7 +263,7 @@ Upload parse_live_upload(std::string_view bytes) {
     throw InputError(fmt::format("the header of an upload has at most {} bytes", most_upload_header_bytes));
   const JsonDocument document(std::string(bytes.substr(length_bytes, length)), "upload");
   const JsonEntry header(document);
-  header.allow_only({"kind", "id", "name"});
+  header.allow_only({"kind", "id", "name", "companion", "companion_bytes"});
   if (header.at("kind").text("a text") != "upload") header.at("kind").fail("must be upload");
   Upload upload;
   upload.id = id_of(header);
@@ -245,16 +271,12 @@ Upload parse_live_upload(std::string_view bytes) {
   const std::size_t dot = name.rfind('.');
   if (dot != std::string::npos) upload.extension = lower_case(name.substr(dot));
   upload.label = name.substr(0, dot);
-  const auto takes = [&](const std::vector<std::string>& extensions) {
-    return std::ranges::find(extensions, upload.extension) != extensions.end();
-  };
-  if (!takes(upload_lens_extensions()) && !takes(upload_photograph_extensions()))
-    header.at("name").fail(fmt::format("must end in {} (lenses) or {} (photographs)",
-                                       fmt::join(upload_lens_extensions(), ", "),
-                                       fmt::join(upload_photograph_extensions(), ", ")));
-  upload.bytes = std::string(bytes.substr(length_bytes + length));
-  if (upload.bytes.size() > most_upload_bytes)
-    throw InputError(fmt::format("a file has at most {} bytes", most_upload_bytes));
+  check_extension(name, upload.extension);
+  const std::string_view files = bytes.substr(length_bytes + length);
+  if (files.size() > most_upload_bytes)
+    throw InputError(fmt::format("a file has at most {} MiB", most_upload_bytes >> 20));
+  upload.bytes = std::string(files);
+  if (header.find("companion") || header.find("companion_bytes")) read_companion(header, upload);
   return upload;
 }
 
@@ -265,6 +287,11 @@ const std::vector<std::string>& upload_lens_extensions() {
 
 const std::vector<std::string>& upload_photograph_extensions() {
   static const std::vector<std::string> extensions{".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+  return extensions;
+}
+
+const std::vector<std::string>& upload_spectral_extensions() {
+  static const std::vector<std::string> extensions{".exr", ".mat", ".npy", ".hdr"};
   return extensions;
 }
 

@@ -89,28 +89,37 @@ struct SaveWish {
   std::int64_t id = 0;
   std::string extension = {};
 };
-/// A lens or a photograph that was dropped onto the page.
+/// A lens, a photograph or a spectral file that was dropped onto the page.
 struct Upload {
   std::int64_t id = 0;
   std::string extension = {};  ///< ".zmx", one of upload_extensions()
   std::string label = {};      ///< the name without it, as people read it; never part of a path
   std::string bytes = {};
+  /// A second file that a spectral one is read with: the numbers of an ENVI header, the .json of a .npy. Its
+  /// name, for messages alone; empty: there is none.
+  std::string companion = {};
+  std::string companion_bytes = {};
+
+  /// Of the name that the companion is given on the server, whatever name it had.
+  std::string companion_extension() const { return extension == ".npy" ? ".json" : ".img"; }
 };
 
 using LiveMessage = std::variant<LiveGreeting, BenchState, LensWish, GlassWish, FocusWish, SaveWish>;
 
 constexpr std::size_t most_message_bytes = std::size_t{1} << 20;
-constexpr std::size_t most_upload_bytes = std::size_t{24} << 20;
+/// Spectral files are large: 512 × 512 samples in 31 bands of four bytes are 31 MiB.
+constexpr std::size_t most_upload_bytes = std::size_t{64} << 20;
 
 /// Of a text. \throws InputError for whatever is not exactly a message: other or missing keys, other types,
 /// numbers out of range, names that are not among the lists, more than `most_message_bytes`.
 LiveMessage parse_live_message(std::string_view text, const LiveNames& names);
 
-/// Of bytes: the length of a JSON header in four bytes, the lowest first, the header, the file. \throws
-/// InputError.
+/// Of bytes: the length of a JSON header in four bytes, the lowest first, the header, the file, its
+/// companion. \throws InputError.
 Upload parse_live_upload(std::string_view bytes);
-/// Lenses, then photographs.
+/// Lenses, then photographs, then spectral files.
 const std::vector<std::string>& upload_lens_extensions();
 const std::vector<std::string>& upload_photograph_extensions();
+const std::vector<std::string>& upload_spectral_extensions();
 
 }  // namespace petzval

@@ -20,8 +20,9 @@ constexpr Anchor spectrum[] = {{380, 0x7A4FA3}, {410, 0x7B3FB5}, {436, 0x4C4FD6}
 }  // namespace
 
 Rgb8 series_colour(std::size_t index) {
-  constexpr std::uint32_t palette[] = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9, 0x7F7F7F};
-  return from_hex(palette[index % std::size(palette)]);
+  constexpr std::uint32_t palette[series_colour_count] = {0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7,
+                                                          0xE69F00, 0x56B4E9, 0x696969};
+  return from_hex(palette[index % series_colour_count]);
 }
 
 Rgb8 wavelength_colour(double wavelength_nm) {

@@ -8,8 +8,12 @@
 
 namespace petzval {
 
-/// Colour of the n-th series of a plot: seven colours that people with any colour vision tell apart (Okabe &
-/// Ito 2008, yellow left out: it is lost on white paper), then again from the start.
+/// Of series, before they begin again.
+constexpr std::size_t series_colour_count = 7;
+
+/// Colour of the n-th series of a plot: six colours of Okabe & Ito (2008; yellow left out: it is lost on
+/// white paper) and a grey, then again from the start. Whatever cones somebody lacks, any two of them differ
+/// by 10 (CIEDE2000) or more.
 Rgb8 series_colour(std::size_t index);
 
 /// A colour that suggests a wavelength and is legible as a thin line on white and on black. Ultraviolet and
