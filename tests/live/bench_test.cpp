@@ -71,6 +71,33 @@ TEST(Bench, ShowsThePreviewBeforeThePicture) {
             level(full["columns"].get<std::size_t>() / 4) + 50);
 }
 
+TEST(Bench, SmoothsTheMtfWhenTheHandRests) {
+  RunningServer server;
+  LivePage page(*server);
+  json state = bench_state(5);
+  state["picture"] = true;
+  state["plots"] = json::array({"mtf"});
+  page.send(state);
+  const auto plots_until_idle = [&page] {
+    std::vector<json> all;
+    for (json message = page.next(); message["kind"] != "idle"; message = page.next())
+      if (message["kind"] == "plots") all.push_back(message["plots"][0]["series"][0]);
+    return all;
+  };
+  const std::vector<json> shown = plots_until_idle();
+  ASSERT_FALSE(shown.empty());
+  const json& smooth = shown.back();
+  EXPECT_EQ(smooth["x"].size(), 41u);  // every 2.5 of 100 cycles/mm
+  // The rough curve's points lie on the smooth one, if the machine was quick enough to draw it.
+  for (std::size_t i = 0; shown.size() > 1 && i < shown[0]["x"].size(); ++i) {
+    const auto at = static_cast<std::size_t>(shown[0]["x"][i].get<double>() / 2.5);
+    EXPECT_NEAR(shown[0]["y"][i].get<double>(), smooth["y"][at].get<double>(), 1e-6) << i;
+  }
+  state["id"] = 6;
+  page.send(state);
+  EXPECT_TRUE(plots_until_idle().empty()) << "it stands already";
+}
+
 TEST(Bench, PutsTheSunWhereItsAnglesSayAndFollowsOneGhost) {
   RunningServer server;
   LivePage page(*server);

@@ -291,6 +291,7 @@ void Bench::Impl::show(const BenchState& state) {
   plots->let_quick_ones_pass(stop);
   if (state.picture && picture("preview", PictureQuality::preview)) {
     if (!ask->rests()) throw Cancelled();
+    plots->wish({state.id, key, {use.lens, use.camera.losses}, state.plots, threads, true});
     if (picture("picture", PictureQuality::full) && !solid) picture("finest", PictureQuality::finest);
   }
   if (!plots->wait(stop)) throw Cancelled();

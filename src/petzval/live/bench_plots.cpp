@@ -33,12 +33,26 @@ void step_back() {
 #endif
 }
 
-AnalysisRequest plot_request(const Losses& losses) {
+constexpr const char *mtf_plot = "mtf", *finely_shown = "|finely";
+
+/// What it shows, so that nothing is shown twice.
+std::string key_of(const PlotWish& wish, const std::string& name) {
+  return wish.finely && name == mtf_plot ? wish.key + finely_shown : wish.key;
+}
+
+AnalysisRequest plot_request(const Losses& losses, bool finely) {
   AnalysisRequest request;
   request.at.losses = losses;
   request.plots = true;
   request.polychromatic_mtf = true;
   request.mtf.frequencies_cpmm = {0, 10, 20, 40, 60, 80, 100};
+  constexpr double smooth_step_cpmm = 2.5;
+  if (finely) {
+    const double last_cpmm = request.mtf.frequencies_cpmm.back();
+    request.mtf.frequencies_cpmm.clear();
+    for (int i = 0; i * smooth_step_cpmm <= last_cpmm; ++i)
+      request.mtf.frequencies_cpmm.push_back(i * smooth_step_cpmm);
+  }
   request.mtf.detail = PupilDetail::quick();  // closer than a plot's lines are thin
   return request;
 }
@@ -128,12 +142,14 @@ bool BenchPlots::gives_way(const std::string& name) {
 
 void BenchPlots::show(const PlotWish& wish) {
   for (const std::string& name : wish.analyses) {
-    if (shown_[name] == wish.key) continue;
+    const std::string key = key_of(wish, name);
+    if (shown_[name] == key || shown_[name] == wish.key + finely_shown) continue;
     if (gives_way(name)) throw Cancelled();
+    const bool again = shown_[name] == wish.key;
     shown_[name].clear();
     std::string failed;
     try {
-      plot(wish, name);
+      plot(wish, name, again);
     } catch (const Cancelled&) {
       throw;
     } catch (const Error& error) {
@@ -142,14 +158,14 @@ void BenchPlots::show(const PlotWish& wish) {
       failed = "out of memory";
     }
     if (failed.empty())
-      shown_[name] = wish.key;
+      shown_[name] = key;
     else
       send_(
           {text_of({{"kind", "problem"}, {"id", wish.id}, {"stage", "plot:" + name}, {"text", failed}}), {}});
   }
 }
 
-void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
+void BenchPlots::plot(const PlotWish& wish, const std::string& name, bool again) {
   const StageTime time;
   Context context;
   const int all = wish.threads > 0 ? wish.threads : static_cast<int>(std::thread::hardware_concurrency());
@@ -158,7 +174,8 @@ void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
     context.threads = quick_ ? all : std::max(1, all / 2);
   }
   context.progress = [&](double, const std::string&) { return !gives_way(name); };
-  const AnalysisResult result = analyse(name, wish.lens.lens, plot_request(wish.lens.losses), context);
+  const AnalysisResult result =
+      analyse(name, wish.lens.lens, plot_request(wish.lens.losses, wish.finely), context);
   json plots = json::array();
   for (const Plot& each : result.plots) plots.push_back(plot_json(each));
   send_({text_of({{"kind", "plots"},
@@ -169,6 +186,7 @@ void BenchPlots::plot(const PlotWish& wish, const std::string& name) {
                   {"plots", std::move(plots)}}),
          {}});
   shown_at_[name] = Clock::now();
+  if (again) return;
   {
     const std::lock_guard lock(mutex_);
     took_ms_[name] = time.ms();

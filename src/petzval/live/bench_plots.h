@@ -22,7 +22,8 @@ struct PlotWish {
   std::string key = {};  ///< says everything of the lens
   CoatedLens lens = {};
   std::vector<std::string> analyses = {};
-  int threads = 0;  ///< that the whole bench has; slow plots take half of them
+  int threads = 0;      ///< that the whole bench has; slow plots take half of them
+  bool finely = false;  ///< of the MTF, as many frequencies as a smooth curve needs; others are smooth anyway
 };
 
 /// Makes the plots of the newest wish while the bench goes on, so that none of them delays the rays of the
@@ -47,7 +48,8 @@ class BenchPlots {
 
   void work();
   void show(const PlotWish& wish);
-  void plot(const PlotWish& wish, const std::string& name);
+  /// \param again  only smoother than before: what the hand waited for was that.
+  void plot(const PlotWish& wish, const std::string& name, bool again);
   bool gives_way(const std::string& name);
   /// As they were the last time; unless that is known, they are.
   bool are_quick(const std::vector<std::string>& analyses) const;

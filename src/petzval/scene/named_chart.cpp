@@ -16,7 +16,7 @@ namespace {
 
 int whole(double parameter, const char* chart) {
   if (!(parameter >= 1 && parameter <= 1e6) || parameter != std::floor(parameter))
-    throw InputError(fmt::format("{}:{}: a whole number from 1 up would be right", chart, parameter));
+    throw InputError(fmt::format("{}:{}: a whole number from 1 to 1000000 would be right", chart, parameter));
   return static_cast<int>(parameter);
 }
 
