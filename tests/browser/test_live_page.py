@@ -231,6 +231,7 @@ class LivePage(unittest.TestCase):
         self.change_shows("document.querySelector('[data-check=ghosts]').click()")
         self.change_shows(SLIDE, "threshold", 1000)
         self.assertIn("--starburst --ghost-threshold 10000 ", browser.text(".command"))
+        self.change_shows(CHOOSE, "scene", "slanted-edge")
         self.assertEqual(rings(), 0)
         self.assertIn("no sources", browser.text(".source-count"))
 

@@ -173,12 +173,22 @@ class Mirrors(ProgramTest):
 
     def test_refusals_are_one_line(self):
         lens = self.lens("p.json", PARABOLOID)
-        for command in (("lens", "ghosts", lens), ("lens", "reverse", lens, "-o", "r.json"),
-                        ("lens", "transfer", lens, "-o", "t.json"), ("lens", "convert", lens, "p.dat")):
+        for command in (("lens", "reverse", lens, "-o", "r.json"), ("lens", "transfer", lens, "-o", "t.json"), ("lens", "convert", lens, "p.dat")):
             done = self.petzval(*command)
             self.assertEqual(done.returncode, 2, (command, done.stderr))
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertIn("mirror", done.stderr)
+
+    def test_ghosts_are_those_of_glass(self):
+        """A mirror makes none of its own, and what it folds has those that it had: as in flare/ghost_table_test.cpp."""
+        self.assertEqual(self.rows("ghosts", self.lens("p.json", PARABOLOID)), [])
+        straight, folded = (self.rows("ghosts", self.lens("d.json", doublet(is_folded))) for is_folded in (False, True))
+        self.assertEqual(len(straight), 10)  # pairs of five faces
+        by_pair = {(row["first_surface"], row["second_surface"]): row for row in folded}
+        self.assertEqual(len(by_pair), 10)
+        for row in straight:
+            same = by_pair[(row["first_surface"], row["second_surface"])]
+            self.assertAlmostEqual(same["diameter_mm"], row["diameter_mm"], delta=1e-3 * row["diameter_mm"])
 
     def test_bad_mirrors_and_apertures_say_where(self):
         for key, value, word in (("glass", "SCHOTT:N-BK7", "surfaces[0].glass"), ("mirror", 3, "mirror"),
