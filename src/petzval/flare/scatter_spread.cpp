@@ -39,8 +39,7 @@ void ScatterSpreadOptions::validate() const {
 
 namespace {
 
-/// How near its place an image is to lie, over its distance from the axis: the edge of a hole is known to the
-/// inverse of its width times this.
+/// How near to its place an image must lie, as a share of its distance from the axis.
 constexpr double close_image = 1e-5;
 
 /// Of a lens without symmetry, by Broyden's method: its derivatives are those of the designed lens first.
