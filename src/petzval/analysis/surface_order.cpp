@@ -7,7 +7,6 @@
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/trace/stop_corners.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
