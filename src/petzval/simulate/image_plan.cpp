@@ -6,13 +6,13 @@
 #include <petzval/base/error.h>
 #include <petzval/base/units.h>
 #include <petzval/imaging/depth_field.h>
-#include <petzval/imaging/field_error.h>
 #include <petzval/imaging/field_of_view.h>
 #include <petzval/imaging/image_table.h>
 #include <petzval/lens/lens_file.h>
 #include <petzval/lens/ray_transfer.h>
 #include <petzval/optics/build.h>
 #include <petzval/scene/depth_map.h>
+#include <petzval/simulate/asked_of_table.h>
 #include <petzval/simulate/image.h>
 #include <petzval/simulate/imaging_memory.h>
 #include <petzval/simulate/lens_on_sensor.h>
@@ -194,13 +194,6 @@ double image_height_mm(const Scene& scene, double pitch_um, const std::optional<
   return half_diagonal_mm + pixels_beyond * pitch_um * mm_per_um;
 }
 
-/// What places over the frame must cover: a frame, and cells about it in whose light its pixels share.
-std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
-  constexpr double pixels_beyond = 8;
-  const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
-  return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
-}
-
 /// Every `step`th of the wavelengths, and the last.
 std::vector<double> thinned(const std::vector<double>& wavelengths_nm, std::size_t step) {
   std::vector<double> few;
@@ -275,18 +268,6 @@ bool expects_object(const Camera& camera) {
   return camera.focus.kind == Focus::Kind::design || (nearby && is_afocal(first_order(camera.lens)));
 }
 
-/// How closely an image asks a table to say how light spreads.
-SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um) {
-  constexpr int cells_a_pixel = 2;  // as many or more
-  return {pitch_um / cells_a_pixel, options.imaging.product.tolerance,
-          options.imaging.tail_pixels * pitch_um};
-}
-
-bool mixes_psfs(const ImageOptions& options) {
-  return options.imaging.method == BlurMethod::product &&
-         options.imaging.interpolation == PsfInterpolation::psf;
-}
-
 /// Scene and table, before frame and scene are fitted to each other.
 ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, TableDetail detail,
                  const Context& context, ImagingMemory* memory) {
@@ -330,23 +311,6 @@ ImagePlan source(SceneInput input, const Camera& camera, ImageOptions options, T
   LensDataTable built =
       memory != nullptr ? memory->table(lens_key(focused, table, pitch_um), build) : build();
   return {std::move(scene), std::move(built), {}, {}, std::move(options), in_use(focused, table, camera)};
-}
-
-/// What a stored table misses between its fields.
-double stored_table_error(const TableCamera& camera, const Scene& scene, const ImageOptions& options) {
-  const LensDataTable& table = camera.table;
-  if (table.frame || !mixes_psfs(options)) return 0;
-  const double side_mm = table.real_image_height_mm.back() / std::sqrt(2.0);
-  const double pitch_um =
-      camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, table.first_order);
-  if (!(pitch_um > 0)) return 0;  // tables of other programs may not say how wide a scene is on the sensor
-  try {
-    return error_between_fields(
-        table, camera.sensor ? half_frame_mm(camera.sensor->geometry) : std::array{side_mm, side_mm},
-        spread_wanted(options, pitch_um));
-  } catch (const InputError&) {
-    return 0;  // kernels of so many cells are not made; forming the image says so if it cannot do with fewer
-  }
 }
 
 /// A stored table is what it is: the scene stands where it was made for.

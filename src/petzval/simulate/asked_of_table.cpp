@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <petzval/base/error.h>
+#include <petzval/base/units.h>
+#include <petzval/imaging/field_error.h>
+#include <petzval/imaging/field_of_view.h>
+#include <petzval/simulate/asked_of_table.h>
+
+#include <cmath>
+
+namespace petzval {
+
+std::array<double, 2> half_frame_mm(const SensorGeometry& frame) {
+  constexpr double pixels_beyond = 8;
+  const double beyond_mm = pixels_beyond * frame.pitch_um * mm_per_um;
+  return {frame.width_mm() / 2 + beyond_mm, frame.height_mm() / 2 + beyond_mm};
+}
+
+SpreadWanted spread_wanted(const ImageOptions& options, double pitch_um) {
+  constexpr int cells_a_pixel = 2;  // as many or more
+  return {pitch_um / cells_a_pixel, options.imaging.product.tolerance,
+          options.imaging.tail_pixels * pitch_um};
+}
+
+bool mixes_psfs(const ImageOptions& options) {
+  return options.imaging.method == BlurMethod::product &&
+         options.imaging.interpolation == PsfInterpolation::psf;
+}
+
+double stored_table_error(const TableCamera& camera, const Scene& scene, const ImageOptions& options) {
+  const LensDataTable& table = camera.table;
+  if (table.frame || !mixes_psfs(options)) return 0;
+  const double side_mm = table.real_image_height_mm.back() / std::sqrt(2.0);
+  try {
+    const double pitch_um =
+        camera.sensor ? camera.sensor->geometry.pitch_um : natural_pitch_um(scene, table.first_order);
+    if (!(pitch_um > 0)) return 0;  // tables of other programs may not say how wide a scene is on the sensor
+    return error_between_fields(
+        table, camera.sensor ? half_frame_mm(camera.sensor->geometry) : std::array{side_mm, side_mm},
+        spread_wanted(options, pitch_um));
+  } catch (const InputError&) {
+    return 0;  // there is no pitch, or kernels would have too many cells; forming the image says so if it
+               // cannot do with fewer
+  }
+}
+
+}  // namespace petzval
