@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <petzval/analysis/point_spread.h>
 #include <petzval/base/error.h>
-#include <petzval/optics/build.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/scene/wavelength_list.h>
 #include <petzval/sensor/sensor.h>
+#include <petzval/simulate/camera_table.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,31 +22,10 @@ namespace {
 
 struct BuildCommand {
   CameraChoice camera;
+  CameraTableOptions table;
   std::string output, wavelengths, sensor;
-  std::optional<double> image_height_mm;
-  int field_count = TableOptions{}.field_count, frame_places = TableOptions{}.frame_places;
   bool over_frame = false;
 };
-
-TableOptions table_options(const BuildCommand& command) {
-  TableOptions options;
-  options.field_count = command.field_count;
-  if (!command.wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(command.wavelengths);
-  if (command.camera.apertures == Camera::Apertures::ignored) options.clip = Tracer::Clip::stop_only;
-  if (command.image_height_mm && !(*command.image_height_mm > 0))
-    throw InputError(
-        fmt::format("--image-height {}: a positive number of mm would be right", *command.image_height_mm));
-  if (command.image_height_mm) options.max_image_height_mm = *command.image_height_mm;
-  options.frame_places = command.frame_places;
-  if (!command.sensor.empty()) {
-    const SensorGeometry frame = read_sensor(command.sensor).geometry;
-    options.max_image_height_mm = frame.half_diagonal_mm();
-    options.half_frame_mm = {frame.width_mm() / 2, frame.height_mm() / 2};
-  }
-  if (command.over_frame) options.places = TableOptions::Places::over_frame;
-  options.validate();
-  return options;
-}
 
 void note_dark_places(const LensDataTable& table, const Shared& shared) {
   const auto dark = std::count(table.g_source_sr.begin(), table.g_source_sr.end(), 0.0);
@@ -84,14 +63,14 @@ void note_cut_psfs(const LensDataTable& table, const Shared& shared) {
 
 void build(const BuildCommand& command, const Shared& shared) {
   require_extension(command.output, table_extensions(), "a lens data table");
-  TableOptions options = table_options(command);
-  const Context context = context_of(shared);
-  const Camera camera = command.camera.camera(shared);
-  options.losses = camera.losses;
-  const LensDataTable table = result_within(context, [&](const ProgressCallback& progress) {
-    return build_lens_data_table(lens_in_use(camera, context), options, progress);
-  });
-  note_short_table(table, options.max_image_height_mm, shared);
+  CameraTableOptions options = command.table;
+  if (!command.wavelengths.empty()) options.wavelengths_nm = parse_wavelengths_nm(command.wavelengths);
+  if (command.over_frame) options.places = TableOptions::Places::over_frame;
+  Camera camera = command.camera.camera(shared);
+  if (!command.sensor.empty()) camera.sensor = read_sensor(command.sensor);
+  const LensDataTable table = camera_table(camera, options, context_of(shared));
+  const double corner_mm = camera.sensor ? camera.sensor->geometry.half_diagonal_mm() : 0;
+  note_short_table(table, options.image_height_mm.value_or(corner_mm), shared);
   note_cut_psfs(table, shared);
   write_table(table, command.output);
 }
@@ -114,12 +93,20 @@ void add_optics_build(CLI::App& optics, Shared& shared) {
   CLI::Option* sensor =
       command->add_option("--sensor", options->sensor,
                           "Reach the corner of this sensor: 768x576@6.25 (pitch in um), file or name");
-  command->add_option("--image-height", options->image_height_mm, "Reach this real image height [mm]")
+  command->add_option("--image-height", options->table.image_height_mm, "Reach this real image height [mm]")
       ->excludes(sensor);
-  command->add_option("--fields", options->field_count, "Number of fields, the axis included")
+  CLI::Option* fields = command->add_option(
+      "--fields", options->table.field_count,
+      "Evenly spaced fields, the axis included; default: 31, and with --sensor those between them that "
+      "pictures need");
+  command
+      ->add_option("--tolerance", options->table.tolerance,
+                   "With --sensor: error of pictures that fields are close enough for")
+      ->needs(sensor)
+      ->excludes(fields)
       ->capture_default_str();
   command
-      ->add_option("--places", options->frame_places,
+      ->add_option("--places", options->table.frame_places,
                    "Places along the longer side, of a table over the frame: for lenses with poses or blades")
       ->capture_default_str();
   command->add_flag("--over-frame", options->over_frame, "Places over the frame for a centred lens too");

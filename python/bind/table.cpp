@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lens data tables, and cameras that have one in the place of a lens.
 #include <fmt/format.h>
-#include <petzval/optics/build.h>
 #include <petzval/optics/table_export.h>
 #include <petzval/optics/table_file.h>
 #include <petzval/optics/table_import.h>
+#include <petzval/simulate/camera_table.h>
 
 #include "call.h"
 #include "camera.h"
@@ -16,36 +16,21 @@ namespace petzval::python {
 namespace {
 
 LensDataTable built(const CameraInPython& self, const Numbers& wavelengths_nm, Maybe<double> image_height_mm,
-                    int fields, int places, bool over_frame, int threads, const nb::object& progress) {
+                    Maybe<int> fields, double tolerance, int places, bool over_frame, int threads,
+                    const nb::object& progress) {
   const Camera camera = std::get<Camera>(optics_of(self));
-  TableOptions options;
-  options.wavelengths_nm = wavelengths_nm;
-  options.field_count = fields, options.frame_places = places;
-  if (camera.apertures == Camera::Apertures::ignored) options.clip = Tracer::Clip::stop_only;
-  options.losses = camera.losses;
-  if (image_height_mm && !(*image_height_mm > 0))
-    throw InputError(fmt::format("`image_height_mm` {}; a positive length would be right", *image_height_mm));
-  if (image_height_mm) {
-    options.max_image_height_mm = *image_height_mm;
-  } else if (camera.sensor) {
-    const SensorGeometry& frame = camera.sensor->geometry;
-    options.max_image_height_mm = frame.half_diagonal_mm();
-    options.half_frame_mm = {frame.width_mm() / 2, frame.height_mm() / 2};
-  }
+  CameraTableOptions options{wavelengths_nm, image_height_mm, fields, tolerance, places};
   if (over_frame) options.places = TableOptions::Places::over_frame;
-  options.validate();
   Call call({threads, 1, progress});
-  return call([&](const Context& context) {
-    return result_within(context, [&](const ProgressCallback& told) {
-      return build_lens_data_table(lens_in_use(camera, context), options, told);
-    });
-  });
+  return call([&](const Context& context) { return camera_table(camera, options, context); });
 }
 
 constexpr const char* built_text =
     "Computes the table of a camera's lens as it is used, as `petzval optics build` does; focus \"auto\" is "
     "that of the design. It reaches the corner of the camera's sensor, or `image_height_mm`, or else the "
-    "lens's largest field. `wavelengths_nm`: none: the lens's own. `fields`: how many, the axis included. "
+    "lens's largest field. `wavelengths_nm`: none: the lens's own. `fields`: how many, evenly spaced, the "
+    "axis included; None: 31, and those between them that pictures on the "
+    "camera's sensor need to `tolerance`. "
     "`places`: how many along the longer side of a table `over_frame`, which lenses with poses or blades "
     "need. "
     "Raises InputError; Cancelled.";
@@ -127,8 +112,8 @@ void bind_table_itself(nb::module_& module) {
           "load", [](const std::string& path) { return read_table(path); }, nb::arg("path"),
           "Reads a .h5 of `petzval optics build`.")
       .def_static("build", built, nb::arg("camera"), nb::kw_only(), nb::arg("wavelengths_nm") = Numbers(),
-                  nb::arg("image_height_mm").none() = nb::none(),
-                  nb::arg("fields") = TableOptions().field_count,
+                  nb::arg("image_height_mm").none() = nb::none(), nb::arg("fields").none() = nb::none(),
+                  nb::arg("tolerance") = CameraTableOptions().tolerance,
                   nb::arg("places") = TableOptions().frame_places, nb::arg("over_frame") = false,
                   PETZVAL_CALL_KEYWORDS, built_text)
       .def_static("import_from", imported, nb::arg("path"), nb::kw_only(), nb::arg("source") = "auto",

@@ -13,6 +13,7 @@
 // The lens by itself, and the three steps of a camera: light on the sensor, a raw image, a picture.
 #include <petzval/simulate/analysis.h>
 #include <petzval/simulate/camera.h>
+#include <petzval/simulate/camera_table.h>
 #include <petzval/simulate/clip.h>
 #include <petzval/simulate/develop.h>
 #include <petzval/simulate/expose.h>

@@ -79,11 +79,14 @@ class Optics(ProgramTest):
         self.assert_refused(*build, "-o", "no/folder/t.h5", words=["no/folder"])
         for option, value, word in (("--wavelengths", "blue", "blue"), ("--fields", "1", "fields"),
                                     ("--focus", "near", "design, infinity"), ("--focus", "5", "5m or 5mm"), ("--focus", "5mm", "m"),
-                                    ("--f-number", "1.2", "f/1.775"), ("--image-height", "-3", "--image-height"),
+                                    ("--f-number", "1.2", "f/1.775"), ("--image-height", "-3", "an image height of -3 mm"),
                                     ("--sensor", "768x", "768x"), ("--wavelengths", "100", "nm")):
             with self.subTest(option=option, value=value):
                 self.assert_refused(*build, option, value, "-o", "t.h5", words=[word])
         self.assert_refused(*build, "--sensor", "64x48@6", "--image-height", "1", "-o", "t.h5")
+        self.assert_refused(*build, "--sensor", "64x48@6", "--tolerance", "0", "-o", "t.h5", words=["tolerance of 0"])
+        self.assert_refused(*build, "--tolerance", "1e-3", "-o", "t.h5", words=["--sensor"])
+        self.assert_refused(*build, "--sensor", "64x48@6", "--tolerance", "1e-3", "--fields", "9", "-o", "t.h5", words=["--fields"])
 
     def test_bad_files(self):
         self.assert_refused("optics", "info", "absent.h5", words=["absent.h5"])

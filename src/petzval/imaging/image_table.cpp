@@ -63,10 +63,13 @@ LensDataTable table_over_frame(const Lens& lens, const TableOptions& options, co
   return table;
 }
 
+enum class Psfs { where_chosen, at_all_fields };
+
 LensDataTable table_by_height(const Lens& lens, const TableOptions& asked, const SpreadWanted& wanted,
-                              const ProgressCallback& progress) {
+                              Psfs psfs, const ProgressCallback& progress) {
   TableOptions options = asked;
-  if (wanted.of_a_preview()) options.coarse = {wanted.cell_um, wanted.tolerance};
+  if (wanted.of_a_preview() && psfs == Psfs::where_chosen)
+    options.coarse = {wanted.cell_um, wanted.tolerance};
   if (options.field_count < fewest_to_choose) return build_lens_data_table(lens, options, progress);
   constexpr int most_fields = 1000;  // TableOptions::validate()
   int finer =
@@ -86,22 +89,31 @@ LensDataTable table_by_height(const Lens& lens, const TableOptions& asked, const
     kept.push_back(field);
   std::ranges::sort(kept);
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-  parts.add_missing_psfs(chosen.fields, both.rest());
+  parts.add_missing_psfs(psfs == Psfs::at_all_fields ? kept : chosen.fields, both.rest());
   LensDataTable table = std::move(parts).finished(kept);
   table.interpolation_error = chosen.error;
   return table;
+}
+
+bool is_over_frame(const Lens& lens, const TableOptions& options) {
+  return options.places == TableOptions::Places::over_frame ||
+         (options.places == TableOptions::Places::automatic && needs_places_over_frame(lens));
 }
 
 }  // namespace
 
 LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
                                 const ProgressCallback& progress) {
-  const bool over_frame =
-      options.places == TableOptions::Places::over_frame ||
-      (options.places == TableOptions::Places::automatic && needs_places_over_frame(lens));
-  if (needs_places_over_frame(lens) && over_frame) return table_over_frame(lens, options, wanted, progress);
-  if (over_frame) return build_lens_data_table(lens, options, progress);
-  return table_by_height(lens, options, wanted, progress);
+  if (!is_over_frame(lens, options))
+    return table_by_height(lens, options, wanted, Psfs::where_chosen, progress);
+  if (needs_places_over_frame(lens)) return table_over_frame(lens, options, wanted, progress);
+  return build_lens_data_table(lens, options, progress);
+}
+
+LensDataTable build_table_of_pictures(const Lens& lens, const TableOptions& options,
+                                      const SpreadWanted& wanted, const ProgressCallback& progress) {
+  if (is_over_frame(lens, options)) return build_lens_data_table(lens, options, progress);
+  return table_by_height(lens, options, wanted, Psfs::at_all_fields, progress);
 }
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lens data table of one image: PSFs where they are needed.
+// Lens data tables for images: PSFs where they are needed.
 #pragma once
 
 #include <petzval/imaging/spread_wanted.h>
@@ -26,5 +26,11 @@ namespace petzval {
 /// half as much) and a wall to three tenths of it. \throws InputError as build_lens_data_table().
 LensDataTable build_image_table(const Lens& lens, const TableOptions& options, const SpreadWanted& wanted,
                                 const ProgressCallback& progress = {});
+
+/// A table that is kept, for pictures that ask this of it: PSFs at all fields that options.field_count asks
+/// for, and at those between them that build_image_table() would take too. Places over the frame: all of
+/// them, as build_lens_data_table(). \throws InputError as that.
+LensDataTable build_table_of_pictures(const Lens& lens, const TableOptions& options,
+                                      const SpreadWanted& wanted, const ProgressCallback& progress = {});
 
 }  // namespace petzval
