@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <petzval/base/whole_file.h>
 #include <petzval/render/materials/material.h>
 
 #include <algorithm>
@@ -76,8 +77,12 @@ void read_diffuse_transmission(const Parameters& parameters, const TextureLibrar
   material.transmittance_scale = parameters.number("scale", 1);
 }
 
-/// By index: what materials share.
-using Coatings = std::map<double, std::shared_ptr<const CoatingAlbedo>>;
+/// What materials share.
+struct SharedParts {
+  std::map<double, std::shared_ptr<const CoatingAlbedo>> coatings;      ///< by index
+  std::map<std::string, std::shared_ptr<const MeasuredBrdf>> measured;  ///< by path
+  std::shared_ptr<const Sheen> sheen;
+};
 
 /// What a clear coat is: pbrt-v4's parameters of coateddiffuse and coatedconductor.
 const Layering& read_layering(const Parameters& parameters, Unsupported& unsupported, const char* eta,
@@ -106,7 +111,7 @@ const Layering& read_layering(const Parameters& parameters, Unsupported& unsuppo
 }
 
 void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& textures,
-                         Unsupported& unsupported, Coatings& coatings, Material& material) {
+                         Unsupported& unsupported, SharedParts& shared, Material& material) {
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
   read_roughness(parameters, textures, material);
@@ -115,7 +120,7 @@ void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& tex
   // The closed form has all orders of reflection and nothing that is absorbed.
   if (material.layering.thickness > 0 || material.layering.max_depth > 0)
     material.kind = Material::Kind::layered;
-  std::shared_ptr<const CoatingAlbedo>& coating = coatings[eta];
+  std::shared_ptr<const CoatingAlbedo>& coating = shared.coatings[eta];
   if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
   material.coating = coating;
 }
@@ -169,9 +174,26 @@ void read_subsurface(const Parameters& parameters, const TextureLibrary& texture
       unsupported.report(parameter->at, "a subsurface material that varies over its surface");
 }
 
+void read_measured(const Parameters& parameters, const TextureLibrary& textures, SharedParts& shared,
+                   Material& material) {
+  material.kind = Material::Kind::measured;
+  const std::string name = parameters.string("filename", "");
+  if (name.empty())
+    throw scene_error(parameters.location(), "a measured material needs \"string filename\", a .bsdf file");
+  const Location& at = parameters.location_of("filename");
+  const std::string path = resolved_path(at, name);
+  std::shared_ptr<const MeasuredBrdf>& measured = shared.measured[path];
+  if (!measured) try {
+      measured = std::make_shared<const MeasuredBrdf>(read_whole_file(path), name, textures.groups());
+    } catch (const InputError& error) {
+      throw scene_error(at, error.what());
+    }
+  material.measured = measured;
+}
+
 /// Petzval's own, for KHR_materials_sheen of glTF.
 void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Unsupported& unsupported,
-                std::shared_ptr<const Sheen>& sheen, Material& material) {
+                SharedParts& shared, Material& material) {
   using enum Material::Kind;
   const Parameter* colour = parameters.find("sheencolor");
   if (!colour) return;
@@ -179,8 +201,8 @@ void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Un
     return unsupported.report(colour->at, "sheen on a material of this kind");
   material.sheen_colour = textures.spectrum_parameter(parameters, "sheencolor", SpectrumRole::albedo, 0);
   material.sheen_roughness = textures.float_parameter(parameters, "sheenroughness", 0);
-  if (!sheen) sheen = std::make_shared<const Sheen>();
-  material.sheen = sheen;
+  if (!shared.sheen) shared.sheen = std::make_shared<const Sheen>();
+  material.sheen = shared.sheen;
 }
 
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
@@ -220,7 +242,7 @@ Lanes base_at(const Material& material, const Microfacets& coat, const TexturePo
 }
 
 Material make_material(const SceneDescription& scene, const Entity& entity, const TextureLibrary& textures,
-                       Unsupported& unsupported, Coatings& coatings, std::shared_ptr<const Sheen>& sheen) {
+                       Unsupported& unsupported, SharedParts& shared) {
   const Parameters& parameters = entity.parameters;
   Material material;
   if (entity.type == "diffuse") {
@@ -228,7 +250,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
   } else if (entity.type == "diffusetransmission") {
     read_diffuse_transmission(parameters, textures, material);
   } else if (entity.type == "coateddiffuse") {
-    read_coated_diffuse(parameters, textures, unsupported, coatings, material);
+    read_coated_diffuse(parameters, textures, unsupported, shared, material);
   } else if (entity.type == "coatedconductor") {
     read_coated_conductor(parameters, textures, unsupported, material, entity.location());
   } else if (entity.type == "conductor") {
@@ -239,6 +261,8 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     read_roughness(parameters, textures, material);
   } else if (entity.type == "subsurface") {
     read_subsurface(parameters, textures, unsupported, material);
+  } else if (entity.type == "measured") {
+    read_measured(parameters, textures, shared, material);
   } else if (entity.type == "thindielectric") {
     material.kind = Material::Kind::thin_dielectric;
     material.eta = textures.spectrum_parameter(parameters, "eta", SpectrumRole::unbounded, 1.5);
@@ -253,7 +277,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
     return material;
   }
   parameters.find("type");
-  read_sheen(parameters, textures, unsupported, sheen, material);
+  read_sheen(parameters, textures, unsupported, shared, material);
   material.normal_map = textures.normal_map(parameters);
   unsupported.report_unused(parameters, fmt::format("material \"{}\"", entity.type));
   return material;
@@ -312,6 +336,8 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
       return Bsdf::dielectric(eta->at(point, group), hero, facets_at(*this, point, group));
     case Kind::thin_dielectric:
       return Bsdf::thin_dielectric(eta->at(point, group));
+    case Kind::measured:
+      return Bsdf::measured(*measured, group);
     case Kind::diffuse:
     case Kind::none:
     case Kind::mix:
@@ -324,10 +350,9 @@ std::vector<Material> make_materials(const SceneDescription& scene, const Textur
                                      Unsupported& unsupported) {
   std::vector<Material> materials;
   materials.reserve(scene.materials.size());
-  Coatings coatings;
-  std::shared_ptr<const Sheen> sheen;
+  SharedParts shared;
   for (const Entity& entity : scene.materials)
-    materials.push_back(make_material(scene, entity, textures, unsupported, coatings, sheen));
+    materials.push_back(make_material(scene, entity, textures, unsupported, shared));
   check_mixtures(materials, scene);
   return materials;
 }

@@ -4,6 +4,7 @@
 
 #include <petzval/render/materials/bsdf.h>
 #include <petzval/render/materials/coating_albedo.h>
+#include <petzval/render/materials/measured_brdf.h>
 #include <petzval/render/materials/sheen.h>
 #include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
@@ -24,6 +25,7 @@ struct Material {
     conductor,
     dielectric,
     thin_dielectric,
+    measured,
     none,
     mix
   };
@@ -38,6 +40,7 @@ struct Material {
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
+  std::shared_ptr<const MeasuredBrdf> measured;
   std::shared_ptr<const NormalMap> normal_map;  ///< null: none
   std::shared_ptr<const Sheen> sheen;           ///< null: none
   SpectrumTexture sheen_colour;
