@@ -134,6 +134,15 @@ def texts(folder):
     yield "measured", scene('Material "measured" "string filename" "metal.bsdf"')
     measured_file(folder / "brushed.bsdf", Metal(0.12, 0.4), 12, 65, 48, 24)
     yield "measured, brushed", scene('Material "measured" "string filename" "brushed.bsdf"')
+    u, v = np.meshgrid((np.arange(256) + 0.5) / 256, (np.arange(128) + 0.5) / 128)
+    light_noise.write_exr(folder / "waves.exr", 1 + np.sin(2 * np.pi * 10 * u) * np.sin(2 * np.pi * 5 * v))
+    bumps = 'Texture "waves" "float" "imagemap" "string filename" "waves.exr" "float scale" 0.02\n'
+    for name, material in {"diffuse": '"diffuse" "spectrum reflectance" [ 300 0.4 900 0.4 ]',
+                           "metal": '"conductor" "spectrum eta" [ 300 0.5 900 0.5 ] "spectrum k" [ 300 3 900 3 ] "float roughness" 0.1',
+                           "coated": '"coateddiffuse" "spectrum reflectance" [ 300 0.4 900 0.4 ] "float roughness" 0.1 "float thickness" 0.01'}.items():
+        yield f"bumps, {name}", scene(f'{bumps}Material {material} "texture displacement" "waves"')
+    board = 'Shape "trianglemesh" "point3 P" [ -1.5 -.9 -.9 1.5 -.9 -.9 1.5 .2 .9 -1.5 .2 .9 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ] "integer indices" [ 0 1 2 0 2 3 ]'
+    yield "bumps, board", scene(f'{bumps}Material "diffuse" "texture displacement" "waves"', board)
 
 
 # -------------------------------------------------------------------------------------------------------- programs

@@ -206,6 +206,8 @@ const std::vector<Format>& formats() {
         "Material \"conductor\"\n",
         "Material \"coateddiffuse\"\n",
         "Material \"interface\"\n",
+        "\"texture displacement\" \"h\"",
+        "Material \"measured\" \"string filename\" \"m.bsdf\"\n",
         "Material \"subsurface\"\n",
         "Material \"subsurface\" \"rgb reflectance\" [ .8 .5 .2 ] \"float mfp\" .1\n",
         "Material \"subsurface\" \"string name\" \"Skin1\"\n",

@@ -205,6 +205,18 @@ void read_sheen(const Parameters& parameters, const TextureLibrary& textures, Un
   material.sheen = shared.sheen;
 }
 
+/// What tilts its shading normal.
+void read_tilt(const Parameters& parameters, const TextureLibrary& textures, Material& material) {
+  material.normal_map = textures.normal_map(parameters);
+  if (material.kind == Material::Kind::mix || material.kind == Material::Kind::none) return;
+  const FloatTexture height = textures.float_parameter(parameters, "displacement");
+  if (!height || height->is_constant()) return;
+  if (material.normal_map)
+    throw scene_error(parameters.location_of("displacement"),
+                      "a material with both a normal map and a displacement; one of them would be right");
+  material.bump_map = std::make_shared<const BumpMap>(height);
+}
+
 void read_mix(const SceneDescription& scene, const Parameters& parameters, const TextureLibrary& textures,
               Unsupported& unsupported, Material& material) {
   material.kind = Material::Kind::mix;
@@ -278,7 +290,7 @@ Material make_material(const SceneDescription& scene, const Entity& entity, cons
   }
   parameters.find("type");
   read_sheen(parameters, textures, unsupported, shared, material);
-  material.normal_map = textures.normal_map(parameters);
+  read_tilt(parameters, textures, material);
   unsupported.report_unused(parameters, fmt::format("material \"{}\"", entity.type));
   return material;
 }
@@ -366,7 +378,7 @@ bool varies(const std::vector<Material>& materials, int index) {
        {&material.roughness_u, &material.roughness_v, &material.base_roughness_u, &material.base_roughness_v,
         &material.mix_amount, &material.sheen_roughness})
     if (*each && !(*each)->is_constant()) return true;
-  if (material.normal_map) return true;
+  if (material.normal_map || material.bump_map) return true;
   return material.kind == Material::Kind::mix &&
          (varies(materials, material.mixed[0]) || varies(materials, material.mixed[1]));
 }

@@ -6,6 +6,7 @@
 #include <petzval/render/materials/coating_albedo.h>
 #include <petzval/render/materials/measured_brdf.h>
 #include <petzval/render/materials/sheen.h>
+#include <petzval/render/textures/bump_map.h>
 #include <petzval/render/textures/normal_map.h>
 #include <petzval/render/textures/texture_library.h>
 
@@ -42,6 +43,7 @@ struct Material {
   bool reflectance_through_coating = false;
   std::shared_ptr<const MeasuredBrdf> measured;
   std::shared_ptr<const NormalMap> normal_map;  ///< null: none
+  std::shared_ptr<const BumpMap> bump_map;      ///< null: none; at most one of the two
   std::shared_ptr<const Sheen> sheen;           ///< null: none
   SpectrumTexture sheen_colour;
   FloatTexture sheen_roughness;
