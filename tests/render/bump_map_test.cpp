@@ -52,8 +52,7 @@ const char* const bumped_shapes[] = {
     "Rotate 60 1 0.2 0\nShape \"disk\" \"float radius\" 2 \"float innerradius\" 0.2",
     "Scale -1 1 2\nShape \"sphere\"",
     "ReverseOrientation\nShape \"sphere\"",
-    "Shape \"trianglemesh\" \"point3 P\" [ -2 0 -2 2 0.5 -2 2 0 2 ] \"point2 uv\" [ 0 0 3 0 0 2 ] \"integer "
-    "indices\" [ 0 1 2 ]",
+    "Shape \"trianglemesh\" \"point3 P\" [ -2 0 -2 2 0.5 -2 2 0 2 ] \"point2 uv\" [ 0 0 3 0 0 2 ]",
     "ObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\nRotate 30 1 2 3\nScale 1 2 1.5\nObjectInstance \"o\"",
 };
 

@@ -119,7 +119,7 @@ TEST(MeasuredBrdf, SamplesItsDensity) {
         }
       }
       cells.expect_density(samples, 24, 0.01, std::string(name) + " at " + std::to_string(theta),
-                           [&](Vector3 wi) { return brdf.pdf(wo, wi); });
+                           [&, &each = brdf](Vector3 wi) { return each.pdf(wo, wi); });
       // The metal keeps less than all of the light; what its facets lose to each other is small.
       double expected = 0;
       constexpr int rings = 400, sectors = 400;
