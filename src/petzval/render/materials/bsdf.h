@@ -49,8 +49,9 @@ class Bsdf {
   /// (Guo, Hasan and Zhao 2018). value() is a draw whose mean is f, the same for the same directions; pdf()
   /// is near the density of sample(), near enough to weigh two ways of sampling.
   /// \param first  of the base: its reflectance, or eta in air. \param second  k in air, of a metal.
+  /// \param thickness  here, if not that of `layering`.
   static Bsdf layered(const Lanes& first, const Lanes& second, Microfacets coat, Microfacets base,
-                      const Layering& layering);
+                      const Layering& layering, std::optional<double> thickness = {});
   /// `eta`: inside / outside for each lane; `hero`: the lane that decides where the light goes.
   static Bsdf dielectric(const Lanes& eta, int hero, Microfacets facets);
   static Bsdf thin_dielectric(const Lanes& eta);
@@ -112,6 +113,7 @@ class Bsdf {
   bool mirror_ = false, disperses_ = false;
   const CoatingAlbedo* coating_ = nullptr;
   const Layering* layering_ = nullptr;
+  double thickness_ = 0;           ///< of the coat
   Microfacets base_facets_{0, 0};  ///< below the coat
   const MeasuredBrdf* measured_ = nullptr;
   int group_ = 0;  ///< of wavelengths, of what is measured

@@ -85,14 +85,22 @@ struct SharedParts {
 };
 
 /// What a clear coat is: pbrt-v4's parameters of coateddiffuse and coatedconductor.
-const Layering& read_layering(const Parameters& parameters, Unsupported& unsupported, const char* eta,
-                              Material& material) {
+const Layering& read_layering(const Parameters& parameters, const TextureLibrary& textures,
+                              Unsupported& unsupported, const char* eta, Material& material) {
   Layering& layering = material.layering;
-  layering.eta = parameters.number(eta, 1.5);
+  const auto even = [&](const char* name, double otherwise) {
+    const Parameter* texture = parameters.find(name, {"texture"});
+    if (texture) unsupported.report(texture->at, fmt::format("a texture of \"{}\"", name));
+    return texture ? otherwise : parameters.number(name, otherwise);
+  };
+  layering.eta = even(eta, 1.5);
   if (!(layering.eta > 1 && layering.eta < 4))
     throw scene_error(parameters.location_of(eta),
                       fmt::format("a coating of index {}; above 1 and below 4 would be right", layering.eta));
-  layering.thickness = parameters.number("thickness", 0);
+  if (parameters.find("thickness", {"texture"}))
+    material.coat_thickness = textures.float_parameter(parameters, "thickness");
+  else
+    layering.thickness = parameters.number("thickness", 0);
   if (!(layering.thickness >= 0))
     throw scene_error(parameters.location_of("thickness"), "0 or more would be right");
   const auto count = [&](const char* name, int otherwise) {
@@ -105,7 +113,8 @@ const Layering& read_layering(const Parameters& parameters, Unsupported& unsuppo
   layering.walks = count("nsamples", 1);
   parameters.find("g");  // of a medium, which there is none of
   if (const Parameter* albedo = parameters.find("albedo"))
-    if (std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
+    if (albedo->type == "texture" ||
+        std::any_of(albedo->numbers.begin(), albedo->numbers.end(), [](double v) { return v != 0; }))
       unsupported.report(albedo->at, "a medium inside a coating");
   return layering;
 }
@@ -115,10 +124,10 @@ void read_coated_diffuse(const Parameters& parameters, const TextureLibrary& tex
   material.kind = Material::Kind::coated_diffuse;
   material.reflectance = textures.spectrum_parameter(parameters, "reflectance", SpectrumRole::albedo, 0.5);
   read_roughness(parameters, textures, material);
-  const double eta = read_layering(parameters, unsupported, "eta", material).eta;
+  const double eta = read_layering(parameters, textures, unsupported, "eta", material).eta;
   material.reflectance_through_coating = parameters.boolean("throughcoating", false);
   // The closed form has all orders of reflection and nothing that is absorbed.
-  if (material.layering.thickness > 0 || material.layering.max_depth > 0)
+  if (material.layering.thickness > 0 || material.coat_thickness || material.layering.max_depth > 0)
     material.kind = Material::Kind::layered;
   std::shared_ptr<const CoatingAlbedo>& coating = shared.coatings[eta];
   if (!coating) coating = std::make_shared<const CoatingAlbedo>(eta);
@@ -153,7 +162,7 @@ void read_conductor(const Parameters& parameters, const TextureLibrary& textures
 void read_coated_conductor(const Parameters& parameters, const TextureLibrary& textures,
                            Unsupported& unsupported, Material& material, const Location& at) {
   material.kind = Material::Kind::layered;
-  read_layering(parameters, unsupported, "interface.eta", material);
+  read_layering(parameters, textures, unsupported, "interface.eta", material);
   material.layering.metal = true;
   const auto [u, v] = read_roughness(parameters, textures, "interface.");
   material.roughness_u = u, material.roughness_v = v;
@@ -332,13 +341,16 @@ Bsdf Material::bare_bsdf(const TexturePoint& point, int group, int hero) const {
     }
     case Kind::layered: {
       const Microfacets coat = facets_at(*this, point, group);
+      std::optional<double> thickness;
+      if (coat_thickness) thickness = std::max(0.0, coat_thickness->at(point, group));
       if (layering.metal) {
         const auto [n, absorption] = metal_at(*this, point, group);
         return Bsdf::layered(n, absorption, coat,
                              facets_at(base_roughness_u, base_roughness_v, remap_roughness, point, group),
-                             layering);
+                             layering, thickness);
       }
-      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering);
+      return Bsdf::layered(base_at(*this, coat, point, group), Lanes::all(0), coat, {0, 0}, layering,
+                           thickness);
     }
     case Kind::conductor: {
       const auto [n, absorption] = metal_at(*this, point, group);
@@ -376,7 +388,7 @@ bool varies(const std::vector<Material>& materials, int index) {
     if (*each && !(*each)->is_constant()) return true;
   for (const FloatTexture* each :
        {&material.roughness_u, &material.roughness_v, &material.base_roughness_u, &material.base_roughness_v,
-        &material.mix_amount, &material.sheen_roughness})
+        &material.mix_amount, &material.sheen_roughness, &material.coat_thickness})
     if (*each && !(*each)->is_constant()) return true;
   if (material.normal_map || material.bump_map) return true;
   return material.kind == Material::Kind::mix &&

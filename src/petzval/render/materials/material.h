@@ -38,6 +38,7 @@ struct Material {
   FloatTexture base_roughness_u, base_roughness_v;  ///< of a metal under a coat
   bool remap_roughness = true;                      ///< alpha = √roughness
   Layering layering;
+  FloatTexture coat_thickness;  ///< null: that of `layering`
   std::shared_ptr<const CoatingAlbedo> coating;
   /// The reflectance is that of the base with its coating: the share that comes out again of light let in.
   bool reflectance_through_coating = false;
