@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measured materials and bump maps beside pbrt-v4: the same scene files through both programs.
+"""Measured materials, bump maps and chequered coats beside pbrt-v4: the same scene files through both programs.
 
     python3 bench/surfaces_beside.py build/release/bin/petzval PBRT [--spp 256] [--seeds 4] [--pictures FOLDER]
 
@@ -143,6 +143,9 @@ def texts(folder):
         yield f"bumps, {name}", scene(f'{bumps}Material {material} "texture displacement" "waves"')
     board = 'Shape "trianglemesh" "point3 P" [ -1.5 -.9 -.9 1.5 -.9 -.9 1.5 .2 .9 -1.5 .2 .9 ] "point2 uv" [ 0 0 1 0 1 1 0 1 ] "integer indices" [ 0 1 2 0 2 3 ]'
     yield "bumps, board", scene(f'{bumps}Material "diffuse" "texture displacement" "waves"', board)
+    squares = 'Texture "t" "float" "checkerboard" "float uscale" 8 "float vscale" 4 "float tex1" 0.05 "float tex2" 0.5\n'
+    yield "coat, chequered", scene(squares + 'Material "coateddiffuse" "spectrum reflectance" [ 300 0.7 900 0.7 ] "float roughness" 0.1 '
+                                   '"texture thickness" "t" "integer maxdepth" 100 "integer nsamples" 4')
 
 
 # -------------------------------------------------------------------------------------------------------- programs
